@@ -1,0 +1,26 @@
+# One set of flags for every target: SSE4.2 baseline, no contraction (results are to agree between back ends).
+add_library(kiloband_flags INTERFACE)
+target_compile_options(kiloband_flags INTERFACE -Wall -Wextra -Wshadow -ffp-contract=off -msse4.2 -mpclmul -maes)
+target_include_directories(kiloband_flags INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR})
+if(KILOBAND_SANITIZE)
+  target_compile_options(kiloband_flags INTERFACE -fsanitize=${KILOBAND_SANITIZE} -fno-sanitize-recover=all
+                                                  -fno-omit-frame-pointer)
+  target_link_options(kiloband_flags INTERFACE -fsanitize=${KILOBAND_SANITIZE})
+endif()
+
+# kiloband_library(name SOURCES ... DEPENDS ...): a static library with the project's flags.
+function(kiloband_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC kiloband_flags ${ARG_DEPENDS})
+endfunction()
+
+# kiloband_test(name SOURCES ... DEPENDS ...): a GoogleTest program whose tests ctest knows one by one.
+function(kiloband_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE kiloband_flags ${ARG_DEPENDS} GTest::gtest GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE KILOBAND_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                             KILOBAND_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+endfunction()

@@ -1,0 +1,211 @@
+// SceneDescription: the scene as the user wrote it, checked and loaded; what the reader produces and flattening reads.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/diagnostics.hpp"
+#include "scene/image.hpp"
+#include "scene/mesh.hpp"
+#include "spectral/channels.hpp"
+#include "spectral/spectrum.hpp"
+
+namespace kiloband {
+
+/// Column-major as glm has it; maps local to parent coordinates.
+using Transform = glm::dmat4;
+
+// ---- textures ------------------------------------------------------------------------------------------------------
+enum class WrapMode { kRepeat, kMirror, kClamp };
+
+struct BitmapTexture {
+  std::string id;
+  SourcePosition position;
+  std::filesystem::path file;
+  std::shared_ptr<const Image> image;
+  bool nearest = false;
+  WrapMode wrap = WrapMode::kRepeat;
+  bool raw = false;               // values are taken as they are: spectrally flat; 3 raw channels are averaged
+  glm::dmat3 to_uv{1.0};
+};
+
+struct CheckerboardTexture {
+  std::string id;
+  SourcePosition position;
+  Spectrum color0 = Spectrum::constant(0.4);
+  Spectrum color1 = Spectrum::constant(0.2);
+  glm::dmat3 to_uv{1.0};
+};
+
+/// A spectral parameter. For emission a bitmap is upsampled per texel and multiplied by D65 as in Mitsuba.
+using Texture = std::variant<Spectrum, std::shared_ptr<const BitmapTexture>, std::shared_ptr<const CheckerboardTexture>>;
+
+// ---- BSDFs ---------------------------------------------------------------------------------------------------------
+enum class Microfacet { kBeckmann, kGgx };
+
+struct Roughness {
+  Microfacet distribution = Microfacet::kBeckmann;
+  double alpha_u = 0.1;
+  double alpha_v = 0.1;
+  bool sample_visible = true;
+};
+
+struct DiffuseBsdf {
+  Texture reflectance = Spectrum::constant(0.5);
+};
+/// roughness absent: smooth. eta 0, k 1 is the perfect mirror (F = 1).
+struct ConductorBsdf {
+  Spectrum eta = Spectrum::constant(0);
+  Spectrum k = Spectrum::constant(1);
+  Texture specular_reflectance = Spectrum::constant(1);
+  std::optional<Roughness> roughness;
+};
+/// Indices are spectra; both constant: no dispersion.
+struct DielectricBsdf {
+  Spectrum int_ior = Spectrum::constant(1.5046);
+  Spectrum ext_ior = Spectrum::constant(1.000277);
+  Texture specular_reflectance = Spectrum::constant(1);
+  Texture specular_transmittance = Spectrum::constant(1);
+  std::optional<Roughness> roughness;
+};
+struct PlasticBsdf {
+  Texture diffuse_reflectance = Spectrum::constant(0.5);
+  Texture specular_reflectance = Spectrum::constant(1);
+  double int_ior = 1.49;
+  double ext_ior = 1.000277;
+  bool nonlinear = false;
+  std::optional<Roughness> roughness;
+};
+
+struct Bsdf;
+/// back absent: the front is used on both sides.
+struct TwoSidedBsdf {
+  std::shared_ptr<const Bsdf> front;
+  std::shared_ptr<const Bsdf> back;
+};
+/// opacity: a constant (the mean of a spectrum over the guide bands) or a bitmap read as one channel.
+struct MaskBsdf {
+  Texture opacity = Spectrum::constant(0.5);
+  std::shared_ptr<const Bsdf> nested;
+};
+
+struct Bsdf {
+  std::string id;            // for messages; empty if unnamed
+  SourcePosition position;
+  std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf> model;
+};
+
+// ---- emitters ------------------------------------------------------------------------------------------------------
+struct AreaEmitter {
+  Texture radiance;  // W m^-2 sr^-1 nm^-1, on the normal side
+};
+struct ConstantEmitter {
+  Spectrum radiance;
+};
+struct EnvmapEmitter {
+  std::shared_ptr<const Image> image;  // linear RGB lat-long
+  std::filesystem::path file;
+  double scale = 1;
+  Transform to_world{1.0};
+};
+struct PointEmitter {
+  Spectrum intensity;  // W sr^-1 nm^-1
+  glm::dvec3 position{0};
+};
+struct SpotEmitter {
+  Spectrum intensity;  // on the axis
+  double cutoff_angle = 0;  // rad
+  double beam_width = 0;    // rad
+  Transform to_world{1.0};
+};
+struct DirectionalEmitter {
+  Spectrum irradiance;  // W m^-2 nm^-1 on a plane perpendicular to direction
+  glm::dvec3 direction{0, 0, 1};  // of propagation, unit, world
+};
+
+/// Emitters other than area lights.
+struct Emitter {
+  std::string id;
+  SourcePosition position;
+  std::variant<ConstantEmitter, EnvmapEmitter, PointEmitter, SpotEmitter, DirectionalEmitter> model;
+};
+
+// ---- shapes --------------------------------------------------------------------------------------------------------
+/// Vertices in local coordinates.
+struct MeshShape {
+  std::shared_ptr<const Mesh> mesh;
+};
+/// Canonical: radius 1 at the origin (centre and radius are folded into to_world; scale is uniform, checked).
+struct SphereShape {};
+struct DiskShape {};      // radius 1 in z = 0, normal +Z
+struct CylinderShape {};  // radius 1 about z from 0 to 1, no caps, normals outward (p0, p1, radius folded in)
+
+struct Shape {
+  std::string id;
+  SourcePosition position;
+  Transform to_world{1.0};
+  bool flip_normals = false;
+  std::shared_ptr<const Bsdf> bsdf;        // never null: the default is filled in
+  std::optional<AreaEmitter> emitter;
+  SourcePosition emitter_position;
+  std::variant<MeshShape, SphereShape, DiskShape, CylinderShape> geometry;
+};
+
+// ---- sensor, film, integrator --------------------------------------------------------------------------------------
+enum class FilterType { kBox, kTent, kGaussian };
+
+struct Film {
+  uint32_t width = 768;
+  uint32_t height = 576;
+  uint32_t crop_x = 0, crop_y = 0;          // offset of the crop window, pixels
+  uint32_t crop_width = 0, crop_height = 0;  // size of the rendered image; the reader fills in the default
+  FilterType filter = FilterType::kBox;
+  double filter_radius = 0.5;   // pixels
+  double filter_stddev = 0.5;   // gaussian
+  /// bandfilm's channels, or a specfilm's constant responses as channels; empty: the program's default.
+  ChannelList channels;
+  /// specfilm responses that are not constant inside their range (or not 1): named, summed from sub-channels.
+  std::vector<std::pair<std::string, Spectrum>> responses;
+};
+
+struct PerspectiveSensor {
+  double fov_x = 0;  // rad, full angle across the film's width (fov_axis is resolved against the full film)
+};
+struct ThinLensSensor {
+  double fov_x = 0;
+  double aperture_radius = 0;  // m
+  double focus_distance = 0;   // m
+};
+struct OrthographicSensor {};
+
+struct Sensor {
+  SourcePosition position;
+  Transform to_world{1.0};
+  double near_clip = 0.01;
+  double far_clip = 1e4;
+  double principal_point_x = 0, principal_point_y = 0;
+  std::variant<PerspectiveSensor, ThinLensSensor, OrthographicSensor> model;
+  Film film;
+  uint64_t sample_count = 4;
+};
+
+struct Integrator {
+  int max_depth = -1;  // -1: unlimited; 1: emission only
+  int rr_depth = 5;
+  bool hide_emitters = false;
+};
+
+struct SceneDescription {
+  std::filesystem::path file;
+  std::vector<Shape> shapes;
+  std::vector<Emitter> emitters;
+  Sensor sensor;
+  Integrator integrator;
+};
+
+}  // namespace kiloband

@@ -1,0 +1,92 @@
+// The one header that asks which language it is compiled as: C++20 on the host, OpenCL C 1.2 on devices.
+//
+// Everything in src/shared is valid in both. Rules: no overloads, templates, references, size_t, bool or vector
+// types in stored records; `fma` only where it is written; compile with -ffp-contract=off.
+#ifndef KILOBAND_SHARED_LANG_H
+#define KILOBAND_SHARED_LANG_H
+
+#ifdef __OPENCL_VERSION__
+
+#pragma OPENCL FP_CONTRACT OFF
+typedef uint kb_u32;
+typedef ulong kb_u64;
+typedef int kb_i32;
+typedef ushort kb_u16;
+#define KB_FN inline
+#define KB_GLOBAL __global
+#define KB_CONSTANT __constant
+#define KB_STATIC_ASSERT(condition, name) typedef char kb_assert_##name[(condition) ? 1 : -1]
+#define kb_sqrt(x) sqrt(x)
+#define kb_fabs(x) fabs(x)
+#define kb_floor(x) floor(x)
+#define kb_fmin(x, y) fmin(x, y)
+#define kb_fmax(x, y) fmax(x, y)
+#define kb_sin(x) sin(x)
+#define kb_cos(x) cos(x)
+#define kb_acos(x) acos(x)
+#define kb_atan2(y, x) atan2(y, x)
+#define kb_exp(x) exp(x)
+#define kb_log(x) log(x)
+#define kb_mul_hi(a, b) mul_hi(a, b)
+#define kb_as_u32(x) as_uint(x)
+#define kb_as_f32(x) as_float(x)
+
+#else
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+typedef uint32_t kb_u32;
+typedef uint64_t kb_u64;
+typedef int32_t kb_i32;
+typedef uint16_t kb_u16;
+#define KB_FN static inline
+#define KB_GLOBAL
+#define KB_CONSTANT
+#define KB_STATIC_ASSERT(condition, name) static_assert(condition, #name)
+#define kb_sqrt(x) std::sqrt(x)
+#define kb_fabs(x) std::fabs(x)
+#define kb_floor(x) std::floor(x)
+#define kb_fmin(x, y) std::fmin(x, y)
+#define kb_fmax(x, y) std::fmax(x, y)
+#define kb_sin(x) std::sin(x)
+#define kb_cos(x) std::cos(x)
+#define kb_acos(x) std::acos(x)
+#define kb_atan2(y, x) std::atan2(y, x)
+#define kb_exp(x) std::exp(x)
+#define kb_log(x) std::log(x)
+KB_FN kb_u32 kb_mul_hi(kb_u32 a, kb_u32 b) { return (kb_u32)(((kb_u64)a * (kb_u64)b) >> 32); }
+KB_FN kb_u32 kb_as_u32(float x) {
+  kb_u32 bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+KB_FN float kb_as_f32(kb_u32 bits) {
+  float x;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+#endif
+
+#define KB_PI 3.14159265358979323846f
+#define KB_INV_PI 0.31830988618379067154f
+#define KB_ONE_MINUS_EPSILON 0.99999994f
+
+typedef struct {
+  float x, y;
+} KbFloat2;
+
+typedef struct {
+  float x, y, z;
+} KbFloat3;
+
+typedef struct {
+  float x, y, z, w;
+} KbFloat4;
+
+KB_STATIC_ASSERT(sizeof(KbFloat2) == 8, float2_size);
+KB_STATIC_ASSERT(sizeof(KbFloat3) == 12, float3_size);
+KB_STATIC_ASSERT(sizeof(KbFloat4) == 16, float4_size);
+
+#endif

@@ -1,0 +1,230 @@
+// Records that both backends read: the flattened scene, and the path vertices that deferred evaluation reads.
+// Layouts are fixed (sizes are asserted); an index of KB_NONE means "absent".
+#ifndef KILOBAND_SHARED_RECORDS_H
+#define KILOBAND_SHARED_RECORDS_H
+
+#include "shared/lang.h"
+
+#define KB_NONE 0xffffffffu
+
+/* ---- references to spectra -------------------------------------------------------------------------------------
+   A u32: the top two bits say what it is, the rest is an index. A named spectrum is a row of the spectrum table. */
+#define KB_REF_SPECTRUM 0x00000000u
+#define KB_REF_BITMAP 0x40000000u
+#define KB_REF_CHECKERBOARD 0x80000000u
+#define KB_REF_KIND_MASK 0xc0000000u
+#define KB_REF_INDEX_MASK 0x3fffffffu
+
+/* ---- materials -------------------------------------------------------------------------------------------------- */
+enum KbMaterialType {
+  KB_MATERIAL_DIFFUSE = 0,
+  KB_MATERIAL_CONDUCTOR = 1,
+  KB_MATERIAL_ROUGH_CONDUCTOR = 2,
+  KB_MATERIAL_DIELECTRIC = 3,
+  KB_MATERIAL_ROUGH_DIELECTRIC = 4,
+  KB_MATERIAL_PLASTIC = 5,
+  KB_MATERIAL_ROUGH_PLASTIC = 6,
+  KB_MATERIAL_COUNT = 7
+};
+
+#define KB_MICROFACET_BECKMANN 0u
+#define KB_MICROFACET_GGX 1u
+
+#define KB_MATERIAL_NONLINEAR 1u         /* plastic: colour shifts by internal scattering */
+#define KB_MATERIAL_DISPERSIVE 2u        /* dielectric: eta depends on the wavelength, rows eta_row / eta_ext_row */
+#define KB_MATERIAL_SAMPLE_VISIBLE 4u    /* rough: sample visible normals */
+#define KB_MATERIAL_PERFECT_MIRROR 8u    /* conductor: eta 0, k 1, reflectance 1 at every wavelength */
+
+/* One leaf BSDF. Spectral quantities are references; scalars that steer sampling are averages over the guide bands. */
+typedef struct {
+  kb_u32 type;      /* KbMaterialType */
+  kb_u32 flags;     /* KB_MATERIAL_* */
+  kb_u32 ref_a;     /* diffuse: reflectance; conductor, plastic: specular reflectance; dielectric: specular reflectance */
+  kb_u32 ref_b;     /* plastic: diffuse reflectance; dielectric: specular transmittance */
+  kb_u32 eta_row;   /* conductor: n; dispersive dielectric: interior index; else KB_NONE */
+  kb_u32 k_row;     /* conductor: k; dispersive dielectric: exterior index row, or KB_NONE for the constant eta_ext */
+  kb_u32 distribution; /* KB_MICROFACET_* */
+  float alpha_u;    /* roughness along the tangent */
+  float alpha_v;
+  float eta;        /* dielectric, plastic: interior over exterior index (guide mean when dispersive) */
+  float eta_ext;    /* dispersive: constant exterior index */
+  float fdr_int;    /* plastic: diffuse Fresnel reflectance from inside */
+  float specular_weight; /* plastic: probability scale of the specular lobe, s / (s + d) of the guide means, mixed with uniform */
+  float bound_a;    /* upper bound of ref_a over guide and rendered channels */
+  float bound_b;    /* the same of ref_b */
+  kb_u32 reserved;
+} KbMaterial;
+KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
+
+#define KB_SURFACE_TRANSMISSIVE 1u /* one material, both sides, not flipped */
+#define KB_SURFACE_TWO_SIDED 2u    /* back != KB_NONE: the frame is flipped for directions below the surface */
+
+/* What a shape's bsdf comes to: the materials of its two sides and its opacity. */
+typedef struct {
+  kb_u32 front;   /* material index */
+  kb_u32 back;    /* material index, or KB_NONE: black from behind */
+  kb_u32 flags;   /* KB_SURFACE_* */
+  kb_u32 opacity_ref; /* bitmap reference, or KB_NONE for the constant */
+  float opacity;  /* 1: no mask */
+  kb_u32 reserved0, reserved1, reserved2;
+} KbSurface;
+KB_STATIC_ASSERT(sizeof(KbSurface) == 32, surface_size);
+
+/* ---- textures --------------------------------------------------------------------------------------------------
+   A texel is (c0, c1, c2, scale): value(lambda) = scale * S(c0 x^2 + c1 x + c2), S(v) = 1/2 + v / (2 sqrt(1 + v^2)),
+   with x = clamp(lambda_nm, 360, 830). A flat texel has c0 = c1 = 0, c2 = 1e10 (S == 1), scale = value. Lookups are
+   bilinear in the evaluated spectra, as in Mitsuba 3. */
+#define KB_WRAP_REPEAT 0u
+#define KB_WRAP_MIRROR 1u
+#define KB_WRAP_CLAMP 2u
+#define KB_TEXTURE_NEAREST 1u
+#define KB_TEXTURE_ENVMAP 2u /* columns repeat, rows clamp, rows align-corners */
+
+typedef struct {
+  kb_u32 width, height;
+  kb_u32 first_texel;     /* into the texel array, row 0 = v 0 = top */
+  kb_u32 wrap;            /* KB_WRAP_* */
+  kb_u32 flags;           /* KB_TEXTURE_* */
+  kb_u32 illuminant_row;  /* spectrum multiplied on top (D65 for RGB emission), or KB_NONE */
+  float to_uv[6];         /* row-major 2x3: uv' = M (u, v, 1) */
+} KbTexture;
+KB_STATIC_ASSERT(sizeof(KbTexture) == 48, texture_size);
+
+typedef struct {
+  kb_u32 ref0, ref1; /* named spectra */
+  float to_uv[6];
+} KbCheckerboard;
+KB_STATIC_ASSERT(sizeof(KbCheckerboard) == 32, checkerboard_size);
+
+/* ---- shapes ----------------------------------------------------------------------------------------------------- */
+enum KbShapeType { KB_SHAPE_MESH = 0, KB_SHAPE_SPHERE = 1, KB_SHAPE_DISK = 2, KB_SHAPE_CYLINDER = 3 };
+
+#define KB_SHAPE_FLIP_NORMALS 1u
+#define KB_SHAPE_HAS_NORMALS 2u /* mesh: interpolated normals */
+#define KB_SHAPE_HAS_UVS 4u
+
+/* Rectangles and cubes are meshes. For sphere, disk and cylinder, to_world maps the canonical shape (unit sphere;
+   unit disk in z = 0; unit-radius cylinder along z in [0, 1]) to the world. */
+typedef struct {
+  kb_u32 type;           /* KbShapeType */
+  kb_u32 flags;          /* KB_SHAPE_* */
+  kb_u32 surface;        /* index into surfaces */
+  kb_u32 emitter;        /* area emitter, or KB_NONE */
+  kb_u32 first_triangle; /* mesh: into the triangle array (3 vertex indices each, absolute) */
+  kb_u32 triangle_count;
+  kb_u32 first_cdf;      /* emitting mesh: into area_cdf, triangle_count + 1 entries from 0 to 1; else KB_NONE */
+  float area;            /* m^2 */
+  float to_world[12];    /* row-major 3x4 */
+  float to_object[12];
+} KbShape;
+KB_STATIC_ASSERT(sizeof(KbShape) == 128, shape_size);
+
+/* ---- emitters --------------------------------------------------------------------------------------------------- */
+enum KbEmitterType {
+  KB_EMITTER_AREA = 0,
+  KB_EMITTER_CONSTANT = 1,
+  KB_EMITTER_ENVMAP = 2,
+  KB_EMITTER_POINT = 3,
+  KB_EMITTER_SPOT = 4,
+  KB_EMITTER_DIRECTIONAL = 5
+};
+
+typedef struct {
+  kb_u32 type;       /* KbEmitterType */
+  kb_u32 ref;        /* radiance, intensity or irradiance: spectrum or bitmap reference (per nm) */
+  kb_u32 shape;      /* area: shape index */
+  float select_pdf;  /* probability that next-event estimation selects this emitter */
+  float cos_cutoff;  /* spot: no light beyond */
+  float cos_beam;    /* spot: full intensity inside */
+  float cutoff_angle;/* spot, rad */
+  float beam_width;  /* spot, rad */
+  float to_world[12];  /* point, spot: position in the last column; directional: local +Z = propagation */
+  float to_object[12];
+} KbEmitter;
+KB_STATIC_ASSERT(sizeof(KbEmitter) == 128, emitter_size);
+
+/* ---- camera ----------------------------------------------------------------------------------------------------- */
+#define KB_CAMERA_PERSPECTIVE 0u
+#define KB_CAMERA_THINLENS 1u
+#define KB_CAMERA_ORTHOGRAPHIC 2u
+
+#define KB_FILTER_BOX 0u
+#define KB_FILTER_TENT 1u
+#define KB_FILTER_GAUSSIAN 2u
+
+/* local +Z views, +Y is up, +X is the image's LEFT. Film position s in [0,1]^2 of the full (uncropped) film, s_y down. */
+typedef struct {
+  kb_u32 type;           /* KB_CAMERA_* */
+  kb_u32 film_width, film_height; /* full film, pixels */
+  kb_u32 filter;         /* KB_FILTER_* */
+  float filter_radius;   /* pixels */
+  float filter_stddev;   /* gaussian: pixels */
+  float tan_half_fov_x;  /* perspective: half the image plane's width at distance 1 */
+  float principal_x, principal_y; /* offsets as fractions of the film */
+  float near_clip, far_clip;      /* m, along the view direction */
+  float aperture_radius, focus_distance; /* thinlens, m */
+  kb_u32 reserved0, reserved1, reserved2;
+  float to_world[12];    /* row-major 3x4, may scale for orthographic cameras */
+  kb_u32 reserved[4];
+} KbCamera;
+KB_STATIC_ASSERT(sizeof(KbCamera) == 128, camera_size);
+
+/* ---- path vertices ----------------------------------------------------------------------------------------------
+   What deferred evaluation needs of a vertex. With tau_0 = 1, for every channel k at wavelength lambda_k:
+
+     L   += tau * emit_weight * E[emit_row]                               if KB_VERTEX_EMIT
+     L   += tau * B(nee0, nee1) * I[nee_row]                              if KB_VERTEX_NEE
+     tau *= B(scatter0, scatter1)                                         if KB_VERTEX_SCATTER
+
+   emit_weight is the MIS weight; nee0/1 hold f cos(theta) * MIS weight / pdf of the light sample without the spectral
+   parts; scatter0/1 hold f cos(theta) / (pdf * roulette) of the sampled direction. B depends on the kind:
+
+     KB_KIND_SCALED         B(w0, w1) = w0 * S_a
+     KB_KIND_TWO_TERM       B(w0, w1) = w0 * S_a + w1 * S_b
+     KB_KIND_NONLINEAR      B(w0, w1) = w0 * S_a + w1 * S_b / (1 - S_b * fdr_int(material))
+     KB_KIND_CONDUCTOR      B(w0, w1) = w0 * S_a * F_conductor(cos = w1; eta_row, k_row of the material)
+     KB_KIND_DISPERSIVE     B(w0, w1) = w0 * S_a * F_dielectric(cos = w1 signed, eta_row / exterior of the material)
+
+   KB_VERTEX_DEGRADE: after B is applied only channel kb_as_u32(scatter1) goes on, tau of the others becomes 0
+   (its kind is SCALED; scatter0 includes 1 / probability of the channel). */
+enum KbVertexKind {
+  KB_KIND_SCALED = 0,
+  KB_KIND_TWO_TERM = 1,
+  KB_KIND_NONLINEAR = 2,
+  KB_KIND_CONDUCTOR = 3,
+  KB_KIND_DISPERSIVE = 4
+};
+
+#define KB_VERTEX_KIND_MASK 0x7u
+#define KB_VERTEX_EMIT 0x8u
+#define KB_VERTEX_NEE 0x10u
+#define KB_VERTEX_SCATTER 0x20u
+#define KB_VERTEX_DEGRADE 0x40u
+/* Textured values: row_* is unused and a KbTextureSample follows the vertex, in this order, two to a 32-byte slot. */
+#define KB_VERTEX_TEX_A 0x80u
+#define KB_VERTEX_TEX_B 0x100u
+#define KB_VERTEX_TEX_EMIT 0x200u
+#define KB_VERTEX_TEX_NEE 0x400u
+#define KB_VERTEX_TEX_MASK 0x780u
+#define KB_VERTEX_MATERIAL_SHIFT 12
+
+typedef struct {
+  kb_u32 head; /* kind | flags | material << KB_VERTEX_MATERIAL_SHIFT */
+  kb_u16 row_a, row_b;
+  kb_u16 emit_row, nee_row;
+  float emit_weight;
+  float nee0, nee1;
+  float scatter0, scatter1;
+} KbPathVertex;
+KB_STATIC_ASSERT(sizeof(KbPathVertex) == 32, path_vertex_size);
+
+/* A bilinear lookup: texels (x0, y0) (x1, y0) (x0, y1) (x1, y1) after wrapping, weights from fx and fy in [0,1].
+   The neighbours x1 = x0 + 1 and y1 = y0 + 1 are wrapped again by the texture's rule. */
+typedef struct {
+  kb_u32 texture;
+  kb_u32 xy;   /* x0 | y0 << 16 */
+  float fx, fy;
+} KbTextureSample;
+KB_STATIC_ASSERT(sizeof(KbTextureSample) == 16, texture_sample_size);
+
+#endif

@@ -1,0 +1,36 @@
+// Spectra from files: .spd and two-column text, refractiveindex.info YAML, ECOSTRESS text, response tables.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/diagnostics.hpp"
+#include "spectral/spectrum.hpp"
+
+namespace kiloband {
+
+/// Reads "lambda value" per line (nm; '#' comments; commas or blanks between; further columns ignored), ascending or
+/// descending; an ECOSTRESS file (recognised by its header: X Units, Y Units; Latin-1; micrometres; percent) or a CSV
+/// with a header line. Units other than nm are taken from the file's own statement only (a header or comment that names
+/// micrometers / um / cm-1 / wavenumber; percent).
+/// throws InputError  "file:line: ..." (not a number, not finite, duplicate wavelength, order changes, no data ...)
+Spectrum read_spectrum_file(const std::filesystem::path& file, const DiagnosticSink& sink = {});
+
+/// n and k of a material; k is absent where the file gives none.
+struct OpticalConstants {
+  Spectrum n;
+  std::optional<Spectrum> k;
+};
+
+/// Reads a refractiveindex.info YAML file (tabulated n, k, nk, and dispersion formulas 1 to 9, which are tabulated
+/// finely over their stated range with interpolation error < 1e-6), or a two- or three-column text file (lambda, n[, k]).
+OpticalConstants read_optical_constants(const std::filesystem::path& file, const DiagnosticSink& sink = {});
+
+/// A sensor response file: CSV with a header "wavelength_nm,NAME,NAME..." and one row per wavelength, or a two-column
+/// file (the file's stem is the name).
+std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::filesystem::path& file);
+
+}  // namespace kiloband
