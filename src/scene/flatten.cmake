@@ -1,1 +1,4 @@
-# filled by its owner
+kiloband_library(kiloband_flatten
+  SOURCES flatten.cpp flatten_camera.cpp flatten_emitters.cpp flatten_materials.cpp flatten_shapes.cpp
+          flatten_textures.cpp spectrum_table_builder.cpp envmap_sampling.cpp
+  DEPENDS kiloband_base kiloband_spectral glm::glm fmt::fmt)

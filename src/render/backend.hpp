@@ -1,0 +1,80 @@
+// Backend: adds samples of a flattened scene to a film. Everything above knows no backend.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.hpp"
+#include "film/spectral_film.hpp"
+#include "scene/flat_scene.hpp"
+
+namespace kiloband {
+
+enum class WavelengthMode { kShared, kPerPath };
+enum class SamplerType { kIndependent, kSobol };
+
+/// What defines the random numbers of a render; equal settings give equal bits on a device and instruction set.
+struct SamplingSettings {
+  WavelengthMode wavelengths = WavelengthMode::kShared;
+  SamplerType sampler = SamplerType::kSobol;
+  uint64_t seed = 0;
+  uint32_t replicates = 16;
+};
+
+/// Samples first .. first + count - 1 of one replicate, in every pixel. Sample i of replicate r of R is the pixel's
+/// sample number r + i R.
+struct SampleRange {
+  uint32_t replicate = 0;
+  uint32_t first = 0;
+  uint32_t count = 0;
+};
+
+/// Counters that a backend keeps over its life.
+struct RenderCounters {
+  std::atomic<uint64_t> paths{0}, vertices{0}, rays{0}, invalid_samples{0};
+};
+
+/// A sample whose value was NaN or infinite; it left the mean.
+struct InvalidSample {
+  uint32_t x, y, sample;
+};
+
+/// A named sensor response, see docs; values are summed over channels with weight response(lambda) / cover(lambda).
+struct DerivedChannels {
+  std::vector<std::string> names;
+  std::vector<RegularTable> responses;
+};
+
+/// Auxiliary values of one pixel, from the ray through its centre.
+struct AuxiliaryPixel {
+  float depth = 0;  // m along the ray; 0 where nothing is hit
+  KbFloat3 normal{0, 0, 0};  // shading normal, world
+  float object = -1;    // shape index, -1: nothing
+  float material = -1;  // material index of the side that is seen
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+
+  /// Renders the range in the film's blocks `blocks` and adds them. Returns early when stop becomes true: samples in flight are
+  /// finished and delivered. `progress` is called now and then, from one thread at a time, with the pixel samples done.
+  virtual void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
+                      const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) = 0;
+  /// [y][x] of the rectangle.
+  virtual std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) = 0;
+
+  virtual std::string name() const = 0;    // "cpu"
+  virtual std::string device() const = 0;  // processor or device name
+  virtual std::string isa() const = 0;
+  virtual const RenderCounters& counters() const = 0;
+  /// The first invalid samples, at most 16.
+  virtual std::vector<InvalidSample> invalid_samples() const = 0;
+  /// Factors that turn film values of all channels, derived ones included, into W m^-2 sr^-1.
+  virtual std::vector<double> film_scale() const = 0;
+};
+
+}  // namespace kiloband

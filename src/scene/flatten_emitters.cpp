@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+
+#include "scene/envmap_sampling.hpp"
+#include "scene/flattener.hpp"
+#include "spectral/colour.hpp"
+#include "spectral/planck.hpp"
+#include "spectral/rgb.hpp"
+
+namespace kiloband {
+namespace {
+
+/// Part of the selection probability that is uniform over emitters: a light that is dark in the guide bands may shine
+/// in a rendered channel, and a delta light that is never selected would be lost.
+constexpr double kUniformSelection = 0.05;
+constexpr double kPi = std::numbers::pi;
+
+std::string describe(const Emitter& emitter) { return emitter.id.empty() ? "emitter" : "emitter '" + emitter.id + "'"; }
+
+/// Some transform whose third column is the unit vector z.
+Transform frame_along(const glm::dvec3& z) {
+  const glm::dvec3 helper = std::abs(z.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 x = glm::normalize(glm::cross(helper, z));
+  return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(0, 0, 0, 1)};
+}
+
+void set_transforms(KbEmitter& record, const Transform& to_world) {
+  store_transform(to_world, record.to_world);
+  store_transform(glm::inverse(to_world), record.to_object);
+}
+
+/// Solid angle of the spot weighted by its falloff, from the beam's cone to the cutoff linearly in angle.
+double spot_solid_angle(double beam, double cutoff) {
+  constexpr int kSteps = 256;
+  double sum = 2 * kPi * (1 - std::cos(beam));
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = (i + 0.5) / kSteps;
+    const double angle = beam + t * (cutoff - beam);
+    sum += 2 * kPi * std::sin(angle) * (1 - t) * (cutoff - beam) / kSteps;
+  }
+  return sum;
+}
+
+}  // namespace
+
+void Flattener::add_area_emitter(uint32_t shape_index) {
+  const Shape& shape = in_.shapes[shape_index];
+  const std::string name = fmt::format("emitter of {}", out_.shape_names[shape_index]);
+  KbEmitter record{};
+  record.type = KB_EMITTER_AREA;
+  record.shape = shape_index;
+  record.ref = reference(shape.emitter->radiance, {name + ": radiance", shape.emitter_position, true});
+  set_transforms(record, Transform{1.0});
+  out_.shapes[shape_index].emitter = static_cast<uint32_t>(out_.emitters.size());
+  out_.emitters.push_back(record);
+  out_.features.area_light = true;
+
+  Spectrum colour = illuminant_d65();
+  if (const auto* spectrum = std::get_if<Spectrum>(&shape.emitter->radiance)) colour = *spectrum;
+  powers_.push_back({colour, kPi * out_.shapes[shape_index].area});
+}
+
+KbEmitter Flattener::make_emitter(const Emitter& emitter) {
+  KbEmitter record{};
+  const std::string name = describe(emitter);
+  const double disc = kPi * out_.scene_radius * out_.scene_radius;
+  const auto use = [&](const char* what) { return SpectrumUse{name + ": " + what, emitter.position, true}; };
+  set_transforms(record, Transform{1.0});
+  if (const auto* constant = std::get_if<ConstantEmitter>(&emitter.model)) {
+    record.type = KB_EMITTER_CONSTANT;
+    record.ref = spectra_.row(constant->radiance, use("radiance"));
+    powers_.push_back({constant->radiance, 4 * kPi * disc});
+    out_.features.constant_light = true;
+  } else if (const auto* envmap = std::get_if<EnvmapEmitter>(&emitter.model)) {
+    add_environment_map(record, *envmap, use("envmap"));
+  } else if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) {
+    record.type = KB_EMITTER_POINT;
+    record.ref = spectra_.row(point->intensity, use("intensity"));
+    set_transforms(record, glm::translate(Transform{1.0}, point->position));
+    powers_.push_back({point->intensity, 4 * kPi});
+  } else if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model)) {
+    record.type = KB_EMITTER_SPOT;
+    record.ref = spectra_.row(spot->intensity, use("intensity"));
+    set_transforms(record, spot->to_world);
+    record.cutoff_angle = static_cast<float>(spot->cutoff_angle);
+    record.beam_width = static_cast<float>(spot->beam_width);
+    record.cos_cutoff = static_cast<float>(std::cos(spot->cutoff_angle));
+    record.cos_beam = static_cast<float>(std::cos(spot->beam_width));
+    powers_.push_back({spot->intensity, spot_solid_angle(spot->beam_width, spot->cutoff_angle)});
+  } else {
+    const auto& directional = std::get<DirectionalEmitter>(emitter.model);
+    record.type = KB_EMITTER_DIRECTIONAL;
+    record.ref = spectra_.row(directional.irradiance, use("irradiance"));
+    set_transforms(record, frame_along(directional.direction));
+    powers_.push_back({directional.irradiance, disc});
+  }
+  return record;
+}
+
+void Flattener::add_emitters() {
+  for (const Emitter& emitter : in_.emitters) {
+    const KbEmitter record = make_emitter(emitter);
+    const bool environment = record.type == KB_EMITTER_CONSTANT || record.type == KB_EMITTER_ENVMAP;
+    if (environment) out_.environment = static_cast<uint32_t>(out_.emitters.size());
+    out_.features.delta_light |= !environment;
+    out_.emitters.push_back(record);
+  }
+}
+
+void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumUse& use) {
+  record.type = KB_EMITTER_ENVMAP;
+  set_transforms(record, emitter.to_world);
+  auto bitmap_texture = std::make_shared<BitmapTexture>();
+  bitmap_texture->image = emitter.image;
+  const uint32_t index = bitmap(bitmap_texture, true);
+  record.ref = KB_REF_BITMAP | index;
+  KbTexture& texture = out_.textures[index];
+  texture.flags = KB_TEXTURE_ENVMAP;
+  out_.features.envmap_light = true;
+
+  // Selection and sampling weights: each texel's mean radiance is its colour's, up to the common D65 factor.
+  const std::size_t count = std::size_t{texture.width} * texture.height;
+  std::vector<float> weights(count);
+  double mean = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    KbFloat4& texel = out_.texels[texture.first_texel + i];
+    texel.w *= static_cast<float>(emitter.scale);
+    const std::size_t channels = emitter.image->channels;
+    double value = 0;
+    for (std::size_t c = 0; c < channels; ++c) value += emitter.image->pixels[channels * i + c];
+    weights[i] = static_cast<float>(value * emitter.scale / static_cast<double>(channels));
+    const double row = static_cast<double>(i / texture.width);
+    mean += weights[i] * std::sin(kPi * row / std::max(1u, texture.height - 1)) * kPi / 2;
+  }
+  mean /= static_cast<double>(count);
+  out_.envmap = build_envmap_sampling(texture.width, texture.height, weights);
+  powers_.push_back({illuminant_d65().scaled(mean), 4 * kPi * kPi * out_.scene_radius * out_.scene_radius});
+  (void)use;
+}
+
+void Flattener::select_emitters() {
+  const std::size_t count = out_.emitters.size();
+  std::vector<double> votes(count, 0.0);
+  for (const Channel& band : out_.guide) {
+    std::vector<double> power(count);
+    double total = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      power[i] = std::max(0.0, powers_[i].factor * powers_[i].spectrum.integral(band.min_nm, band.max_nm));
+      total += power[i];
+    }
+    for (std::size_t i = 0; i < count && total > 0; ++i) votes[i] += power[i] / total;
+  }
+  double sum = 0;
+  for (const double vote : votes) sum += vote;
+  out_.emitter_cdf.assign(1, 0.0f);
+  double cumulative = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double uniform = 1.0 / static_cast<double>(count);
+    cumulative += sum > 0 ? (1 - kUniformSelection) * votes[i] / sum + kUniformSelection * uniform : uniform;
+    out_.emitter_cdf.push_back(i + 1 == count ? 1.0f : static_cast<float>(cumulative));
+    out_.emitters[i].select_pdf = out_.emitter_cdf[i + 1] - out_.emitter_cdf[i];
+  }
+}
+
+/// The power of two below the largest channel value that an emission row reaches: path sums are then of order 1 however
+/// dim the channel is (Planck's law at 0.3 um and 200 K is 1e-96).
+void Flattener::set_channel_scales() {
+  out_.channel_scale.assign(out_.channels.size(), 1.0);
+  for (std::size_t k = 0; k < out_.channels.size(); ++k) {
+    const Channel& channel = out_.channels[k];
+    double peak = 0;
+    for (const SpectrumRow& row : out_.spectra) {
+      if (!row.is_emission) continue;
+      for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+        const double lambda = (1 - t) * channel.min_nm + t * channel.max_nm;
+        const bool inside = lambda >= row.planck_min_nm && lambda <= row.planck_max_nm;
+        const double value = row.is_planck
+                                 ? (inside ? row.planck_scale * planck_radiance(lambda, row.temperature_k) : 0)
+                                 : row.table(lambda);
+        peak = std::max(peak, value * channel.width_nm());
+      }
+    }
+    if (peak > 0) out_.channel_scale[k] = std::exp2(std::floor(std::log2(peak)));
+  }
+}
+
+}  // namespace kiloband

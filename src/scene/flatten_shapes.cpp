@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "scene/flattener.hpp"
+
+namespace kiloband {
+namespace {
+
+KbFloat3 to_record(const glm::dvec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+glm::dvec3 to_glm(const KbFloat3& v) { return {v.x, v.y, v.z}; }
+
+/// Area of a canonical analytic shape under its transform (a similarity for spheres; see the reader's checks).
+double analytic_area(uint32_t type, const Transform& m) {
+  const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
+  const double pi = std::numbers::pi;
+  if (type == KB_SHAPE_SPHERE) return 4 * pi * glm::dot(x, x);
+  if (type == KB_SHAPE_DISK) return pi * glm::length(glm::cross(x, y));
+  return 2 * pi * glm::length(x) * glm::length(z);
+}
+
+/// World-space corners that enclose an analytic shape.
+void extend_bounds(const KbShape& shape, glm::dvec3& low, glm::dvec3& high) {
+  const float* m = shape.to_world;
+  const double z_low = shape.type == KB_SHAPE_SPHERE ? -1 : 0;
+  const double z_high = shape.type == KB_SHAPE_DISK ? 0 : 1;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? z_high : z_low);
+    glm::dvec3 world;
+    for (int row = 0; row < 3; ++row) {
+      world[row] = m[4 * row] * p.x + m[4 * row + 1] * p.y + m[4 * row + 2] * p.z + m[4 * row + 3];
+    }
+    low = glm::min(low, world);
+    high = glm::max(high, world);
+  }
+}
+
+}  // namespace
+
+void Flattener::add_shapes() {
+  for (const Shape& shape : in_.shapes) {
+    KbShape record{};
+    record.surface = surface(shape.bsdf);
+    record.emitter = record.first_cdf = KB_NONE;
+    record.flags = shape.flip_normals ? KB_SHAPE_FLIP_NORMALS : 0;
+    store_transform(shape.to_world, record.to_world);
+    store_transform(glm::inverse(shape.to_world), record.to_object);
+    if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry)) {
+      record.type = KB_SHAPE_MESH;
+      add_mesh(record, shape, *mesh->mesh);
+    } else {
+      record.type = std::holds_alternative<SphereShape>(shape.geometry) ? KB_SHAPE_SPHERE
+                    : std::holds_alternative<DiskShape>(shape.geometry) ? KB_SHAPE_DISK
+                                                                        : KB_SHAPE_CYLINDER;
+      record.area = static_cast<float>(analytic_area(record.type, shape.to_world));
+      out_.features.analytic_shapes = true;
+    }
+    out_.shapes.push_back(record);
+    out_.shape_names.push_back(shape.id.empty() ? fmt::format("shape {}", out_.shapes.size() - 1) : shape.id);
+    if (shape.emitter) add_area_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
+  }
+}
+
+void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) {
+  const std::size_t first = out_.positions.size();
+  if (first + mesh.positions.size() > 0xffffffffu || out_.triangles.size() / 3 + mesh.triangles.size() > 0x7fffffffu) {
+    throw InputError(shape.position, "the scene has more vertices or triangles than 32-bit indices can name");
+  }
+  record.first_triangle = static_cast<uint32_t>(out_.triangles.size() / 3);
+  record.triangle_count = static_cast<uint32_t>(mesh.triangles.size());
+  for (const Vec3f& p : mesh.positions) {
+    out_.positions.push_back(to_record(glm::dvec3(shape.to_world * glm::dvec4(p[0], p[1], p[2], 1))));
+  }
+  if (!mesh.normals.empty()) {
+    record.flags |= KB_SHAPE_HAS_NORMALS;
+    out_.normals.resize(first, KbFloat3{0, 0, 0});
+    const glm::dmat3 to_world = glm::transpose(glm::inverse(glm::dmat3(shape.to_world)));
+    for (const Vec3f& n : mesh.normals) {
+      const glm::dvec3 world = to_world * glm::dvec3(n[0], n[1], n[2]);
+      const double length = glm::length(world);
+      out_.normals.push_back(to_record(length > 0 ? world / length : glm::dvec3(0)));
+    }
+  }
+  if (!mesh.uvs.empty()) {
+    record.flags |= KB_SHAPE_HAS_UVS;
+    out_.uvs.resize(first, KbFloat2{0, 0});
+    for (const Vec2f& uv : mesh.uvs) out_.uvs.push_back({uv[0], uv[1]});
+  }
+  // A mirroring transform turns the winding: swap two indices so that the geometric normal is the transformed one.
+  const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
+  for (const auto& triangle : mesh.triangles) {
+    const auto base = static_cast<uint32_t>(first);
+    out_.triangles.push_back(base + triangle[0]);
+    out_.triangles.push_back(base + triangle[mirrored ? 2 : 1]);
+    out_.triangles.push_back(base + triangle[mirrored ? 1 : 2]);
+  }
+  if (!out_.normals.empty()) out_.normals.resize(out_.positions.size(), KbFloat3{0, 0, 0});
+  if (!out_.uvs.empty()) out_.uvs.resize(out_.positions.size(), KbFloat2{0, 0});
+  add_area_cdf(record);
+  if (!shape.emitter) {
+    out_.area_cdf.resize(record.first_cdf);
+    record.first_cdf = KB_NONE;
+  }
+}
+
+/// Appends the cumulative areas of the triangles, 0 to 1; the total goes to the record.
+void Flattener::add_area_cdf(KbShape& record) {
+  record.first_cdf = static_cast<uint32_t>(out_.area_cdf.size());
+  std::vector<double> sums(record.triangle_count + 1, 0.0);
+  for (uint32_t i = 0; i < record.triangle_count; ++i) {
+    const uint32_t* index = &out_.triangles[3 * (std::size_t{record.first_triangle} + i)];
+    const glm::dvec3 p0 = to_glm(out_.positions[index[0]]);
+    const glm::dvec3 e1 = to_glm(out_.positions[index[1]]) - p0;
+    const glm::dvec3 e2 = to_glm(out_.positions[index[2]]) - p0;
+    sums[i + 1] = sums[i] + 0.5 * glm::length(glm::cross(e1, e2));
+  }
+  const double total = sums.back();
+  for (const double sum : sums) out_.area_cdf.push_back(total > 0 ? static_cast<float>(sum / total) : 0.0f);
+  out_.area_cdf.back() = 1;
+  record.area = static_cast<float>(total);
+}
+
+void Flattener::compute_bounds() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  glm::dvec3 low(kInfinity), high(-kInfinity);
+  for (const KbFloat3& p : out_.positions) {
+    low = glm::min(low, to_glm(p));
+    high = glm::max(high, to_glm(p));
+  }
+  for (const KbShape& shape : out_.shapes) {
+    if (shape.type != KB_SHAPE_MESH) extend_bounds(shape, low, high);
+  }
+  if (!(low.x <= high.x)) return;  // no geometry: radius 0
+  out_.scene_centre = to_record(0.5 * (low + high));
+  out_.scene_radius = static_cast<float>(0.5 * glm::length(high - low));
+}
+
+}  // namespace kiloband

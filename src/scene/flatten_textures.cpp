@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+
+#include "scene/flattener.hpp"
+#include "spectral/colour.hpp"
+#include "spectral/rgb.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr float kFlatCoefficient = 1e10f;  // S(1e10) == 1: a spectrally flat texel, see records.h
+
+KbFloat4 flat_texel(float value) { return {0, 0, kFlatCoefficient, value}; }
+
+/// Reflectance: the sigmoid of the colour. Emission: twice the maximum times the sigmoid of rgb / (2 max), as Mitsuba.
+KbFloat4 upsampled_texel(const SigmoidTable& table, const float* rgb, bool emission) {
+  const float largest = std::max({rgb[0], rgb[1], rgb[2]});
+  if (largest <= 0) return flat_texel(0);
+  if (!emission && rgb[0] == rgb[1] && rgb[1] == rgb[2]) return flat_texel(rgb[0]);
+  const float scale = emission ? 2 * largest : 1;
+  const auto c = table({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
+  return {c[0], c[1], c[2], scale};
+}
+
+float value_of(const Image& image, std::size_t texel) {
+  if (image.channels == 1) return image.pixels[texel];
+  return (image.pixels[3 * texel] + image.pixels[3 * texel + 1] + image.pixels[3 * texel + 2]) / 3;
+}
+
+void store_uv(const glm::dmat3& to_uv, float (&out)[6]) {
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 3; ++column) out[3 * row + column] = static_cast<float>(to_uv[column][row]);
+  }
+}
+
+}  // namespace
+
+uint32_t Flattener::d65_row() {
+  if (d65_row_ == KB_NONE) d65_row_ = spectra_.row(illuminant_d65(), {"RGB emission (D65)", {}, true});
+  return d65_row_;
+}
+
+uint32_t Flattener::reference(const Texture& texture, const SpectrumUse& use) {
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return KB_REF_SPECTRUM | spectra_.row(*spectrum, use);
+  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
+    return KB_REF_BITMAP | bitmap(*image, use.emission);
+  }
+  return KB_REF_CHECKERBOARD | checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
+}
+
+uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, bool emission) {
+  const auto [place, is_new] = bitmaps_.try_emplace({texture.get(), emission}, static_cast<uint32_t>(out_.textures.size()));
+  if (!is_new) return place->second;
+  out_.features.bitmap = true;
+  const Image& image = *texture->image;
+  KbTexture record{};
+  record.width = image.width;
+  record.height = image.height;
+  record.first_texel = static_cast<uint32_t>(out_.texels.size());
+  record.wrap = static_cast<uint32_t>(texture->wrap);
+  record.flags = texture->nearest ? KB_TEXTURE_NEAREST : 0;
+  record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
+  store_uv(texture->to_uv, record.to_uv);
+
+  static const SigmoidTable kTable;
+  const std::size_t count = std::size_t{image.width} * image.height;
+  const bool flat = texture->raw || (image.channels == 1 && !emission);
+  double sum = 0;
+  double largest = 0;
+  for (std::size_t texel = 0; texel < count; ++texel) {
+    const float value = value_of(image, texel);
+    const float grey[3] = {value, value, value};
+    const float* rgb = image.channels == 1 ? grey : &image.pixels[3 * texel];
+    out_.texels.push_back(flat ? flat_texel(value) : upsampled_texel(kTable, rgb, emission));
+    sum += value;
+    largest = std::max(largest, double{out_.texels.back().w});
+  }
+  texture_means_.push_back(sum / static_cast<double>(count));
+  texture_bounds_.push_back(largest);
+  out_.textures.push_back(record);
+  return place->second;
+}
+
+uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumUse& use) {
+  const auto [place, is_new] = checkerboards_.try_emplace(texture.get(), static_cast<uint32_t>(out_.checkerboards.size()));
+  if (!is_new) return place->second;
+  out_.features.checkerboard = true;
+  KbCheckerboard record{};
+  record.ref0 = spectra_.row(texture->color0, {use.name + " color0", texture->position, use.emission});
+  record.ref1 = spectra_.row(texture->color1, {use.name + " color1", texture->position, use.emission});
+  store_uv(texture->to_uv, record.to_uv);
+  out_.checkerboards.push_back(record);
+  return place->second;
+}
+
+double Flattener::texture_mean(const Texture& texture) {
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.guide_mean(*spectrum);
+  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
+    return texture_means_[bitmap(*image, false)];
+  }
+  const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
+  return 0.5 * (spectra_.guide_mean(board.color0) + spectra_.guide_mean(board.color1));
+}
+
+double Flattener::texture_bound(const Texture& texture) {
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.bound(*spectrum);
+  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
+    return texture_bounds_[bitmap(*image, false)];
+  }
+  const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
+  return std::max(spectra_.bound(board.color0), spectra_.bound(board.color1));
+}
+
+}  // namespace kiloband

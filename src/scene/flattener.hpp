@@ -1,0 +1,72 @@
+// The steps of flattening; see flatten.cpp for their order. Internal to src/scene.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "scene/flat_scene.hpp"
+#include "scene/spectrum_table_builder.hpp"
+
+namespace kiloband {
+
+/// Turns a SceneDescription into the arrays of a FlatScene. Shared BSDFs and textures are flattened once.
+class Flattener {
+ public:
+  Flattener(const SceneDescription& description, const FlattenOptions& options);
+  FlatScene run();
+
+ private:
+  // flatten_textures.cpp
+  uint32_t reference(const Texture& texture, const SpectrumUse& use);
+  uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, bool emission);
+  uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumUse& use);
+  double texture_mean(const Texture& texture);   // over the guide bands; a bitmap's by its texels' values
+  double texture_bound(const Texture& texture);  // over guide bands and channels
+  uint32_t d65_row();
+
+  // flatten_materials.cpp
+  uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf);
+  uint32_t material(const std::shared_ptr<const Bsdf>& bsdf);
+  KbMaterial make(const DiffuseBsdf& model, const std::string& name, const SourcePosition& position);
+  KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
+  KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
+  KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
+  void set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumUse& use);
+
+  // flatten_shapes.cpp
+  void add_shapes();
+  void add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh);
+  void add_area_cdf(KbShape& record);
+  void compute_bounds();
+
+  // flatten_emitters.cpp
+  void add_emitters();
+  void add_area_emitter(uint32_t shape_index);
+  void add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumUse& use);
+  KbEmitter make_emitter(const Emitter& emitter);
+  void select_emitters();
+  void set_channel_scales();
+
+  // flatten_camera.cpp
+  void set_camera();
+
+  const SceneDescription& in_;
+  const FlattenOptions& options_;
+  FlatScene out_;
+  SpectrumTableBuilder spectra_;
+  std::map<const void*, uint32_t> surfaces_, materials_, checkerboards_;
+  std::map<std::pair<const void*, bool>, uint32_t> bitmaps_;
+  uint32_t d65_row_ = KB_NONE;
+  /// Per emitter: the spectrum that stands for its colour and the factor that makes it a power (W/nm).
+  struct EmitterPower {
+    Spectrum spectrum;
+    double factor;
+  };
+  std::vector<EmitterPower> powers_;
+  std::vector<double> texture_means_, texture_bounds_;  // per bitmap
+};
+
+/// Row-major 3x4 of an affine transform.
+void store_transform(const Transform& transform, float (&out)[12]);
+
+}  // namespace kiloband

@@ -1,0 +1,41 @@
+// Builds the spectrum table of a FlatScene: one row per distinct spectrum, with checks against the rendered channels.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "scene/flat_scene.hpp"
+
+namespace kiloband {
+
+/// Where a spectrum stands in the scene, for rows' names and messages.
+struct SpectrumUse {
+  std::string name;         // "bsdf 'wall': reflectance"
+  SourcePosition position;
+  bool emission = false;
+};
+
+class SpectrumTableBuilder {
+ public:
+  SpectrumTableBuilder(FlatScene& scene, const DiagnosticSink& sink);
+
+  /// Row index of the spectrum; equal constants of the same kind share a row.
+  /// throws InputError if the table would pass 65535 rows or the spectrum cannot be tabulated within its bound
+  uint32_t row(const Spectrum& spectrum, const SpectrumUse& use);
+
+  /// Mean over the guide bands (each band one vote).
+  double guide_mean(const Spectrum& spectrum) const;
+  /// Upper bound over guide bands and rendered channels.
+  double bound(const Spectrum& spectrum) const;
+
+ private:
+  void check_range(const Spectrum& spectrum, const SpectrumUse& use) const;
+  SpectrumRow make_row(const Spectrum& spectrum, const SpectrumUse& use) const;
+
+  FlatScene& scene_;
+  const DiagnosticSink& sink_;
+  Channel range_;  // hull of guide bands and channels
+  std::map<std::pair<double, bool>, uint32_t> constants_;
+};
+
+}  // namespace kiloband
