@@ -1,20 +1,21 @@
 // The one header that asks which language it is compiled as: C++20 on the host, OpenCL C 1.2 on devices.
 //
-// Everything in src/shared is valid in both. Rules: no overloads, templates, references, size_t, bool or vector
-// types in stored records; `fma` only where it is written; compile with -ffp-contract=off.
+// Everything in src/shared is valid in both. Rules: no overloads, templates, references, size_t, bool or
+// vector types in stored records; `fma` only where it is written; compile with -ffp-contract=off.
 #ifndef KILOBAND_SHARED_LANG_H
 #define KILOBAND_SHARED_LANG_H
 
-#ifdef __OPENCL_VERSION__
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
 
 #pragma OPENCL FP_CONTRACT OFF
 typedef uint kb_u32;
 typedef ulong kb_u64;
 typedef int kb_i32;
 typedef ushort kb_u16;
-#define KB_FN inline
+#define KB_FN static inline
 #define KB_GLOBAL __global
 #define KB_CONSTANT __constant
+#define KB_TABLE __constant /* an array of constants at file scope */
 #define KB_STATIC_ASSERT(condition, name) typedef char kb_assert_##name[(condition) ? 1 : -1]
 #define kb_sqrt(x) sqrt(x)
 #define kb_fabs(x) fabs(x)
@@ -27,13 +28,24 @@ typedef ushort kb_u16;
 #define kb_atan2(y, x) atan2(y, x)
 #define kb_exp(x) exp(x)
 #define kb_log(x) log(x)
+#define kb_erf(x) erf(x)
 #define kb_mul_hi(a, b) mul_hi(a, b)
 #define kb_as_u32(x) as_uint(x)
 #define kb_as_f32(x) as_float(x)
+/* Four u32 in one register, for local variables only: + - * & | ^ << >> work by element, also with a scalar.
+ */
+typedef uint4 kb_u32x4;
+#define kb_u32x4_of(a, b, c, d) ((uint4)(a, b, c, d))
+#define kb_u32x4_load(table, index) vload4(index, table)
+#define kb_u32x4_x(v) ((v).x)
+#define kb_u32x4_y(v) ((v).y)
+#define kb_u32x4_z(v) ((v).z)
+#define kb_u32x4_w(v) ((v).w)
 
 #else
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 typedef uint32_t kb_u32;
@@ -43,6 +55,7 @@ typedef uint16_t kb_u16;
 #define KB_FN static inline
 #define KB_GLOBAL
 #define KB_CONSTANT
+#define KB_TABLE alignas(64) inline constexpr
 #define KB_STATIC_ASSERT(condition, name) static_assert(condition, #name)
 #define kb_sqrt(x) std::sqrt(x)
 #define kb_fabs(x) std::fabs(x)
@@ -55,7 +68,10 @@ typedef uint16_t kb_u16;
 #define kb_atan2(y, x) std::atan2(y, x)
 #define kb_exp(x) std::exp(x)
 #define kb_log(x) std::log(x)
-KB_FN kb_u32 kb_mul_hi(kb_u32 a, kb_u32 b) { return (kb_u32)(((kb_u64)a * (kb_u64)b) >> 32); }
+#define kb_erf(x) std::erf(x)
+KB_FN kb_u32 kb_mul_hi(kb_u32 a, kb_u32 b) {
+  return (kb_u32)(((kb_u64)a * (kb_u64)b) >> 32);
+}
 KB_FN kb_u32 kb_as_u32(float x) {
   kb_u32 bits;
   std::memcpy(&bits, &x, sizeof bits);
@@ -66,6 +82,19 @@ KB_FN float kb_as_f32(kb_u32 bits) {
   std::memcpy(&x, &bits, sizeof x);
   return x;
 }
+typedef kb_u32 kb_u32x4 __attribute__((vector_size(16)));
+KB_FN kb_u32x4 kb_u32x4_of(kb_u32 a, kb_u32 b, kb_u32 c, kb_u32 d) {
+  return kb_u32x4{a, b, c, d};
+}
+KB_FN kb_u32x4 kb_u32x4_load(const kb_u32* table, kb_u32 index) {
+  kb_u32x4 v;
+  std::memcpy(&v, table + 4 * static_cast<std::size_t>(index), sizeof v);
+  return v;
+}
+#define kb_u32x4_x(v) ((v)[0])
+#define kb_u32x4_y(v) ((v)[1])
+#define kb_u32x4_z(v) ((v)[2])
+#define kb_u32x4_w(v) ((v)[3])
 
 #endif
 

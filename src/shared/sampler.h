@@ -1,0 +1,117 @@
+// The map of random dimensions, for both backends. Every random number of a render is a pure function of
+// (seed, pixel, sample, dimension); nothing has a state, so any sample can be recomputed alone.
+//
+//   block 0       camera: x, y film position; z, w lens
+//   block 1 + 2b  light selection at bounce b: x emitter, y triangle or the like, z, w position on it
+//   block 2 + 2b  BSDF and roulette at bounce b: x lobe, y, z direction, w roulette
+//
+// independent: Philox with counter (pixel, sample, block, stream), key = seed; streams are named below.
+// sobol: the point index_in_replicate of a 4-D Owen-scrambled Sobol set of its own for each (seed, replicate,
+// pixel, block). Replicates are independent of each other; the points of one replicate are stratified
+// together.
+//
+// `sample` counts all samples of a pixel; with R replicates it belongs to replicate sample % R and is the
+// point sample / R of it. All floats are multiples of 2^-24 in [0, 1 - 2^-24].
+#ifndef KILOBAND_SHARED_SAMPLER_H
+#define KILOBAND_SHARED_SAMPLER_H
+
+#include "shared/hash.h"
+#include "shared/lang.h"
+#include "shared/philox.h"
+#include "shared/sobol.h"
+
+#define KB_SAMPLER_INDEPENDENT 0u
+#define KB_SAMPLER_SOBOL 1u
+
+/* The fourth word of the Philox counter. */
+#define KB_STREAM_BLOCKS 0u
+#define KB_STREAM_MU 1u
+#define KB_STREAM_DEGRADE 2u
+
+/* Parents of the keys of scrambled sequences: one per use, so that no two uses share a key by construction.
+ */
+#define KB_DOMAIN_SOBOL 0x6b62736f626f6c31ul
+#define KB_DOMAIN_PATH_MU 0x6b62706174686d75ul
+#define KB_DOMAIN_SHARED_MU 0x6b62736861726564ul
+
+/* Edge of the square blocks of the full film that share mu, in pixels. */
+#define KB_SHARED_MU_BLOCK 32u
+
+/* Block numbers. */
+#define KB_BLOCK_CAMERA 0u
+KB_FN kb_u32 kb_block_light(kb_u32 bounce) {
+  return 1u + 2u * bounce;
+}
+KB_FN kb_u32 kb_block_bsdf(kb_u32 bounce) {
+  return 2u + 2u * bounce;
+}
+
+/* What all blocks of one path have in common. Make it once per path. Not stored. */
+typedef struct {
+  kb_u64 seed;
+  kb_u32 sampler; /* KB_SAMPLER_* */
+  kb_u32 pixel, sample;
+  kb_u32 reversed_index; /* sobol: bit-reversed index_in_replicate */
+  kb_u32 key0, key1;     /* sobol: of (seed, replicate, pixel) */
+} KbSamplerKey;
+
+/* The root of the keys of one use of one seed. */
+KB_FN kb_u64 kb_domain_key(kb_u64 seed, kb_u64 domain) {
+  return kb_mix64(kb_mix64(seed ^ domain) + domain);
+}
+
+/* pixel               y * width + x of the FULL film, whatever is cropped or tiled
+   sample              index among all samples of the pixel
+   replicate           and index_in_replicate: where the sample was dealt to; not read by the independent
+                       sampler */
+KB_FN KbSamplerKey kb_sampler_key(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 replicate,
+                                  kb_u32 index_in_replicate) {
+  const kb_u64 key = kb_hash_pair(kb_domain_key(seed, KB_DOMAIN_SOBOL), replicate, pixel);
+  KbSamplerKey k;
+  k.seed = seed;
+  k.sampler = sampler;
+  k.pixel = pixel;
+  k.sample = sample;
+  k.reversed_index = kb_reverse_bits(index_in_replicate);
+  k.key0 = kb_low32(key);
+  k.key1 = kb_high32(key);
+  return k;
+}
+
+/* The four numbers of a block. */
+KB_FN KbFloat4 kb_sampler_block(KbSamplerKey key, kb_u32 block) {
+  if (key.sampler == KB_SAMPLER_INDEPENDENT)
+    return kb_philox_floats(key.seed, key.pixel, key.sample, block, KB_STREAM_BLOCKS);
+  return kb_unit_float4(kb_sobol_block(key.reversed_index, key.key0, key.key1, block));
+}
+
+/* The same in one call. */
+KB_FN KbFloat4 kb_sample_block(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 replicate,
+                               kb_u32 index_in_replicate, kb_u32 block) {
+  return kb_sampler_block(kb_sampler_key(sampler, seed, pixel, sample, replicate, index_in_replicate), block);
+}
+
+/* Wavelength offset of one path (per-path wavelengths). sobol: a scrambled van der Corput point, so that the
+   paths of a replicate of a pixel have stratified offsets. */
+KB_FN float kb_path_mu(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 replicate,
+                       kb_u32 index_in_replicate) {
+  if (sampler == KB_SAMPLER_INDEPENDENT) return kb_philox_floats(seed, pixel, sample, 0u, KB_STREAM_MU).x;
+  const kb_u64 key = kb_hash_pair(kb_domain_key(seed, KB_DOMAIN_PATH_MU), replicate, pixel);
+  return kb_unit_float(kb_van_der_corput(index_in_replicate, kb_low32(key), kb_high32(key)));
+}
+
+/* Wavelength offset that all pixels of a 32 x 32 block share (shared wavelengths), with either sampler.
+   block_x, block_y    pixel / KB_SHARED_MU_BLOCK in the FULL film, whatever tiles and devices there are */
+KB_FN float kb_shared_mu(kb_u64 seed, kb_u32 replicate, kb_u32 block_x, kb_u32 block_y,
+                         kb_u32 index_in_replicate) {
+  const kb_u64 parent = kb_mix64(kb_domain_key(seed, KB_DOMAIN_SHARED_MU) ^ (kb_u64)replicate);
+  const kb_u64 key = kb_hash_pair(parent, block_y, block_x);
+  return kb_unit_float(kb_van_der_corput(index_in_replicate, kb_low32(key), kb_high32(key)));
+}
+
+/* Chooses the channel that survives a dispersive refraction at bounce b; independent of everything else. */
+KB_FN float kb_degrade_sample(kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 bounce) {
+  return kb_philox_floats(seed, pixel, sample, bounce, KB_STREAM_DEGRADE).x;
+}
+
+#endif
