@@ -1,0 +1,134 @@
+#include "film/statistics.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace kiloband {
+namespace {
+
+// The update of West (1979): with N samples so far of mean m, and n more of mean x, d = x - m,
+//   m' = m + n/(N + n) d,   M2' = M2 + N n/(N + n) d^2     (sum of n_r (m_r - m)^2),
+// which is also the merging of two sets (Chan et al. 1979) once M2 of the second is added. The factors are
+// per unit, so that the loops over channels are fused arithmetic without divisions. All terms of M2 are >= 0:
+// nothing cancels but d, whose absolute error is an ulp of the mean.
+
+struct Weights {
+  float mean;  // n / (N + n), 1 for the first replicate
+  float m2;    // N n / (N + n)
+};
+
+Weights weights(uint64_t before, uint64_t added) {
+  const double total = static_cast<double>(before) + static_cast<double>(added);
+  const double fraction = static_cast<double>(added) / total;
+  return {static_cast<float>(fraction), static_cast<float>(static_cast<double>(before) * fraction)};
+}
+
+void update_mean(std::size_t count, float w, const float* __restrict x, float* __restrict mean) {
+  for (std::size_t k = 0; k < count; ++k) mean[k] += w * (x[k] - mean[k]);
+}
+
+void update_both(std::size_t count, Weights w, const float* __restrict x, float* __restrict mean,
+                 float* __restrict m2) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const float d = x[k] - mean[k];
+    mean[k] += w.mean * d;
+    m2[k] += (w.m2 * d) * d;
+  }
+}
+
+std::size_t checked_product(std::size_t units, std::size_t channels) {
+  if (channels != 0 && units > std::numeric_limits<std::size_t>::max() / sizeof(float) / channels)
+    throw std::length_error("ReplicateMoments: units times channels is too large");
+  return units * channels;
+}
+
+}  // namespace
+
+ReplicateMoments::ReplicateMoments(std::size_t units, std::size_t channels, bool variance)
+    : channels_(channels),
+      variance_(variance),
+      mean_(checked_product(units, channels)),
+      m2_(variance ? units * channels : 0),
+      samples_(units),
+      replicates_(units) {}
+
+void ReplicateMoments::add(std::size_t unit, uint64_t n, std::span<const float> means) {
+  if (unit >= samples_.size() || means.size() != channels_)
+    throw std::logic_error("ReplicateMoments::add: unit or number of channels out of range");
+  if (n == 0) return;
+  const Weights w = weights(samples_[unit], n);
+  float* const mean = mean_.data() + unit * channels_;
+  if (samples_[unit] == 0) {
+    std::copy(means.begin(), means.end(), mean);  // M2 stays 0
+  } else if (variance_) {
+    update_both(channels_, w, means.data(), mean, m2_.data() + unit * channels_);
+  } else {
+    update_mean(channels_, w.mean, means.data(), mean);
+  }
+  samples_[unit] += n;
+  ++replicates_[unit];
+}
+
+void ReplicateMoments::merge(const ReplicateMoments& other) {
+  if (other.units() != units() || other.channels_ != channels_ || other.variance_ != variance_)
+    throw std::logic_error("ReplicateMoments::merge: shapes differ");
+  for (std::size_t unit = 0; unit < samples_.size(); ++unit) {
+    if (other.replicates_[unit] == 0) continue;
+    const uint32_t replicates = replicates_[unit] + other.replicates_[unit];
+    add(unit, other.samples_[unit], other.mean(unit));
+    replicates_[unit] = replicates;
+    if (!variance_) continue;
+    float* __restrict m2 = m2_.data() + unit * channels_;
+    const float* __restrict added = other.m2_.data() + unit * channels_;
+    for (std::size_t k = 0; k < channels_; ++k) m2[k] += added[k];
+  }
+}
+
+std::size_t ReplicateMoments::units() const {
+  return samples_.size();
+}
+std::size_t ReplicateMoments::channels() const {
+  return channels_;
+}
+bool ReplicateMoments::has_variance() const {
+  return variance_;
+}
+uint64_t ReplicateMoments::samples(std::size_t unit) const {
+  return samples_.at(unit);
+}
+uint32_t ReplicateMoments::replicates(std::size_t unit) const {
+  return replicates_.at(unit);
+}
+
+std::span<const float> ReplicateMoments::mean(std::size_t unit) const {
+  if (unit >= samples_.size()) throw std::logic_error("ReplicateMoments::mean: unit out of range");
+  return {mean_.data() + unit * channels_, channels_};
+}
+
+void ReplicateMoments::variance_of_mean(std::size_t unit, std::span<float> out) const {
+  if (!variance_ || unit >= samples_.size() || out.size() != channels_)
+    throw std::logic_error(
+        "ReplicateMoments::variance_of_mean: no variance is kept, or unit or size out of range");
+  if (replicates_[unit] < 2) {
+    std::fill(out.begin(), out.end(), std::numeric_limits<float>::quiet_NaN());
+    return;
+  }
+  const double divisor = static_cast<double>(samples_[unit]) * (replicates_[unit] - 1.0);
+  const float scale = static_cast<float>(1.0 / divisor);
+  const float* const m2 = m2_.data() + unit * channels_;
+  for (std::size_t k = 0; k < channels_; ++k) out[k] = m2[k] * scale;
+}
+
+ReplicatePlan ReplicatePlan::deal(uint64_t samples, uint32_t wanted_replicates) {
+  const uint64_t most = std::max<uint64_t>(samples / 2, 1);  // at least 2 samples in each
+  const uint64_t wanted = std::max<uint64_t>(wanted_replicates, 1);
+  return {samples, static_cast<uint32_t>(std::min(most, wanted))};
+}
+
+uint64_t ReplicatePlan::size(uint32_t replicate) const {
+  if (replicate >= replicates) throw std::logic_error("ReplicatePlan::size: no such replicate");
+  return samples / replicates + (replicate < samples % replicates ? 1 : 0);
+}
+
+}  // namespace kiloband
