@@ -1,4 +1,5 @@
-// Images for textures and environment maps, behind an interface so that a build without OpenImageIO is possible.
+// Images for textures and environment maps, behind an interface so that a build without OpenImageIO is
+// possible.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +14,18 @@ namespace kiloband {
 struct Image {
   uint32_t width = 0;
   uint32_t height = 0;
-  uint32_t channels = 0;  // 1 or 3 (alpha is dropped)
+  uint32_t channels = 0;      // 1 or 3 (alpha is dropped)
   std::vector<float> pixels;  // [y][x][channel]
 };
 
-/// Reads an image file (EXR, HDR, PNG, JPEG, TIFF ...).
-/// raw    true: no colour conversion of integer formats
-/// throws InputError  naming the file: missing, unreadable, truncated, not finite or negative values, larger than 65535
+/// Reads an image file: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, BMP, PNM, PFM (told by their first bytes) and
+/// Targa (by its name). Integer values are scaled to [0, 1]; 8- and 16-bit ones are decoded by the sRGB curve
+/// of IEC 61966-2-1 whatever the file says of its gamma, 32-bit integers are refused. Float formats are
+/// linear. Colours are never multiplied by alpha. Channels by name: R, G, B; else Y; else the R, G, B of the
+/// first layer that has them ("layer.R" ...); else the only channel besides alpha. Anything else (X Y Z,
+/// spectral channels) is an error. Of several parts or levels the first one is read, of an EXR file the data
+/// window. raw    true: no colour conversion of integer formats throws InputError  naming the file: missing,
+/// unreadable, truncated, not finite or negative values, larger than 65535
 ///                    in a dimension
 Image read_image(const std::filesystem::path& file, bool raw);
 

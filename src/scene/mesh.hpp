@@ -15,7 +15,8 @@ namespace kiloband {
 using Vec3f = std::array<float, 3>;
 using Vec2f = std::array<float, 2>;
 
-/// Indexed triangles. normals and uvs are empty or one per position.
+/// Indexed triangles, counter-clockwise seen from outside. normals (unit length) and uvs are empty or one per
+/// position.
 struct Mesh {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;
@@ -31,17 +32,45 @@ struct MeshOptions {
   int shape_index = 0;           // serialized only
 };
 
-/// All readers check everything against the file's size before they allocate, accept only finite numbers and indices
-/// in range, and drop no triangle; zero-area triangles are reported once per file with their count as a warning,
-/// a mesh without a triangle of positive area is an error.
-/// throws InputError  "file:line: ..." for text, "file: byte N: ..." for binary data
-Mesh read_obj(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
-Mesh read_ply(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
-Mesh read_stl(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
-Mesh read_serialized(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
+// All readers check everything against the file's size before they allocate, accept only finite numbers and
+// indices in range, and drop no triangle. Polygons are split into a fan around their first corner, as Mitsuba
+// does. Common to all of them:
+// - zero-area triangles are reported once per file with their count as a warning; a mesh without a triangle
+// of
+//   positive area is an error (area: the cross product of two edges in double precision, compared with 0);
+// - OBJ, PLY and serialized meshes without vertex normals get compute_vertex_normals() unless face_normals is
+// set: the
+//   rule of Mitsuba 3 for all three (src/shapes/{obj,ply,serialized}.cpp). STL never has vertex normals;
+// - vertex normals of the file are normalised; missing ones (OBJ) and zero vectors are computed instead, one
+// warning. throws InputError  "file: ...", "file:line: ..." for text, "file: byte N: ..." (0-based) for
+// binary data
 
-/// Angle-weighted vertex normals; used by the OBJ reader for files without normals (over index tuples, not positions),
-/// as Mitsuba does for meshes without normals unless face_normals is set.
+/// Wavefront OBJ. Lines read: v (x y z, further numbers such as w or r g b are checked and ignored), vt (u v
+/// [w]), vn, f; ignored: empty, #, mtllib, usemtl, g, o, s, l, p; any other keyword is an error. Indices
+/// refer to lines above and start at 1; relative (negative) ones are refused, as by Mitsuba. A vertex is a
+/// distinct index tuple (position, uv, normal), in order of first use: equal positions on different lines are
+/// never merged, so neither are normals smoothed over them.
+Mesh read_obj(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
+
+/// PLY 1.0: ascii, binary_little_endian, binary_big_endian, every scalar type by its old and new name.
+/// Element vertex: x y z, nx ny nz, texture coordinates u v or texture_u texture_v or s t, the rest goes to
+/// vertex_attributes (lists are skipped). Element face: list vertex_indices or vertex_index. Other elements
+/// are skipped with a note.
+Mesh read_ply(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
+
+/// STL, ascii or binary. Vertices are not welded: every triangle has three of its own. No vertex normals, no
+/// uv; the stored facet normals are not looked at, the order of the corners counts.
+Mesh read_stl(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
+
+/// Mitsuba's serialized format, versions 3 and 4: mesh number options.shape_index of the file. Its flag "face
+/// normals" acts like options.face_normals; vertex colours are skipped.
+Mesh read_serialized(const std::filesystem::path& file, const MeshOptions& options,
+                     const DiagnosticSink& sink = {});
+
+/// Sets mesh.normals: the sum of the adjacent triangles' normals weighted by their angles at the vertex. Sums
+/// over vertex INDICES, so coincident vertices stay apart. Where the sum vanishes, the normal of an adjacent
+/// triangle is taken; where no triangle has an area, (0, 0, 1). source  Thürmer, Wüthrich, Computing vertex
+/// normals from polygonal facets, JGT 3(1), 1998 (Mitsuba's choice too)
 void compute_vertex_normals(Mesh& mesh);
 
 }  // namespace kiloband
