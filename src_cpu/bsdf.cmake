@@ -1,1 +1,4 @@
-# filled by its owner
+kiloband_library(kiloband_cpu_bsdf
+  SOURCES bsdf_conductor.cpp bsdf_dielectric.cpp bsdf_dispatch.cpp bsdf_plastic.cpp bsdf_rough_transmittance.cpp
+          microfacet.cpp
+  DEPENDS kiloband_base glm::glm)

@@ -1,0 +1,116 @@
+// Chooses the material's functions; the diffuse model itself is here.
+#include <stdexcept>
+
+#include "src_cpu/bsdf.hpp"
+#include "src_cpu/bsdf_lobes.hpp"
+
+namespace kiloband {
+namespace {
+
+glm::vec3 flip(glm::vec3 w) {
+  return {w.x, w.y, -w.z};
+}
+
+bool not_degraded(const MaterialContext& context) {
+  return (context.material->flags & KB_MATERIAL_DISPERSIVE) && !(context.dispersion.eta > 0);
+}
+
+/// Interior over exterior index of a dielectric.
+float index_ratio(const MaterialContext& context) {
+  const KbMaterial& m = *context.material;
+  return m.flags & KB_MATERIAL_DISPERSIVE && context.dispersion.eta > 0 ? context.dispersion.eta : m.eta;
+}
+
+const RoughTransmittance& table_of(const MaterialContext& context) {
+  if (!context.rough_transmittance) throw std::logic_error("rough plastic without its transmittance table");
+  return *context.rough_transmittance;
+}
+
+BsdfValue eval_dielectric_side(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) {
+  if (not_degraded(context)) throw std::logic_error("rough dispersive dielectric that is not degraded");
+  const float eta = index_ratio(context);
+  if (wi.z > 0) return lobes::eval_rough_dielectric(*context.material, wi, wo, eta);
+  return lobes::eval_rough_dielectric(*context.material, flip(wi), flip(wo), 1 / eta);
+}
+
+BsdfSample sample_dielectric_side(const MaterialContext& context, glm::vec3 wi, float u_lobe, glm::vec2 u) {
+  const KbMaterial& material = *context.material;
+  const bool rough = material.type == KB_MATERIAL_ROUGH_DIELECTRIC;
+  if (rough && not_degraded(context))
+    throw std::logic_error("rough dispersive dielectric that is not degraded");
+  const bool below = wi.z < 0;
+  const float eta = below ? 1 / index_ratio(context) : index_ratio(context);
+  if (below) wi = flip(wi);
+  BsdfSample sample = rough                   ? lobes::sample_rough_dielectric(material, wi, eta, u_lobe, u)
+                      : not_degraded(context) ? lobes::sample_dispersive(material, wi, eta, below, u_lobe)
+                                              : lobes::sample_dielectric(material, wi, eta, u_lobe);
+  if (below) sample.wo = flip(sample.wo);
+  return sample;
+}
+
+}  // namespace
+
+glm::vec3 lobes::cosine_direction(glm::vec2 u) {
+  const float a = 2 * u.x - 1, b = 2 * u.y - 1;
+  if (a == 0 && b == 0) return {0, 0, 1};
+  const bool wide = std::abs(a) > std::abs(b);
+  const float r = wide ? a : b;
+  const float phi =
+      (KB_PI / 4) * (wide ? b / a : a / b);  // |phi| <= pi/4: Taylor polynomials reach float precision
+  const float p2 = phi * phi;
+  const float s = phi * (1 + p2 * (-1 / 6.0f + p2 * (1 / 120.0f + p2 * (-1 / 5040.0f + p2 / 362880.0f))));
+  const float c = 1 + p2 * (-0.5f + p2 * (1 / 24.0f + p2 * (-1 / 720.0f + p2 / 40320.0f)));
+  return {r * (wide ? c : s), r * (wide ? s : c), std::sqrt(std::max(1e-12f, 1 - r * r))};
+}
+
+/// f cos / p = 1 times the reflectance, since p = cos / pi.
+BsdfSample lobes::sample_diffuse(const KbMaterial& material, glm::vec2 u) {
+  BsdfSample sample;
+  sample.wo = cosine_direction(u);
+  sample.pdf = sample.wo.z * KB_INV_PI;
+  sample.w0 = 1;
+  sample.bound = material.bound_a;
+  return sample;
+}
+
+BsdfValue eval_bsdf(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) {
+  const KbMaterial& material = *context.material;
+  if (material.type == KB_MATERIAL_ROUGH_DIELECTRIC)
+    return wi.z != 0 && wo.z != 0 ? eval_dielectric_side(context, wi, wo) : BsdfValue{};
+  if (!(wi.z > 0) || !(wo.z > 0)) return {};
+  switch (material.type) {
+    case KB_MATERIAL_DIFFUSE:
+      return {wo.z * KB_INV_PI, 0, wo.z * KB_INV_PI, false};
+    case KB_MATERIAL_ROUGH_CONDUCTOR:
+      return lobes::eval_rough_conductor(material, wi, wo);
+    case KB_MATERIAL_PLASTIC:
+      return lobes::eval_plastic(material, wi, wo);
+    case KB_MATERIAL_ROUGH_PLASTIC:
+      return lobes::eval_rough_plastic(material, table_of(context), wi, wo);
+    default:
+      return {};
+  }
+}
+
+BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lobe, glm::vec2 u) {
+  const KbMaterial& material = *context.material;
+  if (material.type == KB_MATERIAL_DIELECTRIC || material.type == KB_MATERIAL_ROUGH_DIELECTRIC)
+    return wi.z > 0 || wi.z < 0 ? sample_dielectric_side(context, wi, u_lobe, u) : BsdfSample{};
+  if (!(wi.z > 0)) return {};
+  switch (material.type) {
+    case KB_MATERIAL_DIFFUSE:
+      return lobes::sample_diffuse(material, u);
+    case KB_MATERIAL_CONDUCTOR:
+      return lobes::sample_conductor(material, wi);
+    case KB_MATERIAL_ROUGH_CONDUCTOR:
+      return lobes::sample_rough_conductor(material, wi, u);
+    case KB_MATERIAL_PLASTIC:
+      return lobes::sample_plastic(material, wi, u_lobe, u);
+    case KB_MATERIAL_ROUGH_PLASTIC:
+      return lobes::sample_rough_plastic(material, table_of(context), wi, u_lobe, u);
+    default:
+      return {};
+  }
+}
+
+}  // namespace kiloband

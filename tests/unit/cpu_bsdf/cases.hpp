@@ -1,0 +1,46 @@
+// The materials and directions that the statistical tests run over.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "src_cpu/bsdf.hpp"
+
+namespace kiloband::test {
+
+KbMaterial material_of(KbMaterialType type);
+KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, float alpha_v, bool visible,
+                 float eta = 1.5f);
+/// Plastic with 1.49 / 1 and specular weight 0.6; fdr_int from the independent quadrature.
+KbMaterial plastic(KbMaterialType type, bool nonlinear, float alpha = 0.1f);
+
+/// Unit vector at `degrees` from the normal (above 90: from below) and azimuth phi [rad].
+glm::vec3 direction(double degrees, double phi = 0.7);
+
+struct Case {
+  std::string name;
+  KbMaterial material;
+  glm::vec3 wi;
+  DispersionState dispersion;
+};
+
+/// Rough plastics share one cached table per roughness.
+MaterialContext context_of(const Case& c);
+/// Every BSDF with a non-delta lobe, over roughness, distribution, sampling and incident angle.
+const std::vector<Case>& scattering_cases();
+
+/// Deterministic uniform numbers in [0,1): SplitMix64 (Steele, Lea, Flood 2014).
+class Uniform {
+ public:
+  explicit Uniform(uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 1) {}
+  float operator()();
+  glm::vec2 pair() {
+    const float x = (*this)();
+    return {x, (*this)()};
+  }
+
+ private:
+  uint64_t state_;
+};
+
+}  // namespace kiloband::test

@@ -1,0 +1,116 @@
+// The building blocks: Fresnel's formulas, the inverse error function, distributions of normals, rough
+// transmittance.
+#include <gtest/gtest.h>
+
+#include <boost/math/special_functions/erf.hpp>
+#include <cmath>
+
+#include "cases.hpp"
+#include "reference.hpp"
+#include "src_cpu/bsdf_rough_transmittance.hpp"
+#include "src_cpu/fresnel.hpp"
+#include "src_cpu/microfacet.hpp"
+
+namespace kiloband::test {
+namespace {
+
+// Near the critical angle F has an infinite slope, so the formula cannot do better than what half an ulp of
+// the cosine makes of it: the error is allowed to be 3e-6 plus the change of F over 2e-7 in cosine.
+TEST(Fresnel, MatchesComplexArithmetic) {
+  for (float eta : {0.25f, 0.5f, 0.7f, 0.99f, 0.99999f, 1.00001f, 1.01f, 1.33f, 1.5f, 2.4f, 4.0f})
+    for (int i = 0; i <= 20000; ++i) {
+      const float c = std::max(1e-6f, i / 20000.0f);
+      const long double expected = reference::fresnel(c, eta);
+      const long double spread = std::abs(reference::fresnel(std::min(1.0f, c + 2e-7f), eta) -
+                                          reference::fresnel(std::max(0.0f, c - 2e-7f), eta));
+      const DielectricFresnel f = fresnel_dielectric(c, eta);
+      ASSERT_NEAR(f.reflectance, double(expected), 3e-6 + double(spread)) << "cos " << c << " eta " << eta;
+      ASSERT_LE(f.cos_t, 1);
+    }
+}
+
+TEST(Fresnel, KnownPoints) {
+  EXPECT_FLOAT_EQ(fresnel_dielectric(1, 1.5f).reflectance, 0.04f);
+  EXPECT_EQ(fresnel_dielectric(0.3f, 1).reflectance, 0);
+  EXPECT_EQ(fresnel_dielectric(0, 1.5f).reflectance, 1);
+  EXPECT_EQ(fresnel_dielectric(0.5f, 1 / 1.5f).reflectance, 1);  // beyond the critical angle of 41.8 degrees
+}
+
+TEST(Microfacet, InverseErrorFunction) {
+  for (int i = -9999; i <= 9999; ++i) {
+    const float x = i / 10000.0f;
+    EXPECT_NEAR(inverse_erf(x), boost::math::erf_inv(double(x)),
+                2e-6 * (1 + std::abs(boost::math::erf_inv(double(x)))));
+  }
+  EXPECT_NEAR(inverse_erf(-1), -3.83, 0.02);
+  EXPECT_NEAR(inverse_erf(1), 3.83, 0.02);
+}
+
+TEST(Microfacet, DensityAndMaskingMatchDouble) {
+  Uniform uniform(3);
+  for (bool ggx : {false, true})
+    for (float alpha : {0.001f, 0.05f, 0.3f, 1.0f}) {
+      const Microfacet facets(ggx, alpha, 0.5f * alpha, true);
+      const reference::Roughness r{ggx, alpha, 0.5 * alpha};
+      for (int i = 0; i < 2000; ++i) {
+        const glm::vec3 v = direction(89.9 * uniform(), 6 * uniform());
+        const double g = reference::masking(r, glm::dvec3(v));
+        ASSERT_NEAR(facets.masking(v), g, 2e-6);
+        ASSERT_NEAR(facets.masking_over_cos(v), g / v.z, 3e-6 * g / v.z);
+        const glm::vec3 m = facets.sample_normal(v, uniform.pair());
+        const double d = reference::normal_density(r, glm::dvec3(m));
+        ASSERT_NEAR(facets.normal_density(m), d, 2e-5 * d + 1e-20);
+      }
+    }
+}
+
+// The density of visible normals D(m) G1(v) dot(v, m) / v.z integrates to 1: checked on the independent forms,
+// so that density and masking of the reference belong together.
+TEST(Microfacet, ReferenceIsNormalised) {
+  for (bool ggx : {false, true})
+    for (double degrees : {0.0, 45.0, 85.0}) {
+      const glm::dvec3 wi(direction(degrees));
+      const auto one = [](glm::dvec3) { return glm::dvec3(1, 0, 0); };
+      EXPECT_NEAR(reference::mean_over_visible_normals({ggx, 0.4, 0.2}, wi, 500, one).x, 1, 1e-3);
+    }
+}
+
+// Table nodes against the integral over slopes, the internal reflectance against the same 64-node mean.
+// Tolerances: Gauss-Legendre with 32 points against a midpoint rule, both good to about 1e-3 at grazing
+// angles.
+TEST(RoughTransmittance, MatchesTheIntegralOverSlopes) {
+  for (uint32_t distribution : {KB_MICROFACET_BECKMANN, KB_MICROFACET_GGX})
+    for (float alpha : {0.05f, 0.3f, 0.7f}) {
+      const KbMaterial m = rough(KB_MATERIAL_ROUGH_PLASTIC, distribution, alpha, alpha, true, 1.49f);
+      const RoughTransmittance table = make_rough_transmittance(m);
+      const reference::Roughness r{distribution == KB_MICROFACET_GGX, alpha, alpha};
+      for (int i : {3, 20, 45, 63}) {
+        const glm::dvec3 wi(std::sqrt(1 - i * i / 3969.0), 0, i / 63.0);
+        EXPECT_NEAR(table.external[i], reference::rough_albedo(r, wi, 1.49, 200).transmitted, 2e-3)
+            << "alpha " << alpha << " node " << i;
+      }
+      double internal = 0;
+      for (int i = 1; i < 64; ++i) {
+        const double mu = i / 63.0;
+        internal +=
+            mu * reference::rough_albedo(r, {std::sqrt(1 - mu * mu), 0, mu}, 1 / 1.49, 60).reflected / 32;
+      }
+      EXPECT_NEAR(table.internal_reflectance, internal, 3e-3) << "alpha " << alpha;
+    }
+}
+
+TEST(RoughTransmittance, SmoothLimitAndInterpolation) {
+  const KbMaterial m = rough(KB_MATERIAL_ROUGH_PLASTIC, KB_MICROFACET_GGX, 1e-4f, 1e-4f, true, 1.49f);
+  const RoughTransmittance table = make_rough_transmittance(m);
+  for (int i = 2; i < 64; ++i) {
+    const float mu = float(i) / 63;
+    EXPECT_NEAR(table.transmittance(mu), 1 - double(reference::fresnel(mu, 1.49)), 1e-3);
+  }
+  EXPECT_FLOAT_EQ(table.transmittance(10.5f / 63), 0.5f * (table.external[10] + table.external[11]));
+  EXPECT_EQ(table.transmittance(1), table.external[63]);
+  EXPECT_EQ(table.transmittance(-0.1f), table.external[0]);
+  EXPECT_EQ(table.transmittance(1.1f), table.external[63]);
+}
+
+}  // namespace
+}  // namespace kiloband::test
