@@ -42,12 +42,6 @@ struct InvalidSample {
   uint32_t x, y, sample;
 };
 
-/// A named sensor response, see docs; values are summed over channels with weight response(lambda) / cover(lambda).
-struct DerivedChannels {
-  std::vector<std::string> names;
-  std::vector<RegularTable> responses;
-};
-
 /// Auxiliary values of one pixel, from the ray through its centre.
 struct AuxiliaryPixel {
   float depth = 0;  // m along the ray; 0 where nothing is hit

@@ -40,13 +40,14 @@ struct EnvmapSampling {
   std::vector<float> row_cdf;       // height rows of width + 1
 };
 
-/// Shape names for `info` and auxiliary images.
+/// The flattened scene. Positions carry one spare vertex at the end: ray tracers read vertices with 16-byte loads.
 struct FlatScene {
   ChannelList channels;          // K rendered channels
   ChannelList guide;             // guide bands
   std::vector<double> channel_scale;  // K powers of two; emission rows are divided by it, the film multiplies by it
 
   std::vector<SpectrumRow> spectra;   // at most 65535
+  uint32_t unit_row = KB_NONE;        // a reflectance of 1, where the scene needs one (rough dispersive boundaries)
   std::vector<KbTexture> textures;
   std::vector<KbFloat4> texels;
   std::vector<KbCheckerboard> checkerboards;

@@ -105,6 +105,9 @@ KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
     if (!model.ext_ior.is_constant()) record.k_row = spectra_.row(model.ext_ior, ext_use);
     out_.features.dispersion = true;
   }
+  if (model.roughness && (record.flags & KB_MATERIAL_DISPERSIVE)) {
+    out_.unit_row = spectra_.row(Spectrum::constant(1), {"degradation", position, false});
+  }
   if (model.roughness) set_roughness(record, *model.roughness);
   (model.roughness ? out_.features.rough_dielectric : out_.features.dielectric) = true;
   return record;

@@ -1,0 +1,214 @@
+// kiloband render SCENE.xml: loads, renders, writes.
+#include <chrono>
+#include <filesystem>
+#include <fmt/core.h>
+#include <map>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/progress_bar.hpp"
+#include "app/render_options.hpp"
+#include "app/render_statistics.hpp"
+#include "film/atomic_file.hpp"
+#include "render/session.hpp"
+#include "src_cpu/cpu_backend.hpp"
+
+namespace kiloband {
+namespace {
+
+struct RenderOptions {
+  SceneOptions scene;
+  std::vector<std::string> outputs, responses, aux;
+  std::string backend = "auto", isa = "auto", wavelengths = "shared", sampler = "sobol", quantity;
+  std::string preview, stats;
+  int threads = 0;
+  uint64_t seed = 0;
+  std::optional<uint64_t> spp;
+  std::string time, target_error;
+  uint32_t replicates = 16;
+  bool variance = false, keep_replicates = false, quiet = false;
+};
+
+/// "60", "60s", "5min", "2h" to seconds.
+double parse_duration(const std::string& text) {
+  static const std::map<std::string, double> kUnits{{"", 1}, {"s", 1}, {"min", 60}, {"h", 3600}};
+  std::size_t end = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+  }
+  const auto unit = kUnits.find(text.substr(end));
+  if (end == 0 || unit == kUnits.end() || !(value > 0) || value * unit->second > 1e9) {
+    throw InputError("--time " + text + ": must be a positive time such as 60s, 5min or 2h");
+  }
+  return value * unit->second;
+}
+
+/// "1%" or "0.01" to a fraction.
+double parse_error(const std::string& text) {
+  std::size_t end = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+  }
+  const std::string unit = text.substr(end);
+  if (end == 0 || (unit != "" && unit != "%") || !(value > 0)) {
+    throw InputError("--target-error " + text + ": must be positive, such as 1% or 0.01");
+  }
+  return unit == "%" ? value / 100 : value;
+}
+
+SessionSettings session_settings(const RenderOptions& options, const SceneDescription& scene) {
+  SessionSettings settings;
+  if (!options.time.empty()) settings.stop.seconds = parse_duration(options.time);
+  if (!options.target_error.empty()) settings.stop.relative_error = parse_error(options.target_error);
+  if (!settings.stop.seconds && !settings.stop.relative_error) {
+    settings.stop.samples_per_pixel = options.spp.value_or(scene.sensor.sample_count);
+  }
+  settings.replicates = options.replicates;
+  settings.variance = options.variance;
+  settings.keep_replicates = options.keep_replicates;
+  for (const std::string& output : options.outputs) settings.outputs.emplace_back(output);
+  if (settings.outputs.empty()) settings.outputs.push_back(scene.file.stem().string() + ".exr");
+  if (options.quantity == "integral") settings.quantity = Quantity::kIntegral;
+  if (options.quantity == "density") settings.quantity = Quantity::kDensity;
+  if (!options.preview.empty()) settings.preview = options.preview;
+  settings.aux = options.aux;
+  if (settings.stop.relative_error && options.replicates < 2) {
+    throw InputError("--target-error needs at least 2 replicates");
+  }
+  return settings;
+}
+
+Isa parse_isa(const std::string& text) {
+  if (text == "sse4") return Isa::kSse4;
+  if (text == "avx2") return Isa::kAvx2;
+  if (text == "avx512") return Isa::kAvx512;
+  return Isa::kAuto;
+}
+
+SamplingSettings sampling_settings(const RenderOptions& options, const SessionSettings& session) {
+  SamplingSettings sampling;
+  sampling.seed = options.seed;
+  sampling.wavelengths = options.wavelengths == "shared" ? WavelengthMode::kShared : WavelengthMode::kPerPath;
+  sampling.sampler = options.sampler == "sobol" ? SamplerType::kSobol : SamplerType::kIndependent;
+  sampling.replicates = session_replicates(session);
+  return sampling;
+}
+
+void describe_render(SessionSettings& settings, const RenderOptions& options, const SamplingSettings& sampling,
+                     const Backend& backend) {
+  settings.metadata["software"] = fmt::format("kiloband {}", KILOBAND_VERSION);
+  settings.metadata["scene"] = std::filesystem::path(options.scene.scene).filename().string();
+  settings.metadata["backend"] = backend.name();
+  settings.metadata["isa"] = backend.isa();
+  settings.metadata["seed"] = std::to_string(sampling.seed);
+  settings.metadata["sampler"] = to_string(sampling.sampler);
+  settings.metadata["wavelengths"] = to_string(sampling.wavelengths);
+}
+
+void print_summary(const RenderReport& report, const Backend& backend, double setup_seconds) {
+  const uint64_t paths = backend.counters().paths;
+  fmt::print(stderr, "{} paths in {:.2f} s ({:.2f} Mpaths/s on {}, {}); set-up {:.2f} s, output {:.2f} s\n", paths,
+             report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, backend.name(),
+             backend.isa(), setup_seconds, report.output_seconds);
+  if (report.replicates < 2) fmt::print(stderr, "1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
+  if (report.mean_relative_error) fmt::print(stderr, "mean relative error {:.3g} %\n", 100 * *report.mean_relative_error);
+  for (const auto& file : report.written) fmt::print(stderr, "wrote {}\n", file.string());
+}
+
+void print_problems(const RenderReport& report, const Backend& backend) {
+  const uint64_t invalid = backend.counters().invalid_samples;
+  if (invalid > 0) {
+    fmt::print(stderr, "warning: {} invalid samples (not finite or endless) left the mean; the first:\n", invalid);
+    for (const InvalidSample& s : backend.invalid_samples()) {
+      fmt::print(stderr, "  pixel {},{} sample {}\n", s.x, s.y, s.sample);
+    }
+  }
+  if (report.underflowed_values > 0) {
+    fmt::print(stderr, "warning: {} values are too small for float32 and became 0\n", report.underflowed_values);
+  }
+  if (report.pixels_without_sample > 0) {
+    fmt::print(stderr, "warning: {} pixels have no sample: NaN\n", report.pixels_without_sample);
+  }
+}
+
+int render(const RenderOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const DiagnosticSink sink = print_diagnostics(options.quiet);
+  const LoadedScene loaded = load_scene(options.scene, sink);
+  SessionSettings settings = session_settings(options, loaded.description);
+  const SamplingSettings sampling = sampling_settings(options, settings);
+  const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
+  const DerivedChannels derived = load_responses(options.responses, loaded, sink);
+  const auto backend = make_cpu_backend(scene, derived, sampling, {parse_isa(options.isa), options.threads});
+  describe_render(settings, options, sampling, *backend);
+  if (options.backend == "auto" && !options.quiet) {
+    fmt::print(stderr, "backend cpu ({}, {})\n", backend->device(), backend->isa());
+  }
+  const double setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  ProgressBar bar(!options.quiet);
+  Progress last;
+  const RenderReport report = run_session(scene, derived.names, *backend, settings, stop_requested,
+                                          [&](const Progress& progress) { bar.update(last = progress); });
+  if (last.pixel_samples > 0) bar.finish(last);
+  if (!options.quiet) print_summary(report, *backend, setup);
+  print_problems(report, *backend);
+  if (!options.stats.empty()) {
+    const RenderContext context{sampling, scene.film.crop_width, scene.film.crop_height, scene.channels.size(), setup,
+                                scene.features.names()};
+    write_file_atomically(options.stats, statistics_json(context, report, *backend));
+  }
+  return report.interrupted ? kInterrupted : kDone;
+}
+
+void add_sampling_options(CLI::App& command, RenderOptions& o) {
+  command.add_option("--backend", o.backend, "auto or cpu")->check(CLI::IsMember({"auto", "cpu"}))->capture_default_str();
+  command.add_option("--threads", o.threads, "threads (0: all)")->check(CLI::Range(0, 4096))->capture_default_str();
+  command.add_option("--isa", o.isa, "instruction set")
+      ->check(CLI::IsMember({"auto", "sse4", "avx2", "avx512"}))->capture_default_str();
+  command.add_option("--wavelengths", o.wavelengths, "wavelength sampling")
+      ->check(CLI::IsMember({"shared", "per-path"}))->capture_default_str();
+  command.add_option("--sampler", o.sampler, "random numbers")
+      ->check(CLI::IsMember({"sobol", "independent"}))->capture_default_str();
+  command.add_option("--seed", o.seed, "seed of all random numbers")->capture_default_str();
+  auto* spp = command.add_option("--spp", o.spp, "samples per pixel (default: the scene's)")
+                  ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32));
+  auto* time = command.add_option("--time", o.time, "render for this long: 60s, 5min, 2h")->excludes(spp);
+  command.add_option("--target-error", o.target_error, "render until the mean relative error is below: 1%")
+      ->excludes(spp)->excludes(time);
+  command.add_option("--replicates", o.replicates, "independent replicates that error bars come from")
+      ->check(CLI::Range(1, 4096))->capture_default_str();
+}
+
+void add_output_options(CLI::App& command, RenderOptions& o) {
+  command.add_option("-o", o.outputs, "output: .exr, or .hdr (ENVI); may be repeated (default: SCENE.exr)")
+      ->allow_extra_args(false);
+  command.add_flag("--variance", o.variance, "write the variance of the mean of every channel");
+  command.add_flag("--keep-replicates", o.keep_replicates, "also write the mean of every replicate (OUT.rNN)");
+  command.add_option("--response", o.responses, "file of sensor responses to accumulate; may be repeated")
+      ->allow_extra_args(false);
+  command.add_option("--aov", o.aux, "auxiliary images: depth,normal,object,material")->delimiter(',')
+      ->check(CLI::IsMember({"depth", "normal", "object", "material"}));
+  command.add_option("--quantity", o.quantity, "of the values on disk (default: density in EXR, integral in ENVI)")
+      ->check(CLI::IsMember({"integral", "density"}));
+  command.add_option("--preview", o.preview, "PNG preview");
+  command.add_option("--stats", o.stats, "statistics as JSON");
+  command.add_flag("--quiet", o.quiet, "only errors and warnings");
+}
+
+}  // namespace
+
+Command add_render(CLI::App& program) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = program.add_subcommand("render", "Render a scene into a spectral image");
+  options->scene.add_to(*command);
+  add_sampling_options(*command, *options);
+  add_output_options(*command, *options);
+  return [options] { return render(*options); };
+}
+
+}  // namespace kiloband

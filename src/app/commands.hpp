@@ -1,0 +1,22 @@
+// The subcommands: each adds its options to the program and returns the exit code when run.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <functional>
+
+namespace kiloband {
+
+/// Exit codes, DESIGN 9.
+enum ExitCode { kDone = 0, kFailed = 1, kInputWrong = 2, kMachineFailed = 3, kInternalError = 70, kInterrupted = 130 };
+
+/// Set by SIGINT and SIGTERM.
+extern std::atomic<bool> stop_requested;
+
+using Command = std::function<int()>;
+
+Command add_render(CLI::App& program);
+Command add_info(CLI::App& program);
+Command add_convert(CLI::App& program);
+
+}  // namespace kiloband

@@ -1,0 +1,65 @@
+#include "app/progress_bar.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cmath>
+
+namespace kiloband {
+namespace {
+
+constexpr int kBarWidth = 30;
+
+std::string duration(double seconds) {
+  if (seconds < 100) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+std::string rate(double per_second) {
+  if (per_second >= 1e6) return fmt::format("{:.2f} Mpaths/s", per_second * 1e-6);
+  return fmt::format("{:.1f} kpaths/s", per_second * 1e-3);
+}
+
+}  // namespace
+
+std::string describe(const Progress& progress) {
+  std::string text = fmt::format("{:3.0f} %", 100 * progress.fraction);
+  if (progress.seconds > 0) text += "  " + rate(static_cast<double>(progress.pixel_samples) / progress.seconds);
+  if (progress.fraction > 0.001 && progress.fraction < 1) {
+    text += "  " + duration(progress.seconds * (1 - progress.fraction) / progress.fraction) + " left";
+  }
+  if (progress.error) text += fmt::format("  error {:.2g} %", 100 * *progress.error);
+  return text;
+}
+
+ProgressBar::ProgressBar(bool enabled)
+    : enabled_(enabled), terminal_(isatty(STDERR_FILENO) == 1), last_print_(std::chrono::steady_clock::now()),
+      interval_seconds_(terminal_ ? 0.1 : 10.0) {}
+
+void ProgressBar::update(const Progress& progress) {
+  last_ = progress;
+  if (!enabled_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (std::chrono::duration<double>(now - last_print_).count() < interval_seconds_) return;
+  last_print_ = now;
+  print(progress);
+}
+
+void ProgressBar::print(const Progress& progress) const {
+  if (!terminal_) {
+    fmt::print(stderr, "{}\n", describe(progress));
+    return;
+  }
+  const int filled = static_cast<int>(std::lround(progress.fraction * kBarWidth));
+  fmt::print(stderr, "\r[{}{}] {}\x1b[K", std::string(filled, '#'), std::string(kBarWidth - filled, '.'), describe(progress));
+  std::fflush(stderr);
+}
+
+void ProgressBar::finish(const Progress& last) {
+  if (!enabled_) return;
+  print(last);
+  if (terminal_) fmt::print(stderr, "\n");
+}
+
+}  // namespace kiloband

@@ -1,0 +1,120 @@
+#include "app/render_options.hpp"
+
+#include <charconv>
+#include <fmt/core.h>
+#include <set>
+
+#include "base/error.hpp"
+#include "spectral/spectrum_files.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr const char* kDefaultBands = "380:780:40";
+constexpr double kUncovered = 1e-3;  // part of a response outside the channels that is worth a warning
+
+std::pair<std::string, std::string> parse_define(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) throw InputError("-D " + text + ": must be name=value");
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+uint32_t parse_extent(std::string_view text, const std::string& whole) {
+  uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || value < 1 || value > 65535) {
+    throw InputError("--size " + whole + ": must be WIDTHxHEIGHT with both from 1 to 65535");
+  }
+  return value;
+}
+
+std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
+  const auto cross = text.find('x');
+  if (cross == std::string::npos) throw InputError("--size " + text + ": must be WIDTHxHEIGHT, for example 640x480");
+  return {parse_extent(std::string_view(text).substr(0, cross), text),
+          parse_extent(std::string_view(text).substr(cross + 1), text)};
+}
+
+/// Part of the response's integral that no channel covers.
+double uncovered_part(const Spectrum& response, const ChannelList& channels) {
+  const auto range = response.data_range();
+  const Channel all = hull(channels);
+  const double from = range ? range->min_nm : all.min_nm;
+  const double to = range ? range->max_nm : all.max_nm;
+  const double total = response.integral(from, to);
+  if (!(total > 0)) return 0;
+  // Overlapping channels: sum over the intervals between all edges, each counted once.
+  std::set<double> edges{from, to};
+  for (const Channel& channel : channels) {
+    if (channel.min_nm > from && channel.min_nm < to) edges.insert(channel.min_nm);
+    if (channel.max_nm > from && channel.max_nm < to) edges.insert(channel.max_nm);
+  }
+  double covered = 0;
+  for (auto edge = edges.begin(); std::next(edge) != edges.end(); ++edge) {
+    const double middle = 0.5 * (*edge + *std::next(edge));
+    const bool inside = std::ranges::any_of(
+        channels, [middle](const Channel& c) { return c.min_nm <= middle && middle <= c.max_nm; });
+    if (inside) covered += response.integral(*edge, *std::next(edge));
+  }
+  return 1 - covered / total;
+}
+
+}  // namespace
+
+void SceneOptions::add_to(CLI::App& command) {
+  command.add_option("SCENE", scene, "Mitsuba 3 scene file (XML)")->required();
+  command.add_option("-D", defines, "name=value: sets a scene parameter ($name); may be repeated")->allow_extra_args(false);
+  auto* bands_option = command.add_option("--bands", bands, "channels: first:last:count in nm, or \"400-410, 450-500\"");
+  command.add_option("--bands-file", bands_file, "channels from a CSV file of min,max in nm")->excludes(bands_option);
+  command.add_option("--guide-bands", guide_bands, "channels that sampling decisions are averaged over (default: the rendered)");
+  command.add_option("--size", size, "WxH: image size in pixels");
+  command.add_option("--max-depth", max_depth, "longest path (1: emission only, -1: unlimited)")->check(CLI::Range(-1, 1 << 30));
+}
+
+LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) {
+  ReadOptions read;
+  for (const std::string& define : options.defines) read.defines.push_back(parse_define(define));
+  read.sink = sink;
+  if (!options.size.empty()) read.film_size = parse_size(options.size);
+  LoadedScene loaded;
+  loaded.description = read_scene(options.scene, read);
+  if (options.max_depth) loaded.description.integrator.max_depth = *options.max_depth;
+  Film& film = loaded.description.sensor.film;
+  if (!options.bands.empty() || !options.bands_file.empty()) {
+    loaded.channels = options.bands.empty() ? read_channels_file(options.bands_file) : parse_channels(options.bands);
+    film.responses.clear();  // the command line beats the scene
+  } else {
+    loaded.channels = film.channels.empty() ? parse_channels(kDefaultBands) : film.channels;
+  }
+  loaded.guide = options.guide_bands.empty() ? loaded.channels : parse_channels(options.guide_bands);
+  return loaded;
+}
+
+DerivedChannels load_responses(const std::vector<std::string>& files, const LoadedScene& scene, const DiagnosticSink& sink) {
+  std::vector<std::pair<std::string, Spectrum>> responses = scene.description.sensor.film.responses;
+  for (const std::string& file : files) {
+    for (auto& response : read_response_file(file)) responses.push_back(std::move(response));
+  }
+  DerivedChannels derived;
+  std::set<std::string> names;
+  const Channel range = hull(scene.channels);
+  for (const auto& [name, response] : responses) {
+    if (!names.insert(name).second) throw InputError("response '" + name + "' is given twice");
+    const double missing = uncovered_part(response, scene.channels);
+    if (missing > kUncovered) {
+      warn(sink, {}, fmt::format("response '{}': {:.2g} % of its integral lies outside the channels", name, 100 * missing));
+    }
+    derived.names.push_back(name);
+    derived.responses.push_back(resample(response, range.min_nm, range.max_nm));
+  }
+  return derived;
+}
+
+DiagnosticSink print_diagnostics(bool quiet) {
+  return [quiet](const Diagnostic& diagnostic) {
+    if (quiet && diagnostic.severity == Severity::kNote) return;
+    fmt::print(stderr, "{}\n", diagnostic.to_string());
+  };
+}
+
+}  // namespace kiloband

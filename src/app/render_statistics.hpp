@@ -1,0 +1,28 @@
+// The --stats file: names are a contract (DESIGN 9).
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "render/backend.hpp"
+#include "render/session.hpp"
+
+namespace kiloband {
+
+/// What the session itself does not know.
+struct RenderContext {
+  SamplingSettings sampling;
+  uint32_t width = 0, height = 0;
+  std::size_t channels = 0;
+  double setup_seconds = 0;
+  std::vector<std::string> features;
+};
+
+/// Pretty-printed JSON.
+std::string statistics_json(const RenderContext& context, const RenderReport& report, const Backend& backend);
+const char* to_string(WavelengthMode mode);
+const char* to_string(SamplerType sampler);
+/// Largest resident set of this process so far, bytes.
+uint64_t peak_memory_bytes();
+
+}  // namespace kiloband

@@ -1,0 +1,210 @@
+#include "render/cube_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+namespace kiloband {
+namespace {
+
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+
+std::filesystem::path replicate_path(const std::filesystem::path& file, uint32_t replicate) {
+  return std::filesystem::path(file).replace_extension(fmt::format(".r{:02}{}", replicate, file.extension().string()));
+}
+
+bool is_exr(const std::filesystem::path& file) { return file.extension() == ".exr"; }
+
+}  // namespace
+
+std::vector<std::string> auxiliary_planes(const std::vector<std::string>& images) {
+  std::vector<std::string> planes;
+  for (const std::string& image : images) {
+    if (image == "normal") {
+      planes.insert(planes.end(), {"normal.X", "normal.Y", "normal.Z"});
+    } else {
+      planes.push_back(image);
+    }
+  }
+  return planes;
+}
+
+std::optional<double> relative_error(const std::vector<double>& mean_sum, const std::vector<double>& variance_sum,
+                                     uint64_t pixels) {
+  std::optional<double> largest;
+  for (std::size_t b = 0; b < mean_sum.size() && pixels > 0; ++b) {
+    if (!(mean_sum[b] > 0) || !std::isfinite(variance_sum[b])) continue;
+    const auto n = static_cast<double>(pixels);
+    largest = std::max(largest.value_or(0), std::sqrt(variance_sum[b] / n) / (mean_sum[b] / n));
+  }
+  return largest;
+}
+
+CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands, const std::vector<double>& film_scale,
+                       const SessionSettings& settings, uint32_t replicates, uint32_t rows_per_strip)
+    : bands_(bands), scale_(film_scale), settings_(settings), width_(scene.film.crop_width),
+      height_(scene.film.crop_height), strip_(rows_per_strip), aux_names_(auxiliary_planes(settings.aux)) {
+  CubeInfo info;
+  info.width = width_;
+  info.height = height_;
+  info.bands = bands.bands;
+  info.variance = settings.variance;
+  info.samples_per_pixel = settings.stop.samples_per_pixel.value_or(0);
+  info.replicates = replicates;
+  info.aux = aux_names_;
+  info.metadata = settings.metadata;
+  for (const auto& file : settings.outputs) {
+    info.quantity = settings.quantity.value_or(is_exr(file) ? Quantity::kDensity : Quantity::kIntegral);
+    writers_.push_back(create_cube_writer(file, info, strip_));
+    files_.push_back(file);
+  }
+  if (settings.keep_replicates) {
+    CubeInfo one = info;
+    one.variance = false;
+    one.aux.clear();
+    one.replicates = 1;
+    replicate_writers_.resize(replicates);
+    for (uint32_t r = 0; r < replicates; ++r) {
+      for (const auto& file : settings.outputs) {
+        one.quantity = settings.quantity.value_or(is_exr(file) ? Quantity::kDensity : Quantity::kIntegral);
+        one.metadata["replicate"] = std::to_string(r);
+        files_.push_back(replicate_path(file, r));
+        replicate_writers_[r].push_back(create_cube_writer(files_.back(), one, strip_));
+      }
+    }
+  }
+  if (settings.preview) {
+    preview_weights_ = preview_weights(bands.bands);
+    preview_.reserve(std::size_t{3} * width_ * height_);
+  }
+  mean_sum_.assign(bands.bands.size(), 0.0);
+  variance_sum_.assign(bands.bands.size(), 0.0);
+}
+
+float CubeOutput::scaled(float value, double scale) {
+  const auto result = static_cast<float>(value * scale);
+  underflowed_ += value > 0 && result == 0;
+  return result;
+}
+
+void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
+  const std::size_t channels = film.options().channels;
+  film_mean_.resize(width_ * channels);
+  film_variance_.resize(settings_.variance ? width_ * channels : 0);
+  film.row(y, film_mean_, film_variance_);
+  for (uint32_t x = 0; x < width_; ++x) {
+    const uint64_t samples = film.samples(x, y);
+    least_ = std::min(least_, samples);
+    most_ = std::max(most_, samples);
+    samples > 0 ? ++pixels_ : ++missing_;
+    float rgb[3] = {0, 0, 0};
+    for (std::size_t b = 0; b < bands_.bands.size(); ++b) {
+      const std::size_t c = bands_.film_channels[b];
+      const float value = samples > 0 ? scaled(film_mean_[x * channels + c], scale_[c]) : kMissing;
+      mean_.push_back(value);
+      if (samples > 0) mean_sum_[b] += double{film_mean_[x * channels + c]} * scale_[c];
+      if (settings_.variance) {
+        const double variance = double{film_variance_[x * channels + c]} * scale_[c] * scale_[c];
+        variance_.push_back(static_cast<float>(variance));
+        if (samples > 0) variance_sum_[b] += variance;
+      }
+      if (settings_.preview && samples > 0) {
+        for (int i = 0; i < 3; ++i) rgb[i] += preview_weights_[b][i] * value;
+      }
+    }
+    if (settings_.preview) preview_.insert(preview_.end(), rgb, rgb + 3);
+  }
+  ++rows_;
+}
+
+void CubeOutput::add_aux(Backend& backend, const PixelRect& rect) {
+  if (aux_names_.empty()) return;
+  for (const AuxiliaryPixel& pixel : backend.auxiliary(rect)) {
+    for (const std::string& image : settings_.aux) {
+      if (image == "depth") aux_.push_back(pixel.depth);
+      if (image == "normal") aux_.insert(aux_.end(), {pixel.normal.x, pixel.normal.y, pixel.normal.z});
+      if (image == "object") aux_.push_back(pixel.object);
+      if (image == "material") aux_.push_back(pixel.material);
+    }
+  }
+}
+
+void CubeOutput::write(const SpectralFilm& film, Backend& backend) {
+  const PixelRect& rect = film.rect();
+  for (uint32_t y = 0; y < rect.height; y += strip_) {
+    const uint32_t rows = std::min(strip_, rect.height - y);
+    for (uint32_t i = 0; i < rows; ++i) add_row(film, y + i);
+    add_aux(backend, {rect.x0, rect.y0 + y, rect.width, rows});
+    flush_strip();
+  }
+  if (settings_.keep_replicates) write_replicates(film);
+}
+
+void CubeOutput::write_missing(const PixelRect& rect) {
+  const std::size_t bands = bands_.bands.size();
+  for (uint32_t y = 0; y < rect.height; y += strip_) {
+    rows_ = std::min(strip_, rect.height - y);
+    const std::size_t pixels = std::size_t{rows_} * width_;
+    missing_ += pixels;
+    least_ = 0;
+    mean_.assign(pixels * bands, kMissing);
+    if (settings_.variance) variance_.assign(pixels * bands, kMissing);
+    aux_.assign(pixels * aux_names_.size(), kMissing);
+    if (settings_.preview) preview_.resize(preview_.size() + 3 * pixels);
+    for (auto& replicate : replicate_writers_) {
+      for (auto& writer : replicate) writer->write_rows({first_row_, rows_, mean_, {}, {}});
+    }
+    flush_strip();
+  }
+}
+
+void CubeOutput::flush_strip() {
+  for (auto& writer : writers_) writer->write_rows({first_row_, rows_, mean_, variance_, aux_});
+  first_row_ += rows_;
+  rows_ = 0;
+  mean_.clear();
+  variance_.clear();
+  aux_.clear();
+}
+
+void CubeOutput::write_replicates(const SpectralFilm& film) {
+  const PixelRect& rect = film.rect();
+  const uint32_t image_row = first_row_ - rect.height;
+  std::vector<float> rows;
+  for (uint32_t r = 0; r < replicate_writers_.size(); ++r) {
+    for (uint32_t y = 0; y < rect.height; y += strip_) {
+      const uint32_t count = std::min(strip_, rect.height - y);
+      rows.clear();
+      for (std::size_t pixel = std::size_t{y} * width_; pixel < std::size_t{y + count} * width_; ++pixel) {
+        const auto mean = film.replicate_mean(r, pixel);
+        const bool empty = film.replicate_samples(r, pixel) == 0;
+        for (const std::size_t c : bands_.film_channels) {
+          rows.push_back(empty ? kMissing : static_cast<float>(mean[c] * scale_[c]));
+        }
+      }
+      for (auto& writer : replicate_writers_[r]) writer->write_rows({image_row + y, count, rows, {}, {}});
+    }
+  }
+}
+
+void CubeOutput::finish(RenderReport& report) {
+  for (auto& replicate : replicate_writers_) {
+    for (auto& writer : replicate) writer->finish();
+  }
+  for (auto& writer : writers_) writer->finish();
+  if (settings_.preview) {
+    const float exposure = auto_exposure(preview_);
+    for (float& value : preview_) value *= exposure;
+    write_png(*settings_.preview, width_, height_, preview_);
+    files_.push_back(*settings_.preview);
+  }
+  report.samples_per_pixel = least_ == ~0ull ? 0 : least_;
+  report.largest_samples_per_pixel = most_;
+  report.pixels_without_sample = missing_;
+  report.underflowed_values = underflowed_;
+  if (settings_.variance) report.mean_relative_error = relative_error(mean_sum_, variance_sum_, pixels_);
+  report.written = files_;
+}
+
+}  // namespace kiloband

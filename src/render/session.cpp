@@ -1,0 +1,230 @@
+#include "render/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <mutex>
+#include <numeric>
+
+#include "render/cube_output.hpp"
+
+namespace kiloband {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
+  std::vector<uint32_t> blocks(film.blocks().size());
+  std::iota(blocks.begin(), blocks.end(), 0u);
+  return blocks;
+}
+
+/// One session: the state that its steps share.
+class Session {
+ public:
+  Session(const FlatScene& scene, const std::vector<std::string>& derived_names, Backend& backend,
+          const SessionSettings& settings, const std::atomic<bool>& stop,
+          const std::function<void(const Progress&)>& progress)
+      : scene_(scene), backend_(backend), settings_(settings), stop_(stop), progress_(progress),
+        bands_(select_bands(scene, derived_names)),
+        channels_(scene.channels.size() + derived_names.size()), replicates_(session_replicates(settings)) {}
+
+  RenderReport run() {
+    const PixelRect image{scene_.film.crop_x, scene_.film.crop_y, scene_.film.crop_width, scene_.film.crop_height};
+    FilmOptions options;
+    options.channels = channels_;
+    options.replicates = replicates_;
+    options.variance = settings_.variance;
+    options.held = settings_.keep_replicates || !settings_.stop.samples_per_pixel;
+    const std::size_t row_bytes = image.width * (SpectralFilm::bytes_per_pixel(options) + output_bytes_per_pixel());
+    const std::size_t strip = strip_rows(row_bytes, image.height);
+    report_.replicates = replicates_;
+    const bool fits = row_bytes * image.height <= settings_.memory_budget_bytes;
+    if (!fits && !settings_.stop.samples_per_pixel) {
+      throw InputError(fmt::format("the image needs {} MiB to be rendered in passes (--time, --target-error), more than {} MiB: "
+                                   "render it with --spp, which streams, or make it smaller",
+                                   row_bytes * image.height >> 20, settings_.memory_budget_bytes >> 20));
+    }
+    CubeOutput output(scene_, bands_, backend_.film_scale(), settings_, replicates_, static_cast<uint32_t>(strip));
+    fits ? run_whole(image, options, output) : run_strips(image, options, static_cast<uint32_t>(strip), output);
+    const auto writing = Clock::now();
+    output.finish(report_);
+    report_.output_seconds += seconds_since(writing);
+    report_.interrupted = stop_;
+    finish_image_moments();
+    return report_;
+  }
+
+ private:
+  std::size_t output_bytes_per_pixel() const { return bands_.bands.size() * sizeof(float) * (settings_.variance ? 2 : 1) / 8; }
+
+  /// Rows of a strip: a quarter of the budget, whole blocks.
+  std::size_t strip_rows(std::size_t row_bytes, uint32_t height) const {
+    const std::size_t wanted = settings_.memory_budget_bytes / 4 / std::max<std::size_t>(row_bytes, 1);
+    const std::size_t rows = std::max<std::size_t>(wanted / kBlockSize * kBlockSize, kBlockSize);
+    return std::min<std::size_t>(rows, height);
+  }
+
+  /// The whole image is in memory: replicate after replicate over all blocks, so that an interrupted render is even.
+  void run_whole(const PixelRect& image, const FilmOptions& options, CubeOutput& output) {
+    SpectralFilm film(image, options);
+    start_ = Clock::now();
+    if (settings_.stop.samples_per_pixel) {
+      total_ = image.pixels() * *settings_.stop.samples_per_pixel;
+      render_fixed(film);
+    } else {
+      render_passes(film);
+    }
+    report_.sampling_seconds += seconds_since(start_);
+    film.add_image_sums(image_sums_, image_counts_);
+    write(film, output);
+  }
+
+  /// Strips of rows: each is finished and written before the next begins.
+  void run_strips(const PixelRect& image, const FilmOptions& options, uint32_t strip, CubeOutput& output) {
+    report_.streamed = true;
+    total_ = image.pixels() * *settings_.stop.samples_per_pixel;
+    for (uint32_t y = 0; y < image.height; y += strip) {
+      const PixelRect rect{image.x0, image.y0 + y, image.width, std::min(strip, image.height - y)};
+      if (stop_) {
+        output.write_missing(rect);
+        continue;
+      }
+      SpectralFilm film(rect, options);
+      start_ = Clock::now();
+      render_fixed(film);
+      report_.sampling_seconds += seconds_since(start_);
+      film.add_image_sums(image_sums_, image_counts_);
+      write(film, output);
+    }
+  }
+
+  void write(const SpectralFilm& film, CubeOutput& output) {
+    const auto writing = Clock::now();
+    output.write(film, backend_);
+    report_.output_seconds += seconds_since(writing);
+  }
+
+  void render_fixed(SpectralFilm& film) {
+    const ReplicatePlan plan = ReplicatePlan::deal(*settings_.stop.samples_per_pixel, replicates_);
+    for (uint32_t r = 0; r < plan.replicates && !stop_; ++r) {
+      backend_.render(film, {r, 0, static_cast<uint32_t>(plan.size(r))}, all_blocks(film), stop_,
+                      [this](uint64_t pixels) { advance(pixels); });
+    }
+  }
+
+  /// Passes over all replicates, each as long as all before it, until the rule is met.
+  void render_passes(SpectralFilm& film) {
+    std::atomic<bool> halt{false};
+    const auto on_samples = [&](uint64_t pixels) {
+      advance(pixels);
+      if (stop_ || out_of_time()) halt = true;
+    };
+    uint32_t first = 0;
+    for (uint32_t count = 1; !halt; count = std::max(1u, first)) {
+      if (settings_.stop.seconds) count = samples_that_fit(first, count);
+      for (uint32_t r = 0; r < replicates_ && !halt; ++r) {
+        backend_.render(film, {r, first, count}, all_blocks(film), halt, on_samples);
+      }
+      first += count;
+      if (settings_.stop.relative_error && !halt) {
+        error_ = film_error(film);
+        if (error_ && *error_ <= *settings_.stop.relative_error) break;
+      }
+    }
+  }
+
+  /// Samples per replicate of the next pass, so that it ends near the time limit: all replicates stay even.
+  uint32_t samples_that_fit(uint32_t done, uint32_t wanted) const {
+    if (done == 0) return wanted;
+    const double rate = done / seconds_since(start_);
+    const double left = *settings_.stop.seconds - seconds_since(start_);
+    return static_cast<uint32_t>(std::clamp(rate * left, 1.0, static_cast<double>(wanted)));
+  }
+
+  bool out_of_time() const { return settings_.stop.seconds && seconds_since(start_) >= *settings_.stop.seconds; }
+
+  std::optional<double> film_error(const SpectralFilm& film) const {
+    std::vector<double> mean_sum(channels_), variance_sum(channels_);
+    std::vector<float> mean(film.rect().width * channels_), variance(mean.size());
+    for (uint32_t y = 0; y < film.rect().height; ++y) {
+      film.row(y, mean, variance);
+      for (std::size_t i = 0; i < mean.size(); ++i) {
+        mean_sum[i % channels_] += mean[i];
+        variance_sum[i % channels_] += variance[i];
+      }
+    }
+    return relative_error(mean_sum, variance_sum, film.rect().pixels());
+  }
+
+  void advance(uint64_t pixels) {
+    done_ += pixels;
+    if (!progress_) return;
+    Progress state;
+    state.pixel_samples = done_;
+    state.seconds = report_.sampling_seconds + seconds_since(start_);
+    state.error = error_;
+    if (total_ > 0) state.fraction = static_cast<double>(done_) / static_cast<double>(total_);
+    if (settings_.stop.seconds) state.fraction = std::min(1.0, seconds_since(start_) / *settings_.stop.seconds);
+    progress_(state);
+  }
+
+  void finish_image_moments() {
+    const ReplicateMoments moments = moments_of_sums(image_sums_, image_counts_);
+    const std::vector<double> scale = backend_.film_scale();
+    std::vector<float> variance(moments.channels());
+    moments.variance_of_mean(0, variance);
+    for (const std::size_t c : bands_.film_channels) {
+      report_.image_mean.push_back(moments.mean(0)[c] * scale[c]);
+      report_.image_standard_error.push_back(std::sqrt(variance[c]) * scale[c]);
+    }
+  }
+
+  const FlatScene& scene_;
+  Backend& backend_;
+  const SessionSettings& settings_;
+  const std::atomic<bool>& stop_;
+  const std::function<void(const Progress&)>& progress_;
+  BandSelection bands_;
+  std::size_t channels_;
+  uint32_t replicates_;
+  RenderReport report_;
+  Clock::time_point start_;
+  uint64_t done_ = 0, total_ = 0;
+  std::optional<double> error_;
+  std::vector<std::vector<double>> image_sums_;
+  std::vector<uint64_t> image_counts_;
+};
+
+}  // namespace
+
+uint32_t session_replicates(const SessionSettings& settings) {
+  if (!settings.stop.samples_per_pixel) return settings.replicates;
+  return ReplicatePlan::deal(*settings.stop.samples_per_pixel, settings.replicates).replicates;
+}
+
+BandSelection select_bands(const FlatScene& scene, const std::vector<std::string>& derived_names) {
+  BandSelection selection;
+  const bool named_only = !scene.film.responses.empty();  // sub-channels of a specfilm's responses are not output
+  for (std::size_t k = 0; k < scene.channels.size(); ++k) {
+    if (named_only && scene.channels[k].name.empty()) continue;
+    selection.bands.push_back({scene.channels[k], false});
+    selection.film_channels.push_back(k);
+  }
+  const Channel range = hull(scene.channels);
+  for (std::size_t d = 0; d < derived_names.size(); ++d) {
+    selection.bands.push_back({{range.min_nm, range.max_nm, derived_names[d]}, true});
+    selection.film_channels.push_back(scene.channels.size() + d);
+  }
+  return selection;
+}
+
+RenderReport run_session(const FlatScene& scene, const std::vector<std::string>& derived_names, Backend& backend,
+                         const SessionSettings& settings, const std::atomic<bool>& stop,
+                         const std::function<void(const Progress&)>& progress) {
+  return Session(scene, derived_names, backend, settings, stop, progress).run();
+}
+
+}  // namespace kiloband

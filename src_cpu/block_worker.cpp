@@ -1,0 +1,87 @@
+#include "src_cpu/block_worker.hpp"
+
+#include <algorithm>
+
+#include "shared/sampler.h"
+
+namespace kiloband {
+namespace {
+
+// Float sums take at most this many samples before they go to double: their rounding error stays below 64 * 2^-24 = 4e-6
+// in the worst case (all samples equal) and 5e-7 typically, however many samples follow.
+constexpr uint32_t kFoldInterval = 64;
+
+}  // namespace
+
+BlockWorker::BlockWorker(const TracerScene& scene, const DerivedChannels& derived, const SamplingSettings& settings, Isa isa)
+    : scene_(scene), settings_(settings), derived_count_(derived.names.size()), tracer_(scene, settings),
+      evaluator_(*scene.flat, derived, isa) {}
+
+BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, const SampleRange& range,
+                                 const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_sample,
+                                 const std::function<void(const InvalidSample&)>& on_invalid) {
+  const std::size_t pixels = block.pixels();
+  sums_.assign(pixels * evaluator_.stride(), 0.0f);
+  folded_.clear();
+  counts_.assign(pixels, 0);
+  for (uint32_t i = 0; i < range.count && !stop; ++i) {
+    const uint32_t index = range.first + i;
+    const SampleId id{range.replicate + index * settings_.replicates, range.replicate, index};
+    if (i > 0 && i % kFoldInterval == 0) fold_sums();
+    add_sample(block, id);
+    for (uint32_t& count : counts_) ++count;
+    for (const uint32_t pixel : invalid_) {
+      --counts_[pixel];
+      on_invalid({block.x0 + pixel % block.width, block.y0 + pixel / block.width, id.sample});
+    }
+    on_sample(pixels);
+  }
+  finish_means(pixels);
+  return {block_index, range.replicate, counts_, sums_, evaluator_.stride()};
+}
+
+void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {
+  if (settings_.wavelengths == WavelengthMode::kShared) {
+    const float mu = kb_shared_mu(settings_.seed, id.replicate, block.x0 / kBlockSize, block.y0 / kBlockSize, id.index);
+    mu_.assign(1, mu);
+    tracer_.trace(block, id, mu_, paths_, invalid_);
+    evaluator_.add_shared(paths_, mu, sums_);
+    return;
+  }
+  const uint32_t sampler = settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  mu_.resize(block.pixels());
+  for (uint32_t i = 0; i < mu_.size(); ++i) {
+    const uint32_t key = (block.y0 + i / block.width) * scene_.flat->camera.film_width + block.x0 + i % block.width;
+    mu_[i] = kb_path_mu(sampler, settings_.seed, key, id.sample, id.replicate, id.index);
+  }
+  tracer_.trace(block, id, mu_, paths_, invalid_);
+  path_mu_.clear();
+  for (const SavedPath& path : paths_.paths) path_mu_.push_back(mu_[path.pixel]);
+  evaluator_.add_per_path(paths_, path_mu_, sums_);
+}
+
+void BlockWorker::fold_sums() {
+  folded_.resize(sums_.size());
+  for (std::size_t i = 0; i < sums_.size(); ++i) folded_[i] += sums_[i];
+  std::ranges::fill(sums_, 0.0f);
+}
+
+/// Sums become means; derived channels move to the place behind the channels, where the film has them.
+void BlockWorker::finish_means(std::size_t pixels) {
+  const std::size_t stride = evaluator_.stride();
+  const std::size_t channels = scene_.flat->channels.size();
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const double scale = counts_[p] > 0 ? 1.0 / counts_[p] : 0.0;
+    float* sums = &sums_[p * stride];
+    if (folded_.empty()) {
+      const auto factor = static_cast<float>(scale);
+      for (std::size_t k = 0; k < stride; ++k) sums[k] *= factor;
+    } else {
+      const double* folded = &folded_[p * stride];
+      for (std::size_t k = 0; k < stride; ++k) sums[k] = static_cast<float>((folded[k] + sums[k]) * scale);
+    }
+    std::copy_n(sums + evaluator_.derived_offset(), derived_count_, sums + channels);
+  }
+}
+
+}  // namespace kiloband

@@ -1,0 +1,185 @@
+#include "src_cpu/cpu_backend.hpp"
+
+#include <omp.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <exception>
+#include <fstream>
+#include <mutex>
+
+#include "src_cpu/block_worker.hpp"
+#include "src_cpu/camera.hpp"
+#include "src_cpu/path_tracer_detail.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr std::size_t kReportedInvalid = 16;
+/// Scenes with more triangles send their secondary rays one by one: incoherent packets lose there (measured, see
+/// validation/README.md).
+constexpr std::size_t kPacketTriangles = 5000;
+
+const char* embree_isa(Isa isa) {
+  switch (isa) {
+    case Isa::kAvx512: return "avx512";
+    case Isa::kAvx2: return "avx2";
+    default: return "sse4.2";
+  }
+}
+
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown processor";
+}
+
+/// Denormals to zero while a thread renders (Embree's advice); the caller's mode comes back afterwards.
+class DenormalsToZero {
+ public:
+  DenormalsToZero() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
+  ~DenormalsToZero() { _mm_setcsr(saved_); }
+  DenormalsToZero(const DenormalsToZero&) = delete;
+  DenormalsToZero& operator=(const DenormalsToZero&) = delete;
+
+ private:
+  unsigned saved_;
+};
+
+class CpuBackend final : public Backend {
+ public:
+  CpuBackend(const FlatScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
+             const CpuOptions& options)
+      : scene_(scene), derived_(derived), settings_(settings), isa_(resolve_isa(options.isa)),
+        threads_(options.threads > 0 ? options.threads : omp_get_num_procs()) {
+    complete_rough_plastics();
+    embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
+    tracer_scene_.flat = &scene_;
+    tracer_scene_.embree = embree_.get();
+    const bool small = scene_.triangles.size() / 3 <= kPacketTriangles;
+    tracer_scene_.secondary_mode = small ? RayMode::kPackets : RayMode::kSingle;
+    for (int i = 0; i < threads_; ++i) {
+      workers_.push_back(std::make_unique<BlockWorker>(tracer_scene_, derived_, settings_, isa_));
+    }
+  }
+
+  void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
+              const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override;
+  std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override;
+
+  std::string name() const override { return "cpu"; }
+  std::string device() const override { return processor_name(); }
+  std::string isa() const override { return to_string(isa_); }
+  const RenderCounters& counters() const override { return counters_; }
+  std::vector<InvalidSample> invalid_samples() const override { return invalid_; }
+  std::vector<double> film_scale() const override;
+
+ private:
+  void complete_rough_plastics();
+  void note_invalid(const InvalidSample& sample);
+  void count(BlockWorker& worker, uint64_t rays_before, uint64_t vertices_before);
+
+  FlatScene scene_;
+  DerivedChannels derived_;
+  SamplingSettings settings_;
+  Isa isa_;
+  int threads_;
+  TracerScene tracer_scene_;
+  std::unique_ptr<EmbreeScene> embree_;
+  std::vector<std::unique_ptr<BlockWorker>> workers_;
+  RenderCounters counters_;
+  std::mutex mutex_;
+  std::vector<InvalidSample> invalid_;
+};
+
+/// Rough plastics need the transmittance of their rough boundary; its internal reflectance replaces the smooth one.
+void CpuBackend::complete_rough_plastics() {
+  tracer_scene_.rough.resize(scene_.materials.size());
+  for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
+    KbMaterial& material = scene_.materials[m];
+    if (material.type != KB_MATERIAL_ROUGH_PLASTIC) continue;
+    tracer_scene_.rough[m] = make_rough_transmittance(material);
+    material.fdr_int = tracer_scene_.rough[m].internal_reflectance;
+  }
+}
+
+void CpuBackend::note_invalid(const InvalidSample& sample) {
+  ++counters_.invalid_samples;
+  const std::lock_guard lock(mutex_);
+  if (invalid_.size() < kReportedInvalid) invalid_.push_back(sample);
+}
+
+void CpuBackend::count(BlockWorker& worker, uint64_t rays_before, uint64_t vertices_before) {
+  counters_.rays += worker.tracer().rays() - rays_before;
+  counters_.vertices += worker.tracer().vertices() - vertices_before;
+}
+
+void CpuBackend::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
+                        const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) {
+  std::exception_ptr failure;
+  std::atomic<bool> failed{false};
+  const auto on_sample = [&](uint64_t pixels) {
+    counters_.paths += pixels;
+    if (!progress) return;
+    const std::lock_guard lock(mutex_);
+    progress(pixels);
+  };
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (stop || failed) continue;
+    try {
+      const DenormalsToZero mode;
+      BlockWorker& worker = *workers_[static_cast<std::size_t>(omp_get_thread_num())];
+      const uint64_t rays = worker.tracer().rays();
+      const uint64_t vertices = worker.tracer().vertices();
+      film.add(worker.render(film.blocks()[blocks[i]], blocks[i], range, stop, on_sample,
+                             [this](const InvalidSample& sample) { note_invalid(sample); }));
+      count(worker, rays, vertices);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failed.exchange(true)) failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::vector<AuxiliaryPixel> CpuBackend::auxiliary(const PixelRect& rect) {
+  std::vector<AuxiliaryPixel> pixels(rect.pixels());
+  RayQueue rays;
+  rays.reserve(rect.pixels());
+  for (uint32_t i = 0; i < rect.pixels(); ++i) {
+    const CameraRay ray = centre_camera_ray(scene_.camera, rect.x0 + i % rect.width, rect.y0 + i / rect.width);
+    push_ray(rays, ray.origin, ray.direction, ray.t_min, ray.t_max);
+  }
+  HitQueue hits;
+  embree_->closest_hits(rays, hits, RayMode::kPackets);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (hits.shape[i] == KB_NONE) continue;
+    const glm::vec3 direction = ray_direction(rays, i);
+    const SurfaceHit hit = make_surface_hit(scene_, hits.shape[i], hits.primitive[i], hits.u[i], hits.v[i],
+                                            ray_origin(rays, i), direction, hits.t[i]);
+    const KbSurface& surface = scene_.surfaces[scene_.shapes[hit.shape].surface];
+    const bool behind = glm::dot(hit.shading_normal, direction) > 0 && surface.back != KB_NONE;
+    const glm::vec3 n = hit.shading_normal;
+    pixels[i] = {hits.t[i], {n.x, n.y, n.z}, static_cast<float>(hit.shape),
+                 static_cast<float>(behind ? surface.back : surface.front)};
+  }
+  return pixels;
+}
+
+std::vector<double> CpuBackend::film_scale() const {
+  std::vector<double> scale = scene_.channel_scale;
+  for (std::size_t d = 0; d < derived_.names.size(); ++d) scale.push_back(workers_.front()->evaluator().derived_scale(d));
+  return scale;
+}
+
+}  // namespace
+
+std::unique_ptr<Backend> make_cpu_backend(const FlatScene& scene, const DerivedChannels& derived,
+                                          const SamplingSettings& settings, const CpuOptions& options) {
+  return std::make_unique<CpuBackend>(scene, derived, settings, options);
+}
+
+}  // namespace kiloband

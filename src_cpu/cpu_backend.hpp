@@ -1,0 +1,23 @@
+// The CPU backend: OpenMP over blocks of pixels; paths by Embree, evaluation by SIMD over channels.
+#pragma once
+
+#include <memory>
+
+#include "render/backend.hpp"
+#include "scene/derived_channels.hpp"
+#include "src_cpu/isa.hpp"
+
+namespace kiloband {
+
+struct CpuOptions {
+  Isa isa = Isa::kAuto;
+  int threads = 0;  // 0: all processors
+};
+
+/// Same seed, settings and instruction set: same bits, for any number of threads.
+/// The scene is copied (the backend completes its rough plastics).
+/// throws DeviceError  no such instruction set here, Embree failed
+std::unique_ptr<Backend> make_cpu_backend(const FlatScene& scene, const DerivedChannels& derived,
+                                          const SamplingSettings& settings, const CpuOptions& options);
+
+}  // namespace kiloband

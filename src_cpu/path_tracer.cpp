@@ -1,0 +1,239 @@
+#include "src_cpu/path_tracer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "shared/sampler.h"
+#include "src_cpu/camera.hpp"
+#include "src_cpu/path_tracer_detail.hpp"
+#include "src_cpu/texture_lookup.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr uint32_t kMaxVertices = 100000;  // a longer path counts as invalid and is reported
+/// Tables are finite and of order 1 (emission in film units), so a path's value is finite if its weights stay below this.
+constexpr float kLargestWeight = 1e34f;
+
+/// Multiplies `magnitude` by the vertex's scatter weight; false where a contribution could leave the range of floats or is
+/// NaN already.
+bool stays_finite(const KbPathVertex& v, float& magnitude) {
+  const float emitted = v.head & KB_VERTEX_EMIT ? v.emit_weight : 0.0f;
+  const float lit = v.head & KB_VERTEX_NEE ? std::fabs(v.nee0) + std::fabs(v.nee1) : 0.0f;
+  const bool fits = magnitude * (emitted + lit) < kLargestWeight;
+  if (v.head & KB_VERTEX_SCATTER) {
+    magnitude *= std::fabs(v.scatter0) + (v.head & KB_VERTEX_DEGRADE ? 0.0f : std::fabs(v.scatter1));
+  }
+  return fits && magnitude < kLargestWeight;
+}
+
+void set_flag(KbPathVertex& vertex, uint32_t flag) { vertex.head |= flag; }
+
+}  // namespace
+
+PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& settings)
+    : scene_(scene), flat_(*scene.flat), settings_(settings) {
+  constexpr std::size_t kPixels = std::size_t{kBlockSize} * kBlockSize;
+  for (RayQueue* queue : {&rays_queue_, &next_rays_, &shadow_rays_}) queue->reserve(kPixels);
+  paths_.reserve(kPixels);
+  slots_.reserve(8 * kPixels);
+}
+
+KbFloat4 PathTracer::random(const Path& path, const SampleId& id, uint32_t dimension_block) const {
+  const uint32_t sampler = settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  return kb_sample_block(sampler, settings_.seed, path.pixel_key, id.sample, id.replicate, id.index, dimension_block);
+}
+
+bool PathTracer::wants_bounce(uint32_t bounce) const {
+  const int max_depth = flat_.integrator.max_depth;
+  return max_depth < 0 || bounce + 1 < static_cast<uint32_t>(max_depth);
+}
+
+void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<const float> mu, PathBuffer& out,
+                       std::vector<uint32_t>& invalid) {
+  out.clear();
+  invalid.clear();
+  slots_.clear();
+  if (flat_.integrator.max_depth == 0) return;
+  start_paths(block, id);
+  for (uint32_t bounce = 0; !active_.empty(); ++bounce) {
+    if (bounce >= kMaxVertices) {
+      for (const uint32_t path : active_) paths_[path].invalid = true;
+      break;
+    }
+    trace_closest(bounce == 0);
+    shade_all(id, bounce, mu);
+    trace_shadows();
+  }
+  gather(out, invalid);
+}
+
+void PathTracer::start_paths(const PixelRect& block, const SampleId& id) {
+  paths_.clear();
+  active_.clear();
+  rays_queue_.clear();
+  for (uint32_t i = 0; i < block.pixels(); ++i) {
+    const uint32_t x = block.x0 + i % block.width;
+    const uint32_t y = block.y0 + i / block.width;
+    Path path{};
+    path.pixel = i;
+    path.pixel_key = y * flat_.camera.film_width + x;
+    path.bound = path.magnitude = 1;
+    path.previous_delta = true;
+    path.channel = path.first_slot = path.last_slot = KB_NONE;
+    const CameraRay ray = sample_camera_ray(flat_.camera, x, y, random(path, id, KB_BLOCK_CAMERA));
+    path.previous_point = ray.origin;
+    paths_.push_back(path);
+    active_.push_back(i);
+    push_ray(rays_queue_, ray.origin, ray.direction, ray.t_min, ray.t_max);
+  }
+}
+
+void PathTracer::trace_closest(bool primary) {
+  rays_ += rays_queue_.size;
+  if (recording_) {
+    for (std::size_t i = 0; i < rays_queue_.size; ++i) {
+      recording_->closest.reserve(recording_->closest.size + 1);
+      push_ray(recording_->closest, ray_origin(rays_queue_, i), ray_direction(rays_queue_, i), rays_queue_.t_min[i],
+               rays_queue_.t_max[i]);
+    }
+  }
+  scene_.embree->closest_hits(rays_queue_, hits_, primary ? RayMode::kPackets : scene_.secondary_mode);
+}
+
+void PathTracer::trace_shadows() {
+  rays_ += shadow_rays_.size;
+  if (recording_) {
+    for (std::size_t i = 0; i < shadow_rays_.size; ++i) {
+      recording_->shadow.reserve(recording_->shadow.size + 1);
+      push_ray(recording_->shadow, ray_origin(shadow_rays_, i), ray_direction(shadow_rays_, i), shadow_rays_.t_min[i],
+               shadow_rays_.t_max[i]);
+    }
+  }
+  scene_.embree->occlusions(shadow_rays_, occluded_, scene_.secondary_mode);
+  for (std::size_t i = 0; i < shadow_rays_.size; ++i) {
+    if (occluded_[i]) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
+  }
+}
+
+void PathTracer::shade_all(const SampleId& id, uint32_t bounce, std::span<const float> mu) {
+  next_active_.clear();
+  next_rays_.clear();
+  shadow_rays_.clear();
+  shadow_slot_.clear();
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    Path& path = paths_[active_[i]];
+    if (hits_.shape[i] == KB_NONE) {
+      add_escaped(path, i, bounce);
+    } else if (shade(path, i, id, bounce, mu)) {
+      next_active_.push_back(active_[i]);
+    }
+  }
+  active_.swap(next_active_);
+  std::swap(rays_queue_, next_rays_);
+}
+
+void PathTracer::add_escaped(Path& path, std::size_t ray, uint32_t bounce) {
+  if (flat_.environment == KB_NONE || (bounce == 0 && flat_.integrator.hide_emitters)) return;
+  const glm::vec3 direction = ray_direction(rays_queue_, ray);
+  Draft draft;
+  set_flag(draft.vertex, KB_VERTEX_EMIT);
+  draft.vertex.emit_weight =
+      path.previous_delta ? 1 : power_heuristic(path.previous_pdf, environment_pdf(flat_, direction));
+  const EmittedRadiance radiance = environment_radiance(flat_, direction);
+  draft.vertex.emit_row = radiance.row;
+  if (radiance.textured) {
+    set_flag(draft.vertex, KB_VERTEX_TEX_EMIT);
+    draft.samples[draft.sample_count++] = radiance.texture;
+  }
+  append(path, draft);
+}
+
+void PathTracer::add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction,
+                              uint32_t bounce) {
+  const uint32_t emitter = flat_.shapes[hit.shape].emitter;
+  if (emitter == KB_NONE || glm::dot(hit.geometric_normal, direction) >= 0) return;
+  if (bounce == 0 && flat_.integrator.hide_emitters) return;
+  float weight = 1;
+  if (!path.previous_delta) {
+    weight = power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit.shape, path.previous_point, hit.point,
+                                                               hit.geometric_normal));
+  }
+  set_flag(draft.vertex, KB_VERTEX_EMIT);
+  draft.vertex.emit_weight = weight;
+  const ResolvedSpectrum radiance = resolve_spectrum(flat_, flat_.emitters[emitter].ref, hit.uv);
+  draft.vertex.emit_row = radiance.row;
+  if (radiance.textured) {
+    set_flag(draft.vertex, KB_VERTEX_TEX_EMIT);
+    draft.samples[draft.sample_count++] = radiance.texture;
+  }
+}
+
+/// Rows or texture samples of the factors S_a and S_b; they stand before those of emission and light in the vertex.
+void PathTracer::resolve_spectra(Draft& draft, const KbMaterial& material, const SurfaceHit& hit, bool use_b_for_a) {
+  const uint32_t kind = draft.vertex.head & KB_VERTEX_KIND_MASK;
+  const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
+  KbTextureSample front[2];
+  uint32_t front_count = 0;
+  const auto resolve = [&](uint32_t ref, uint16_t& row, uint32_t flag) {
+    const ResolvedSpectrum spectrum = resolve_spectrum(flat_, ref, hit.uv);
+    row = spectrum.row;
+    if (!spectrum.textured) return;
+    set_flag(draft.vertex, flag);
+    front[front_count++] = spectrum.texture;
+  };
+  resolve(use_b_for_a ? material.ref_b : material.ref_a, draft.vertex.row_a, KB_VERTEX_TEX_A);
+  if (two) resolve(material.ref_b, draft.vertex.row_b, KB_VERTEX_TEX_B);
+  if (front_count == 0) return;
+  std::copy_backward(draft.samples, draft.samples + draft.sample_count, draft.samples + draft.sample_count + front_count);
+  std::copy_n(front, front_count, draft.samples);
+  draft.sample_count += front_count;
+}
+
+void PathTracer::append(Path& path, const Draft& draft) {
+  ++vertices_;
+  if (!stays_finite(draft.vertex, path.magnitude)) path.invalid = true;
+  const auto index = static_cast<uint32_t>(slots_.size());
+  (path.last_slot == KB_NONE ? path.first_slot : slots_[path.last_slot].next) = index;
+  path.last_slot = index;
+  slots_.push_back({draft.vertex, KB_NONE});
+  for (uint32_t i = 0; i < draft.sample_count; i += 2) {
+    Slot extension{};
+    extension.next = KB_NONE;
+    std::memcpy(&extension.vertex, &draft.samples[i], std::min(draft.sample_count - i, 2u) * sizeof(KbTextureSample));
+    slots_.push_back(extension);  // directly behind its vertex; not linked
+  }
+}
+
+/// Copies the linked vertices of every path to one contiguous run, without what cannot contribute: everything behind
+/// the last vertex that has light.
+void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) {
+  for (const Path& path : paths_) {
+    if (path.invalid) {
+      invalid.push_back(path.pixel);
+      continue;
+    }
+    uint32_t last_lit = KB_NONE;
+    for (uint32_t s = path.first_slot; s != KB_NONE; s = slots_[s].next) {
+      if (slots_[s].vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE)) last_lit = s;
+    }
+    if (last_lit == KB_NONE) continue;
+    const auto first = static_cast<uint32_t>(out.slots.size());
+    for (uint32_t s = path.first_slot;; s = slots_[s].next) {
+      KbPathVertex vertex = slots_[s].vertex;
+      const auto samples = static_cast<uint32_t>(__builtin_popcount(vertex.head & KB_VERTEX_TEX_MASK));
+      if (!(vertex.head & KB_VERTEX_NEE)) vertex.head &= ~KB_VERTEX_TEX_NEE;  // its sample comes last: drop it
+      if (s == last_lit) vertex.head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
+      out.slots.push_back(vertex);
+      const auto kept = static_cast<uint32_t>(__builtin_popcount(vertex.head & KB_VERTEX_TEX_MASK));
+      for (uint32_t i = 0; i < (kept + 1) / 2 && i < (samples + 1) / 2; ++i) {
+        out.slots.push_back(slots_[s + 1 + i].vertex);
+      }
+      if (s == last_lit) break;
+    }
+    out.paths.push_back({first, static_cast<uint32_t>(out.slots.size()) - first, path.pixel});
+  }
+}
+
+}  // namespace kiloband

@@ -1,0 +1,124 @@
+// Path generation: paths are built without looking at a wavelength and saved for deferred evaluation.
+//
+// Estimator (DESIGN 2): unidirectional path tracing with next-event estimation, power-heuristic MIS over the light and
+// BSDF samples, and Russian roulette with survival q = min(1, upper bound of the throughput over all channels). At a
+// refraction whose index depends on wavelength one channel goes on with weight K (degradation).
+//
+// All paths of a block advance together, bounce by bounce (wavefront), so that rays reach Embree in packets.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "film/spectral_film.hpp"
+#include "render/backend.hpp"
+#include "src_cpu/bsdf.hpp"
+#include "src_cpu/emitter.hpp"
+#include "src_cpu/embree_scene.hpp"
+#include "src_cpu/path_buffer.hpp"
+#include "src_cpu/surface_hit.hpp"
+
+namespace kiloband {
+
+/// What all threads share.
+struct TracerScene {
+  const FlatScene* flat = nullptr;
+  const EmbreeScene* embree = nullptr;
+  std::vector<RoughTransmittance> rough;  // one per material; only rough plastics use theirs
+  RayMode secondary_mode = RayMode::kPackets;
+};
+
+/// Which sample of every pixel: number `sample` of the pixel, `index` of its replicate.
+struct SampleId {
+  uint32_t sample = 0;
+  uint32_t replicate = 0;
+  uint32_t index = 0;
+};
+
+/// Builds the paths of one block and sample. One object per thread: it owns all scratch memory.
+class PathTracer {
+ public:
+  PathTracer(const TracerScene& scene, const SamplingSettings& settings);
+
+  /// Replaces the contents of `out` by the block's paths that may contribute, in pixel order.
+  /// mu       wavelength offset per pixel (per-path) or one for all (shared); read at dispersive refractions
+  /// invalid  receives the indices of pixels whose sample has a non-finite weight or an endless path
+  void trace(const PixelRect& block, const SampleId& id, std::span<const float> mu, PathBuffer& out,
+             std::vector<uint32_t>& invalid);
+
+  uint64_t rays() const { return rays_; }
+  uint64_t vertices() const { return vertices_; }
+
+  /// When set, every ray that is traced is appended here (benchmarks of bare queries).
+  struct Recording {
+    RayQueue closest, shadow;
+  };
+  void record_into(Recording* recording) { recording_ = recording; }
+
+ private:
+  struct Path {
+    glm::vec3 previous_point;
+    float previous_pdf;      // solid angle, of the BSDF sample that led here
+    float bound;             // upper bound of the throughput over all channels, without radiance scaling
+    uint32_t pixel;          // in the block
+    uint32_t pixel_key;      // of the full film, for random numbers
+    uint32_t channel;        // after degradation, else KB_NONE
+    uint32_t first_slot, last_slot;  // linked list in slots_
+    float magnitude;         // product of the scatter weights: where this overflows the sample is invalid
+    bool previous_delta;
+    bool invalid;
+  };
+  struct Slot {
+    KbPathVertex vertex;
+    uint32_t next;
+  };
+  /// A vertex under construction with the texture samples that follow it.
+  struct Draft {
+    KbPathVertex vertex{};
+    KbTextureSample samples[4];
+    uint32_t sample_count = 0;
+  };
+
+  void start_paths(const PixelRect& block, const SampleId& id);
+  void trace_closest(bool primary);
+  void trace_shadows();
+  void shade_all(const SampleId& id, uint32_t bounce, std::span<const float> mu);
+  /// Returns false where the path ends.
+  bool shade(Path& path, std::size_t ray, const SampleId& id, uint32_t bounce, std::span<const float> mu);
+  void add_escaped(Path& path, std::size_t ray, uint32_t bounce);
+  void add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction, uint32_t bounce);
+  bool add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
+                        const MaterialContext& material, glm::vec3 wi, float opacity, const SampleId& id, uint32_t bounce);
+  bool scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame, MaterialContext& material,
+               glm::vec3 wi, const KbFloat4& u, float opacity, const SampleId& id, uint32_t bounce, float mu);
+  bool refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi, BsdfSample& sample,
+                           const SampleId& id, uint32_t bounce, float mu);
+  void degrade(Path& path, const SampleId& id, uint32_t bounce);
+  bool roulette(Draft& draft, Path& path, uint32_t bounce, float u);
+  void continue_ray(const SurfaceHit& hit, glm::vec3 direction);
+  void pass_through(Path& path, const SurfaceHit& hit, glm::vec3 direction);
+  void append(Path& path, const Draft& draft);
+  void resolve_spectra(Draft& draft, const KbMaterial& material, const SurfaceHit& hit, bool use_b_for_a);
+  void gather(PathBuffer& out, std::vector<uint32_t>& invalid);
+  KbFloat4 random(const Path& path, const SampleId& id, uint32_t dimension_block) const;
+  float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
+  bool wants_bounce(uint32_t bounce) const;
+
+  const TracerScene& scene_;
+  const FlatScene& flat_;
+  SamplingSettings settings_;
+  std::vector<Path> paths_;
+  std::vector<uint32_t> active_, next_active_;
+  RayQueue rays_queue_, next_rays_, shadow_rays_;
+  HitQueue hits_;
+  std::vector<uint32_t> shadow_slot_;  // vertex of each shadow ray
+  std::vector<uint8_t> occluded_;
+  std::vector<Slot> slots_;
+  Recording* recording_ = nullptr;
+  uint64_t rays_ = 0, vertices_ = 0;
+};
+
+}  // namespace kiloband

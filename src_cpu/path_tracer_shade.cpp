@@ -1,0 +1,238 @@
+// One bounce of one path: emission, next-event estimation, scattering, degradation, roulette.
+#include <algorithm>
+#include <cmath>
+
+#include "shared/sampler.h"
+#include "src_cpu/path_tracer.hpp"
+#include "src_cpu/path_tracer_detail.hpp"
+#include "src_cpu/ray_offset.hpp"
+#include "src_cpu/texture_lookup.hpp"
+
+namespace kiloband {
+namespace {
+
+/// The point from which a ray towards `direction` leaves the surface: off it, on the side that the ray goes to.
+glm::vec3 leave_surface(const SurfaceHit& hit, glm::vec3 direction) {
+  const glm::vec3 n = hit.geometric_normal;
+  return offset_ray_origin(hit.point, glm::dot(n, direction) >= 0 ? n : -n);
+}
+
+bool is_black(const KbMaterial& material) { return material.bound_a == 0 && material.bound_b == 0; }
+
+bool is_rough_dispersive(const KbMaterial& material) {
+  return material.type == KB_MATERIAL_ROUGH_DIELECTRIC && (material.flags & KB_MATERIAL_DISPERSIVE);
+}
+
+}  // namespace
+
+bool PathTracer::shade(Path& path, std::size_t ray, const SampleId& id, uint32_t bounce, std::span<const float> mu) {
+  const glm::vec3 origin = ray_origin(rays_queue_, ray);
+  const glm::vec3 direction = ray_direction(rays_queue_, ray);
+  const SurfaceHit hit = make_surface_hit(flat_, hits_.shape[ray], hits_.primitive[ray], hits_.u[ray], hits_.v[ray], origin,
+                                          direction, hits_.t[ray]);
+  Draft draft;
+  add_emission(draft, path, hit, direction, bounce);
+  const auto finish = [&](bool goes_on) {
+    if (draft.vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER)) append(path, draft);
+    return goes_on;
+  };
+  if (!wants_bounce(bounce)) return finish(false);
+
+  const KbSurface& surface = flat_.surfaces[flat_.shapes[hit.shape].surface];
+  KbFloat4 u = random(path, id, kb_block_bsdf(bounce));
+  float opacity = surface.opacity;
+  if (surface.opacity_ref != KB_NONE) {
+    const ResolvedSpectrum value = resolve_spectrum(flat_, surface.opacity_ref, hit.uv);
+    opacity = std::clamp(bitmap_value(flat_, value.texture), 0.0f, 1.0f);
+  }
+  const bool passes = opacity < 1 && u.x >= opacity;
+  if (!passes && opacity < 1) u.x = std::min(u.x / opacity, KB_ONE_MINUS_EPSILON);
+
+  ShadingFrame frame(hit.shading_normal, glm::vec3(0));
+  glm::vec3 wi = frame.to_local(-direction);
+  uint32_t side = surface.front;
+  const bool below = wi.z < 0;
+  if (below && (surface.flags & KB_SURFACE_TWO_SIDED)) side = surface.back;
+  const bool black_back = below && !(surface.flags & (KB_SURFACE_TWO_SIDED | KB_SURFACE_TRANSMISSIVE));
+  const KbMaterial& record = flat_.materials[side];
+  if (black_back || is_black(record)) {
+    if (!passes) return finish(false);
+    finish(true);
+    pass_through(path, hit, direction);
+    return true;
+  }
+  if (record.alpha_u != record.alpha_v) frame = ShadingFrame(hit.shading_normal, hit.tangent);
+  if (below && (surface.flags & KB_SURFACE_TWO_SIDED)) {
+    frame.y = -frame.y;  // the frame seen from behind stays right-handed
+    frame.z = -frame.z;
+  }
+  wi = frame.to_local(-direction);
+
+  MaterialContext material{&record, &scene_.rough[side], {}};
+  if (record.flags & KB_MATERIAL_DISPERSIVE) {
+    if (is_rough_dispersive(record) && path.channel == KB_NONE) {
+      finish(true);
+      draft = Draft{};
+      degrade(path, id, bounce);
+    }
+    if (path.channel != KB_NONE) material.dispersion.eta = channel_eta(record, path.channel, mu[mu.size() == 1 ? 0 : path.pixel]);
+  }
+  draft.vertex.head |= eval_kind(record) | side << KB_VERTEX_MATERIAL_SHIFT;
+  const bool lit = has_smooth_lobe(record) && add_light_sample(draft, path, hit, frame, material, wi, opacity, id, bounce);
+  bool goes_on = false;
+  if (passes) {
+    if (draft.vertex.head & KB_VERTEX_NEE) resolve_spectra(draft, record, hit, false);
+    pass_through(path, hit, direction);
+    goes_on = true;
+  } else {
+    goes_on = scatter(draft, path, hit, frame, material, wi, u, opacity, id, bounce, mu[mu.size() == 1 ? 0 : path.pixel]);
+  }
+  finish(goes_on);
+  if (lit) shadow_slot_.push_back(path.last_slot);
+  return goes_on;
+}
+
+/// A mask's transparent part: the ray goes on as if nothing were there. Shadow rays stop at masks, so what lies behind
+/// is found by this ray alone and gets weight 1.
+void PathTracer::pass_through(Path& path, const SurfaceHit& hit, glm::vec3 direction) {
+  path.previous_delta = true;
+  path.previous_pdf = 0;
+  continue_ray(hit, direction);
+  path.previous_point = hit.point;
+}
+
+void PathTracer::continue_ray(const SurfaceHit& hit, glm::vec3 direction) {
+  push_ray(next_rays_, leave_surface(hit, direction), direction, 0, kInfiniteDistance);
+}
+
+/// Next-event estimation: queues a shadow ray and stores the weights as if it were visible. The shadow ray's vertex is
+/// noted by the caller once the vertex is appended. Returns whether a ray was queued.
+bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
+                                  const MaterialContext& material, glm::vec3 wi, float opacity, const SampleId& id,
+                                  uint32_t bounce) {
+  if (flat_.emitters.empty()) return false;
+  const KbFloat4 u = random(path, id, kb_block_light(bounce));
+  const LightSample light = sample_light(flat_, hit.point, {u.x, u.y}, {u.z, u.w});
+  if (!(light.pdf > 0) || !(light.factor > 0)) return false;
+  const BsdfValue value = eval_bsdf(material, wi, frame.to_local(light.direction));
+  if (value.w0 == 0 && value.w1 == 0) return false;
+  const bool conductor = (draft.vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_CONDUCTOR;
+  const float mis = light.delta ? 1 : power_heuristic(light.pdf, value.pdf * opacity);
+  const float weight = mis * opacity * light.factor / light.pdf;
+  if (weight == 0) return false;
+  // A rough dielectric reflects with S_a and transmits with S_b: as two terms, one vertex carries both.
+  if (material.material->type == KB_MATERIAL_ROUGH_DIELECTRIC) {
+    draft.vertex.head = (draft.vertex.head & ~KB_VERTEX_KIND_MASK) | KB_KIND_TWO_TERM;
+    (value.lobe_b ? draft.vertex.nee1 : draft.vertex.nee0) = weight * value.w0;
+  } else {
+    draft.vertex.nee0 = weight * value.w0;
+    draft.vertex.nee1 = conductor ? value.w1 : weight * value.w1;
+  }
+  draft.vertex.head |= KB_VERTEX_NEE;
+  draft.vertex.nee_row = light.radiance.row;
+  if (light.radiance.textured) {
+    draft.vertex.head |= KB_VERTEX_TEX_NEE;
+    draft.samples[draft.sample_count++] = light.radiance.texture;
+  }
+  const glm::vec3 origin = leave_surface(hit, light.direction);
+  if (light.infinite) {
+    push_ray(shadow_rays_, origin, light.direction, 0, kInfiniteDistance);
+  } else {
+    push_ray(shadow_rays_, origin, light.target - origin, 0, 1);
+  }
+  return true;
+}
+
+bool PathTracer::scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
+                         MaterialContext& material, glm::vec3 wi, const KbFloat4& u, float opacity, const SampleId& id,
+                         uint32_t bounce, float mu) {
+  const KbMaterial& record = *material.material;
+  BsdfSample sample = sample_bsdf(material, wi, u.x, {u.y, u.z});
+  const bool has_light = draft.vertex.head & KB_VERTEX_NEE;
+  bool use_b = sample.lobe_b;
+  if (sample.needs_channel && !refract_one_channel(draft, path, record, wi, sample, id, bounce, mu)) sample.pdf = 0;
+  if (sample.needs_channel) use_b = true;
+  const bool alive = sample.pdf > 0 && sample.bound > 0;
+  if (alive) {
+    draft.vertex.head |= KB_VERTEX_SCATTER;
+    if (record.type == KB_MATERIAL_ROUGH_DIELECTRIC && (has_light || (draft.vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_TWO_TERM)) {
+      draft.vertex.head = (draft.vertex.head & ~KB_VERTEX_KIND_MASK) | KB_KIND_TWO_TERM;
+      draft.vertex.scatter0 = sample.lobe_b ? 0 : sample.w0;
+      draft.vertex.scatter1 = sample.lobe_b ? sample.w0 : 0;
+      use_b = false;
+    } else {
+      draft.vertex.head = (draft.vertex.head & ~KB_VERTEX_KIND_MASK) | sample.kind;
+      draft.vertex.scatter0 = sample.w0;
+      if (!sample.needs_channel) draft.vertex.scatter1 = sample.w1;
+    }
+    path.bound *= sample.bound;
+    path.previous_pdf = sample.pdf * opacity;
+    path.previous_delta = sample.delta;
+  }
+  if (!alive) {
+    if (has_light) resolve_spectra(draft, record, hit, false);
+    return false;
+  }
+  const bool survives = roulette(draft, path, bounce, u.w);
+  if (survives || has_light) resolve_spectra(draft, record, hit, use_b);
+  if (!survives) return false;
+  const glm::vec3 direction = glm::normalize(frame.to_world(sample.wo));
+  continue_ray(hit, direction);
+  path.previous_point = hit.point;
+  return true;
+}
+
+/// Survival q = min(1, bound): never below what any channel still carries, so no channel's variance becomes infinite.
+bool PathTracer::roulette(Draft& draft, Path& path, uint32_t bounce, float u) {
+  if (bounce + 1 < static_cast<uint32_t>(flat_.integrator.rr_depth)) return true;
+  const float q = std::min(1.0f, path.bound);
+  if (u >= q) {
+    draft.vertex.head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
+    return false;
+  }
+  draft.vertex.scatter0 /= q;
+  const uint32_t kind = draft.vertex.head & KB_VERTEX_KIND_MASK;
+  if (kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR) draft.vertex.scatter1 /= q;
+  path.bound /= q;
+  return true;
+}
+
+/// Index of the interior over the exterior at the chosen channel's wavelength.
+float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, float mu) const {
+  const Channel& c = flat_.channels[channel];
+  const double lambda_nm = (1.0 - mu) * c.min_nm + mu * c.max_nm;
+  const double exterior = material.k_row == KB_NONE ? material.eta_ext : flat_.spectra[material.k_row].table(lambda_nm);
+  return static_cast<float>(flat_.spectra[material.eta_row].table(lambda_nm) / exterior);
+}
+
+/// Refraction by an index that depends on wavelength: one channel, chosen uniformly, goes on with weight K.
+bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi, BsdfSample& sample,
+                                     const SampleId& id, uint32_t bounce, float mu) {
+  const auto channels = static_cast<uint32_t>(flat_.channels.size());
+  const float u = kb_degrade_sample(settings_.seed, path.pixel_key, id.sample, bounce);
+  path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
+  const float probability = sample.pdf / static_cast<float>(channels);
+  sample = transmit_dispersive(material, wi, channel_eta(material, path.channel, mu), probability);
+  sample.needs_channel = true;
+  if (!(sample.pdf > 0)) return false;
+  // Roulette follows the one channel that is left: the weight K is shared by all channels' chances, not a gain of it.
+  sample.bound /= static_cast<float>(channels);
+  draft.vertex.head |= KB_VERTEX_DEGRADE;
+  draft.vertex.scatter1 = kb_as_f32(path.channel);
+  return true;
+}
+
+/// A rough dispersive boundary: the channel is chosen on arrival, before light and BSDF samples.
+void PathTracer::degrade(Path& path, const SampleId& id, uint32_t bounce) {
+  const auto channels = static_cast<uint32_t>(flat_.channels.size());
+  const float u = kb_degrade_sample(settings_.seed, path.pixel_key, id.sample, bounce);
+  path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
+  Draft draft;
+  draft.vertex.head = KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE;
+  draft.vertex.row_a = static_cast<uint16_t>(flat_.unit_row);
+  draft.vertex.scatter0 = static_cast<float>(channels);
+  draft.vertex.scatter1 = kb_as_f32(path.channel);
+  append(path, draft);
+}
+
+}  // namespace kiloband

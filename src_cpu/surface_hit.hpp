@@ -1,0 +1,32 @@
+// From a ray hit to the point, its normals, texture coordinates and shading frame.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/flat_scene.hpp"
+
+namespace kiloband {
+
+struct SurfaceHit {
+  glm::vec3 point{0};
+  glm::vec3 geometric_normal{0};  // unit, the shape's front
+  glm::vec3 shading_normal{0};    // unit
+  glm::vec3 tangent{0};           // dp/du, not normalised; zero if unknown
+  glm::vec2 uv{0};
+  uint32_t shape = KB_NONE;
+};
+
+/// ray_origin + t * direction is only used for analytic shapes; mesh points come from barycentric coordinates.
+SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape, uint32_t primitive, float u, float v,
+                            glm::vec3 ray_origin, glm::vec3 direction, float t);
+
+/// Orthonormal frame with z = shading normal; x along the tangent where there is one (anisotropic roughness).
+struct ShadingFrame {
+  glm::vec3 x, y, z;
+
+  ShadingFrame(glm::vec3 normal, glm::vec3 tangent);
+  glm::vec3 to_local(glm::vec3 w) const { return {glm::dot(w, x), glm::dot(w, y), glm::dot(w, z)}; }
+  glm::vec3 to_world(glm::vec3 w) const { return w.x * x + w.y * y + w.z * z; }
+};
+
+}  // namespace kiloband
