@@ -32,9 +32,10 @@ struct LightSample {
 /// Points behind a one-sided area light give pdf 0.
 LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position);
 
-/// Density with which sample_light() gives `direction` from `origin` when that direction hits the area light of shape
-/// `shape` at `hit_point` (for meshes on a triangle with unit geometric normal `normal`); selection included [1/sr].
-/// 0 where the light does not emit (its back) or cannot be sampled.
+/// Density with which sample_light() gives the direction from `origin` to `hit_point` on the area light of shape `shape`;
+/// selection included [1/sr]. 0 where the light does not emit (its back) or cannot be sampled.
+/// origin  the `point` that was given to sample_light(): for spheres the density depends on which side it is on
+/// normal  meshes: unit geometric normal of the triangle, turned by KB_SHAPE_FLIP_NORMALS (front); other shapes: ignored
 float area_light_pdf(const FlatScene& scene, uint32_t shape, glm::vec3 origin, glm::vec3 hit_point, glm::vec3 normal);
 
 /// Density with which sample_light() gives a direction that escapes to the environment; 0 without environment [1/sr].

@@ -1,1 +1,4 @@
-# filled by its owner
+# Cameras, lights, texture addressing and the geometry of analytic shapes.
+kiloband_library(kiloband_cpu_lights
+  SOURCES camera.cpp texture_lookup.cpp shape_geometry.cpp emitter.cpp emitter_area.cpp emitter_environment.cpp
+  DEPENDS kiloband_base glm::glm)

@@ -1,0 +1,181 @@
+#include "src_cpu/emitter_area.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src_cpu/shape_geometry.hpp"
+#include "src_cpu/shape_geometry_warp.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr double kTwoPi = 6.283185307179586476925;
+
+/// Area to solid angle: a point chosen with density 1 / area is seen with density distance^2 / (area cos).
+/// to_light  from the shaded point to the light, unnormalised
+/// returns   0 behind the light, where there is no distance, and where the density exceeds the range of float
+float area_to_solid_angle(glm::vec3 to_light, glm::vec3 front_normal, float area) {
+  const float distance2 = glm::dot(to_light, to_light);
+  const float facing = -glm::dot(to_light, front_normal);  // distance * cos
+  if (!(facing > 0)) return 0;
+  const float density = distance2 / facing * (std::sqrt(distance2) / area);
+  return std::isfinite(density) ? density : 0;
+}
+
+/// Completes a sample whose position and normal are known.
+void finish_by_area(AreaLightSample& sample, glm::vec3 point, float area) {
+  const glm::vec3 to_light = sample.position - point;
+  sample.pdf = area_to_solid_angle(to_light, sample.normal, area);
+  if (sample.pdf > 0) sample.direction = to_light / glm::length(to_light);
+}
+
+glm::vec3 vertex(const FlatScene& scene, uint32_t index) {
+  const KbFloat3& p = scene.positions[index];
+  return {p.x, p.y, p.z};
+}
+
+glm::vec2 triangle_uv(const FlatScene& scene, const KbShape& shape, const uint32_t* indices, glm::vec2 b) {
+  if (!(shape.flags & KB_SHAPE_HAS_UVS)) return b;  // Mitsuba: barycentric coordinates
+  const KbFloat2 &a0 = scene.uvs[indices[0]], &a1 = scene.uvs[indices[1]], &a2 = scene.uvs[indices[2]];
+  const float b0 = 1 - b.x - b.y;
+  return {b0 * a0.x + b.x * a1.x + b.y * a2.x, b0 * a0.y + b.x * a1.y + b.y * a2.y};
+}
+
+AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::vec3 point, float u_triangle,
+                            glm::vec2 u, bool need_uv) {
+  const uint32_t triangle = find_interval(&scene.area_cdf[shape.first_cdf], shape.triangle_count, u_triangle);
+  const uint32_t* indices = &scene.triangles[3 * (static_cast<std::size_t>(shape.first_triangle) + triangle)];
+  const glm::vec3 p0 = vertex(scene, indices[0]);
+  const glm::vec3 e1 = vertex(scene, indices[1]) - p0, e2 = vertex(scene, indices[2]) - p0;
+  const glm::vec2 b = warp_uniform_triangle(u);
+  AreaLightSample sample;
+  sample.position = p0 + b.x * e1 + b.y * e2;
+  sample.normal = glm::normalize(glm::cross(e1, e2));
+  if (shape.flags & KB_SHAPE_FLIP_NORMALS) sample.normal = -sample.normal;
+  finish_by_area(sample, point, shape.area);
+  if (need_uv && sample.pdf > 0) sample.uv = triangle_uv(scene, shape, indices, b);
+  return sample;
+}
+
+AreaLightSample sample_by_area(const KbShape& shape, glm::vec3 point, glm::vec2 u, bool need_uv) {
+  const AreaPoint on_light = sample_analytic_area(shape, u);
+  AreaLightSample sample;
+  sample.position = on_light.position;
+  sample.normal = on_light.normal;
+  finish_by_area(sample, point, shape.area);
+  if (need_uv && sample.pdf > 0) sample.uv = analytic_uv(shape.type, on_light.local);
+  return sample;
+}
+
+// ---- spheres
+// -------------------------------------------------------------------------------------------------------
+// From outside, directions are uniform over the cone that the sphere subtends, of half angle theta_m with
+// sin theta_m = r / d. 1 - cos theta_m = sin^2 / (1 + cos) keeps its digits for tiny and far spheres, and
+// cos theta_m = sqrt(d^2 - r^2) / d for touching ones. All of it in double: radius and distance may differ by
+// 1e8.
+
+/// Where a sphere lies as seen from a point.
+struct SphereView {
+  glm::dvec3 to_centre;
+  double radius, distance2;
+
+  SphereView(const KbShape& shape, glm::vec3 point) {
+    const SphereGeometry sphere = sphere_geometry(shape);
+    to_centre = sphere.centre - glm::dvec3(point);
+    radius = sphere.radius;
+    distance2 = glm::dot(to_centre, to_centre);
+  }
+  bool outside() const { return distance2 > radius * radius; }
+  double one_minus_cos() const {
+    const double sin2 = radius * radius / distance2;
+    return sin2 / (1 + std::sqrt((distance2 - radius * radius) / distance2));
+  }
+};
+
+float cone_density(double one_minus_cos) {
+  const auto density = static_cast<float>(1 / (kTwoPi * one_minus_cos));
+  return std::isfinite(density) ? density : 0;
+}
+
+/// An orthonormal pair perpendicular to the unit vector n (Duff et al. 2017).
+void tangents(const glm::dvec3& n, glm::dvec3& s, glm::dvec3& t) {
+  const double sign = std::copysign(1.0, n.z);
+  const double a = -1 / (sign + n.z), b = n.x * n.y * a;
+  s = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  t = {b, sign + n.y * n.y * a, -n.y};
+}
+
+AreaLightSample sample_sphere_cone(const KbShape& shape, const SphereView& view, glm::vec3 point, glm::vec2 u,
+                                   bool need_uv) {
+  const double cone = view.one_minus_cos();
+  const double height = u.x * cone;  // 1 - cos theta, uniform in [0, 1 - cos theta_m)
+  const double cos_theta = 1 - height, sin_theta = std::sqrt(height * (2 - height));
+  const double distance = std::sqrt(view.distance2);
+  const glm::dvec3 axis = view.to_centre / distance;
+  glm::dvec3 s, t;
+  tangents(axis, s, t);
+  const float phi = 2 * KB_PI * u.y;
+  const glm::dvec3 w = cos_theta * axis + sin_theta * (double(std::cos(phi)) * s + double(std::sin(phi)) * t);
+  // Nearer crossing of the sphere; the factors keep the digits near the tangent.
+  const double off_axis = distance * sin_theta;
+  const double half_chord = std::sqrt(std::max(0.0, (view.radius - off_axis) * (view.radius + off_axis)));
+  const glm::dvec3 n = glm::normalize((distance * cos_theta - half_chord) * w - view.to_centre);
+
+  AreaLightSample sample;
+  sample.pdf = cone_density(cone);
+  sample.direction = glm::vec3(w);
+  sample.position = glm::vec3(glm::dvec3(point) + view.to_centre + view.radius * n);
+  sample.normal = glm::vec3(n);
+  if (need_uv) sample.uv = analytic_surface(shape, glm::dvec3(sample.position)).uv;
+  return sample;
+}
+
+/// A sphere's front is seen from outside, or from inside if its normals are flipped.
+bool sphere_front_visible(const KbShape& shape, const SphereView& view) {
+  return view.outside() != ((shape.flags & KB_SHAPE_FLIP_NORMALS) != 0);
+}
+
+AreaLightSample sample_sphere(const KbShape& shape, glm::vec3 point, glm::vec2 u, bool need_uv) {
+  const SphereView view(shape, point);
+  if (!sphere_front_visible(shape, view)) return {};
+  return view.outside() ? sample_sphere_cone(shape, view, point, u, need_uv)
+                        : sample_by_area(shape, point, u, need_uv);
+}
+
+float sphere_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point) {
+  const SphereView view(shape, origin);
+  if (!sphere_front_visible(shape, view)) return 0;
+  const glm::vec3 to_light = hit_point - origin;
+  const glm::dvec3 outward = glm::dvec3(to_light) - view.to_centre;
+  if (!view.outside()) return area_to_solid_angle(to_light, glm::vec3(-glm::normalize(outward)), shape.area);
+  // The far side, seen through an opening of the near side, shows its back.
+  return glm::dot(outward, glm::dvec3(to_light)) <= 0 ? cone_density(view.one_minus_cos()) : 0;
+}
+
+}  // namespace
+
+uint32_t find_interval(const float* cdf, uint32_t count, float u) {
+  // The first inner entry above u ends the interval; none: the last interval.
+  return static_cast<uint32_t>(std::upper_bound(cdf + 1, cdf + count, u) - (cdf + 1));
+}
+
+AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,
+                                  float u_triangle, glm::vec2 u, bool need_uv) {
+  if (shape.type == KB_SHAPE_MESH) {
+    if (shape.first_cdf == KB_NONE) return {};
+    return sample_mesh(scene, shape, point, u_triangle, u, need_uv);
+  }
+  return shape.type == KB_SHAPE_SPHERE ? sample_sphere(shape, point, u, need_uv)
+                                       : sample_by_area(shape, point, u, need_uv);
+}
+
+float area_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point, glm::vec3 normal) {
+  if (shape.type == KB_SHAPE_SPHERE) return sphere_density(shape, origin, hit_point);
+  if (shape.type == KB_SHAPE_MESH) {
+    return shape.first_cdf == KB_NONE ? 0 : area_to_solid_angle(hit_point - origin, normal, shape.area);
+  }
+  const glm::vec3 front = analytic_surface(shape, glm::dvec3(hit_point)).normal;
+  return area_to_solid_angle(hit_point - origin, front, shape.area);
+}
+
+}  // namespace kiloband

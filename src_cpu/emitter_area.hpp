@@ -1,0 +1,30 @@
+// Area lights: sampling and its density, without the probability of selecting the light.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/flat_scene.hpp"
+
+namespace kiloband {
+
+/// Largest i in [0, count) with cdf[i] <= u; intervals of zero width are never chosen. cdf has count + 1
+/// entries, 0 to 1.
+uint32_t find_interval(const float* cdf, uint32_t count, float u);
+
+/// A point on an area light as seen from a shaded point.
+struct AreaLightSample {
+  float pdf = 0;           // solid angle [1/sr]; 0: no sample
+  glm::vec3 direction{0};  // unit, towards the light
+  glm::vec3 position{0};   // on the light
+  glm::vec3 normal{0};     // unit, of the light's front
+  glm::vec2 uv{0};         // filled in if asked for
+};
+
+AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,
+                                  float u_triangle, glm::vec2 u, bool need_uv);
+
+/// The same density for a given hit; 0 where sample_area_light() cannot give it. Arguments as
+/// area_light_pdf().
+float area_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point, glm::vec3 normal);
+
+}  // namespace kiloband

@@ -1,0 +1,127 @@
+// Small flattened scenes: one light each.
+#pragma once
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <vector>
+
+#include "scene/flat_scene.hpp"
+#include "src_cpu/shape_geometry.hpp"
+
+namespace kiloband::testing {
+
+inline void set_matrix(float (&out)[12], const glm::dmat4& m) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) out[4 * row + column] = static_cast<float>(m[column][row]);
+  }
+}
+
+inline glm::dmat4 identity() {
+  return glm::dmat4(1.0);
+}
+
+/// translate * rotate * scale, with a rotation about a skew axis (radians).
+inline glm::dmat4 placed(glm::dvec3 position, double angle, glm::dvec3 scale) {
+  const glm::dmat4 moved = glm::translate(identity(), position);
+  return glm::scale(glm::rotate(moved, angle, glm::normalize(glm::dvec3(1, 2, -1))), scale);
+}
+
+inline KbShape make_shape(uint32_t type, const glm::dmat4& to_world, uint32_t flags = 0) {
+  KbShape shape{};
+  shape.type = type;
+  shape.flags = flags;
+  shape.first_cdf = KB_NONE;
+  set_matrix(shape.to_world, to_world);
+  set_matrix(shape.to_object, glm::inverse(to_world));
+  shape.area = static_cast<float>(analytic_area(shape));
+  return shape;
+}
+
+inline KbEmitter make_emitter(uint32_t type, const glm::dmat4& to_world = identity()) {
+  KbEmitter emitter{};
+  emitter.type = type;
+  emitter.select_pdf = 1;
+  set_matrix(emitter.to_world, to_world);
+  set_matrix(emitter.to_object, glm::inverse(to_world));
+  return emitter;
+}
+
+inline FlatScene scene_with(const KbEmitter& emitter) {
+  FlatScene scene;
+  scene.emitters = {emitter};
+  scene.emitter_cdf = {0, 1};
+  if (emitter.type == KB_EMITTER_CONSTANT || emitter.type == KB_EMITTER_ENVMAP) scene.environment = 0;
+  return scene;
+}
+
+/// Shape 0 is an area light of spectrum row 3.
+inline FlatScene scene_with_light(const KbShape& shape) {
+  KbEmitter emitter = make_emitter(KB_EMITTER_AREA);
+  emitter.ref = KB_REF_SPECTRUM | 3u;
+  FlatScene scene = scene_with(emitter);
+  scene.shapes = {shape};
+  scene.shapes[0].emitter = 0;
+  return scene;
+}
+
+inline glm::dvec3 position_of(const FlatScene& scene, uint32_t index) {
+  const KbFloat3& p = scene.positions[index];
+  return {p.x, p.y, p.z};
+}
+
+/// A mesh light with its table of areas.
+inline FlatScene scene_with_mesh(const std::vector<KbFloat3>& positions,
+                                 const std::vector<uint32_t>& triangles, uint32_t flags = 0) {
+  FlatScene scene = scene_with_light(make_shape(KB_SHAPE_SPHERE, identity(), flags));
+  scene.positions = positions;
+  scene.triangles = triangles;
+  std::vector<double> sums{0};
+  for (std::size_t i = 0; i < triangles.size(); i += 3) {
+    const glm::dvec3 p0 = position_of(scene, triangles[i]);
+    const glm::dvec3 e1 = position_of(scene, triangles[i + 1]) - p0,
+                     e2 = position_of(scene, triangles[i + 2]) - p0;
+    sums.push_back(sums.back() + 0.5 * glm::length(glm::cross(e1, e2)));
+  }
+  KbShape& shape = scene.shapes[0];
+  shape.type = KB_SHAPE_MESH;
+  shape.triangle_count = static_cast<uint32_t>(triangles.size() / 3);
+  shape.first_cdf = 0;
+  shape.area = static_cast<float>(sums.back());
+  for (const double sum : sums) scene.area_cdf.push_back(static_cast<float>(sum / sums.back()));
+  return scene;
+}
+
+/// What a ray finds of shape 0: the nearest hit, and for meshes the front normal.
+struct Hit {
+  bool found = false;
+  double t = 1e30;
+  glm::dvec3 normal{0};
+};
+
+inline void intersect_triangle(const glm::dvec3 (&p)[3], glm::dvec3 origin, glm::dvec3 direction, Hit& hit) {
+  const glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
+  const double t = glm::dot(n, p[0] - origin) / glm::dot(n, direction);
+  if (!(t > 0 && t < hit.t)) return;
+  const glm::dvec3 q = origin + t * direction;
+  for (int i = 0; i < 3; ++i) {
+    if (glm::dot(glm::cross(p[(i + 1) % 3] - p[i], q - p[i]), n) < 0) return;
+  }
+  hit = {true, t, glm::normalize(n)};
+}
+
+inline Hit trace(const FlatScene& scene, glm::dvec3 origin, glm::dvec3 direction) {
+  const KbShape& shape = scene.shapes[0];
+  Hit hit;
+  if (shape.type != KB_SHAPE_MESH) {
+    hit.found = intersect_analytic(shape, origin, direction, 0, 1e30, hit.t);
+    return hit;
+  }
+  for (std::size_t i = 0; i < scene.triangles.size(); i += 3) {
+    const uint32_t* v = &scene.triangles[i];
+    const glm::dvec3 p[3] = {position_of(scene, v[0]), position_of(scene, v[1]), position_of(scene, v[2])};
+    intersect_triangle(p, origin, direction, hit);
+  }
+  if (shape.flags & KB_SHAPE_FLIP_NORMALS) hit.normal = -hit.normal;
+  return hit;
+}
+
+}  // namespace kiloband::testing
