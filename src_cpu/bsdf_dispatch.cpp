@@ -50,17 +50,22 @@ BsdfSample sample_dielectric_side(const MaterialContext& context, glm::vec3 wi, 
 
 }  // namespace
 
+/// Both triangles of the map without a branch: the larger coordinate is the radius, the angle is at most
+/// pi/4, where Taylor polynomials reach float precision. Signs and magnitudes agree with shared/warp.h to
+/// rounding.
 glm::vec3 lobes::cosine_direction(glm::vec2 u) {
   const float a = 2 * u.x - 1, b = 2 * u.y - 1;
-  if (a == 0 && b == 0) return {0, 0, 1};
-  const bool wide = std::abs(a) > std::abs(b);
-  const float r = wide ? a : b;
-  const float phi =
-      (KB_PI / 4) * (wide ? b / a : a / b);  // |phi| <= pi/4: Taylor polynomials reach float precision
+  const float larger = std::max(std::abs(a), std::abs(b)), smaller = std::min(std::abs(a), std::abs(b));
+  const float phi = (KB_PI / 4) * (smaller / std::max(larger, 1e-30f));
   const float p2 = phi * phi;
   const float s = phi * (1 + p2 * (-1 / 6.0f + p2 * (1 / 120.0f + p2 * (-1 / 5040.0f + p2 / 362880.0f))));
   const float c = 1 + p2 * (-0.5f + p2 * (1 / 24.0f + p2 * (-1 / 720.0f + p2 / 40320.0f)));
-  return {r * (wide ? c : s), r * (wide ? s : c), std::sqrt(std::max(1e-12f, 1 - r * r))};
+  const float along = larger * c, across = larger * s;
+  const uint32_t wide = std::abs(a) > std::abs(b) ? 0xffffffffu : 0u;
+  const uint32_t x = (kb_as_u32(along) & wide) | (kb_as_u32(across) & ~wide);
+  const uint32_t y = (kb_as_u32(across) & wide) | (kb_as_u32(along) & ~wide);
+  return {std::copysign(kb_as_f32(x), a), std::copysign(kb_as_f32(y), b),
+          std::sqrt(std::max(1e-12f, 1 - larger * larger))};
 }
 
 /// f cos / p = 1 times the reflectance, since p = cos / pi.
