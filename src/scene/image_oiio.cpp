@@ -118,12 +118,28 @@ class Reader {
   /// Channels [first, first + count) of rows [begin, end) into target[row][x][channel].
   void read_channels(int begin, int end, int first, int count, float* target) {
     const int y0 = spec_.y + begin, y1 = spec_.y + end, last = first + count;
-    const bool good =
-        spec_.tile_width > 0
-            ? input_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z, spec_.z + 1, first,
-                                 last, OIIO::TypeFloat, target)
-            : input_->read_scanlines(0, 0, y0, y1, spec_.z, first, last, OIIO::TypeFloat, target);
+    bool good = true;
+    if (spec_.tile_width > 0) {
+      good = input_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z, spec_.z + 1, first,
+                                last, OIIO::TypeFloat, target);
+    } else if (file_.format == ImageFormat::kTiff) {
+      good = read_tiff_rows(y0, y1, first, count, target);
+    } else {
+      good = input_->read_scanlines(0, 0, y0, y1, spec_.z, first, last, OIIO::TypeFloat, target);
+    }
     if (!good) fail_input();
+  }
+
+  /// Row by row: read_scanlines() of OpenImageIO 2.4.7 takes damaged and missing TIFF strips for good ones.
+  bool read_tiff_rows(int y0, int y1, int first, int count, float* target) {
+    std::vector<float> row(static_cast<size_t>(spec_.width) * spec_.nchannels);
+    for (int y = y0; y < y1; ++y) {
+      if (!input_->read_scanline(y, spec_.z, OIIO::TypeFloat, row.data())) return false;
+      for (int x = 0; x < spec_.width; ++x) {
+        target = std::copy_n(row.data() + static_cast<size_t>(x) * spec_.nchannels + first, count, target);
+      }
+    }
+    return true;
   }
 
   bool is_encoded() const {

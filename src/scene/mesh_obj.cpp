@@ -68,9 +68,9 @@ Mesh ObjReader::read() {
 }
 
 void ObjReader::read_line(std::string_view line) {
-  LineTokens tokens(line);
+  LineTokens tokens(line.substr(0, line.find('#')));  // up to a comment
   const std::string_view keyword = tokens.next();
-  if (keyword.empty() || keyword[0] == '#') return;
+  if (keyword.empty()) return;
   if (keyword == "v") {
     positions_.push_back(numbers<3>(tokens, keyword));
   } else if (keyword == "vn") {
@@ -121,24 +121,22 @@ void ObjReader::read_face(LineTokens tokens) {
   if (count < 3) fail("f: " + std::to_string(count) + " corners, must be at least 3");
 }
 
-/// v, v/vt, v//vn or v/vt/vn
+/// v, v/vt, v//vn or v/vt/vn; trailing slashes as in "1/1/" are written by some programs and mean nothing.
 Corner ObjReader::corner(std::string_view token) {
   std::array<std::string_view, 3> parts{};
-  std::string_view rest = token;
   size_t count = 0;
-  for (bool more = true; more; ++count) {
-    if (count == 3) fail("f: corner " + in_quotes(token) + ": must be v, v/vt, v//vn or v/vt/vn");
+  for (std::string_view rest = token;; ++count) {
     const size_t slash = rest.find('/');
-    more = slash != std::string_view::npos;
-    parts[count] = rest.substr(0, slash);
-    rest.remove_prefix(more ? slash + 1 : rest.size());
+    if (count < 3) parts[count] = rest.substr(0, slash);
+    if (slash == std::string_view::npos) break;
+    rest.remove_prefix(slash + 1);
   }
-  const bool complete = !parts[count - 1].empty() && !parts[0].empty();
-  if (!complete) fail("f: corner " + in_quotes(token) + ": must be v, v/vt, v//vn or v/vt/vn");
+  if (count > 2 || parts[0].empty())
+    fail("f: corner " + in_quotes(token) + ": must be v, v/vt, v//vn or v/vt/vn");
   Corner result;
   result.position = index(parts[0], token, "position", positions_.size());
   if (!parts[1].empty()) result.uv = index(parts[1], token, "texture coordinate", uvs_.size());
-  if (count == 3) result.normal = index(parts[2], token, "normal", normals_.size());
+  if (!parts[2].empty()) result.normal = index(parts[2], token, "normal", normals_.size());
   return result;
 }
 

@@ -1,0 +1,150 @@
+// Images that are wrong: exact messages where they are ours, and never a picture from half a file.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <limits>
+#include <random>
+
+#include "image_support.hpp"
+#include "scene/image.hpp"
+
+namespace kiloband::test {
+namespace {
+
+const float kNan = std::numeric_limits<float>::quiet_NaN();
+const float kInfinity = std::numeric_limits<float>::infinity();
+
+struct BrokenImages : testing::Test {
+  TempFolder folder;
+  std::string error(const std::filesystem::path& path) {
+    return error_of(folder, [&] { read_image(path, false); });
+  }
+  std::string error_of_bytes(const std::string& name, const std::string& bytes) {
+    return error(folder.write(name, bytes));
+  }
+};
+
+TEST_F(BrokenImages, Files) {
+  EXPECT_EQ(error(folder.path("none.exr")), "none.exr: no such file");
+  std::filesystem::create_directory(folder.path("folder.png"));
+  EXPECT_EQ(error(folder.path("folder.png")), "folder.png: not a regular file");
+  EXPECT_EQ(error_of_bytes("a.png", ""), "a.png: the file is empty");
+  EXPECT_EQ(error_of_bytes("a.png", "hello"),
+            "a.png: not an image of a known format (EXR, HDR, PNG, JPEG, TIFF, BMP, PNM, PFM, TGA)");
+  EXPECT_EQ(error_of_bytes("a.jpg", "\xff\xd8\xff\xe0"), "a.jpg: the JPEG data is truncated: no end marker");
+}
+
+TEST_F(BrokenImages, Values) {
+  const auto write = [&](float value) {
+    std::vector<float> pixels(4 * 3 * 3, 0.5f);
+    pixels[(2 * 4 + 1) * 3 + 2] = value;
+    return write_image(folder.path("a.exr"), 4, 3, kRgb, pixels, OIIO::TypeFloat);
+  };
+  EXPECT_EQ(error(write(0.0f)), "no error");
+  EXPECT_EQ(error(write(-0.25f)),
+            "a.exr: pixel (1, 2), channel 2: -0.250000: must be finite and not negative");
+  EXPECT_EQ(error(write(kNan)), "a.exr: pixel (1, 2), channel 2: nan: must be finite and not negative");
+  EXPECT_EQ(error(write(kInfinity)), "a.exr: pixel (1, 2), channel 2: inf: must be finite and not negative");
+}
+
+TEST_F(BrokenImages, Channels) {
+  const auto write = [&](const std::vector<std::string>& names) {
+    return write_image(folder.path("a.exr"), 1, 1, names, std::vector<float>(names.size(), 1.0f),
+                       OIIO::TypeFloat);
+  };
+  EXPECT_EQ(error(write({"X", "Y", "Z"})), "a.exr: channels X, Y, Z: must be R, G, B, or Y, or a single one");
+  EXPECT_EQ(error(write({"s0", "s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8"})),
+            "a.exr: channels s0, s1, s2, s3, s4, s5, s6, s7, ...: must be R, G, B, or Y, or a single one");
+}
+
+TEST_F(BrokenImages, PixelTypes) {
+  EXPECT_EQ(error(write_image(folder.path("a.exr"), 1, 1, kRgb, {1, 1, 1}, OIIO::TypeUInt32)),
+            "a.exr: pixels of type uint are not supported");
+}
+
+TEST_F(BrokenImages, HugeSizesCostNothing) {
+  EXPECT_EQ(error_of_bytes("a.pfm", "PF\n100000 100000\n-1\n"),
+            "a.pfm: 100000 x 100000 pixels: each dimension must be in 1..65535");
+  const std::string start = error_of_bytes("b.pfm", "PF\n65535 65535\n-1\n");
+  EXPECT_EQ(start.substr(0, 22), "b.pfm: cannot be read:");
+}
+
+/// Good files of every format, large enough to be written in several blocks.
+std::vector<std::filesystem::path> good_files(const TempFolder& folder) {
+  std::vector<float> values(128 * 96 * 3);
+  std::mt19937 random(5);
+  for (float& value : values) value = std::uniform_real_distribution<float>(0, 1)(random);
+  const auto write = [&](const char* name, OIIO::TypeDesc type,
+                         const std::function<void(OIIO::ImageSpec&)>& adjust = {}) {
+    return write_image(folder.path(name), 128, 96, kRgb, values, type, adjust);
+  };
+  const auto compression = [](const char* name) {
+    return [name](OIIO::ImageSpec& spec) { spec["compression"] = name; };
+  };
+  const auto tiles = [](OIIO::ImageSpec& spec) { spec.tile_width = spec.tile_height = 32; };
+  return {write("none.exr", OIIO::TypeFloat, compression("none")),
+          write("zip.exr", OIIO::TypeHalf, compression("zip")),
+          write("piz.exr", OIIO::TypeHalf, compression("piz")),
+          write("tiles.exr", OIIO::TypeHalf, tiles),
+          write("a.hdr", OIIO::TypeFloat),
+          write("a.png", OIIO::TypeUInt8),
+          write("b.png", OIIO::TypeUInt16),
+          write("a.jpg", OIIO::TypeUInt8),
+          write("a.tif", OIIO::TypeUInt8),
+          write("b.tif", OIIO::TypeFloat, tiles),
+          write("c.tif", OIIO::TypeUInt8, compression("none")),
+          write("d.tif", OIIO::TypeUInt16, compression("lzw")),
+          write("a.bmp", OIIO::TypeUInt8),
+          write("a.ppm", OIIO::TypeUInt8),
+          write("a.tga", OIIO::TypeUInt8)};
+}
+
+TEST_F(BrokenImages, TruncatedAtEveryEighthAndByOneBlock) {
+  for (const auto& path : good_files(folder)) {
+    const std::string whole = slurp(path);
+    ASSERT_EQ(error(path), "no error") << path;
+    std::vector<size_t> sizes = {whole.size() - 1000};
+    for (size_t eighth = 1; eighth < 8; ++eighth) sizes.push_back(whole.size() * eighth / 8);
+    for (const size_t size : sizes) {
+      const std::string text = error_of_bytes("cut" + path.extension().string(), whole.substr(0, size));
+      EXPECT_EQ(text.substr(0, 4 + path.extension().string().size()), "cut" + path.extension().string() + ":")
+          << path << " cut to " << size << " of " << whole.size();
+    }
+  }
+}
+
+// Formats with a checksum over their data: damage in the middle is refused.
+TEST_F(BrokenImages, DamageUnderAChecksumIsNoticed) {
+  for (const auto& path : good_files(folder)) {
+    const std::string name = path.filename().string();
+    if (name != "zip.exr" && name != "a.png" && name != "a.tif") continue;
+    std::string bytes = slurp(path);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+    EXPECT_EQ(error_of_bytes(name, bytes).substr(0, name.size() + 16), name + ": cannot be read") << name;
+  }
+}
+
+// Damage inside: a picture of the stated size, or InputError.
+TEST_F(BrokenImages, Mutations) {
+  std::mt19937 random(77);
+  for (const auto& path : good_files(folder)) {
+    const std::string whole = slurp(path);
+    for (int i = 0; i < 60; ++i) {
+      std::string bytes = whole;
+      // Half of the changes hit the header, where they hurt most.
+      for (int change = 0; change < 3; ++change)
+        bytes[random() % (random() % 2 ? bytes.size() : 400)] = static_cast<char>(random());
+      const auto start = std::chrono::steady_clock::now();
+      try {
+        const Image image = read_image(folder.write("bad" + path.extension().string(), bytes), false);
+        EXPECT_EQ(image.pixels.size(), size_t(image.width) * image.height * image.channels);
+      } catch (const InputError&) {
+      }
+      EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 10.0)
+          << path << " " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kiloband::test
