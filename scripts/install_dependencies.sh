@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that kiloband is built, tested and looked at with. Needs root or sudo; asks nothing.
+# Usage: scripts/install_dependencies.sh [build|test]   (test, the default, includes what only the tests need)
+set -euo pipefail
+
+build=(g++ cmake ninja-build pkg-config git ca-certificates
+  libembree-dev libtbb-dev libopenexr-dev libopenimageio-dev libglm-dev libpugixml-dev zlib1g-dev libyaml-cpp-dev
+  libcli11-dev libfmt-dev nlohmann-json3-dev libboost-dev libboost-math-dev libhwy-dev)
+tests=(libgtest-dev libbenchmark-dev clang opencl-headers ocl-icd-opencl-dev pocl-opencl-icd gdal-bin openimageio-tools)
+
+packages=("${build[@]}")
+if [ "${1:-test}" != build ]; then packages+=("${tests[@]}"); fi
+
+missing=()
+for package in "${packages[@]}"; do
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)" = installed ] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then exit 0; fi
+
+echo "installing: ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then as_root=(sudo); fi
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}"

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and runs all tests.
+# Usage: scripts/test.sh [preset]   (release by default; dev, asan, tsan: see CMakePresets.json)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+preset="${1:-release}"
+scripts/install_dependencies.sh test
+bench=ON
+case "$preset" in asan | tsan) bench=OFF ;; esac
+cmake --preset "$preset" -DKILOBAND_TESTS=ON -DKILOBAND_BENCH="$bench"
+cmake --build --preset "$preset"
+ctest --preset "$preset" --parallel "$(nproc)"
