@@ -57,7 +57,7 @@ typedef struct {
 /* cos_i in [0, 1]; the index is n - i k relative to the outside, n >= 0, k >= 0. Exact, for light from a
    dielectric.
 
-   With s^2 = 1 - c^2, t = n^2 - k^2 - s^2, q = |(n - ik)^2 - s^2| = sqrt(t^2 + 4 n^2 k^2), and a the real
+   With s^2 = 1 - c^2, t = n^2 - 1 - k^2 + c^2, q = |(n - ik)^2 - s^2| = sqrt(t^2 + 4 n^2 k^2), and a the real
    part of the root of (n - ik)^2 - s^2, a^2 = (q + t) / 2:
      R_s = (q + c^2 - 2 a c) / (q + c^2 + 2 a c)
      R_p = R_s Q,  Q = (q c^2 + s^4 - 2 a c s^2) / (q c^2 + s^4 + 2 a c s^2).
@@ -67,7 +67,7 @@ KB_FN KbFresnelConductor kb_fresnel_conductor_both(float cos_i, float n, float k
   const float c = kb_fmin(kb_fmax(cos_i, 0.0f), 1.0f);
   const float c2 = c * c;
   const float s2 = (1.0f - c) * (1.0f + c);
-  const float t = (n - k) * (n + k) - s2;
+  const float t = (n - 1.0f) * (n + 1.0f) - k * k + c2;
   const float nk2 = 2.0f * n * k;
   const float q = kb_sqrt(t * t + nk2 * nk2);
   const float root = kb_sqrt(0.5f * (q + kb_fabs(t)));

@@ -76,8 +76,7 @@ KB_FN float kb_microfacet_visible_pdf(kb_u32 distribution, float alpha_u, float 
   return g1 * kb_fmax(0.0f, kb_dot3(v, m)) * kb_microfacet_d(distribution, alpha_u, alpha_v, m) / v.z;
 }
 
-/* A normal with density D(m) cos(m). The slopes of a rough surface are a radially symmetric pair, stretched.
- */
+/* A normal with density D(m) cos(m). Slopes of rough surfaces are a radially symmetric pair, stretched. */
 KB_FN KbFloat3 kb_microfacet_sample_all(kb_u32 distribution, float alpha_u, float alpha_v, float u, float v) {
   const float r2 = distribution == KB_MICROFACET_GGX ? u / (1.0f - u) : -kb_log(1.0f - u);
   const float r = kb_sqrt(r2);
@@ -108,37 +107,30 @@ KB_FN KbFloat2 kb_ggx_visible_slope(float sin_i, float cos_i, float u, float v) 
 
 /* Beckmann, alpha = 1: the slope x in the plane of incidence has the distribution
      F(x) = (1 + erf(x) + tan(theta)/sqrt(pi) exp(-x^2)) / (the same at cot(theta)),  x <= cot(theta),
-   the other slope is Gaussian. With b = erf(x), F is increasing and concave in b and dF/db ~ 1 - x
-   tan(theta). Newton's method inside a bracket, from the solution for grazing incidence, F = exp(-x^2),
-   scaled to the interval. A fixed number of steps, so that devices agree; residual |F(x) - u| < 2e-6. */
+   the other slope is Gaussian. With b = erf(x), F is increasing and concave in b, dF/db ~ 1 - x tan(theta),
+   so that Newton's method approaches from below after at most one step past the root, which is cut to half
+   the way to -1. It starts from the solution for grazing incidence, F = exp(-x^2), scaled to the interval.
+   The number of steps is fixed, so that devices agree; residual |F(x) - u| < 2e-6, u being held in [1e-6, 1 -
+   1e-6]. */
 KB_FN float kb_beckmann_visible_slope_x(float sin_i, float cos_i, float u) {
   const float tan_i = sin_i / kb_fmax(cos_i, 1e-6f);
   const float cot_i = kb_fmax(cos_i, 1e-6f) / kb_fmax(sin_i, 1e-12f);
   const float top = kb_erf(cot_i);
   const float total = 1.0f + top + KB_INV_SQRT_PI * tan_i * kb_exp(-cot_i * cot_i);
-  const float target = kb_fmin(kb_fmax(u, 1e-6f), 1.0f - 1e-6f) * total;
-  float low = -1.0f;
-  float high = top;
-  float b = top - (top + 1.0f) * kb_erf(kb_sqrt(-kb_log(target / total)));
-  for (int step = 0; step < 6; ++step) {
-    if (!(b > low && b < high)) b = 0.5f * (low + high);
+  const float share = kb_fmin(kb_fmax(u, 1e-6f), 1.0f - 1e-6f);
+  float b = top - (top + 1.0f) * kb_erf(kb_sqrt(-kb_log(share)));
+  for (int step = 0; step < 3; ++step) {
     const float x = kb_erf_inv(b);
-    const float excess = 1.0f + b + KB_INV_SQRT_PI * tan_i * kb_exp(-x * x) - target;
-    if (excess > 0.0f)
-      high = b;
-    else
-      low = b;
-    b = b - excess / (1.0f - x * tan_i);
+    const float excess = 1.0f + b + KB_INV_SQRT_PI * tan_i * kb_exp(-x * x) - share * total;
+    b = kb_fmin(kb_fmax(b - excess / (1.0f - x * tan_i), 0.5f * (b - 1.0f)), top);
   }
-  if (!(b >= low && b <= high)) b = 0.5f * (low + high);
   return kb_erf_inv(b);
 }
 
 /* A normal with the density kb_microfacet_visible_pdf of wi, wi.z > 0. */
 KB_FN KbFloat3 kb_microfacet_sample_visible(kb_u32 distribution, float alpha_u, float alpha_v, KbFloat3 wi,
                                             float u, float v) {
-  /* Stretch to alpha = 1, take the plane of incidence as the x-z plane, sample slopes, turn back, unstretch.
-   */
+  /* Stretch to alpha = 1, take the plane of incidence as x-z plane, sample slopes, turn back, unstretch. */
   const KbFloat3 w = kb_normalize3(kb_float3(alpha_u * wi.x, alpha_v * wi.y, wi.z));
   const float sin_i = kb_sqrt(w.x * w.x + w.y * w.y);
   const float cos_phi = sin_i > 0.0f ? w.x / sin_i : 1.0f;
