@@ -12,21 +12,25 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586476925;
 
 /// Area to solid angle: a point chosen with density 1 / area is seen with density distance^2 / (area cos).
-/// to_light  from the shaded point to the light, unnormalised
+/// to_light  from the shaded point to the light, unnormalised, of length `distance`
 /// returns   0 behind the light, where there is no distance, and where the density exceeds the range of float
-float area_to_solid_angle(glm::vec3 to_light, glm::vec3 front_normal, float area) {
-  const float distance2 = glm::dot(to_light, to_light);
+float area_to_solid_angle(glm::vec3 to_light, float distance, glm::vec3 front_normal, float area) {
   const float facing = -glm::dot(to_light, front_normal);  // distance * cos
   if (!(facing > 0)) return 0;
-  const float density = distance2 / facing * (std::sqrt(distance2) / area);
+  const float density = distance * distance * (distance / (facing * area));
   return std::isfinite(density) ? density : 0;
+}
+
+float area_to_solid_angle(glm::vec3 to_light, glm::vec3 front_normal, float area) {
+  return area_to_solid_angle(to_light, glm::length(to_light), front_normal, area);
 }
 
 /// Completes a sample whose position and normal are known.
 void finish_by_area(AreaLightSample& sample, glm::vec3 point, float area) {
   const glm::vec3 to_light = sample.position - point;
-  sample.pdf = area_to_solid_angle(to_light, sample.normal, area);
-  if (sample.pdf > 0) sample.direction = to_light / glm::length(to_light);
+  const float distance = glm::length(to_light);
+  sample.pdf = area_to_solid_angle(to_light, distance, sample.normal, area);
+  if (sample.pdf > 0) sample.direction = to_light * (1 / distance);
 }
 
 glm::vec3 vertex(const FlatScene& scene, uint32_t index) {

@@ -30,6 +30,15 @@ class Uniform {
   std::mt19937 engine_;
 };
 
+/// A uniformly distributed unit vector, by rejection.
+inline glm::dvec3 random_direction(Uniform& uniform) {
+  for (;;) {
+    const glm::dvec3 v(2.0 * uniform() - 1, 2.0 * uniform() - 1, 2.0 * uniform() - 1);
+    const double length = glm::length(v);
+    if (length > 0.01 && length < 1) return v / length;
+  }
+}
+
 /// Probability of a chi-square as large as this one. Bins that expect less than 5 are pooled; a bin that
 /// expects 0 must be empty (otherwise 0 is returned).
 inline double chi_square_p_value(const std::vector<double>& observed, const std::vector<double>& expected) {

@@ -1,14 +1,12 @@
-// Analytic shapes against references in long double, and the offset of ray origins.
+// Intersections with analytic shapes against references in long double.
 #include "src_cpu/shape_geometry.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "chi_square.hpp"
-#include "src_cpu/ray_offset.hpp"
 #include "test_scene.hpp"
 
 namespace kiloband::testing {
@@ -29,14 +27,6 @@ bool sphere_roots(const KbShape& shape, Vec o, Vec d, Real& t0, Real& t1) {
   t0 = middle - std::sqrt(q);
   t1 = middle + std::sqrt(q);
   return true;
-}
-
-glm::dvec3 random_direction(Uniform& uniform) {
-  for (;;) {
-    const glm::dvec3 v(2.0 * uniform() - 1, 2.0 * uniform() - 1, 2.0 * uniform() - 1);
-    const double length = glm::length(v);
-    if (length > 0.01 && length < 1) return v / length;
-  }
 }
 
 TEST(Intersection, SphereOfAllScalesAgainstLongDouble) {
@@ -185,138 +175,6 @@ TEST(Intersection, DiskAndCylinderAgainstLongDouble) {
         }
         EXPECT_GT(hits, 500);
       }
-    }
-  }
-}
-
-TEST(Surface, AttributesFollowTheParameterisation) {
-  // At u, v of each shape: position from the formulas of the conventions, normal and tangent by finite
-  // differences.
-  const glm::dmat4 to_world = placed({1, 2, 3}, 0.8, {2, 2, 2});
-  const auto canonical = [](uint32_t type, double u, double v) -> glm::dvec3 {
-    const double two_pi = 6.283185307179586;
-    if (type == KB_SHAPE_SPHERE) {
-      const double theta = v * two_pi / 2;
-      return {std::sin(theta) * std::cos(two_pi * u), std::sin(theta) * std::sin(two_pi * u),
-              std::cos(theta)};
-    }
-    if (type == KB_SHAPE_DISK) return {u * std::cos(two_pi * v), u * std::sin(two_pi * v), 0};
-    return {std::cos(two_pi * u), std::sin(two_pi * u), v};
-  };
-  Uniform uniform(4);
-  for (const uint32_t type : {KB_SHAPE_SPHERE, KB_SHAPE_DISK, KB_SHAPE_CYLINDER}) {
-    for (const uint32_t flags : {0u, KB_SHAPE_FLIP_NORMALS}) {
-      const KbShape shape = make_shape(type, to_world, flags);
-      for (int i = 0; i < 200; ++i) {
-        const double u = 0.01 + 0.98 * uniform(), v = 0.01 + 0.98 * uniform(), h = 1e-5;
-        const auto world = [&](double a, double b) {
-          return glm::dvec3(to_world * glm::dvec4(canonical(type, a, b), 1));
-        };
-        const glm::dvec3 p = world(u, v);
-        glm::dvec3 outward = glm::normalize(
-            type == KB_SHAPE_DISK
-                ? glm::dvec3(to_world[2])
-                : glm::dmat3(to_world) * (canonical(type, u, v) * glm::dvec3(1, 1, type == KB_SHAPE_SPHERE)));
-        if (flags) outward = -outward;
-        // The hit was rounded along the ray: off the surface by 1e-6.
-        const SurfacePoint point = analytic_surface(shape, p + 1e-6 * outward);
-        ASSERT_LT(glm::length(glm::dvec3(point.position) - p), 1e-6);
-        ASSERT_LT(glm::length(glm::dvec3(point.normal) - outward), 1e-6);
-        const glm::dvec3 tangent = glm::normalize(world(u + h, v) - world(u - h, v));
-        ASSERT_LT(glm::length(glm::dvec3(point.tangent) - tangent), 1e-5);
-        ASSERT_NEAR(point.uv.x, u, 1e-5);
-        ASSERT_NEAR(point.uv.y, v, 1e-5);
-      }
-    }
-  }
-}
-
-TEST(Surface, ReflectionsKeepNormalsOutward) {
-  const glm::dmat4 mirrored = placed({0, 0, 0}, 0.8, {-1, 1, 1});
-  const KbShape sphere = make_shape(KB_SHAPE_SPHERE, mirrored);
-  const glm::vec3 p = sample_analytic_area(sphere, {0.2f, 0.3f}).position;
-  EXPECT_GT(glm::dot(analytic_surface(sphere, p).normal, p), 0.99f);
-  EXPECT_GT(glm::dot(sample_analytic_area(sphere, {0.2f, 0.3f}).normal, p), 0.99f);
-  // A disk's normal is the image of its +Z side.
-  const KbShape disk = make_shape(KB_SHAPE_DISK, mirrored);
-  const glm::vec3 z(mirrored[2]);
-  EXPECT_GT(glm::dot(analytic_surface(disk, {0, 0, 0}).normal, z), 0.99f);
-  EXPECT_GT(glm::dot(sample_analytic_area(disk, {0.2f, 0.3f}).normal, z), 0.99f);
-}
-
-TEST(Surface, DegeneratePointsHaveAFrame) {
-  for (const uint32_t type : {KB_SHAPE_SPHERE, KB_SHAPE_DISK, KB_SHAPE_CYLINDER}) {
-    const KbShape shape = make_shape(type, identity());
-    for (const glm::dvec3 p : {glm::dvec3(0, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)}) {
-      const SurfacePoint point = analytic_surface(shape, p);
-      EXPECT_NEAR(glm::length(point.normal), 1, 1e-6);
-      EXPECT_NEAR(glm::length(point.tangent), 1, 1e-6);
-      EXPECT_NEAR(glm::dot(point.normal, point.tangent), 0, 1e-6);
-    }
-  }
-}
-
-/// 100 000 area samples on 16 x 16 bins of equal area in uv, which the conventions give: error rate 1e-5, an
-/// RMS deviation of 3.6 % is found with probability 0.95.
-TEST(AreaSampling, UniformOnEveryShape) {
-  for (const uint32_t type : {KB_SHAPE_SPHERE, KB_SHAPE_DISK, KB_SHAPE_CYLINDER}) {
-    const KbShape shape =
-        make_shape(type, placed({1, 2, 3}, 0.8, {0.5, 0.5, type == KB_SHAPE_CYLINDER ? 3 : 0.5}));
-    Uniform uniform(5);
-    std::vector<double> observed(256), expected(256, 1e5 / 256);
-    for (int i = 0; i < 100000; ++i) {
-      const AreaPoint point = sample_analytic_area(shape, uniform.pair());
-      const SurfacePoint surface = analytic_surface(shape, glm::dvec3(point.position));
-      EXPECT_LT(glm::length(surface.position - point.position), 2e-6f);
-      EXPECT_LT(glm::length(surface.normal - point.normal), 3e-6f);
-      double a = surface.uv.x, b = surface.uv.y;
-      if (type == KB_SHAPE_SPHERE) b = (1 - std::cos(3.14159265358979 * b)) / 2;
-      if (type == KB_SHAPE_DISK) a = a * a;
-      ++observed[16 * std::min(static_cast<int>(16 * a), 15) + std::min(static_cast<int>(16 * b), 15)];
-    }
-    EXPECT_GT(chi_square_p_value(observed, expected), kErrorRate) << "shape type " << type;
-  }
-}
-
-TEST(Area, ClosedForms) {
-  const double pi = 3.14159265358979;
-  EXPECT_NEAR(analytic_area(make_shape(KB_SHAPE_SPHERE, placed({1, 2, 3}, 1, {2, 2, 2}))), 16 * pi, 1e-5);
-  EXPECT_NEAR(analytic_area(make_shape(KB_SHAPE_DISK, placed({1, 2, 3}, 1, {2, 3, 1}))), 6 * pi, 1e-5);
-  EXPECT_NEAR(analytic_area(make_shape(KB_SHAPE_CYLINDER, placed({1, 2, 3}, 1, {2, 2, 5}))), 20 * pi, 1e-5);
-}
-
-TEST(RayOffset, LeavesTheSurface) {
-  // Offsets along the normal at all scales: to its side, by no more than 1e-4 of the coordinate (or 2e-5 near
-  // 0).
-  Uniform uniform(6);
-  for (const float scale : {1e-6f, 1e-2f, 1.0f, 1e3f, 1e6f}) {
-    for (int i = 0; i < 1000; ++i) {
-      const glm::vec3 n(random_direction(uniform)), p(random_direction(uniform) * static_cast<double>(scale));
-      const glm::vec3 q = offset_ray_origin(p, n);
-      ASSERT_GT(glm::dot(q - p, n), 0);
-      ASSERT_LT(glm::length(q - p), std::max(1e-4f * scale, 2e-5f));
-    }
-  }
-  // The published scheme: 256 units in the last place at 1, 1/65536 at 0.
-  EXPECT_EQ(offset_ray_origin({1, 0, -1}, {1, 0, 0}).x, 1 + 256 * 0x1p-23f);
-  EXPECT_EQ(offset_ray_origin({-1, 0, 0}, {-1, 0, 0}).x, -1 - 256 * 0x1p-23f);
-  EXPECT_EQ(offset_ray_origin({-1, 0, 0}, {1, 0, 0}).x, -1 + 256 * 0x1p-24f);
-  EXPECT_EQ(offset_ray_origin({0, 0, 0}, {0, -1, 0}).y, -0x1p-16f);
-}
-
-TEST(RayOffset, NoSelfIntersectionOnSpheres) {
-  // From the offset point outwards no ray finds the sphere again.
-  Uniform uniform(7);
-  for (const double radius : {0.1, 1.0, 1e4}) {
-    const KbShape shape = make_shape(KB_SHAPE_SPHERE, placed({0.2, 3, -1}, 0.3, glm::dvec3(radius)));
-    for (int i = 0; i < 5000; ++i) {
-      const SurfacePoint point =
-          analytic_surface(shape, sphere_geometry(shape).centre + radius * random_direction(uniform));
-      glm::dvec3 d = random_direction(uniform);
-      if (glm::dot(d, glm::dvec3(point.normal)) < 0) d = -d;
-      double t = 0;
-      const glm::dvec3 origin(offset_ray_origin(point.position, point.normal));
-      ASSERT_FALSE(intersect_analytic(shape, origin, d, 0, kInfinity, t)) << radius;
     }
   }
 }
