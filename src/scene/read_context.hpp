@@ -1,0 +1,82 @@
+// What the readers of all entities share: the tree, loaded files, entities that several objects refer to.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "scene/description.hpp"
+#include "scene/read_object.hpp"
+
+namespace kiloband {
+
+struct ReadContext {
+  SceneTree& tree;
+  const DiagnosticSink& sink;
+  std::map<const Node*, std::shared_ptr<const Bsdf>> bsdfs;
+  std::map<const Node*, Texture> textures;                    // bitmaps and checkerboards
+  std::map<std::string, std::shared_ptr<const Mesh>> meshes;  // by file and options
+  std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const Image>> images;  // by file and raw
+
+  /// The existing file that a parameter names. throws InputError at its value
+  std::filesystem::path file(const ObjectReader& object, std::string_view parameter);
+  std::shared_ptr<const Image> image(const std::filesystem::path& file, bool raw, const Place& place);
+};
+
+/// Runs a loader; its InputError gets the scene's position in front.
+template <typename Loader>
+auto load_at(const Place& place, Loader&& loader) {
+  try {
+    return loader();
+  } catch (const InputError& error) {
+    fail(place, error.what());
+  }
+}
+
+/// How bare numbers and colours are understood, and what values are allowed.
+enum class SpectrumUse {
+  kReflectance,  // numbers flat, colours upsampled, all in [0, 1]
+  kEmission,     // numbers and colours times D65, all >= 0
+  kQuantity      // numbers flat, colours upsampled, all >= 0: indices, absorption, sensor responses
+};
+
+/// A spectral parameter; `fallback` where the file has none.
+/// throws InputError  wrong kind, value out of range with its wavelength
+Spectrum read_spectrum(ReadContext& context, const ObjectReader& object, std::string_view name,
+                       SpectrumUse use, const Spectrum& fallback);
+/// The same where bitmaps and checkerboards are allowed as well.
+Texture read_texture(ReadContext& context, const ObjectReader& object, std::string_view name, SpectrumUse use,
+                     const Texture& fallback);
+/// Any spectrum or texture element or parameter. `label` and `name` are for messages.
+Texture read_texture_node(ReadContext& context, Node& parameter, const std::string& label, SpectrumUse use);
+/// throws InputError at `place`  "label 0.3 at 550 nm: must be ..." for the first value that `use` forbids
+void check_spectrum(const Spectrum& spectrum, const std::string& label, SpectrumUse use, const Place& place);
+
+/// A <spectrum> or <texture> object whose type is a spectrum; nullopt for texture types.
+std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, SpectrumUse use);
+/// A <texture type="bitmap"> or checkerboard.
+Texture read_texture_object(ReadContext& context, Node& node);
+/// throws InputError  a bitmap with values above 1
+void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place);
+
+std::shared_ptr<const Bsdf> read_bsdf(ReadContext& context, Node& node);
+Shape read_shape(ReadContext& context, Node& node);
+AreaEmitter read_area_emitter(ReadContext& context, Node& node);
+Emitter read_emitter(ReadContext& context, Node& node);
+Sensor read_sensor(ReadContext& context, Node& node);
+Film read_film(ReadContext& context, Node& node);
+/// An integrator and how many of our samples one of the scene's samples stands for (`direct` splits each).
+std::pair<Integrator, uint64_t> read_integrator(ReadContext& context, Node& node);
+/// The samples per pixel of a <sampler>.
+uint64_t read_sampler(ReadContext& context, Node& node);
+
+/// Columns 0 to 2 have equal length and are perpendicular, within 1e-4: rotation, uniform scale, mirroring.
+bool is_similarity(const glm::dmat3& m);
+
+/// Accepts parameters of old files that no longer mean anything: one warning each.
+void accept_obsolete(const ReadContext& context, const ObjectReader& object,
+                     std::initializer_list<std::string_view> names);
+
+}  // namespace kiloband

@@ -1,0 +1,78 @@
+#include "support.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <fstream>
+
+namespace kiloband::test {
+
+TemporaryFolder::TemporaryFolder() {
+  static std::atomic<int> count = 0;
+  path_ = std::filesystem::temp_directory_path() /
+          ("kiloband_reader_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+  std::filesystem::create_directories(path_);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code error;
+  std::filesystem::remove_all(path_, error);
+}
+
+std::filesystem::path TemporaryFolder::write(const std::string& name, const std::string& contents) const {
+  const std::filesystem::path file = path_ / name;
+  std::filesystem::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary) << contents;
+  return file;
+}
+
+std::string scene(const std::string& body) {
+  return "<scene version=\"3.0.0\">\n" + body + "\n</scene>\n";
+}
+
+std::string complete_scene(const std::string& body) {
+  return scene(body + "\n" + kSensor + kLight + kSphere);
+}
+
+SceneDescription read(const std::string& text, const std::filesystem::path& folder, const Defines& defines,
+                      std::vector<std::string>* diagnostics) {
+  ReadOptions options;
+  options.defines = defines;
+  options.sink = [&](const Diagnostic& diagnostic) {
+    if (diagnostics) diagnostics->push_back(diagnostic.to_string());
+  };
+  return read_scene_text(text, "scene.xml", folder, options);
+}
+
+std::string error_of(const std::string& text, const std::filesystem::path& folder, const Defines& defines) {
+  try {
+    read(text, folder, defines);
+  } catch (const InputError& error) {
+    std::string message = error.what();
+    const std::string prefix = folder.string() + "/";
+    for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());
+    return message;
+  }
+  return "accepted";
+}
+
+Spectrum reflectance(const std::string& parameter) {
+  const SceneDescription result = read(scene(R"(<shape type="sphere"><bsdf type="diffuse">)" + parameter +
+                                             "</bsdf></shape>" + kSensor + kLight));
+  return std::get<Spectrum>(std::get<DiffuseBsdf>(result.shapes.at(0).bsdf->model).reflectance);
+}
+
+Spectrum radiance(const std::string& parameter) {
+  const SceneDescription result =
+      read(scene(R"(<emitter type="constant">)" + parameter + "</emitter>" + kSensor));
+  return std::get<ConstantEmitter>(result.emitters.at(0).model).radiance;
+}
+
+void expect_messages(const std::vector<BrokenScene>& scenes, const std::filesystem::path& folder) {
+  for (const BrokenScene& broken : scenes) {
+    EXPECT_EQ(error_of(broken.text, folder), broken.message) << broken.name;
+  }
+}
+
+}  // namespace kiloband::test

@@ -1,0 +1,343 @@
+// Broken scenes with the exact message and position: spectra, bsdfs, shapes, emitters, sensors, the whole
+// scene.
+#include <gtest/gtest.h>
+
+#include "support.hpp"
+
+namespace kiloband::test {
+namespace {
+
+/// Scenes begin in line 2: see scene() and complete_scene().
+std::vector<BrokenScene> table() {
+  return {
+      {"no sensor", scene(R"xml(<shape type="sphere"><emitter type="area"/></shape>)xml"),
+       "scene.xml:1:2: error: scene: has no sensor"},
+      {"two sensors", complete_scene(R"xml(<sensor type="perspective"/>)xml"),
+       "scene.xml:3:2: error: scene: a second sensor: only one is supported"},
+      {"no emitter", scene(R"xml(<sensor type="perspective"/><shape type="sphere"/>)xml"),
+       "scene.xml:1:2: error: scene: has no emitter"},
+      {"nothing to see", scene(R"xml(<sensor type="perspective"/><emitter type="point"/>)xml"),
+       "scene.xml:1:2: error: scene: has neither a shape nor an environment"},
+      {"two environments", complete_scene(R"xml(<emitter type="constant"/>)xml"),
+       "scene.xml:3:30: error: constant emitter: a second environment: only one is allowed"},
+      {"two integrators", complete_scene(R"xml(<integrator type="path"/><integrator type="path"/>)xml"),
+       "scene.xml:2:27: error: scene: a second integrator"},
+      {"film without sensor", complete_scene(R"xml(<film type="hdrfilm" id="f"/>)xml"),
+       "scene.xml:2:2: error: film 'f': is not part of any other object"},
+      {"medium", complete_scene(R"xml(<medium type="homogeneous"/>)xml"),
+       "scene.xml:2:2: error: <medium> is not supported: media are not supported"},
+      {"medium in a shape",
+       complete_scene(R"xml(<shape type="sphere"><medium type="homogeneous" name="interior"/></shape>)xml"),
+       "scene.xml:2:23: error: sphere shape: media are not supported"},
+      {"unknown bsdf", complete_scene(R"xml(<bsdf type="difuse"/>)xml"),
+       "scene.xml:2:13: error: bsdf type 'difuse' is not supported; did you mean 'diffuse'?"},
+      {"unsupported bsdf", complete_scene(R"xml(<bsdf type="thindielectric"/>)xml"),
+       "scene.xml:2:13: error: bsdf type 'thindielectric' is not supported"},
+      {"thermal emitter", complete_scene(R"xml(<shape type="sphere"><emitter type="thermal"/></shape>)xml"),
+       "scene.xml:2:37: error: emitter type 'thermal' is not supported"},
+      {"reflectance above 1",
+       complete_scene(
+           R"xml(<bsdf type="diffuse" id="leaf"><spectrum name="reflectance" value="500:0.9, 550:1.27"/></bsdf>)xml"),
+       "scene.xml:2:68: error: bsdf 'leaf': reflectance 1.27 at 550 nm: must be in [0, 1]"},
+      {"negative reflectance",
+       complete_scene(
+           R"xml(<bsdf type="diffuse" id="leaf"><float name="reflectance" value="-0.1"/></bsdf>)xml"),
+       "scene.xml:2:65: error: bsdf 'leaf': reflectance -0.1: must be in [0, 1]"},
+      {"colour above 1",
+       complete_scene(
+           R"xml(<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.1, 1.5, 0"/></bsdf>)xml"),
+       "scene.xml:2:61: error: plastic bsdf: diffuse_reflectance rgb component 1.5: must be in [0, 1]"},
+      {"colour with two components",
+       complete_scene(
+           R"xml(<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.1, 0.5"/></bsdf>)xml"),
+       "scene.xml:2:61: error: plastic bsdf: diffuse_reflectance: expected 1 or 3 numbers, found 2"},
+      {"negative radiance",
+       scene(R"xml(<emitter type="constant"><spectrum name="radiance" value="400:1 500:-2"/></emitter>)xml"),
+       "scene.xml:2:59: error: constant emitter: radiance -2 at 500 nm: must be >= 0"},
+      {"wavelengths out of order",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum name="reflectance" value="500:0.1, 400:0.2"/></bsdf>)xml"),
+       "scene.xml:2:58: error: diffuse bsdf: reflectance: wavelength 400 nm after 500 nm: must increase "
+       "strictly"},
+      {"blank after the colon",
+       complete_scene(R"xml(<bsdf type="diffuse"><spectrum name="reflectance" value="500: 0.1"/></bsdf>)xml"),
+       "scene.xml:2:58: error: diffuse bsdf: reflectance: '500:' is not a pair wavelength:value (no blanks "
+       "around ':')"},
+      {"one pair",
+       complete_scene(R"xml(<bsdf type="diffuse"><spectrum name="reflectance" value="500:0.1"/></bsdf>)xml"),
+       "scene.xml:2:58: error: diffuse bsdf: reflectance: a spectrum needs at least 2 pairs "
+       "wavelength:value"},
+      {"wavelength zero",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum name="reflectance" value="0:0.1 400:0.2"/></bsdf>)xml"),
+       "scene.xml:2:58: error: diffuse bsdf: reflectance: wavelength 0 nm: must be > 0"},
+      {"missing spectrum file",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum name="reflectance" filename="none.spd"/></bsdf>)xml"),
+       "scene.xml:2:61: error: file 'none.spd' not found"},
+      {"irregular lists of different lengths",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum type="irregular" name="reflectance"><string name="wavelengths" value="1 2 3"/><string name="values" value="0 0"/></spectrum></bsdf>)xml"),
+       "scene.xml:2:139: error: irregular spectrum: 2 values for 3 wavelengths"},
+      {"irregular wavelengths out of order",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum type="irregular" name="reflectance"><string name="wavelengths" value="400 400"/><string name="values" value="0 0"/></spectrum></bsdf>)xml"),
+       "scene.xml:2:102: error: irregular spectrum: wavelengths 400: must increase strictly"},
+      {"regular range reversed",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum type="regular" name="reflectance"><float name="wavelength_min" value="500"/><float name="wavelength_max" value="400"/><string name="values" value="0 0"/></spectrum></bsdf>)xml"),
+       "scene.xml:2:144: error: regular spectrum: wavelength_max 400: must be larger than wavelength_min"},
+      {"blackbody as a reflectance",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum type="blackbody" name="reflectance"><float name="temperature" value="300"/></spectrum></bsdf>)xml"),
+       "scene.xml:2:38: error: blackbody spectrum describes emission: not allowed as a reflectance"},
+      {"negative temperature",
+       scene(
+           R"xml(<emitter type="constant"><spectrum type="planck" name="radiance"><float name="temperature" value="-1"/></spectrum></emitter>)xml"),
+       "scene.xml:2:99: error: planck spectrum: temperature -1: must be >= 0 K"},
+      {"unknown spectrum",
+       complete_scene(R"xml(<bsdf type="diffuse"><spectrum type="regularr" name="reflectance"/></bsdf>)xml"),
+       "scene.xml:2:38: error: spectrum type 'regularr' is not supported; did you mean 'regular'?"},
+      {"string as a reflectance",
+       complete_scene(R"xml(<bsdf type="diffuse"><string name="reflectance" value="red"/></bsdf>)xml"),
+       "scene.xml:2:56: error: diffuse bsdf: reflectance: expected a spectrum, found a string"},
+      {"missing bitmap",
+       complete_scene(R"xml(<texture type="bitmap"><string name="filename" value="none.png"/></texture>)xml"),
+       "scene.xml:2:55: error: file 'none.png' not found"},
+      {"bitmap without a file", complete_scene(R"xml(<texture type="bitmap"/>)xml"),
+       "scene.xml:2:2: error: bitmap texture: parameter 'filename' is missing"},
+      {"unknown wrap mode",
+       complete_scene(
+           R"xml(<texture type="bitmap"><string name="filename" value="a.obj"/><string name="wrap_mode" value="once"/></texture>)xml"),
+       "scene.xml:2:95: error: bitmap texture: wrap_mode 'once': must be one of repeat, mirror, clamp"},
+      {"texture where a spectrum is needed",
+       scene(R"xml(<emitter type="constant"><texture type="checkerboard" name="radiance"/></emitter>)xml"),
+       "scene.xml:2:41: error: constant emitter: radiance: a texture is not supported here"},
+      {"alpha 0", complete_scene(R"xml(<bsdf type="roughplastic"><float name="alpha" value="0"/></bsdf>)xml"),
+       "scene.xml:2:54: error: roughplastic bsdf: alpha 0: must be > 0"},
+      {"alpha and alpha_u",
+       complete_scene(
+           R"xml(<bsdf type="roughconductor"><float name="alpha" value="0.1"/><float name="alpha_u" value="0.1"/></bsdf>)xml"),
+       "scene.xml:2:56: error: roughconductor bsdf: 'alpha' together with 'alpha_u' or 'alpha_v'"},
+      {"alpha_u without alpha_v",
+       complete_scene(R"xml(<bsdf type="roughconductor"><float name="alpha_u" value="0.1"/></bsdf>)xml"),
+       "scene.xml:2:2: error: roughconductor bsdf: parameter 'alpha_v' is missing"},
+      {"unknown distribution",
+       complete_scene(
+           R"xml(<bsdf type="roughconductor"><string name="distribution" value="phong"/></bsdf>)xml"),
+       "scene.xml:2:64: error: roughconductor bsdf: distribution 'phong': must be one of beckmann, ggx"},
+      {"integer index of refraction",
+       complete_scene(R"xml(<bsdf type="dielectric"><integer name="int_ior" value="2"/></bsdf>)xml"),
+       "scene.xml:2:56: error: dielectric bsdf: parameter 'int_ior': expected a float or a material name, "
+       "found an integer"},
+      {"index of refraction 0",
+       complete_scene(R"xml(<bsdf type="dielectric"><float name="int_ior" value="0"/></bsdf>)xml"),
+       "scene.xml:2:54: error: dielectric bsdf: int_ior 0: must be > 0"},
+      {"unknown material",
+       complete_scene(R"xml(<bsdf type="dielectric"><string name="int_ior" value="watter"/></bsdf>)xml"),
+       "scene.xml:2:55: error: dielectric bsdf: int_ior: unknown material 'watter'; did you mean 'water'?"},
+      {"built-in glass",
+       complete_scene(R"xml(<bsdf type="dielectric"><string name="int_material" value="N-BK7"/></bsdf>)xml"),
+       "scene.xml:2:60: error: dielectric bsdf: int_material: file 'N-BK7' not found (there are no built-in "
+       "materials)"},
+      {"index given in two ways",
+       complete_scene(
+           R"xml(<bsdf type="dielectric"><string name="int_material" value="glass.txt"/><float name="int_ior" value="1.5"/></bsdf>)xml"),
+       "scene.xml:2:60: error: dielectric bsdf: 'int_material' together with 'int_ior'"},
+      {"glass with a negative index",
+       complete_scene(
+           R"xml(<bsdf type="dielectric"><string name="int_material" value="negative.txt"/></bsdf>)xml"),
+       "scene.xml:2:60: error: negative.txt: n -1.5 at 800 nm: must be positive"},
+      {"equal indices",
+       complete_scene(
+           R"xml(<bsdf type="roughdielectric"><float name="int_ior" value="1.5"/><float name="ext_ior" value="1.5"/></bsdf>)xml"),
+       "scene.xml:2:59: error: roughdielectric bsdf: int_ior and ext_ior are equal: there is no rough "
+       "interface"},
+      {"built-in metal",
+       complete_scene(R"xml(<bsdf type="conductor"><string name="material" value="Au"/></bsdf>)xml"),
+       "scene.xml:2:55: error: conductor bsdf: material 'Au': there are no built-in metals; give 'metal' "
+       "with a file, or 'eta' and 'k'"},
+      {"metal without extinction",
+       complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="glass.txt"/></bsdf>)xml"),
+       "scene.xml:2:52: error: conductor bsdf: metal: the file gives no extinction k"},
+      {"empty twosided", complete_scene(R"xml(<bsdf type="twosided"/>)xml"),
+       "scene.xml:2:2: error: twosided bsdf: needs 1 or 2 nested bsdfs, found 0"},
+      {"twosided glass", complete_scene(R"xml(<bsdf type="twosided"><bsdf type="dielectric"/></bsdf>)xml"),
+       "scene.xml:2:2: error: twosided bsdf: the nested dielectric bsdf transmits light"},
+      {"mask without bsdf", complete_scene(R"xml(<bsdf type="mask"/>)xml"),
+       "scene.xml:2:2: error: mask bsdf: needs a nested bsdf"},
+      {"mask in a mask",
+       complete_scene(R"xml(<bsdf type="mask"><bsdf type="mask"><bsdf type="diffuse"/></bsdf></bsdf>)xml"),
+       "scene.xml:2:2: error: mask bsdf: the nested bsdf is a mask itself"},
+      {"opacity above 1",
+       complete_scene(
+           R"xml(<bsdf type="mask"><float name="opacity" value="2"/><bsdf type="diffuse"/></bsdf>)xml"),
+       "scene.xml:2:48: error: mask bsdf: opacity 2: must be in [0, 1]"},
+      {"unknown shape", complete_scene(R"xml(<shape type="spere"/>)xml"),
+       "scene.xml:2:14: error: shape type 'spere' is not supported; did you mean 'sphere'?"},
+      {"mesh without a file", complete_scene(R"xml(<shape type="obj"/>)xml"),
+       "scene.xml:2:2: error: obj shape: parameter 'filename' is missing"},
+      {"missing mesh",
+       complete_scene(R"xml(<shape type="ply"><string name="filename" value="none.ply"/></shape>)xml"),
+       "scene.xml:2:50: error: file 'none.ply' not found"},
+      {"negative radius",
+       complete_scene(R"xml(<shape type="sphere" id="ball"><float name="radius" value="-1"/></shape>)xml"),
+       "scene.xml:2:60: error: shape 'ball': radius -1: must be > 0"},
+      {"ellipsoid",
+       complete_scene(
+           R"xml(<shape type="sphere"><transform name="to_world"><scale x="2"/></transform></shape>)xml"),
+       "scene.xml:2:23: error: sphere shape: to_world must not scale a sphere differently along its axes"},
+      {"elliptic disk",
+       complete_scene(
+           R"xml(<shape type="disk"><transform name="to_world"><scale x="2"/></transform></shape>)xml"),
+       "scene.xml:2:21: error: disk shape: to_world must keep a disk circular and its axis perpendicular"},
+      {"sheared cylinder",
+       complete_scene(
+           R"xml(<shape type="cylinder"><transform name="to_world"><matrix value="1 0 1 0 1 0 0 0 1"/></transform></shape>)xml"),
+       "scene.xml:2:25: error: cylinder shape: to_world must keep a cylinder circular and its axis "
+       "perpendicular"},
+      {"cylinder without length",
+       complete_scene(R"xml(<shape type="cylinder"><point name="p1" value="0 0 0"/></shape>)xml"),
+       "scene.xml:2:48: error: cylinder shape: p0 and p1 are equal"},
+      {"singular transform",
+       complete_scene(
+           R"xml(<shape type="cube"><transform name="to_world"><scale z="0"/></transform></shape>)xml"),
+       "scene.xml:2:21: error: transform 'to_world' is singular"},
+      {"projective matrix",
+       complete_scene(
+           R"xml(<shape type="cube"><transform name="to_world"><matrix value="1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1"/></transform></shape>)xml"),
+       "scene.xml:2:62: error: the last row of the matrix must be 0 0 0 1"},
+      {"matrix with 12 numbers",
+       complete_scene(
+           R"xml(<shape type="cube"><transform name="to_world"><matrix value="1 0 0 0 0 1 0 0 0 0 1 0"/></transform></shape>)xml"),
+       "scene.xml:2:62: error: <matrix> needs 16 or 9 numbers, found 12"},
+      {"rotation without axis",
+       complete_scene(
+           R"xml(<shape type="cube"><transform name="to_world"><rotate angle="3"/></transform></shape>)xml"),
+       "scene.xml:2:48: error: <rotate> needs an axis that is not zero"},
+      {"lookat to itself",
+       complete_scene(
+           R"xml(<shape type="cube"><transform name="to_world"><lookat origin="1 2 3" target="1 2 3"/></transform></shape>)xml"),
+       "scene.xml:2:78: error: lookat: origin and target are equal"},
+      {"lookat along up",
+       complete_scene(
+           R"xml(<shape type="cube"><transform name="to_world"><lookat origin="0 0 0" target="0 1 0" up="0 1 0"/></transform></shape>)xml"),
+       "scene.xml:2:89: error: lookat: up is parallel to the view direction"},
+      {"two bsdfs",
+       complete_scene(R"xml(<shape type="cube"><bsdf type="diffuse"/><bsdf type="plastic"/></shape>)xml"),
+       "scene.xml:2:43: error: cube shape: a second bsdf"},
+      {"point light in a shape",
+       complete_scene(R"xml(<shape type="cube"><emitter type="point"/></shape>)xml"),
+       "scene.xml:2:35: error: point emitter: only area emitters can be part of a shape"},
+      {"area light with a transform",
+       complete_scene(
+           R"xml(<shape type="cube"><emitter type="area"><transform name="to_world"><scale value="2"/></transform></emitter></shape>)xml"),
+       "scene.xml:2:42: error: area emitter: an area emitter has no transform of its own"},
+      {"missing environment map",
+       complete_scene(R"xml(<emitter type="envmap"><string name="filename" value="none.exr"/></emitter>)xml"),
+       "scene.xml:2:55: error: file 'none.exr' not found"},
+      {"beam wider than the cutoff",
+       complete_scene(R"xml(<emitter type="spot"><float name="beam_width" value="30"/></emitter>)xml"),
+       "scene.xml:2:54: error: spot emitter: beam_width 30: must be from 0 to cutoff_angle"},
+      {"direction of length 0",
+       complete_scene(
+           R"xml(<emitter type="directional"><vector name="direction" value="0 0 0"/></emitter>)xml"),
+       "scene.xml:2:61: error: directional emitter: direction: its length must be > 0"},
+      {"sampling weight 0",
+       complete_scene(R"xml(<emitter type="point"><float name="sampling_weight" value="0"/></emitter>)xml"),
+       "scene.xml:2:60: error: point emitter: sampling_weight 0: must be > 0"},
+      {"unknown sensor", scene(R"xml(<sensor type="perspektive"/>)xml"),
+       "scene.xml:2:15: error: sensor type 'perspektive' is not supported; did you mean 'perspective'?"},
+      {"camera that scales",
+       scene(
+           R"xml(<sensor type="perspective"><transform name="to_world"><scale value="2"/></transform></sensor>)xml"),
+       "scene.xml:2:29: error: perspective sensor: to_world scales by 2: a camera's transform must not "
+       "scale"},
+      {"field of view 180",
+       scene(R"xml(<sensor type="perspective"><float name="fov" value="180"/></sensor>)xml"),
+       "scene.xml:2:53: error: perspective sensor: fov 180: must be between 0 and 180 degrees"},
+      {"field of view and focal length",
+       scene(
+           R"xml(<sensor type="perspective"><float name="fov" value="18"/><string name="focal_length" value="50mm"/></sensor>)xml"),
+       "scene.xml:2:93: error: perspective sensor: 'focal_length' together with 'fov'"},
+      {"focal length without unit",
+       scene(R"xml(<sensor type="perspective"><string name="focal_length" value="50"/></sensor>)xml"),
+       "scene.xml:2:63: error: perspective sensor: focal_length '50': must be a length such as 50mm"},
+      {"clipping planes reversed",
+       scene(R"xml(<sensor type="perspective"><float name="far_clip" value="0.001"/></sensor>)xml"),
+       "scene.xml:2:58: error: perspective sensor: far_clip 0.001: must be larger than near_clip"},
+      {"lens without aperture", scene(R"xml(<sensor type="thinlens"/>)xml"),
+       "scene.xml:2:2: error: thinlens sensor: parameter 'aperture_radius' is missing"},
+      {"film of width 0",
+       scene(
+           R"xml(<sensor type="perspective"><film type="hdrfilm"><integer name="width" value="0"/></film></sensor>)xml"),
+       "scene.xml:2:78: error: hdrfilm film: width 0: must be from 1 to 65535"},
+      {"huge film",
+       scene(
+           R"xml(<sensor type="perspective"><film type="hdrfilm"><integer name="height" value="65536"/></film></sensor>)xml"),
+       "scene.xml:2:79: error: hdrfilm film: height 65536: must be from 1 to 65535"},
+      {"crop window outside",
+       scene(
+           R"xml(<sensor type="perspective"><film type="hdrfilm"><integer name="crop_offset_x" value="700"/><integer name="crop_width" value="100"/></film></sensor>)xml"),
+       "scene.xml:2:126: error: hdrfilm film: crop_width 100: must be from 1 to 68"},
+      {"unknown filter",
+       scene(
+           R"xml(<sensor type="perspective"><film type="hdrfilm"><rfilter type="lanczos"/></film></sensor>)xml"),
+       "scene.xml:2:64: error: rfilter type 'lanczos' is not supported"},
+      {"unknown pixel format",
+       scene(
+           R"xml(<sensor type="perspective"><film type="hdrfilm"><string name="pixel_format" value="cmyk"/></film></sensor>)xml"),
+       "scene.xml:2:84: error: hdrfilm film: pixel_format 'cmyk': must be one of rgb, luminance, "
+       "luminance_alpha, rgba, xyz, xyza"},
+      {"bands reversed",
+       scene(
+           R"xml(<sensor type="perspective"><film type="bandfilm"><string name="bands" value="780:380:4"/></film></sensor>)xml"),
+       "scene.xml:2:78: error: bands '780:380:4': the interval is reversed: 780 nm is above 380 nm"},
+      {"no band",
+       scene(
+           R"xml(<sensor type="perspective"><film type="bandfilm"><string name="bands" value="380:780:0"/></film></sensor>)xml"),
+       "scene.xml:2:78: error: bands '380:780:0': count '0': must be a whole number from 1"},
+      {"bandfilm without bands",
+       scene(R"xml(<sensor type="perspective"><film type="bandfilm"/></sensor>)xml"),
+       "scene.xml:2:29: error: bandfilm film: needs either 'bands' or 'bands_file'"},
+      {"specfilm without bands",
+       scene(R"xml(<sensor type="perspective"><film type="specfilm"/></sensor>)xml"),
+       "scene.xml:2:29: error: specfilm film: needs at least one spectrum"},
+      {"specfilm band without range",
+       scene(
+           R"xml(<sensor type="perspective"><film type="specfilm"><spectrum name="a" value="1"/></film></sensor>)xml"),
+       "scene.xml:2:76: error: specfilm film: band 'a': needs a tabulated spectrum with a first and a last "
+       "wavelength"},
+      {"specfilm band below 0",
+       scene(
+           R"xml(<sensor type="perspective"><film type="specfilm"><spectrum name="a" value="400:1 500:-1"/></film></sensor>)xml"),
+       "scene.xml:2:76: error: specfilm film: band 'a' -1 at 500 nm: must be >= 0"},
+      {"no samples",
+       scene(
+           R"xml(<sensor type="perspective"><sampler type="independent"><integer name="sample_count" value="0"/></sampler></sensor>)xml"),
+       "scene.xml:2:92: error: independent sampler: sample_count 0: must be >= 1"},
+      {"max_depth below -1",
+       complete_scene(R"xml(<integrator type="path"><integer name="max_depth" value="-2"/></integrator>)xml"),
+       "scene.xml:2:58: error: path integrator: max_depth -2: must be >= 0, or -1 for no limit"},
+      {"rr_depth 0",
+       complete_scene(R"xml(<integrator type="path"><integer name="rr_depth" value="0"/></integrator>)xml"),
+       "scene.xml:2:57: error: path integrator: rr_depth 0: must be >= 1"},
+      {"direct without samples",
+       complete_scene(
+           R"xml(<integrator type="direct"><integer name="emitter_samples" value="0"/><integer name="bsdf_samples" value="0"/></integrator>)xml"),
+       "scene.xml:2:66: error: direct integrator: emitter_samples and bsdf_samples are both 0"},
+      {"unknown integrator", complete_scene(R"xml(<integrator type="bdpt"/>)xml"),
+       "scene.xml:2:19: error: integrator type 'bdpt' is not supported"},
+  };
+}
+
+TEST(BrokenScenes, Entities) {
+  const TemporaryFolder folder;
+  folder.write("a.obj", "v 0 0 0\n");
+  folder.write("glass.txt", "400 1.6\n800 1.5\n");
+  folder.write("negative.txt", "400 1.6\n800 -1.5\n");
+  expect_messages(table(), folder.path());
+}
+
+}  // namespace
+}  // namespace kiloband::test

@@ -1,0 +1,120 @@
+// Every bsdf: defaults and parameters.
+#include <gtest/gtest.h>
+
+#include "support.hpp"
+
+namespace kiloband::test {
+namespace {
+
+std::shared_ptr<const Bsdf> bsdf_of(const std::string& bsdf,
+                                    const std::filesystem::path& folder = "/nonexistent") {
+  return read(scene(R"(<shape type="sphere">)" + bsdf + "</shape>" + kSensor + kLight), folder)
+      .shapes.at(0)
+      .bsdf;
+}
+
+template <typename Model>
+Model model_of(const std::string& bsdf, const std::filesystem::path& folder = "/nonexistent") {
+  return std::get<Model>(bsdf_of(bsdf, folder)->model);
+}
+
+double value(const Texture& texture) {
+  return std::get<Spectrum>(texture)(550);
+}
+
+TEST(SceneBsdf, ShapesWithoutBsdfAreGreyAndEmittersBlack) {
+  EXPECT_EQ(value(model_of<DiffuseBsdf>("").reflectance), 0.5);
+  EXPECT_EQ(value(model_of<DiffuseBsdf>(R"(<emitter type="area"/>)").reflectance), 0);
+}
+
+TEST(SceneBsdf, ConductorDefaultsToThePerfectMirror) {
+  const auto mirror =
+      model_of<ConductorBsdf>(R"(<bsdf type="conductor"><string name="material" value="none"/></bsdf>)");
+  EXPECT_EQ(mirror.eta(550), 0);
+  EXPECT_EQ(mirror.k(550), 1);
+  EXPECT_FALSE(mirror.roughness);
+}
+
+TEST(SceneBsdf, RoughnessParameters) {
+  const auto plain = model_of<ConductorBsdf>(R"(<bsdf type="roughconductor"/>)");
+  ASSERT_TRUE(plain.roughness);
+  EXPECT_EQ(plain.roughness->distribution, Microfacet::kBeckmann);
+  EXPECT_EQ(plain.roughness->alpha_u, 0.1);
+  EXPECT_TRUE(plain.roughness->sample_visible);
+  const auto brushed = model_of<ConductorBsdf>(
+      R"(<bsdf type="roughconductor"><float name="alpha_u" value="0.3"/><float name="alpha_v" value="0.05"/>)"
+      R"(<string name="distribution" value="GGX"/><boolean name="sample_visible" value="false"/></bsdf>)");
+  EXPECT_EQ(brushed.roughness->distribution, Microfacet::kGgx);
+  EXPECT_EQ(brushed.roughness->alpha_u, 0.3);
+  EXPECT_EQ(brushed.roughness->alpha_v, 0.05);
+  EXPECT_FALSE(brushed.roughness->sample_visible);
+}
+
+TEST(SceneBsdf, DielectricIndices) {
+  const auto glass = model_of<DielectricBsdf>(R"(<bsdf type="dielectric"/>)");
+  EXPECT_EQ(glass.int_ior(550), 1.5046);
+  EXPECT_EQ(glass.ext_ior(550), 1.000277);
+  const auto other = model_of<DielectricBsdf>(
+      R"(<bsdf type="roughdielectric"><string name="int_ior" value="diamond"/><float name="ext_ior" value="1.1"/></bsdf>)");
+  EXPECT_EQ(other.int_ior(550), 2.419);
+  EXPECT_EQ(other.ext_ior(550), 1.1);
+  EXPECT_TRUE(other.roughness);
+}
+
+TEST(SceneBsdf, OpticalConstantsFromFiles) {
+  const TemporaryFolder folder;
+  folder.write("glass.txt", "400 1.6\n800 1.5\n");
+  folder.write("metal.txt", "400 0.5 3\n800 0.7 5\n");
+  const auto glass = model_of<DielectricBsdf>(
+      R"(<bsdf type="dielectric"><string name="int_material" value="glass.txt"/></bsdf>)", folder.path());
+  EXPECT_NEAR(glass.int_ior(600), 1.55, 1e-12);
+  EXPECT_EQ(glass.ext_ior(600), 1.000277);
+  const auto metal = model_of<ConductorBsdf>(
+      R"(<bsdf type="roughconductor"><string name="metal" value="metal.txt"/></bsdf>)", folder.path());
+  EXPECT_NEAR(metal.eta(600), 0.6, 1e-12);
+  EXPECT_NEAR(metal.k(600), 4, 1e-12);
+}
+
+TEST(SceneBsdf, Plastic) {
+  const auto plastic = model_of<PlasticBsdf>(R"(<bsdf type="plastic"/>)");
+  EXPECT_EQ(plastic.int_ior, 1.49);
+  EXPECT_EQ(plastic.ext_ior, 1.000277);
+  EXPECT_EQ(value(plastic.diffuse_reflectance), 0.5);
+  EXPECT_EQ(value(plastic.specular_reflectance), 1);
+  EXPECT_FALSE(plastic.nonlinear);
+  const auto rough = model_of<PlasticBsdf>(
+      R"(<bsdf type="roughplastic"><float name="alpha" value="0.2"/><boolean name="nonlinear" value="true"/></bsdf>)");
+  EXPECT_EQ(rough.roughness->alpha_v, 0.2);
+  EXPECT_TRUE(rough.nonlinear);
+}
+
+TEST(SceneBsdf, TwoSidedAndMask) {
+  const auto two = model_of<TwoSidedBsdf>(
+      R"(<bsdf type="twosided"><bsdf type="diffuse" id="a"/><bsdf type="plastic" id="b"/></bsdf>)");
+  EXPECT_EQ(two.front->id, "a");
+  EXPECT_EQ(two.back->id, "b");
+  const auto one = model_of<TwoSidedBsdf>(R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>)");
+  EXPECT_EQ(one.back, nullptr);
+  const auto mask = model_of<MaskBsdf>(
+      R"(<bsdf type="mask"><float name="opacity" value="0.25"/><bsdf type="twosided"><bsdf type="diffuse"/></bsdf></bsdf>)");
+  EXPECT_EQ(value(mask.opacity), 0.25);
+  EXPECT_TRUE(std::holds_alternative<TwoSidedBsdf>(mask.nested->model));
+}
+
+TEST(SceneBsdf, CheckerboardsAreSharedThroughReferences) {
+  const SceneDescription result = read(complete_scene(
+      R"(<texture type="checkerboard" id="board"><rgb name="color0" value="0.9"/></texture>)"
+      R"(<shape type="disk"><bsdf type="diffuse"><ref id="board" name="reflectance"/></bsdf></shape>)"
+      R"(<shape type="disk"><bsdf type="diffuse"><ref id="board" name="reflectance"/></bsdf></shape>)"));
+  using Board = std::shared_ptr<const CheckerboardTexture>;
+  const auto board = [&](std::size_t i) {
+    return std::get<Board>(std::get<DiffuseBsdf>(result.shapes.at(i).bsdf->model).reflectance);
+  };
+  EXPECT_EQ(board(0), board(1));
+  EXPECT_EQ(board(0)->id, "board");
+  EXPECT_EQ(board(0)->color0(550), 0.9);
+  EXPECT_EQ(board(0)->color1(550), 0.2);
+}
+
+}  // namespace
+}  // namespace kiloband::test

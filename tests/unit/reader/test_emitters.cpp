@@ -1,0 +1,105 @@
+// Emitters and integrators.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "spectral/colour.hpp"
+#include "support.hpp"
+
+namespace kiloband::test {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+template <typename Model>
+Model emitter_of(const std::string& emitter, const std::filesystem::path& folder = "/nonexistent") {
+  return std::get<Model>(read(scene(emitter + kSensor + kSphere), folder).emitters.at(0).model);
+}
+
+TEST(SceneEmitter, PointTakesPositionOrTransform) {
+  EXPECT_EQ(
+      emitter_of<PointEmitter>(R"(<emitter type="point"><point name="position" value="1 2 3"/></emitter>)")
+          .position,
+      glm::dvec3(1, 2, 3));
+  EXPECT_EQ(
+      emitter_of<PointEmitter>(
+          R"(<emitter type="point"><transform name="to_world"><translate y="4"/></transform></emitter>)")
+          .position,
+      glm::dvec3(0, 4, 0));
+}
+
+TEST(SceneEmitter, SpotAngles) {
+  const auto spot = emitter_of<SpotEmitter>(R"(<emitter type="spot"/>)");
+  EXPECT_NEAR(spot.cutoff_angle, 20 * kDegree, 1e-15);
+  EXPECT_NEAR(spot.beam_width, 15 * kDegree, 1e-15);
+  EXPECT_EQ(spot.intensity(560), illuminant_d65()(560));
+}
+
+TEST(SceneEmitter, DirectionalIsNormalised) {
+  EXPECT_EQ(emitter_of<DirectionalEmitter>(
+                R"(<emitter type="directional"><vector name="direction" value="0 -5 0"/></emitter>)")
+                .direction,
+            glm::dvec3(0, -1, 0));
+  const auto turned = emitter_of<DirectionalEmitter>(
+      R"(<emitter type="directional"><transform name="to_world"><rotate y="1" angle="90"/><scale value="7"/></transform></emitter>)");
+  EXPECT_NEAR(turned.direction.x, 1, 1e-12);
+}
+
+TEST(SceneEmitter, EnvironmentMapIsLoaded) {
+  const TemporaryFolder folder;
+  folder.write("sky.ppm", "P3\n2 2\n255\n0 0 0 255 255 255 255 0 0 0 0 255\n");
+  const auto envmap = emitter_of<EnvmapEmitter>(
+      R"(<emitter type="envmap"><string name="filename" value="sky.ppm"/><float name="scale" value="2.5"/></emitter>)",
+      folder.path());
+  EXPECT_EQ(envmap.scale, 2.5);
+  ASSERT_TRUE(envmap.image);
+  EXPECT_EQ(envmap.image->width, 2u);
+  EXPECT_EQ(envmap.image->pixels[3], 1);
+}
+
+TEST(SceneEmitter, SamplingWeightIsNoted) {
+  std::vector<std::string> diagnostics;
+  read(scene(R"(<emitter type="point"><float name="sampling_weight" value="2"/></emitter>)" + kSensor +
+             kSphere),
+       "/nonexistent", {}, &diagnostics);
+  ASSERT_EQ(diagnostics.size(), 1u);
+  EXPECT_EQ(diagnostics[0],
+            "scene.xml:2:60: note: point emitter: 'sampling_weight' has no meaning here: lights are chosen "
+            "by their power");
+}
+
+TEST(SceneIntegrator, DefaultsAndPath) {
+  const Integrator none = read(complete_scene("")).integrator;
+  EXPECT_EQ(none.max_depth, -1);
+  EXPECT_EQ(none.rr_depth, 5);
+  EXPECT_FALSE(none.hide_emitters);
+  const Integrator path =
+      read(
+          complete_scene(
+              R"(<integrator type="path"><integer name="max_depth" value="0"/>)"
+              R"(<integer name="rr_depth" value="7"/><boolean name="hide_emitters" value="true"/></integrator>)"))
+          .integrator;
+  EXPECT_EQ(path.max_depth, 0);
+  EXPECT_EQ(path.rr_depth, 7);
+  EXPECT_TRUE(path.hide_emitters);
+}
+
+TEST(SceneIntegrator, DirectSplitsSamples) {
+  const auto samples = [](const std::string& parameters) {
+    const SceneDescription result = read(scene(
+        R"(<sensor type="perspective"><sampler type="independent"><integer name="sample_count" value="10"/></sampler></sensor>)"
+        R"(<integrator type="direct">)" +
+        parameters + "</integrator>" + kLight));
+    EXPECT_EQ(result.integrator.max_depth, 2);
+    return result.sensor.sample_count;
+  };
+  EXPECT_EQ(samples(""), 10u);
+  EXPECT_EQ(samples(R"(<integer name="shading_samples" value="3"/>)"), 30u);
+  EXPECT_EQ(samples(R"(<integer name="emitter_samples" value="4"/><integer name="bsdf_samples" value="2"/>)"),
+            40u);
+  EXPECT_EQ(samples(R"(<integer name="emitter_samples" value="0"/><integer name="bsdf_samples" value="2"/>)"),
+            20u);
+}
+
+}  // namespace
+}  // namespace kiloband::test

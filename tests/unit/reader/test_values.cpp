@@ -1,0 +1,102 @@
+// Transforms and plain values.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "scene/read_object.hpp"
+#include "scene/xml_values.hpp"
+#include "support.hpp"
+
+namespace kiloband::test {
+namespace {
+
+Transform transform_of(const std::string& steps) {
+  return read(scene(R"(<shape type="rectangle"><transform name="to_world">)" + steps +
+                    "</transform></shape>" + kSensor + kLight))
+      .shapes.at(0)
+      .to_world;
+}
+
+glm::dmat3 uv_transform_of(const std::string& steps) {
+  const SceneDescription result = read(scene(
+      R"(<shape type="rectangle"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"><transform name="to_uv">)" +
+      steps + "</transform></texture></bsdf></shape>" + kSensor + kLight));
+  const auto& diffuse = std::get<DiffuseBsdf>(result.shapes.at(0).bsdf->model);
+  return std::get<std::shared_ptr<const CheckerboardTexture>>(diffuse.reflectance)->to_uv;
+}
+
+void expect_point(const Transform& m, const glm::dvec3& from, const glm::dvec3& to) {
+  const glm::dvec3 got(m * glm::dvec4(from, 1));
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(got[axis], to[axis], 1e-12);
+}
+
+TEST(SceneTransform, StepsActInTheirOrder) {
+  expect_point(transform_of(R"(<translate x="1"/><scale value="2"/>)"), {0, 0, 0}, {2, 0, 0});
+  expect_point(transform_of(R"(<scale x="2" z="3"/><translate value="1, 1, 1"/>)"), {1, 1, 1}, {3, 2, 4});
+}
+
+TEST(SceneTransform, RotationIsCounterClockwise) {
+  expect_point(transform_of(R"(<rotate z="1" angle="90"/>)"), {1, 0, 0}, {0, 1, 0});
+  expect_point(transform_of(R"(<rotate x="2" angle="90"/>)"), {0, 1, 0}, {0, 0, 1});
+}
+
+TEST(SceneTransform, MatricesAreRowMajor) {
+  expect_point(transform_of(R"(<matrix value="1 2 0 5, 0 1 0 6, 0 0 1 7, 0 0 0 1"/>)"), {1, 1, 1}, {8, 7, 8});
+  expect_point(transform_of(R"(<matrix value="0 1 0 1 0 0 0 0 2"/>)"), {3, 4, 5}, {4, 3, 10});
+}
+
+TEST(SceneTransform, LookatLooksAlongZWithXToTheLeft) {
+  const Transform m = transform_of(R"(<lookat origin="0 0 5" target="0 0 0" up="0 3 0"/>)");
+  expect_point(m, {0, 0, 1}, {0, 0, 4});
+  expect_point(m, {0, 1, 0}, {0, 1, 5});
+  expect_point(m, {1, 0, 0}, {-1, 0, 5});  // looking along -z with +y up, left is -x
+  const Transform without_up = transform_of(R"(<lookat origin="0 0 0" target="0 2 0"/>)");
+  EXPECT_NEAR(glm::determinant(glm::dmat3(without_up)), 1, 1e-12);
+  expect_point(without_up, {0, 0, 1}, {0, 1, 0});
+}
+
+TEST(SceneTransform, TextureTransformsAreTwoDimensional) {
+  const glm::dmat3 m = uv_transform_of(R"(<scale x="8" y="4"/><translate x="0.5"/>)");
+  EXPECT_EQ(m * glm::dvec3(1, 1, 1), glm::dvec3(8.5, 4, 1));
+  EXPECT_EQ(uv_transform_of(R"(<matrix value="1 2 3 4 5 6 0 0 1"/>)") * glm::dvec3(1, 1, 1),
+            glm::dvec3(6, 15, 1));
+}
+
+TEST(SceneValues, IntegersServeAsFloatsAndBooleansIgnoreCase) {
+  const SceneDescription result =
+      read(scene(R"(<sensor type="perspective"><integer name="near_clip" value="+2"/>)"
+                 R"(<float name="far_clip" value=" 3e1 "/></sensor>)"
+                 R"(<shape type="sphere"><boolean name="flip_normals" value="True"/></shape>)" +
+                 kLight));
+  EXPECT_EQ(result.sensor.near_clip, 2);
+  EXPECT_EQ(result.sensor.far_clip, 30);
+  EXPECT_TRUE(result.shapes.at(0).flip_normals);
+}
+
+TEST(SceneValues, NumbersRoundTrip) {
+  const Place place;
+  for (const double value : {0.1, 1e-300, 12345.678, -3.0})
+    EXPECT_EQ(parse_number(format_number(value), place), value);
+  EXPECT_THROW(parse_number("+-1", place), InputError);
+  EXPECT_THROW(parse_number("1e999", place), InputError);
+  EXPECT_THROW(parse_number("", place), InputError);
+  EXPECT_THROW(parse_integer("9223372036854775808", place), InputError);
+}
+
+TEST(SceneValues, SuggestionsAreNear) {
+  EXPECT_EQ(suggestion("reflectence", {"alpha", "reflectance"}), "; did you mean 'reflectance'?");
+  EXPECT_EQ(suggestion("banana", {"alpha", "reflectance"}), "");
+  EXPECT_EQ(suggestion("bsfd", {"bsdf"}), "; did you mean 'bsdf'?");
+  EXPECT_EQ(suggestion("a", {"b"}), "");
+  EXPECT_EQ(suggestion("", {"a"}), "");
+}
+
+TEST(SceneValues, SnakeCase) {
+  EXPECT_EQ(snake_case("toWorld"), "to_world");
+  EXPECT_EQ(snake_case("intIOR"), "int_ior");
+  EXPECT_EQ(snake_case("reflectance"), "reflectance");
+  EXPECT_EQ(snake_case("crop_width"), "crop_width");
+}
+
+}  // namespace
+}  // namespace kiloband::test
