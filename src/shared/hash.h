@@ -7,7 +7,7 @@
 
 #include "shared/lang.h"
 
-/* The constants below are odd or even u32 patterns of the sources named, not of ours. */
+/* 2^32 over the golden ratio, made odd: its multiples are spread evenly. */
 #define KB_GOLDEN_32 0x9e3779b9u
 
 /* A 64-bit bijection with full avalanche: the finaliser of SplitMix64 (Steele, Lea, Flood 2014; constants by
