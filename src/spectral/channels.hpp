@@ -8,7 +8,8 @@
 
 namespace kiloband {
 
-/// One channel: the interval [min_nm, max_nm], min < max. `name` is empty for channels without a name of their own.
+/// One channel: the interval [min_nm, max_nm], min < max. `name` is empty for channels without a name of
+/// their own.
 struct Channel {
   double min_nm = 0;
   double max_nm = 0;
@@ -22,7 +23,8 @@ struct Channel {
 using ChannelList = std::vector<Channel>;
 
 /// Parses "380:780:40" (first edge : last edge : count of equal channels, nm) or "400-410, 450-500".
-/// throws InputError  with the text and the rule it breaks (reversed or empty interval, count 0, not a number, more
+/// throws InputError  with the text and the rule it breaks (reversed or empty interval, count 0, not a
+/// number, more
 ///                    than kMaxChannels, wavelengths that are not finite and positive)
 ChannelList parse_channels(std::string_view text);
 

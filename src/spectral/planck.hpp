@@ -3,11 +3,13 @@
 namespace kiloband {
 
 /// Planck's law: spectral radiance of a blackbody, W m^-2 sr^-1 nm^-1. CODATA 2018 (exact) constants.
-/// lambda_nm > 0, temperature_k >= 0 (0 gives 0). Accurate (relative error < 1e-13) from 0.3 um at 200 K (about 1e-96)
-/// to 20 um at 6000 K and in the Rayleigh-Jeans limit; underflows to 0 in double only below 1e-300.
+/// lambda_nm > 0, temperature_k >= 0 (0 gives 0). Accurate (relative error < 1e-13) from 0.3 um at 200 K
+/// (about 1e-96) to 20 um at 6000 K and in the Rayleigh-Jeans limit; underflows to 0 in double only below
+/// 1e-300.
 double planck_radiance(double lambda_nm, double temperature_k);
 
-/// Integral over [min_nm, max_nm], W m^-2 sr^-1, relative error < 1e-10 (exponential series; Siegel & Howell).
+/// Integral over [min_nm, max_nm], W m^-2 sr^-1, relative error < 1e-10 for any width (Gauss-Legendre in
+/// ln(lambda)). 0 < min_nm <= max_nm, finite.
 double planck_integral(double min_nm, double max_nm, double temperature_k);
 
 }  // namespace kiloband

@@ -12,11 +12,11 @@
 
 namespace kiloband {
 
-/// Reads "lambda value" per line (nm; '#' comments; commas or blanks between; further columns ignored), ascending or
-/// descending; an ECOSTRESS file (recognised by its header: X Units, Y Units; Latin-1; micrometres; percent) or a CSV
-/// with a header line. Units other than nm are taken from the file's own statement only (a header or comment that names
-/// micrometers / um / cm-1 / wavenumber; percent).
-/// throws InputError  "file:line: ..." (not a number, not finite, duplicate wavelength, order changes, no data ...)
+/// Reads "lambda value" per line (nm; '#' comments; commas or blanks between; further columns ignored),
+/// ascending or descending; an ECOSTRESS file (recognised by its header: X Units, Y Units; Latin-1;
+/// micrometres; percent) or a CSV with a header line. Units other than nm are taken from the file's own
+/// statement only (a header or comment that names micrometers / um / cm-1 / wavenumber; percent). throws
+/// InputError  "file:line: ..." (not a number, not finite, duplicate wavelength, order changes, no data ...)
 Spectrum read_spectrum_file(const std::filesystem::path& file, const DiagnosticSink& sink = {});
 
 /// n and k of a material; k is absent where the file gives none.
@@ -25,12 +25,19 @@ struct OpticalConstants {
   std::optional<Spectrum> k;
 };
 
-/// Reads a refractiveindex.info YAML file (tabulated n, k, nk, and dispersion formulas 1 to 9, which are tabulated
-/// finely over their stated range with interpolation error < 1e-6), or a two- or three-column text file (lambda, n[, k]).
+/// Reads a refractiveindex.info YAML file (.yml, .yaml) (tabulated n, k, nk, and dispersion formulas 1 to 9,
+/// which are tabulated finely over their stated range with interpolation error < 1e-6), or a two- or
+/// three-column text file (lambda, n[, k]; units as in read_spectrum_file). Rows of a YAML table with the
+/// same wavelength (rounding in the database) are averaged with a warning. Outside their ranges n and k are
+/// 0, as for any spectrum. throws InputError  "file:line: ..." or "file: ..."; n must be positive, k at least
+/// 0
 OpticalConstants read_optical_constants(const std::filesystem::path& file, const DiagnosticSink& sink = {});
 
-/// A sensor response file: CSV with a header "wavelength_nm,NAME,NAME..." and one row per wavelength, or a two-column
-/// file (the file's stem is the name).
+/// A sensor response file: CSV with a header "wavelength_nm,NAME,NAME..." and one row per wavelength, or
+/// columns without a header (the file's stem is the name, "stem_1", "stem_2" ... if there are several), or a
+/// MODIS table of band, detector, wavelength and response ("band31_detector1" ...). Units as in
+/// read_spectrum_file. throws InputError  "file:line: ..." as read_spectrum_file; names that are empty or
+/// repeated
 std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::filesystem::path& file);
 
 }  // namespace kiloband

@@ -1,0 +1,203 @@
+// Regular tables of spectra.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "spectral/spectrum_node.hpp"
+#include "spectral/text_table.hpp"
+
+namespace kiloband {
+namespace {
+
+struct Request {
+  const Spectrum& spectrum;
+  double min_nm, max_nm;  // of the table
+  bool extrapolate;
+  double tolerance;  // absolute
+  std::size_t max_entries;
+};
+
+RegularTable flat_table(double value, double min_nm, double max_nm) {
+  return {min_nm, max_nm - min_nm, {value, value}, true, 0};
+}
+
+/// The ends for a request that cuts the data: a little outside it, because a wavelength that single precision
+/// rounds to just beyond the request must not read 0. Data keep to their own knots there (so that a common
+/// lattice is found) unless they are far away.
+Spectrum::Range widened(std::span<const double> knots_nm, double min_nm, double max_nm) {
+  const double margin_nm = 1e-6 * max_nm, far_nm = 0.1 * (max_nm - min_nm);
+  Spectrum::Range range{min_nm - margin_nm, max_nm + margin_nm};
+  const auto above_min = std::upper_bound(knots_nm.begin(), knots_nm.end(), range.min_nm);
+  if (above_min != knots_nm.begin() && *(above_min - 1) > min_nm - far_nm) range.min_nm = *(above_min - 1);
+  const auto above_max = std::lower_bound(knots_nm.begin(), knots_nm.end(), range.max_nm);
+  if (above_max != knots_nm.end() && *above_max < max_nm + far_nm) range.max_nm = *above_max;
+  return range;
+}
+
+/// The table's range: the widened request, ending earlier where the data do (outside, the spectrum is 0 or
+/// flat).
+Spectrum::Range table_range(const Spectrum& spectrum, double min_nm, double max_nm) {
+  const std::optional<Spectrum::Range> data = spectrum.data_range();
+  Spectrum::Range range = widened(spectrum.knots_nm(), min_nm, max_nm);
+  if (data && (!spectrum.extrapolates() || spectrum.node().is_flat_outside()))
+    range = {std::max(range.min_nm, data->min_nm), std::min(range.max_nm, data->max_nm)};
+  return range;
+}
+
+/// Largest |table - spectrum| over the table's range. A table's error is largest at the knots of either
+/// function, for others at the breaks or inside a cell: there it is measured at the quarters and stated 5 %
+/// larger.
+double measure_error(const RegularTable& table, const Spectrum& spectrum) {
+  const double min_nm = table.min_nm;
+  const std::size_t cells = table.values.size() - 1;
+  const double max_nm = min_nm + table.step_nm * static_cast<double>(cells);
+  std::vector<double> points;
+  spectrum.node().append_breaks(min_nm, max_nm, points);
+  const bool piecewise_linear = !spectrum.knots_nm().empty();
+  if (!piecewise_linear)
+    for (std::size_t i = 0; i < cells; ++i)
+      for (const double t : {0.25, 0.5, 0.75})
+        points.push_back(min_nm + table.step_nm * (static_cast<double>(i) + t));
+  std::sort(points.begin(), points.end());
+  std::vector<double> exact(points.size());
+  spectrum.evaluate(points, exact);
+  double error = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    error = std::max(error, std::abs(table(points[i]) - exact[i]));
+  return piecewise_linear ? error : 1.05 * error;
+}
+
+RegularTable sampled(const Request& request, std::size_t cells) {
+  RegularTable table;
+  table.min_nm = request.min_nm;
+  table.step_nm = (request.max_nm - request.min_nm) / static_cast<double>(cells);
+  table.extrapolate = request.extrapolate;
+  std::vector<double> lambda_nm(cells + 1);
+  for (std::size_t i = 0; i < cells; ++i)
+    lambda_nm[i] = table.min_nm + table.step_nm * static_cast<double>(i);
+  lambda_nm[cells] = request.max_nm;
+  table.values.resize(cells + 1);
+  request.spectrum.evaluate(lambda_nm, table.values);
+  table.max_error = measure_error(table, request.spectrum);
+  return table;
+}
+
+/// Whether all knots are on the lattice of `count` - 1 equal steps, within 1e-3 of a step (as Mitsuba 3
+/// decides).
+bool is_regular(std::span<const double> knots_nm) {
+  if (knots_nm.size() < 2) return false;
+  const double step_nm = (knots_nm.back() - knots_nm.front()) / static_cast<double>(knots_nm.size() - 1);
+  for (std::size_t i = 0; i < knots_nm.size(); ++i)
+    if (std::abs(knots_nm[i] - knots_nm.front() - step_nm * static_cast<double>(i)) > 1e-3 * step_nm)
+      return false;
+  return true;
+}
+
+/// Regular data as they are, from the last knot at or before the request to the first at or after it.
+RegularTable clipped(const Request& request) {
+  const std::span<const double> knots = request.spectrum.knots_nm();
+  const std::span<const double> values = request.spectrum.knot_values();
+  const double step_nm = (knots.back() - knots.front()) / static_cast<double>(knots.size() - 1);
+  auto first =
+      static_cast<std::size_t>(std::upper_bound(knots.begin(), knots.end(), request.min_nm) - knots.begin());
+  auto last =
+      static_cast<std::size_t>(std::lower_bound(knots.begin(), knots.end(), request.max_nm) - knots.begin());
+  first = std::min(first > 0 ? first - 1 : 0, knots.size() - 2);
+  last = std::clamp(last, first + 1, knots.size() - 1);
+  RegularTable table{
+      knots.front() + step_nm * static_cast<double>(first), step_nm, {}, request.extrapolate, 0};
+  table.values.assign(values.begin() + static_cast<std::ptrdiff_t>(first),
+                      values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  table.max_error = measure_error(table, request.spectrum);
+  return table;
+}
+
+/// Number of cells of the coarsest lattice through both ends and all knots between them; 0 if there is none
+/// with fewer than `max_cells`. Euclid's algorithm on lengths, in which less than 1e-6 of the range is
+/// nothing.
+std::size_t common_cells(const Request& request, std::size_t max_cells) {
+  std::vector<double> points = {request.max_nm};
+  request.spectrum.node().append_breaks(request.min_nm, request.max_nm, points);
+  const double span_nm = request.max_nm - request.min_nm;
+  const double smallest_nm = span_nm / static_cast<double>(max_cells);
+  const double nothing_nm = std::min(1e-6 * span_nm, 0.1 * smallest_nm);
+  double step_nm = span_nm;
+  for (const double point : points) {
+    double a = point - request.min_nm;
+    double b = step_nm;
+    while (a > nothing_nm) {
+      const double remainder = std::fmod(b, a);
+      b = a;
+      a = b - remainder <= nothing_nm ? 0 : remainder;
+    }
+    step_nm = b;
+    if (step_nm < smallest_nm) return 0;
+  }
+  return static_cast<std::size_t>(std::llround(span_nm / step_nm));
+}
+
+/// Halves the step until the bound holds; the lattice of the data's own knots is taken where it is not finer.
+RegularTable refined(const Request& request) {
+  const std::size_t max_cells = request.max_entries - 1;
+  const bool piecewise_linear = !request.spectrum.knots_nm().empty();
+  std::size_t common = piecewise_linear ? common_cells(request, max_cells) : 0;
+  RegularTable table;
+  for (std::size_t cells = piecewise_linear ? 1 : 16; cells <= max_cells; cells *= 2) {
+    if (common > 0 && common <= cells) {
+      table = sampled(request, common);
+      if (table.max_error <= request.tolerance) return table;
+      common = 0;  // a lattice that fits only roughly
+    }
+    table = sampled(request, cells);
+    if (table.max_error <= request.tolerance) return table;
+  }
+  if (common > 0 && (table = sampled(request, common)).max_error <= request.tolerance) return table;
+  throw InputError("spectrum: " + std::to_string(request.max_entries) + " entries over " +
+                   to_text(request.min_nm) + " to " + to_text(request.max_nm) + " nm reach an error of " +
+                   to_text(table.max_error) + ": must be at most " + to_text(request.tolerance));
+}
+
+}  // namespace
+
+double RegularTable::operator()(double lambda_nm) const {
+  const double position = (lambda_nm - min_nm) / step_nm;
+  const double last = static_cast<double>(values.size() - 1);
+  if (!(position >= 0)) return extrapolate ? values.front() : 0;
+  // The last entry's wavelength may round to a hair beyond it.
+  if (position >= last) return extrapolate || position <= last * (1 + 1e-12) ? values.back() : 0;
+  const auto i = static_cast<std::size_t>(position);
+  const double t = position - static_cast<double>(i);
+  return (1 - t) * values[i] + t * values[i + 1];
+}
+
+RegularTable resample(const Spectrum& spectrum, double min_nm, double max_nm,
+                      const ResampleOptions& options) {
+  if (!std::isfinite(min_nm) || !std::isfinite(max_nm) || !(min_nm < max_nm) || options.max_entries < 2)
+    throw std::logic_error("resample: interval must be ascending and finite, at least 2 entries");
+  if (spectrum.is_constant()) return flat_table(spectrum(min_nm), min_nm, max_nm);
+  const auto [lowest, highest] = spectrum.node().bounds(min_nm, max_nm);
+  const double magnitude = std::max(std::abs(lowest), std::abs(highest));
+  if (magnitude == 0) return flat_table(0, min_nm, max_nm);
+  const std::optional<Spectrum::Range> data = spectrum.data_range();
+  const auto [table_min_nm, table_max_nm] = table_range(spectrum, min_nm, max_nm);
+  if (!(table_min_nm < table_max_nm) || (data && (data->max_nm <= min_nm || data->min_nm >= max_nm))) {
+    // The request has no or only one point in common with the data: 0 or the end value, or a product's
+    // values.
+    const bool ends = data && (!spectrum.extrapolates() || spectrum.node().is_flat_outside());
+    if (ends)
+      return flat_table(spectrum.extrapolates() ? spectrum(0.5 * (min_nm + max_nm)) : 0, min_nm, max_nm);
+  }
+  // The table ends where the data do only if they end inside the request; both flags are one, so one sharp
+  // end suffices.
+  const bool sharp = data && !spectrum.extrapolates() && (data->min_nm > min_nm || data->max_nm < max_nm);
+  const Request request{
+      spectrum, table_min_nm, table_max_nm, !sharp, options.relative_error * magnitude, options.max_entries};
+  if (is_regular(spectrum.knots_nm())) {
+    RegularTable table = clipped(request);
+    if (table.values.size() <= options.max_entries) return table;
+  }
+  return refined(request);
+}
+
+}  // namespace kiloband

@@ -1,0 +1,160 @@
+#include "spectral/spectrum_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "spectral/number_table.hpp"
+#include "spectral/text_table.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr std::size_t kMaxResponseColumns = 4097;  // the wavelength and 4096 responses
+
+/// The part of an ECOSTRESS file above its data.
+struct EcostressHeader {
+  std::string x_units, y_units;  // empty where missing
+  std::optional<double> count;
+  std::size_t bytes = 0;  // length up to the first data line
+  int lines = 0;
+};
+
+/// "Key: value" with the key given in lower case: the value.
+std::optional<std::string_view> value_of(std::string_view line, std::string_view key) {
+  if (!lowered(line.substr(0, key.size())).starts_with(key)) return std::nullopt;
+  return trimmed(line.substr(key.size()));
+}
+
+/// An ECOSTRESS file begins with "Key: value" lines up to a line that starts with a number.
+/// source  ECOSTRESS spectral library (Meerdink et al. 2019), header of its files
+EcostressHeader parse_ecostress_header(std::string_view text) {
+  constexpr int kMaxLines = 200;
+  EcostressHeader header;
+  LineReader lines(text);
+  for (std::string_view line; header.lines < kMaxLines && lines.next(line);) {
+    const std::vector<std::string_view> fields = split_fields(line, 2);
+    if (!fields.empty() && to_number(fields.front())) break;
+    if (const auto value = value_of(line, "x units:")) header.x_units = *value;
+    if (const auto value = value_of(line, "y units:")) header.y_units = *value;
+    if (const auto value = value_of(line, "number of x values:")) header.count = to_number(*value);
+    header.lines = lines.line_number();
+    header.bytes = std::min(text.size(), static_cast<std::size_t>(line.data() + line.size() - text.data()));
+  }
+  return header;
+}
+
+Spectrum read_ecostress(const std::filesystem::path& file, std::string_view text,
+                        const EcostressHeader& header) {
+  const std::optional<WavelengthUnit> unit = find_unit(header.x_units);
+  if (!unit)
+    throw InputError(file.string() + ": X Units " + quote_text(header.x_units) +
+                     ": must name nm, micrometers or cm-1");
+  // What is left of the header's last line is its ending: an empty first line.
+  const NumberTable table =
+      parse_number_table(file, text.substr(header.bytes), {2, 2, true}, std::max(header.lines, 1));
+  if (header.count && *header.count != static_cast<double>(table.rows()))
+    throw InputError(file.string() + ": the header states " + to_text(*header.count) +
+                     " values, the file has " + std::to_string(table.rows()));
+  const WavelengthAxis axis = wavelength_axis(file, first_column(table), table.lines, *unit);
+  return column_spectrum(table, axis, 1, says_percent(header.y_units) ? 0.01 : 1);
+}
+
+/// 0.01 if the file says that the values of a column are in percent.
+double value_factor(const NumberTable& table, std::size_t column) {
+  if (column < table.names.size() && says_percent(table.names[column])) return 0.01;
+  const bool percent = std::any_of(table.comments.begin(), table.comments.end(), comment_says_percent);
+  return percent ? 0.01 : 1;
+}
+
+/// The response of one detector in a MODIS table, in file order.
+struct Detector {
+  std::vector<double> wavelength, response;
+  std::vector<int> lines;
+};
+
+bool is_modis(const NumberTable& table) {
+  return std::any_of(table.comments.begin(), table.comments.end(), [](const std::string& comment) {
+    return lowered(comment).find("band channel wavelength rsr") != std::string::npos;
+  });
+}
+
+/// MODIS relative spectral responses: rows of band, detector, wavelength, response; -99 where nothing was
+/// measured. The files give nm for the reflective bands and um for the thermal ones without saying so: the
+/// two cannot be confused, since the instrument sees 0.4 to 14.4 um.
+std::vector<std::pair<std::string, Spectrum>> modis_responses(const NumberTable& table) {
+  constexpr double kMissing = -99, kLargestMicrometres = 100;
+  std::map<std::pair<double, double>, Detector> detectors;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (table.at(row, 3) == kMissing) continue;
+    for (std::size_t column = 0; column < 4; ++column)
+      if (!std::isfinite(table.at(row, column)))
+        throw InputError(at_line(table.file, table.lines[row],
+                                 "value " + to_text(table.at(row, column)) + ": must be finite"));
+    Detector& detector = detectors[{table.at(row, 0), table.at(row, 1)}];
+    detector.wavelength.push_back(table.at(row, 2));
+    detector.response.push_back(table.at(row, 3));
+    detector.lines.push_back(table.lines[row]);
+  }
+  std::vector<std::pair<std::string, Spectrum>> result;
+  for (auto& [key, detector] : detectors) {
+    const bool micrometres = detector.wavelength.front() < kLargestMicrometres;
+    const WavelengthAxis axis =
+        wavelength_axis(table.file, detector.wavelength, detector.lines,
+                        micrometres ? WavelengthUnit::kMicrometre : WavelengthUnit::kNanometre);
+    if (axis.reversed) std::reverse(detector.response.begin(), detector.response.end());
+    result.emplace_back("band" + to_text(key.first) + "_detector" + to_text(key.second),
+                        Spectrum::tabulated(axis.lambda_nm, detector.response));
+  }
+  if (result.empty()) throw InputError(table.file.string() + ": no data");
+  return result;
+}
+
+/// Names of the responses: the header's, or the file's stem (numbered if there are several).
+std::vector<std::string> response_names(const NumberTable& table) {
+  std::vector<std::string> names;
+  const std::string stem = table.file.stem().string();
+  const bool named = table.names.size() == table.columns;
+  if (!named && !table.names.empty() && table.columns > 2)
+    throw InputError(table.file.string() + ": the header names " + std::to_string(table.names.size()) +
+                     " columns, the rows have " + std::to_string(table.columns));
+  std::set<std::string> seen;
+  for (std::size_t column = 1; column < table.columns; ++column) {
+    std::string name = table.columns == 2 ? stem : stem + "_" + std::to_string(column);
+    if (named) name = table.names[column];
+    if (name.empty())
+      throw InputError(table.file.string() + ": column " + std::to_string(column + 1) + " has no name");
+    if (!seen.insert(name).second)
+      throw InputError(table.file.string() + ": column name " + quote_text(name) + " is repeated");
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+}  // namespace
+
+Spectrum read_spectrum_file(const std::filesystem::path& file, const DiagnosticSink& sink) {
+  const std::string text = read_text_file(file);
+  const EcostressHeader header = parse_ecostress_header(text);
+  if (!header.x_units.empty() && !header.y_units.empty()) return read_ecostress(file, text, header);
+  const NumberTable table = parse_number_table(file, text, {2, 2, true});
+  const WavelengthUnit unit = wavelength_unit(table, sink);
+  const WavelengthAxis axis = wavelength_axis(file, first_column(table), table.lines, unit);
+  return column_spectrum(table, axis, 1, value_factor(table, 1));
+}
+
+std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::filesystem::path& file) {
+  const std::string text = read_text_file(file);
+  const NumberTable table = parse_number_table(file, text, {2, kMaxResponseColumns, false});
+  if (is_modis(table) && table.columns == 4) return modis_responses(table);
+  const WavelengthAxis axis =
+      wavelength_axis(file, first_column(table), table.lines, wavelength_unit(table, {}));
+  const std::vector<std::string> names = response_names(table);
+  std::vector<std::pair<std::string, Spectrum>> result;
+  for (std::size_t column = 1; column < table.columns; ++column)
+    result.emplace_back(names[column - 1], column_spectrum(table, axis, column, value_factor(table, column)));
+  return result;
+}
+
+}  // namespace kiloband

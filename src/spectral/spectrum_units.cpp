@@ -1,0 +1,119 @@
+#include "spectral/spectrum_units.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "spectral/text_table.hpp"
+
+namespace kiloband {
+namespace {
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+/// Lower-case words; the ways to write micrometres and inverse centimetres made one.
+std::vector<std::string> words(std::string_view text) {
+  std::string plain = lowered(text);
+  replace_all(plain, "\xC2\xB5m", "um");                 // UTF-8 micro sign
+  replace_all(plain, "\xCE\xBCm", "um");                 // UTF-8 Greek mu
+  replace_all(plain, "\xB5m", "um");                     // Latin-1 micro sign
+  replace_all(plain, "cm\xE2\x81\xBB\xC2\xB9", "cm-1");  // superscript minus one
+  replace_all(plain, "cm^-1", "cm-1");
+  replace_all(plain, "1/cm", "cm-1");
+  std::vector<std::string> result;
+  std::string word;
+  for (const char c : plain + " ") {
+    const bool in_word = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '%';
+    if (in_word) {
+      word += c;
+    } else if (!word.empty()) {
+      result.push_back(std::move(word));
+      word.clear();
+    }
+  }
+  return result;
+}
+
+template <std::size_t N>
+bool is_one_of(const std::string& word, const std::array<const char*, N>& set) {
+  return std::any_of(set.begin(), set.end(), [&](const char* element) { return word == element; });
+}
+
+std::optional<WavelengthUnit> unit_of(const std::string& word) {
+  constexpr std::array kNm = {"nm", "nanometer", "nanometers", "nanometre", "nanometres"};
+  constexpr std::array kUm = {"um",          "micrometer", "micrometers", "micrometre",
+                              "micrometres", "micron",     "microns"};
+  constexpr std::array kWavenumbers = {"cm-1", "wavenumber", "wavenumbers"};
+  if (is_one_of(word, kNm)) return WavelengthUnit::kNanometre;
+  if (is_one_of(word, kUm)) return WavelengthUnit::kMicrometre;
+  if (is_one_of(word, kWavenumbers)) return WavelengthUnit::kWavenumber;
+  return std::nullopt;
+}
+
+std::optional<WavelengthUnit> first_unit(std::span<const std::string> some_words) {
+  for (const std::string& word : some_words)
+    if (const auto unit = unit_of(word)) return unit;
+  return std::nullopt;
+}
+
+}  // namespace
+
+const char* unit_name(WavelengthUnit unit) {
+  switch (unit) {
+    case WavelengthUnit::kMicrometre:
+      return "um";
+    case WavelengthUnit::kWavenumber:
+      return "cm-1";
+    default:
+      return "nm";
+  }
+}
+
+std::string describe(double value, WavelengthUnit unit) {
+  return (unit == WavelengthUnit::kWavenumber ? "wavenumber " : "wavelength ") + to_text(value) + " " +
+         unit_name(unit);
+}
+
+double to_nanometres(double value, WavelengthUnit unit) {
+  switch (unit) {
+    case WavelengthUnit::kMicrometre:
+      return value * 1000;
+    case WavelengthUnit::kWavenumber:
+      return 1e7 / value;
+    default:
+      return value;
+  }
+}
+
+std::optional<WavelengthUnit> find_unit(std::string_view text) {
+  return first_unit(words(text));
+}
+
+std::optional<WavelengthUnit> find_unit_in_comment(std::string_view comment) {
+  constexpr std::array kTriggers = {"wavelength", "wavelengths", "wavenumber", "wavenumbers", "lambda", "wl"};
+  const std::vector<std::string> all = words(comment);
+  const auto trigger =
+      std::find_if(all.begin(), all.end(), [&](const std::string& w) { return is_one_of(w, kTriggers); });
+  if (trigger == all.end()) return all.size() <= 3 ? first_unit(all) : std::nullopt;
+  if (const auto after = first_unit({trigger, all.end()})) return after;
+  return first_unit(all);
+}
+
+bool says_percent(std::string_view name) {
+  return name.find('%') != std::string_view::npos || lowered(name).find("percent") != std::string::npos;
+}
+
+bool comment_says_percent(std::string_view comment) {
+  constexpr std::array kQuantities = {"reflectance",    "reflectivity", "transmittance", "transmission",
+                                      "transmissivity", "emissivity",   "absorptance",   "value",
+                                      "values",         "unit",         "units",         "y"};
+  if (!says_percent(comment)) return false;
+  const std::vector<std::string> all = words(comment);
+  return all.size() <= 3 ||
+         std::any_of(all.begin(), all.end(), [&](const auto& w) { return is_one_of(w, kQuantities); });
+}
+
+}  // namespace kiloband

@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "spectral/spectrum.hpp"
+#include "support.hpp"
+
+namespace kiloband::test {
+namespace {
+
+/// Largest |table - spectrum| on dense and random points of the interval.
+double measured_error(const RegularTable& table, const Spectrum& spectrum, double min_nm, double max_nm) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> uniform(min_nm, max_nm);
+  double error = 0;
+  for (int i = 0; i <= 20000; ++i) {
+    const double lambda_nm = i % 2 ? uniform(generator) : min_nm + (max_nm - min_nm) * i / 20000;
+    error = std::max(error, std::abs(table(lambda_nm) - spectrum(lambda_nm)));
+  }
+  return error;
+}
+
+TEST(Resample, ConstantNeedsTwoEntries) {
+  const RegularTable table = resample(Spectrum::constant(0.7), 400, 900);
+  EXPECT_EQ(table.values, (std::vector<double>{0.7, 0.7}));
+  EXPECT_EQ(table.min_nm, 400);
+  EXPECT_EQ(table.step_nm, 500);
+  EXPECT_TRUE(table.extrapolate);
+  EXPECT_EQ(table(5), 0.7);
+  EXPECT_EQ(table.max_error, 0);
+}
+
+TEST(Resample, RegularDataAreTakenOver) {
+  std::vector<double> knots, values;
+  for (int i = 0; i < 76; ++i) {
+    knots.push_back(400 + 4 * i);
+    values.push_back(0.1 * (i % 7));
+  }
+  const Spectrum s = Spectrum::tabulated(knots, values);
+  const RegularTable whole = resample(s, 300, 2000);
+  EXPECT_EQ(whole.values, values);
+  EXPECT_EQ(whole.min_nm, 400);
+  EXPECT_EQ(whole.step_nm, 4);
+  EXPECT_FALSE(whole.extrapolate);
+  EXPECT_EQ(whole(399.999), 0);
+  EXPECT_EQ(whole(700), values.back());
+  EXPECT_EQ(whole(700.001), 0);
+
+  const RegularTable part = resample(s, 450, 500);
+  EXPECT_EQ(part.min_nm, 448);
+  EXPECT_EQ(part.values.size(), 15u);  // to 504: a hair beyond 500 is still data
+  EXPECT_EQ(measured_error(part, s, 450, 500), 0);
+}
+
+// As Mitsuba 3: spacing within 1e-3 of the step counts as regular.
+TEST(Resample, NearlyRegularDataAreTakenOver) {
+  const Spectrum s = Spectrum::tabulated({400, 410.005, 420, 429.996}, {1, 2, 4, 3});
+  const RegularTable table = resample(s, 380, 780);
+  EXPECT_EQ(table.values, (std::vector<double>{1, 2, 4, 3}));
+  EXPECT_GT(table.max_error, 0);
+  EXPECT_LE(measured_error(table, s, 400, 429.99), table.max_error);
+}
+
+TEST(Resample, IrregularDataOnACommonLatticeAreExact) {
+  const Spectrum s = Spectrum::tabulated({400, 402.5, 410, 440, 700}, {0, 1, 0.2, 0.9, 0.3});
+  const RegularTable table = resample(s, 380, 780);
+  EXPECT_DOUBLE_EQ(table.step_nm, 2.5);
+  EXPECT_EQ(table.min_nm, 400);
+  EXPECT_EQ(table.values.size(), 121u);
+  EXPECT_LT(measured_error(table, s, 380, 780), 1e-12);
+}
+
+TEST(Resample, IrregularDataMeetTheBound) {
+  std::mt19937 generator(9);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<double> knots, values;
+  for (double x = 350.123; x < 2500; x += 5 + 30 * uniform(generator)) {
+    knots.push_back(x);
+    values.push_back(uniform(generator));
+  }
+  for (const bool extrapolate : {false, true}) {
+    const Spectrum s = Spectrum::tabulated(knots, values, extrapolate);
+    for (const double bound : {1e-1, 1e-3}) {
+      const RegularTable table = resample(s, 300, 3000, {bound, 1u << 20});
+      EXPECT_LE(measured_error(table, s, 300, 3000), table.max_error);
+      EXPECT_LE(table.max_error, bound);
+      EXPECT_EQ(table.extrapolate, extrapolate);
+    }
+    EXPECT_LT(resample(s, 300, 3000, {1e-1, 1u << 20}).values.size(),
+              resample(s, 300, 3000, {1e-3, 1u << 20}).values.size());
+  }
+}
+
+TEST(Resample, EdgesOfTheDataStaySharp) {
+  const Spectrum s = Spectrum::tabulated({400.3, 411, 633.7}, {1, 0.8, 1});
+  const RegularTable table = resample(s, 380, 780);
+  EXPECT_EQ(table(400.29999), 0);
+  EXPECT_EQ(table(400.3), 1);
+  EXPECT_NEAR(table(633.7), 1, 1e-4);
+  EXPECT_EQ(table(633.70001), 0);
+}
+
+TEST(Resample, OneEndCutByTheRequest) {
+  const Spectrum s = Spectrum::tabulated({400.3, 411, 900.7}, {1, 0.8, 1});
+  const RegularTable table = resample(s, 380, 780);
+  EXPECT_EQ(table(400.29), 0);
+  // A wavelength that single precision rounds to beyond the request still reads the data.
+  EXPECT_NEAR(table(static_cast<double>(std::nextafter(780.0f, 1000.0f))), s(780), 1e-4);
+}
+
+TEST(Resample, SmoothSpectraMeetTheBound) {
+  const Spectrum cases[] = {
+      Spectrum::sigmoid({1e-4, -0.1, 20}, 1),
+      Spectrum::sigmoid({-4, 4400, -1210000 + 2}, 1),
+      Spectrum::planck(300, 1),
+      Spectrum::planck(5800, 1, Spectrum::Range{360, 830}),
+      Spectrum::product(Spectrum::planck(1000, 1), Spectrum::tabulated({500, 512, 9000}, {0, 1, 0.2})),
+      Spectrum::product(Spectrum::sigmoid({1e-4, -0.1, 20}, 1),
+                        Spectrum::tabulated({500, 512, 600}, {1, 3, 2}))};
+  for (const Spectrum& s : cases) {
+    const RegularTable table = resample(s, 350, 14000);
+    EXPECT_LE(measured_error(table, s, 350, 14000), table.max_error);
+    EXPECT_LE(table.max_error, 1e-4 * std::abs(s.max_over(350, 14000)));
+  }
+}
+
+TEST(Resample, SigmoidTableEndsWhereItIsFlat) {
+  const RegularTable table = resample(Spectrum::sigmoid({1e-4, -0.1, 20}, 1), 350, 14000);
+  EXPECT_EQ(table.min_nm, 360);
+  EXPECT_TRUE(table.extrapolate);
+  const RegularTable far = resample(Spectrum::sigmoid({1e-4, -0.1, 20}, 1), 8000, 14000);
+  EXPECT_EQ(far.values.size(), 2u);
+  EXPECT_EQ(far(9000), Spectrum::sigmoid({1e-4, -0.1, 20}, 1)(9000));
+}
+
+TEST(Resample, RequestBesideTheData) {
+  const Spectrum s = Spectrum::tabulated({400, 500}, {1, 2});
+  for (const auto& [a, b] : {std::pair{600.0, 700.0}, {500.0, 700.0}}) EXPECT_EQ(resample(s, a, b)(650), 0);
+  EXPECT_EQ(resample(s.extrapolated(), 600, 700)(650), 2);
+  EXPECT_EQ(resample(Spectrum::tabulated({500}, {1}), 400, 600)(450), 0);
+}
+
+TEST(Resample, AStepThatNeedsTooManyEntriesIsAnError) {
+  const Spectrum s = Spectrum::tabulated({400, 500, 500.00001, 777.7}, {0, 0, 1, 1});
+  EXPECT_EQ(message_of([&] {
+              resample(s, 380, 780, {1e-4, 1025});
+            }).substr(0, 62),
+            "spectrum: 1025 entries over 400 to 777.7 nm reach an error of ");
+  EXPECT_THROW(resample(s, 500, 400), std::logic_error);
+}
+
+}  // namespace
+}  // namespace kiloband::test
