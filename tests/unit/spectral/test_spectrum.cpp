@@ -175,6 +175,16 @@ TEST(Spectrum, PlanckHasItsRangeAndIntegral) {
   EXPECT_FALSE(Spectrum::planck(300, 1).data_range().has_value());
 }
 
+TEST(Spectrum, PlanckParametersOfPlanckOnly) {
+  const auto parameters = Spectrum::planck(300, 2, Spectrum::Range{400, 700}).scaled(3).planck_parameters();
+  ASSERT_TRUE(parameters.has_value());
+  EXPECT_EQ(parameters->temperature_k, 300);
+  EXPECT_EQ(parameters->scale, 6);
+  EXPECT_EQ(parameters->range->max_nm, 700);
+  EXPECT_FALSE(triangle().planck_parameters().has_value());
+  EXPECT_FALSE(Spectrum::product(triangle(), Spectrum::planck(300, 1)).planck_parameters().has_value());
+}
+
 TEST(Spectrum, ProductWithConstantKeepsTheKind) {
   const Spectrum s = Spectrum::product(Spectrum::constant(2), triangle());
   EXPECT_EQ(s(500), 4);
