@@ -1,0 +1,100 @@
+// The spectra that paths refer to, as dense rows [spectrum][channel] at one wavelength offset mu.
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "scene/derived_channels.hpp"
+#include "scene/flat_scene.hpp"
+#include "src_cpu/evaluator_kernels.hpp"
+
+namespace kiloband {
+
+/// n rounded up to a multiple of the padding of channel rows.
+inline std::size_t pad_channels(std::size_t n) {
+  return (n + kRowPadding - 1) / kRowPadding * kRowPadding;
+}
+
+/// `n` zeros, aligned for vectors.
+template <class T>
+hwy::AlignedFreeUniquePtr<T[]> aligned_zeros(std::size_t n);
+
+/// Dense spectra of one wavelength offset mu: row s holds spectrum s at lambda_k = (1 - mu) min_k + mu max_k
+/// for every channel, padded with zeros to a multiple of 64 floats and aligned to 64 bytes. Emission rows
+/// hold radiance * width_k / channel_scale_k, so that path sums are channel values in film units.
+///
+/// Rows are made when they are first asked for and live until the next begin(). All are resampled in double,
+/// except reflectances in the fast mode: those come from float copies of the tables by SIMD gathers
+/// (positions in double).
+struct DenseSpectra {
+ public:
+  DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kernels);
+
+  /// Starts over with another offset in [0, 1]. `fast`: see above (`per-path` makes every row anew for each
+  /// path).
+  void begin(double mu, bool fast);
+
+  /// Row of spectrum s. throws std::logic_error if there is no such spectrum
+  const float* spectrum(uint32_t s) {
+    if (s >= rows_.size()) throw_bad_row(s);
+    return rows_[s].generation == generation_ ? rows_[s].data : make_spectrum(s);
+  }
+  /// width_k / channel_scale_k: emission of 1 W m^-2 sr^-1 nm^-1.
+  const float* unit_emission() const { return unit_emission_.get(); }
+  const float* zeros() const { return zeros_.get(); }
+  /// clamp(lambda_k, 360, 830), nm, in double: where textures are evaluated.
+  const double* texture_lambda();
+
+  /// T = n^2 - 1 - k^2 as a sum of two floats, and n k, of a conductor.
+  std::array<const float*, 3> conductor(uint32_t material);
+  /// E = e^2 - 1 as a sum of two floats, where e is the relative index of a dispersive dielectric: interior
+  /// over exterior seen from outside, the reciprocal seen from `inside`.
+  std::array<const float*, 2> dispersive(uint32_t material, bool inside);
+
+  std::size_t channels() const { return channels_; }
+  /// lambda_k in nm, padded with zeros.
+  const double* lambda_nm() const { return lambda_.get(); }
+  bool fast() const { return fast_; }
+  double mu() const { return mu_; }
+  uint64_t generation() const { return generation_; }
+
+ private:
+  struct Row {
+    uint64_t generation = 0;
+    float* data = nullptr;
+  };
+  struct MaterialRows {
+    uint64_t generation[2] = {0, 0};  // conductor or outside; inside
+    std::array<float*, 3> data[2] = {};
+  };
+
+  [[noreturn]] static void throw_bad_row(uint32_t s);
+  float* new_row();
+  const float* make_spectrum(uint32_t s);
+  void fill_exact(uint32_t s, float* out) const;
+  const std::vector<float>& float_table(uint32_t s);
+  MaterialRows& material_rows(uint32_t material);
+
+  const FlatScene& scene_;
+  const EvaluatorKernels& kernels_;
+  std::size_t channels_, padded_;
+  double mu_ = -1;
+  bool fast_ = false;
+  uint64_t generation_ = 0;
+  uint64_t texture_generation_ = 0;
+  std::vector<double> min_nm_, max_nm_, emission_factor_;  // emission_factor: width_k / channel_scale_k
+  std::vector<bool> is_emission_;                          // of a spectrum
+  hwy::AlignedFreeUniquePtr<double[]> lambda_, texture_lambda_;
+  hwy::AlignedFreeUniquePtr<float[]> unit_emission_, zeros_;
+  std::vector<Row> rows_;                                 // by spectrum
+  std::vector<MaterialRows> material_rows_;               // by material
+  std::vector<std::vector<float>> float_tables_;          // by spectrum, made when needed
+  std::vector<hwy::AlignedFreeUniquePtr<float[]>> pool_;  // memory of rows; the first used_ are taken
+  std::size_t used_ = 0;
+};
+
+}  // namespace kiloband

@@ -1,0 +1,155 @@
+// The oracle of deferred evaluation: scalar, double, the formulas of shared/records.h written down one by
+// one. It shares records and spectral tables with the fast code and nothing else.
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstring>
+
+#include "spectral/planck.hpp"
+#include "src_cpu/evaluator.hpp"
+
+namespace kiloband {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// The spectra at one channel's wavelength. Radiances are integrals over the channel, W m^-2 sr^-1.
+struct Point {
+  const FlatScene& scene;
+  double lambda_nm;
+  double width_nm;
+};
+
+double spectrum(const Point& at, uint32_t s) {
+  const SpectrumRow& row = at.scene.spectra[s];
+  if (!row.is_planck) return row.table(at.lambda_nm);
+  const bool inside = at.lambda_nm >= row.planck_min_nm && at.lambda_nm <= row.planck_max_nm;
+  return inside ? row.planck_scale * planck_radiance(at.lambda_nm, row.temperature_k) : 0;
+}
+
+double named(const Point& at, uint32_t s) {
+  return spectrum(at, s) * (at.scene.spectra[s].is_emission ? at.width_nm : 1);
+}
+
+/// i is at most one texel beyond the end.
+uint32_t wrapped(uint32_t i, uint32_t size, uint32_t rule) {
+  if (i < size) return i;
+  return rule == KB_WRAP_REPEAT ? 0 : size - 1;
+}
+
+double texel_value(const KbFloat4& texel, double lambda_nm) {
+  const double x = std::clamp(lambda_nm, 360.0, 830.0);
+  const double v = (static_cast<double>(texel.x) * x + texel.y) * x + texel.z;
+  return texel.w * (0.5 + v / (2 * std::sqrt(1 + v * v)));
+}
+
+double textured(const Point& at, const KbTextureSample& sample, bool emission) {
+  const KbTexture& t = at.scene.textures[sample.texture];
+  const bool environment = (t.flags & KB_TEXTURE_ENVMAP) != 0;
+  const uint32_t x0 = sample.xy & 0xffffu, y0 = sample.xy >> 16;
+  const uint32_t x1 = wrapped(x0 + 1, t.width, environment ? KB_WRAP_REPEAT : t.wrap);
+  const uint32_t y1 = wrapped(y0 + 1, t.height, environment ? KB_WRAP_CLAMP : t.wrap);
+  const auto texel = [&](uint32_t x, uint32_t y) {
+    return texel_value(at.scene.texels[t.first_texel + std::size_t{y} * t.width + x], at.lambda_nm);
+  };
+  const double fx = sample.fx, fy = sample.fy;
+  const double top = (1 - fx) * texel(x0, y0) + fx * texel(x1, y0);
+  const double bottom = (1 - fx) * texel(x0, y1) + fx * texel(x1, y1);
+  const double illuminant = t.illuminant_row == KB_NONE ? 1 : spectrum(at, t.illuminant_row);
+  return ((1 - fy) * top + fy * bottom) * illuminant * (emission ? at.width_nm : 1);
+}
+
+/// Unpolarised Fresnel reflectance of a boundary to the relative complex index m, in the textbook form.
+double fresnel(double cosine, Complex m) {
+  const double c = std::abs(cosine);
+  const Complex ct = std::sqrt(1.0 - (1 - c * c) / (m * m));
+  const Complex rs = (c - m * ct) / (c + m * ct);
+  const Complex rp = (m * c - ct) / (m * c + ct);
+  return 0.5 * (std::norm(rs) + std::norm(rp));
+}
+
+double vertex_fresnel(const Point& at, const KbPathVertex& vertex, double cosine) {
+  const KbMaterial& m = at.scene.materials[vertex.head >> KB_VERTEX_MATERIAL_SHIFT];
+  if (m.flags & KB_MATERIAL_PERFECT_MIRROR) return 1;
+  if ((vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_CONDUCTOR) {
+    return fresnel(cosine, {spectrum(at, m.eta_row), spectrum(at, m.k_row)});
+  }
+  const double interior = spectrum(at, m.eta_row);
+  const double exterior = m.k_row == KB_NONE ? m.eta_ext : spectrum(at, m.k_row);
+  return fresnel(cosine, cosine < 0 ? exterior / interior : interior / exterior);
+}
+
+double scattering(const Point& at, const KbPathVertex& vertex, double a, double b, double w0, double w1) {
+  switch (vertex.head & KB_VERTEX_KIND_MASK) {
+    case KB_KIND_TWO_TERM:
+      return w0 * a + w1 * b;
+    case KB_KIND_NONLINEAR:
+      return w0 * a + w1 * b / (1 - b * at.scene.materials[vertex.head >> KB_VERTEX_MATERIAL_SHIFT].fdr_int);
+    case KB_KIND_CONDUCTOR:
+    case KB_KIND_DISPERSIVE:
+      return w0 * a * vertex_fresnel(at, vertex, w1);
+    default:
+      return w0 * a;
+  }
+}
+
+/// tau and L of one channel along the path.
+struct State {
+  double tau = 1, radiance = 0;
+};
+
+/// samples: the vertex's texture samples, in order. k: the channel.
+void apply(const Point& at, const KbPathVertex& v, const KbTextureSample* samples, uint32_t k, State& state) {
+  const auto value = [&](uint32_t flag, bool used, uint32_t row, bool emission) {
+    if (v.head & flag) return textured(at, *samples++, emission);
+    return used ? named(at, row) : 0.0;
+  };
+  const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
+  const bool reflects = v.head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
+  const double a = value(KB_VERTEX_TEX_A, reflects, v.row_a, false);
+  const double b = value(KB_VERTEX_TEX_B, reflects && (kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR),
+                         v.row_b, false);
+  const double emitted = value(KB_VERTEX_TEX_EMIT, v.head & KB_VERTEX_EMIT, v.emit_row, true);
+  const double light = value(KB_VERTEX_TEX_NEE, v.head & KB_VERTEX_NEE, v.nee_row, true);
+  if (v.head & KB_VERTEX_EMIT) state.radiance += state.tau * v.emit_weight * emitted;
+  if (v.head & KB_VERTEX_NEE) state.radiance += state.tau * scattering(at, v, a, b, v.nee0, v.nee1) * light;
+  if (v.head & KB_VERTEX_SCATTER) state.tau *= scattering(at, v, a, b, v.scatter0, v.scatter1);
+  if ((v.head & KB_VERTEX_DEGRADE) && k != kb_as_u32(v.scatter1)) state.tau = 0;
+}
+
+double channel_value(const Point& at, const PathBuffer& paths, const SavedPath& path, uint32_t k) {
+  State state;
+  for (uint32_t i = path.first; i < path.first + path.count; ++i) {
+    const KbPathVertex& vertex = paths.slots[i];
+    KbTextureSample samples[4];
+    uint32_t count = 0;
+    for (uint32_t flag = KB_VERTEX_TEX_A; flag <= KB_VERTEX_TEX_NEE; flag <<= 1)
+      count += (vertex.head & flag) != 0;
+    if (count > 0) std::memcpy(samples, &paths.slots[i] + 1, count * sizeof(KbTextureSample));
+    apply(at, vertex, samples, k, state);
+    i += (count + 1) / 2;
+  }
+  return state.radiance;
+}
+
+}  // namespace
+
+std::vector<double> evaluate_path_reference(const FlatScene& scene, const DerivedChannels& derived,
+                                            const PathBuffer& paths, std::size_t path, double mu) {
+  const std::size_t channels = scene.channels.size();
+  std::vector<double> values(channels + derived.responses.size());
+  for (std::size_t k = 0; k < channels; ++k) {
+    const Channel& channel = scene.channels[k];
+    const Point at{scene, (1 - mu) * channel.min_nm + mu * channel.max_nm, channel.width_nm()};
+    values[k] = channel_value(at, paths, paths.paths[path], static_cast<uint32_t>(k));
+    const auto covers = [&](const Channel& c) { return c.min_nm <= at.lambda_nm && at.lambda_nm < c.max_nm; };
+    const auto cover =
+        std::max<std::ptrdiff_t>(1, std::count_if(scene.channels.begin(), scene.channels.end(), covers));
+    for (std::size_t d = 0; d < derived.responses.size(); ++d) {
+      values[channels + d] += derived.responses[d](at.lambda_nm) / static_cast<double>(cover) * values[k];
+    }
+  }
+  return values;
+}
+
+}  // namespace kiloband

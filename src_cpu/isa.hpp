@@ -1,0 +1,18 @@
+// Instruction sets that the CPU backend has code for.
+#pragma once
+
+namespace kiloband {
+
+enum class Isa { kAuto, kSse4, kAvx2, kAvx512 };
+
+/// The name as `--isa` has it: "auto", "sse4", "avx2", "avx512".
+const char* to_string(Isa isa);
+
+/// True if this machine runs code for `isa`; kAuto always does.
+bool is_available(Isa isa);
+
+/// The best instruction set of this machine that the program has code for if `wanted` is kAuto, else
+/// `wanted`. throws DeviceError if the machine lacks it
+Isa resolve_isa(Isa wanted);
+
+}  // namespace kiloband
