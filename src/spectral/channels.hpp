@@ -23,8 +23,8 @@ struct Channel {
 using ChannelList = std::vector<Channel>;
 
 /// Parses "380:780:40" (first edge : last edge : count of equal channels, nm) or "400-410, 450-500".
-/// throws InputError  with the text and the rule it breaks (reversed or empty interval, count 0, not a number,
-///                    more than kMaxChannels, wavelengths that are not finite and positive)
+/// throws InputError  with the text and the rule it breaks (reversed or empty interval, count 0, not a
+///                    number, more than kMaxChannels, wavelengths that are not finite and positive)
 ChannelList parse_channels(std::string_view text);
 
 /// Reads a CSV of "min,max" per line in nm (an optional header line, '#' comments).
