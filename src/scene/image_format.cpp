@@ -83,6 +83,22 @@ bool has_jpeg_end(std::istream& stream) {
   return false;
 }
 
+/// Follows the chunks (u32 big-endian length, name, data, checksum) to the last one, whose name is IEND.
+bool has_png_end(std::istream& stream, uint64_t file_bytes) {
+  constexpr uint64_t kSignatureBytes = 8, kChunkOverhead = 12;
+  stream.clear();
+  std::array<char, 8> head{};
+  for (uint64_t at = kSignatureBytes; at + kChunkOverhead <= file_bytes;) {
+    stream.seekg(static_cast<std::streamoff>(at));
+    if (!stream.read(head.data(), head.size())) return false;
+    uint64_t length = 0;
+    for (int i = 0; i < 4; ++i) length = length * 256 + static_cast<unsigned char>(head[i]);
+    at += kChunkOverhead + length;
+    if (std::string_view(head.data() + 4, 4) == "IEND") return at <= file_bytes;
+  }
+  return false;
+}
+
 }  // namespace
 
 void ImageFile::fail(const std::string& message) const {
@@ -102,6 +118,8 @@ ImageFile examine_image(const std::filesystem::path& path) {
   file.format = recognise(file, path, stream);
   if (file.format == ImageFormat::kJpeg && !has_jpeg_end(stream))
     file.fail("the JPEG data is truncated: no end marker");
+  if (file.format == ImageFormat::kPng && !has_png_end(stream, file.bytes))
+    file.fail("the PNG data is truncated: no end chunk");
   return file;
 }
 

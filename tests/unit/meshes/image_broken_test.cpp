@@ -1,7 +1,7 @@
 // Images that are wrong: exact messages where they are ours, and never a picture from half a file.
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 #include <limits>
 #include <random>
 
@@ -32,6 +32,7 @@ TEST_F(BrokenImages, Files) {
   EXPECT_EQ(error_of_bytes("a.png", "hello"),
             "a.png: not an image of a known format (EXR, HDR, PNG, JPEG, TIFF, BMP, PNM, PFM, TGA)");
   EXPECT_EQ(error_of_bytes("a.jpg", "\xff\xd8\xff\xe0"), "a.jpg: the JPEG data is truncated: no end marker");
+  EXPECT_EQ(error_of_bytes("b.png", "\x89PNG\r\n\x1a\n"), "b.png: the PNG data is truncated: no end chunk");
 }
 
 TEST_F(BrokenImages, Values) {
@@ -134,14 +135,13 @@ TEST_F(BrokenImages, Mutations) {
       // Half of the changes hit the header, where they hurt most.
       for (int change = 0; change < 3; ++change)
         bytes[random() % (random() % 2 ? bytes.size() : 400)] = static_cast<char>(random());
-      const auto start = std::chrono::steady_clock::now();
+      const std::clock_t start = std::clock();
       try {
         const Image image = read_image(folder.write("bad" + path.extension().string(), bytes), false);
         EXPECT_EQ(image.pixels.size(), size_t(image.width) * image.height * image.channels);
       } catch (const InputError&) {
       }
-      EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 10.0)
-          << path << " " << i;
+      EXPECT_LT(cpu_seconds_since(start), 10.0) << path << " " << i;
     }
   }
 }

@@ -35,7 +35,7 @@ TEST(ImageRules, FormatsAreToldByTheirFirstBytes) {
   };
   EXPECT_EQ(format("\x76\x2f\x31\x01..."), ImageFormat::kExr);
   EXPECT_EQ(format("#?RADIANCE\n"), ImageFormat::kHdr);
-  EXPECT_EQ(format("\x89PNG\r\n\x1a\n"), ImageFormat::kPng);
+  EXPECT_EQ(format("\x89PNG\r\n\x1a\n" + std::string("\0\0\0\0IEND\xae\x42\x60\x82", 12)), ImageFormat::kPng);
   EXPECT_EQ(format(std::string("MM\0*", 4)), ImageFormat::kTiff);
   EXPECT_EQ(format("PF\n"), ImageFormat::kPnm);
   EXPECT_EQ(format("whatever"), ImageFormat::kTarga);

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -35,6 +36,8 @@ class TempFolder {
 
   std::filesystem::path path(const std::string& name) const { return path_ / name; }
   std::filesystem::path write(const std::string& name, const std::string& content) const {
+    // Some file systems flush a file that is truncated and written again; a new one costs nothing.
+    std::filesystem::remove(path(name));
     std::ofstream(path(name), std::ios::binary) << content;
     return path(name);
   }
@@ -74,6 +77,11 @@ struct BrokenFile {
   std::string content;
   std::string message;
 };
+
+/// Processor time, which other programs on the machine do not stretch.
+inline double cpu_seconds_since(std::clock_t start) {
+  return double(std::clock() - start) / CLOCKS_PER_SEC;
+}
 
 /// The folder of real data files, if this machine has one.
 inline std::optional<std::filesystem::path> data_folder() {
