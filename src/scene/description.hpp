@@ -1,4 +1,5 @@
-// SceneDescription: the scene as the user wrote it, checked and loaded; what the reader produces and flattening reads.
+// SceneDescription: the scene as the user wrote it, checked and loaded; what the reader produces and
+// flattening reads.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +21,8 @@ namespace kiloband {
 /// Column-major as glm has it; maps local to parent coordinates.
 using Transform = glm::dmat4;
 
-// ---- textures ------------------------------------------------------------------------------------------------------
+// ---- textures
+// ------------------------------------------------------------------------------------------------------
 enum class WrapMode { kRepeat, kMirror, kClamp };
 
 struct BitmapTexture {
@@ -30,7 +32,7 @@ struct BitmapTexture {
   std::shared_ptr<const Image> image;
   bool nearest = false;
   WrapMode wrap = WrapMode::kRepeat;
-  bool raw = false;               // values are taken as they are: spectrally flat; 3 raw channels are averaged
+  bool raw = false;  // values are taken as they are: spectrally flat; 3 raw channels are averaged
   glm::dmat3 to_uv{1.0};
 };
 
@@ -43,9 +45,11 @@ struct CheckerboardTexture {
 };
 
 /// A spectral parameter. For emission a bitmap is upsampled per texel and multiplied by D65 as in Mitsuba.
-using Texture = std::variant<Spectrum, std::shared_ptr<const BitmapTexture>, std::shared_ptr<const CheckerboardTexture>>;
+using Texture =
+    std::variant<Spectrum, std::shared_ptr<const BitmapTexture>, std::shared_ptr<const CheckerboardTexture>>;
 
-// ---- BSDFs ---------------------------------------------------------------------------------------------------------
+// ---- BSDFs
+// ---------------------------------------------------------------------------------------------------------
 enum class Microfacet { kBeckmann, kGgx };
 
 struct Roughness {
@@ -95,12 +99,13 @@ struct MaskBsdf {
 };
 
 struct Bsdf {
-  std::string id;            // for messages; empty if unnamed
+  std::string id;  // for messages; empty if unnamed
   SourcePosition position;
   std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf> model;
 };
 
-// ---- emitters ------------------------------------------------------------------------------------------------------
+// ---- emitters
+// ------------------------------------------------------------------------------------------------------
 struct AreaEmitter {
   Texture radiance;  // W m^-2 sr^-1 nm^-1, on the normal side
 };
@@ -118,13 +123,13 @@ struct PointEmitter {
   glm::dvec3 position{0};
 };
 struct SpotEmitter {
-  Spectrum intensity;  // on the axis
+  Spectrum intensity;       // on the axis
   double cutoff_angle = 0;  // rad
   double beam_width = 0;    // rad
   Transform to_world{1.0};
 };
 struct DirectionalEmitter {
-  Spectrum irradiance;  // W m^-2 nm^-1 on a plane perpendicular to direction
+  Spectrum irradiance;            // W m^-2 nm^-1 on a plane perpendicular to direction
   glm::dvec3 direction{0, 0, 1};  // of propagation, unit, world
 };
 
@@ -135,7 +140,8 @@ struct Emitter {
   std::variant<ConstantEmitter, EnvmapEmitter, PointEmitter, SpotEmitter, DirectionalEmitter> model;
 };
 
-// ---- shapes --------------------------------------------------------------------------------------------------------
+// ---- shapes
+// --------------------------------------------------------------------------------------------------------
 /// Vertices in local coordinates.
 struct MeshShape {
   std::shared_ptr<const Mesh> mesh;
@@ -150,26 +156,29 @@ struct Shape {
   SourcePosition position;
   Transform to_world{1.0};
   bool flip_normals = false;
-  std::shared_ptr<const Bsdf> bsdf;        // never null: the default is filled in
+  std::shared_ptr<const Bsdf> bsdf;  // never null: the default is filled in
   std::optional<AreaEmitter> emitter;
   SourcePosition emitter_position;
   std::variant<MeshShape, SphereShape, DiskShape, CylinderShape> geometry;
 };
 
-// ---- sensor, film, integrator --------------------------------------------------------------------------------------
+// ---- sensor, film, integrator
+// --------------------------------------------------------------------------------------
 enum class FilterType { kBox, kTent, kGaussian };
 
 struct Film {
   uint32_t width = 768;
   uint32_t height = 576;
-  uint32_t crop_x = 0, crop_y = 0;          // offset of the crop window, pixels
+  uint32_t crop_x = 0, crop_y = 0;           // offset of the crop window, pixels
   uint32_t crop_width = 0, crop_height = 0;  // size of the rendered image; the reader fills in the default
   FilterType filter = FilterType::kBox;
-  double filter_radius = 0.5;   // pixels
-  double filter_stddev = 0.5;   // gaussian
+  double filter_radius = 0.5;  // pixels
+  double filter_stddev = 0.5;  // gaussian
   /// bandfilm's channels, or a specfilm's constant responses as channels; empty: the program's default.
   ChannelList channels;
   /// specfilm responses that are not constant inside their range (or not 1): named, summed from sub-channels.
+  /// These are the channels without a name, after the named ones: between all knots of all responses, at most
+  /// 5 nm wide.
   std::vector<std::pair<std::string, Spectrum>> responses;
 };
 

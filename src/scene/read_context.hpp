@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,7 @@ namespace kiloband {
 struct ReadContext {
   SceneTree& tree;
   const DiagnosticSink& sink;
+  std::optional<std::pair<uint32_t, uint32_t>> film_size;     // see ReadOptions
   std::map<const Node*, std::shared_ptr<const Bsdf>> bsdfs;
   std::map<const Node*, Texture> textures;                    // bitmaps and checkerboards
   std::map<std::string, std::shared_ptr<const Mesh>> meshes;  // by file and options

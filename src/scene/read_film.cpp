@@ -1,6 +1,7 @@
 // <film type="hdrfilm | specfilm | bandfilm"> and <rfilter>.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
@@ -21,13 +22,20 @@ uint32_t side(const ObjectReader& object, std::string_view name, int64_t fallbac
 }
 
 /// Size and crop window, which must lie inside the film.
-void read_size(const ObjectReader& object, Film& film) {
+void read_size(const ReadContext& context, const ObjectReader& object, Film& film) {
   film.width = side(object, "width", 768, 1, kMaxSide);
   film.height = side(object, "height", 576, 1, kMaxSide);
   film.crop_x = side(object, "crop_offset_x", 0, 0, film.width - 1);
   film.crop_y = side(object, "crop_offset_y", 0, 0, film.height - 1);
   film.crop_width = side(object, "crop_width", film.width - film.crop_x, 1, film.width - film.crop_x);
   film.crop_height = side(object, "crop_height", film.height - film.crop_y, 1, film.height - film.crop_y);
+  if (!context.film_size) return;
+  if (film.crop_width != film.width || film.crop_height != film.height) {
+    object.fail_here(object.label() + ": the film has a crop window: another size cannot be asked for");
+  }
+  std::tie(film.width, film.height) = *context.film_size;
+  film.crop_width = film.width;
+  film.crop_height = film.height;
 }
 
 /// box: no parameters; tent: radius 1; gaussian: stddev 0.5, cut at 4 standard deviations. Default: gaussian.
@@ -147,7 +155,7 @@ Film read_film(ReadContext& context, Node& node) {
   if (node.type != "hdrfilm" && node.type != "specfilm" && node.type != "bandfilm") {
     object.refuse_type({"hdrfilm", "specfilm", "bandfilm"});
   }
-  read_size(object, film);
+  read_size(context, object, film);
   read_filter(context, object, film);
   if (node.type != "bandfilm") accept_output_parameters(context, object);
   if (node.type == "specfilm") read_spectra(context, object, film);

@@ -11,8 +11,8 @@ constexpr uint64_t kMaxSamples = uint64_t{1} << 32;  // per pixel
 /// Reads the objects directly under <scene>.
 class SceneReader {
  public:
-  SceneReader(SceneTree& tree, const DiagnosticSink& sink)
-      : tree_(tree), context_{tree, sink, {}, {}, {}, {}} {}
+  SceneReader(SceneTree& tree, const ReadOptions& options)
+      : tree_(tree), context_{tree, options.sink, options.film_size, {}, {}, {}, {}} {}
 
   SceneDescription run() {
     const ObjectReader scene(*tree_.root);
@@ -128,7 +128,7 @@ void accept_obsolete(const ReadContext& context, const ObjectReader& object,
 SceneDescription read_scene_text(std::string text, const std::string& name,
                                  const std::filesystem::path& directory, const ReadOptions& options) {
   SceneTree tree = build_tree(std::move(text), name, directory, options.defines);
-  SceneDescription scene = SceneReader(tree, options.sink).run();
+  SceneDescription scene = SceneReader(tree, options).run();
   scene.file = name;
   return scene;
 }

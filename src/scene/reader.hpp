@@ -2,7 +2,9 @@
 // contract.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +17,8 @@ namespace kiloband {
 struct ReadOptions {
   std::vector<std::pair<std::string, std::string>> defines;  // -D name=value
   DiagnosticSink sink;
+  /// Width and height in pixels that replace the film's (--size); InputError if the film has a crop window.
+  std::optional<std::pair<uint32_t, uint32_t>> film_size;
 };
 
 /// Reads, loads everything that the scene names (meshes, images, spectra) and checks the whole.

@@ -90,12 +90,6 @@ std::vector<double> parse_numbers(std::string_view text, const Place& place, con
   return numbers;
 }
 
-std::string format_number(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return {buffer, result.ptr};
-}
-
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {
   if (word.size() > 100) return {};
   const std::size_t size = word.size();

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/text.hpp"
 #include "scene/xml_document.hpp"
 
 namespace kiloband {
@@ -20,9 +21,6 @@ double parse_number(std::string_view text, const Place& place, const std::string
 int64_t parse_integer(std::string_view text, const Place& place, const std::string& context = {});
 bool parse_boolean(std::string_view text, const Place& place, const std::string& context = {});
 std::vector<double> parse_numbers(std::string_view text, const Place& place, const std::string& context = {});
-
-/// Shortest decimal that reads back as the same double.
-std::string format_number(double value);
 
 /// "; did you mean 'x'?" for the candidate nearest in edit distance (at most a third of the word's length; 2
 /// for 4 to 5 letters, 1 for 2 to 3, never more than 3); empty if none is near. Ties: the first.

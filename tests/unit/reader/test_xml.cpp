@@ -109,6 +109,36 @@ TEST(SceneXml, ObsoleteParametersOfOldFilesAreReported) {
   EXPECT_EQ(error_of(scene(body)), "scene.xml:3:37: error: hdrfilm film: unknown parameter 'banner'");
 }
 
+TEST(SceneXml, DefinesMustBeKnown) {
+  const std::string text = complete_scene(R"(<default name="spp" value="4"/>)");
+  EXPECT_EQ(error_of(text, "/nonexistent", {{"sppp", "8"}}),
+            "scene.xml: error: -D sppp=8: the scene has no parameter '$sppp'; did you mean 'spp'?");
+  EXPECT_EQ(error_of(text, "/nonexistent", {{"5", "8"}}), "-D 5=8: '5' is not a parameter name");
+  EXPECT_EQ(error_of(text, "/nonexistent", {{"spp", "8"}}), "accepted");
+}
+
+TEST(SceneXml, MissingSceneFile) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "none.xml").string();
+  try {
+    read_scene(file);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()), file + ": error: file not found");
+  }
+}
+
+TEST(SceneXml, IncludesThatMultiplyAreStopped) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 40; ++i) {
+    const std::string next = R"(<include filename="f)" + std::to_string(i + 1) + R"(.xml"/>)";
+    folder.write("f" + std::to_string(i) + ".xml", scene(next + next));
+  }
+  folder.write("f40.xml", scene(""));
+  EXPECT_EQ(error_of(complete_scene(R"(<include filename="f0.xml"/>)"), folder.path()),
+            "f39.xml:2:49: error: more than 1000 includes");
+}
+
 TEST(SceneXml, UnusedAreaEmitterIsReported) {
   std::vector<std::string> diagnostics;
   read(complete_scene(R"(<emitter type="area" id="lamp"/>)"), "/nonexistent", {}, &diagnostics);
