@@ -1,0 +1,41 @@
+#include "film/cube_io.hpp"
+
+#include "film/cube_layout.hpp"
+#include "film/cube_text.hpp"
+
+namespace kiloband {
+
+std::unique_ptr<CubeWriter> create_cube_writer_from(const std::filesystem::path& file, const CubeInfo& info,
+                                                    uint32_t rows_per_strip, Quantity given) {
+  check_cube_info(info, file.string());
+  const std::string extension = to_lower(file.extension().string());
+  if (extension == ".exr") return create_exr_writer(file, info, rows_per_strip, given);
+  if (extension == ".hdr") return create_envi_writer(file, info, rows_per_strip, given);
+  throw InputError("'" + file.string() +
+                   "': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)");
+}
+
+std::unique_ptr<CubeWriter> create_cube_writer(const std::filesystem::path& file, const CubeInfo& info,
+                                               uint32_t rows_per_strip) {
+  return create_cube_writer_from(file, info, rows_per_strip, Quantity::kIntegral);
+}
+
+std::unique_ptr<CubeReader> open_cube(const std::filesystem::path& file, const DiagnosticSink& sink) {
+  const std::string extension = to_lower(file.extension().string());
+  if (extension == ".exr") return open_exr_cube(file, sink);
+  if (extension == ".hdr" || extension == ".img") return open_envi_cube(file, sink);
+  throw InputError("'" + file.string() +
+                   "': cannot tell the format of a cube: must end in .exr, .hdr or .img (ENVI)");
+}
+
+std::vector<std::string> unique_band_names(const std::vector<Band>& bands) {
+  std::vector<std::string> names;
+  names.reserve(bands.size());
+  for (const Band& band : bands) {
+    const Channel& c = band.channel;
+    names.push_back(c.name.empty() ? format_short(c.centre_nm()) + "nm" : c.name);
+  }
+  return make_unique_names(std::move(names));
+}
+
+}  // namespace kiloband

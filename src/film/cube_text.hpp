@@ -1,0 +1,36 @@
+// Numbers and names as cube headers spell them: locale-free, exact, and safe against foreign bytes.
+#pragma once
+
+#include "base/text.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kiloband {
+/// With at most six decimals, none that are zero: "550", "384.878049".
+std::string format_short(double value);
+
+/// The whole text as a number, blanks around it allowed; nothing if it is not one.
+std::optional<double> parse_number(std::string_view text);
+std::optional<uint64_t> parse_unsigned(std::string_view text);
+
+std::string_view trim(std::string_view text);
+std::string to_lower(std::string_view text);
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// Replaces control characters, '%' and those in `special` by %XX, and blanks at both ends; decode_text
+/// undoes it.
+std::string encode_text(std::string_view text, std::string_view special);
+std::string decode_text(std::string_view text);
+
+/// What is unsafe to print is shown as \xXX and long text is cut: for quoting foreign bytes in messages.
+std::string printable(std::string_view text);
+
+/// Makes names unique: the second of equal ones gets "_2", the third "_3" ... in order. A suffixed name that
+/// is already another's name is passed over.
+std::vector<std::string> make_unique_names(std::vector<std::string> names);
+
+}  // namespace kiloband
