@@ -21,8 +21,7 @@ namespace kiloband {
 /// Column-major as glm has it; maps local to parent coordinates.
 using Transform = glm::dmat4;
 
-// ---- textures
-// ------------------------------------------------------------------------------------------------------
+// ---- textures ----
 enum class WrapMode { kRepeat, kMirror, kClamp };
 
 struct BitmapTexture {
@@ -48,8 +47,7 @@ struct CheckerboardTexture {
 using Texture =
     std::variant<Spectrum, std::shared_ptr<const BitmapTexture>, std::shared_ptr<const CheckerboardTexture>>;
 
-// ---- BSDFs
-// ---------------------------------------------------------------------------------------------------------
+// ---- BSDFs ----
 enum class Microfacet { kBeckmann, kGgx };
 
 struct Roughness {
@@ -104,8 +102,7 @@ struct Bsdf {
   std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf> model;
 };
 
-// ---- emitters
-// ------------------------------------------------------------------------------------------------------
+// ---- emitters ----
 struct AreaEmitter {
   Texture radiance;  // W m^-2 sr^-1 nm^-1, on the normal side
 };
@@ -140,8 +137,7 @@ struct Emitter {
   std::variant<ConstantEmitter, EnvmapEmitter, PointEmitter, SpotEmitter, DirectionalEmitter> model;
 };
 
-// ---- shapes
-// --------------------------------------------------------------------------------------------------------
+// ---- shapes ----
 /// Vertices in local coordinates.
 struct MeshShape {
   std::shared_ptr<const Mesh> mesh;
@@ -162,8 +158,7 @@ struct Shape {
   std::variant<MeshShape, SphereShape, DiskShape, CylinderShape> geometry;
 };
 
-// ---- sensor, film, integrator
-// --------------------------------------------------------------------------------------
+// ---- sensor, film, integrator ----
 enum class FilterType { kBox, kTent, kGaussian };
 
 struct Film {

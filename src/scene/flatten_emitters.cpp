@@ -67,7 +67,7 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
   KbEmitter record{};
   const std::string name = describe(emitter);
   const double disc = kPi * out_.scene_radius * out_.scene_radius;
-  const auto use = [&](const char* what) { return SpectrumUse{name + ": " + what, emitter.position, true}; };
+  const auto use = [&](const char* what) { return SpectrumSource{name + ": " + what, emitter.position, true}; };
   set_transforms(record, Transform{1.0});
   if (const auto* constant = std::get_if<ConstantEmitter>(&emitter.model)) {
     record.type = KB_EMITTER_CONSTANT;
@@ -110,7 +110,7 @@ void Flattener::add_emitters() {
   }
 }
 
-void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumUse& use) {
+void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumSource& use) {
   record.type = KB_EMITTER_ENVMAP;
   set_transforms(record, emitter.to_world);
   auto bitmap_texture = std::make_shared<BitmapTexture>();

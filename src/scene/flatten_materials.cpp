@@ -52,7 +52,7 @@ KbMaterial Flattener::make(const DiffuseBsdf& model, const std::string& name, co
 }
 
 /// Optical constants must cover every channel: an index of 0 outside the data would be no material at all.
-static void require_data(const Spectrum& spectrum, const FlatScene& scene, const SpectrumUse& use) {
+static void require_data(const Spectrum& spectrum, const FlatScene& scene, const SpectrumSource& use) {
   const auto data = spectrum.data_range();
   if (!data || spectrum.extrapolates()) return;
   for (const ChannelList* list : {&scene.channels, &scene.guide}) {
@@ -74,8 +74,8 @@ KbMaterial Flattener::make(const ConductorBsdf& model, const std::string& name, 
   if (mirror) {
     record.flags |= KB_MATERIAL_PERFECT_MIRROR;
   } else {
-    const SpectrumUse eta_use{name + ": eta", position, false};
-    const SpectrumUse k_use{name + ": k", position, false};
+    const SpectrumSource eta_use{name + ": eta", position, false};
+    const SpectrumSource k_use{name + ": k", position, false};
     require_data(model.eta, out_, eta_use);
     require_data(model.k, out_, k_use);
     record.eta_row = spectra_.row(model.eta, eta_use);
@@ -92,8 +92,8 @@ KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
   record.ref_b = reference(model.specular_transmittance, {name + ": specular_transmittance", position, false});
   record.bound_a = static_cast<float>(texture_bound(model.specular_reflectance));
   record.bound_b = static_cast<float>(texture_bound(model.specular_transmittance));
-  const SpectrumUse int_use{name + ": int_ior", position, false};
-  const SpectrumUse ext_use{name + ": ext_ior", position, false};
+  const SpectrumSource int_use{name + ": int_ior", position, false};
+  const SpectrumSource ext_use{name + ": ext_ior", position, false};
   require_data(model.int_ior, out_, int_use);
   require_data(model.ext_ior, out_, ext_use);
   const double ext = spectra_.guide_mean(model.ext_ior);
@@ -151,7 +151,7 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf) {
   return index;
 }
 
-void Flattener::set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumUse& use) {
+void Flattener::set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumSource& use) {
   out_.features.mask = true;
   if (const auto* spectrum = std::get_if<Spectrum>(&mask.opacity)) {
     record.opacity = static_cast<float>(spectra_.guide_mean(*spectrum));

@@ -40,7 +40,7 @@ uint32_t Flattener::d65_row() {
   return d65_row_;
 }
 
-uint32_t Flattener::reference(const Texture& texture, const SpectrumUse& use) {
+uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return KB_REF_SPECTRUM | spectra_.row(*spectrum, use);
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
     return KB_REF_BITMAP | bitmap(*image, use.emission);
@@ -81,7 +81,7 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
   return place->second;
 }
 
-uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumUse& use) {
+uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use) {
   const auto [place, is_new] = checkerboards_.try_emplace(texture.get(), static_cast<uint32_t>(out_.checkerboards.size()));
   if (!is_new) return place->second;
   out_.features.checkerboard = true;

@@ -17,9 +17,9 @@ class Flattener {
 
  private:
   // flatten_textures.cpp
-  uint32_t reference(const Texture& texture, const SpectrumUse& use);
+  uint32_t reference(const Texture& texture, const SpectrumSource& use);
   uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, bool emission);
-  uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumUse& use);
+  uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use);
   double texture_mean(const Texture& texture);   // over the guide bands; a bitmap's by its texels' values
   double texture_bound(const Texture& texture);  // over guide bands and channels
   uint32_t d65_row();
@@ -31,7 +31,7 @@ class Flattener {
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
-  void set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumUse& use);
+  void set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumSource& use);
 
   // flatten_shapes.cpp
   void add_shapes();
@@ -42,7 +42,7 @@ class Flattener {
   // flatten_emitters.cpp
   void add_emitters();
   void add_area_emitter(uint32_t shape_index);
-  void add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumUse& use);
+  void add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumSource& use);
   KbEmitter make_emitter(const Emitter& emitter);
   void select_emitters();
   void set_channel_scales();

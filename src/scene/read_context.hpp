@@ -16,7 +16,7 @@ namespace kiloband {
 struct ReadContext {
   SceneTree& tree;
   const DiagnosticSink& sink;
-  std::optional<std::pair<uint32_t, uint32_t>> film_size;     // see ReadOptions
+  std::optional<std::pair<uint32_t, uint32_t>> film_size;  // see ReadOptions
   std::map<const Node*, std::shared_ptr<const Bsdf>> bsdfs;
   std::map<const Node*, Texture> textures;                    // bitmaps and checkerboards
   std::map<std::string, std::shared_ptr<const Mesh>> meshes;  // by file and options
@@ -69,6 +69,8 @@ AreaEmitter read_area_emitter(ReadContext& context, Node& node);
 Emitter read_emitter(ReadContext& context, Node& node);
 Sensor read_sensor(ReadContext& context, Node& node);
 Film read_film(ReadContext& context, Node& node);
+/// What a sensor without <film> has.
+Film default_film(const ReadContext& context);
 /// An integrator and how many of our samples one of the scene's samples stands for (`direct` splits each).
 std::pair<Integrator, uint64_t> read_integrator(ReadContext& context, Node& node);
 /// The samples per pixel of a <sampler>.

@@ -21,6 +21,18 @@ uint32_t side(const ObjectReader& object, std::string_view name, int64_t fallbac
   return static_cast<uint32_t>(value);
 }
 
+/// ReadOptions::film_size in place of the film's: the whole image, which a crop window would contradict.
+void replace_size(const ReadContext& context, Film& film) {
+  if (!context.film_size) return;
+  const auto [width, height] = *context.film_size;
+  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
+    throw InputError("film size " + std::to_string(width) + "x" + std::to_string(height) +
+                     ": each side must be from 1 to " + std::to_string(kMaxSide));
+  }
+  film.width = film.crop_width = width;
+  film.height = film.crop_height = height;
+}
+
 /// Size and crop window, which must lie inside the film.
 void read_size(const ReadContext& context, const ObjectReader& object, Film& film) {
   film.width = side(object, "width", 768, 1, kMaxSide);
@@ -31,18 +43,20 @@ void read_size(const ReadContext& context, const ObjectReader& object, Film& fil
   film.crop_height = side(object, "crop_height", film.height - film.crop_y, 1, film.height - film.crop_y);
   if (!context.film_size) return;
   if (film.crop_width != film.width || film.crop_height != film.height) {
-    object.fail_here(object.label() + ": the film has a crop window: another size cannot be asked for");
+    object.fail_here("a film with a crop window cannot be given another size");
   }
-  std::tie(film.width, film.height) = *context.film_size;
-  film.crop_width = film.width;
-  film.crop_height = film.height;
+  replace_size(context, film);
 }
 
-/// box: no parameters; tent: radius 1; gaussian: stddev 0.5, cut at 4 standard deviations. Default: gaussian.
-void read_filter(ReadContext&, const ObjectReader& film_object, Film& film) {
+void set_default_filter(Film& film) {
   film.filter = FilterType::kGaussian;
   film.filter_stddev = 0.5;
   film.filter_radius = 4 * film.filter_stddev;
+}
+
+/// box: no parameters; tent: radius 1; gaussian: stddev 0.5, cut at 4 standard deviations. Default: gaussian.
+void read_filter(const ObjectReader& film_object, Film& film) {
+  set_default_filter(film);
   Node* node = film_object.nested_one("rfilter");
   if (!node) return;
   const ObjectReader object(*node);
@@ -149,6 +163,15 @@ void read_bands(ReadContext& context, const ObjectReader& object, Film& film) {
 
 }  // namespace
 
+Film default_film(const ReadContext& context) {
+  Film film;
+  film.crop_width = film.width;
+  film.crop_height = film.height;
+  set_default_filter(film);
+  replace_size(context, film);
+  return film;
+}
+
 Film read_film(ReadContext& context, Node& node) {
   const ObjectReader object(node);
   Film film;
@@ -156,7 +179,7 @@ Film read_film(ReadContext& context, Node& node) {
     object.refuse_type({"hdrfilm", "specfilm", "bandfilm"});
   }
   read_size(context, object, film);
-  read_filter(context, object, film);
+  read_filter(object, film);
   if (node.type != "bandfilm") accept_output_parameters(context, object);
   if (node.type == "specfilm") read_spectra(context, object, film);
   if (node.type == "bandfilm") read_bands(context, object, film);

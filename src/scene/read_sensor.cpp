@@ -74,14 +74,8 @@ void read_common(ReadContext& context, const ObjectReader& object, Sensor& senso
   const double open = object.get_float("shutter_open", 0);  // nothing moves: the times have no effect
   const double close = object.get_float("shutter_close", 0);
   object.check(close >= open, "shutter_close", close, "must not be before shutter_open");
-  if (Node* film = object.nested_one("film")) {
-    sensor.film = read_film(context, *film);
-  } else {
-    sensor.film.filter = FilterType::kGaussian;
-    sensor.film.filter_radius = 4 * sensor.film.filter_stddev;
-    sensor.film.crop_width = sensor.film.width;
-    sensor.film.crop_height = sensor.film.height;
-  }
+  Node* film = object.nested_one("film");
+  sensor.film = film ? read_film(context, *film) : default_film(context);
   if (Node* sampler = object.nested_one("sampler")) sensor.sample_count = read_sampler(context, *sampler);
 }
 

@@ -22,7 +22,7 @@ Channel joint_hull(const ChannelList& a, const ChannelList& b) {
 SpectrumTableBuilder::SpectrumTableBuilder(FlatScene& scene, const DiagnosticSink& sink)
     : scene_(scene), sink_(sink), range_(joint_hull(scene.channels, scene.guide)) {}
 
-uint32_t SpectrumTableBuilder::row(const Spectrum& spectrum, const SpectrumUse& use) {
+uint32_t SpectrumTableBuilder::row(const Spectrum& spectrum, const SpectrumSource& use) {
   const std::pair<double, bool> key{spectrum(range_.centre_nm()), use.emission};
   if (spectrum.is_constant()) {
     if (const auto found = constants_.find(key); found != constants_.end()) return found->second;
@@ -37,7 +37,7 @@ uint32_t SpectrumTableBuilder::row(const Spectrum& spectrum, const SpectrumUse& 
   return index;
 }
 
-SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const SpectrumUse& use) const {
+SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const SpectrumSource& use) const {
   SpectrumRow row;
   row.name = use.name;
   row.is_emission = use.emission;
@@ -65,7 +65,7 @@ SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const Spect
   return row;
 }
 
-void SpectrumTableBuilder::check_range(const Spectrum& spectrum, const SpectrumUse& use) const {
+void SpectrumTableBuilder::check_range(const Spectrum& spectrum, const SpectrumSource& use) const {
   const auto data = spectrum.data_range();
   if (!data) return;
   constexpr double kSlackNm = 1e-6;

@@ -9,7 +9,7 @@
 namespace kiloband {
 
 /// Where a spectrum stands in the scene, for rows' names and messages.
-struct SpectrumUse {
+struct SpectrumSource {
   std::string name;         // "bsdf 'wall': reflectance"
   SourcePosition position;
   bool emission = false;
@@ -21,7 +21,7 @@ class SpectrumTableBuilder {
 
   /// Row index of the spectrum; equal constants of the same kind share a row.
   /// throws InputError if the table would pass 65535 rows or the spectrum cannot be tabulated within its bound
-  uint32_t row(const Spectrum& spectrum, const SpectrumUse& use);
+  uint32_t row(const Spectrum& spectrum, const SpectrumSource& use);
 
   /// Mean over the guide bands (each band one vote).
   double guide_mean(const Spectrum& spectrum) const;
@@ -29,8 +29,8 @@ class SpectrumTableBuilder {
   double bound(const Spectrum& spectrum) const;
 
  private:
-  void check_range(const Spectrum& spectrum, const SpectrumUse& use) const;
-  SpectrumRow make_row(const Spectrum& spectrum, const SpectrumUse& use) const;
+  void check_range(const Spectrum& spectrum, const SpectrumSource& use) const;
+  SpectrumRow make_row(const Spectrum& spectrum, const SpectrumSource& use) const;
 
   FlatScene& scene_;
   const DiagnosticSink& sink_;

@@ -79,6 +79,31 @@ TEST(SceneFilm, DefaultsAndCrop) {
   EXPECT_EQ(crop.crop_height, 5u);
 }
 
+TEST(SceneFilm, SizeFromOptionsReplacesTheFilms) {
+  const auto read_sized = [](const std::string& film, uint32_t width, uint32_t height) {
+    ReadOptions options;
+    options.film_size = {width, height};
+    const std::string sensor =
+        R"(<sensor type="perspective"><float name="fov" value="40"/>)" + film + "</sensor>";
+    return read_scene_text(scene(sensor + kLight), "scene.xml", "/nonexistent", options).sensor;
+  };
+  for (const char* film : {"", R"(<film type="hdrfilm"><integer name="width" value="9"/></film>)"}) {
+    const Film result = read_sized(film, 30, 20).film;
+    EXPECT_EQ(result.width, 30u);
+    EXPECT_EQ(result.crop_width, 30u);
+    EXPECT_EQ(result.height, 20u);
+    EXPECT_EQ(result.crop_height, 20u);
+  }
+  // The angle of view follows the new shape: fov_axis y on a film twice as wide.
+  const Sensor wide = read_sized(R"(<string name="fov_axis" value="y"/>)", 200, 100);
+  EXPECT_NEAR(std::get<PerspectiveSensor>(wide.model).fov_x,
+              2 * std::atan(2 * std::tan(std::numbers::pi / 9)), 1e-12);
+  const std::string crop = R"(<film type="hdrfilm"><integer name="crop_width" value="9"/></film>)";
+  EXPECT_THROW(read_sized(crop, 30, 20), InputError);
+  EXPECT_THROW(read_sized("", 0, 20), InputError);
+  EXPECT_THROW(read_sized("", 30, 65536), InputError);
+}
+
 TEST(SceneFilm, Filters) {
   EXPECT_EQ(film_of(R"(<film type="hdrfilm"><rfilter type="box"/></film>)").filter, FilterType::kBox);
   EXPECT_EQ(film_of(R"(<film type="hdrfilm"><rfilter type="box"/></film>)").filter_radius, 0.5);
