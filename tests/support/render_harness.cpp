@@ -1,0 +1,121 @@
+#include "tests/support/render_harness.hpp"
+
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "scene/reader.hpp"
+#include "src_cpu/cpu_backend.hpp"
+
+namespace kiloband::test {
+namespace {
+
+Isa isa_of(const std::string& name) {
+  if (name == "sse4") return Isa::kSse4;
+  if (name == "avx2") return Isa::kAvx2;
+  if (name == "avx512") return Isa::kAvx512;
+  return Isa::kAuto;
+}
+
+DerivedChannels derived_of(const RenderSpec& spec, const ChannelList& channels) {
+  DerivedChannels derived;
+  const Channel range = hull(channels);
+  for (const auto& [name, response] : spec.responses) {
+    derived.names.push_back(name);
+    derived.responses.push_back(resample(response, range.min_nm, range.max_nm));
+  }
+  return derived;
+}
+
+void append(const ReplicateMoments& moments, std::size_t unit, const std::vector<double>& scale, std::vector<double>& mean,
+            std::vector<double>& variance) {
+  std::vector<float> v(moments.channels());
+  moments.variance_of_mean(unit, v);
+  for (std::size_t c = 0; c < moments.channels(); ++c) {
+    mean.push_back(moments.mean(unit)[c] * scale[c]);
+    variance.push_back(double{v[c]} * scale[c] * scale[c]);
+  }
+}
+
+void collect(const SpectralFilm& film, const std::vector<double>& scale, RenderResult& result) {
+  const std::size_t row_size = std::size_t{result.width} * result.channels;
+  std::vector<float> mean(row_size), variance(row_size);
+  for (uint32_t y = 0; y < result.height; ++y) {
+    film.row(y, mean, variance);
+    for (std::size_t i = 0; i < row_size; ++i) {
+      const double s = scale[i % result.channels];
+      result.mean.push_back(mean[i] * s);
+      result.variance.push_back(double{variance[i]} * s * s);
+    }
+  }
+  append(film.image_moments(), 0, scale, result.image_mean, result.image_variance);
+  if (film.options().held) return;
+  for (std::size_t tile = 0; tile < film.tile_moments().units(); ++tile) {
+    if (film.tile_moments().samples(tile) > 0) append(film.tile_moments(), tile, scale, result.tile_mean, result.tile_variance);
+  }
+}
+
+}  // namespace
+
+RenderResult render(const RenderSpec& spec) {
+  RenderResult result;
+  const DiagnosticSink sink = [&](const Diagnostic& d) { result.diagnostics.push_back(d.to_string()); };
+  ReadOptions read;
+  read.sink = sink;
+  const SceneDescription description = read_scene_text(spec.xml, "test.xml", spec.directory, read);
+  const ChannelList channels = parse_channels(spec.bands);
+  const ChannelList guide = spec.guide.empty() ? channels : parse_channels(spec.guide);
+  result.scene = flatten(description, {channels, guide, sink});
+  const DerivedChannels derived = derived_of(spec, channels);
+
+  const ReplicatePlan plan = ReplicatePlan::deal(spec.spp, spec.sampling.replicates);
+  SamplingSettings sampling = spec.sampling;
+  sampling.replicates = result.replicates = plan.replicates;
+  const auto backend = make_cpu_backend(result.scene, derived, sampling, {isa_of(spec.isa), spec.threads});
+
+  const Film& f = result.scene.film;
+  result.width = f.crop_width;
+  result.height = f.crop_height;
+  result.channels = channels.size() + derived.names.size();
+  SpectralFilm film({f.crop_x, f.crop_y, f.crop_width, f.crop_height}, {result.channels, plan.replicates, true, spec.held});
+  std::vector<uint32_t> blocks(film.blocks().size());
+  std::iota(blocks.begin(), blocks.end(), 0u);
+  const std::atomic<bool> stop{false};
+  for (uint32_t r = 0; r < plan.replicates; ++r) {
+    backend->render(film, {r, 0, static_cast<uint32_t>(plan.size(r))}, blocks, stop, {});
+  }
+  collect(film, backend->film_scale(), result);
+  result.invalid_samples = backend->counters().invalid_samples;
+  result.vertices = backend->counters().vertices;
+  result.paths = backend->counters().paths;
+  return result;
+}
+
+std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees, uint32_t size) {
+  const std::string n = std::to_string(size);
+  return "<sensor type=\"perspective\"><float name=\"fov\" value=\"" + std::to_string(fov_degrees) +
+         "\"/><float name=\"near_clip\" value=\"1e-4\"/><transform name=\"to_world\"><lookat origin=\"" + origin +
+         "\" target=\"" + target + "\" up=\"0, 1, 0\"/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"" + n +
+         "\"/><integer name=\"height\" value=\"" + n + "\"/><rfilter type=\"box\"/></film></sensor>";
+}
+
+std::filesystem::path data_directory() {
+  if (const char* named = std::getenv("KILOBAND_DATA")) return named;
+  const std::filesystem::path beside = std::filesystem::path(KILOBAND_SOURCE_DIR) / ".." / "shared" / "data";
+  return std::filesystem::exists(beside) ? beside : std::filesystem::path();
+}
+
+double z_score(double value, double expected, double variance) {
+  if (variance > 0) return std::abs(value - expected) / std::sqrt(variance);
+  return std::abs(value - expected) <= 1e-5 * std::abs(expected) ? 0 : std::numeric_limits<double>::infinity();
+}
+
+double critical_t(double alpha, std::size_t tests, uint32_t replicates) {
+  const double one = 1 - std::pow(1 - alpha, 1.0 / static_cast<double>(tests));
+  return boost::math::quantile(boost::math::complement(boost::math::students_t(replicates - 1.0), one / 2));
+}
+
+}  // namespace kiloband::test
