@@ -16,9 +16,6 @@ namespace kiloband {
 namespace {
 
 constexpr std::size_t kReportedInvalid = 16;
-/// Scenes with more triangles send their secondary rays one by one: incoherent packets lose there (measured, see
-/// validation/README.md).
-constexpr std::size_t kPacketTriangles = 5000;
 
 const char* embree_isa(Isa isa) {
   switch (isa) {
@@ -58,8 +55,7 @@ class CpuBackend final : public Backend {
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
     tracer_scene_.flat = &scene_;
     tracer_scene_.embree = embree_.get();
-    const bool small = scene_.triangles.size() / 3 <= kPacketTriangles;
-    tracer_scene_.secondary_mode = small ? RayMode::kPackets : RayMode::kSingle;
+    tracer_scene_.secondary_mode = choose_ray_mode(scene_);
     for (int i = 0; i < threads_; ++i) {
       workers_.push_back(std::make_unique<BlockWorker>(tracer_scene_, derived_, settings_, isa_));
     }

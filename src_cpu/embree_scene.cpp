@@ -126,12 +126,18 @@ void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
   }
 }
 
+constexpr std::size_t kPacketTriangles = 5000;
+
 [[noreturn]] void fail(RTCDevice device, const char* what) {
   const RTCError code = rtcGetDeviceError(device);
   throw DeviceError(fmt::format("Embree: {} failed (error {})", what, static_cast<int>(code)));
 }
 
 }  // namespace
+
+RayMode choose_ray_mode(const FlatScene& scene) {
+  return scene.triangles.size() / 3 <= kPacketTriangles ? RayMode::kPackets : RayMode::kSingle;
+}
 
 void RayQueue::reserve(std::size_t count) {
   const std::size_t padded = (count + kPacketSize - 1) / kPacketSize * kPacketSize;
@@ -305,6 +311,26 @@ void EmbreeScene::occlusions(const RayQueue& rays, std::vector<uint8_t>& occlude
     occluded16(valid, impl_->scene, query, packet);
     for (std::size_t lane = 0; lane < kPacketSize; ++lane) occluded[first + lane] = packet.tfar[lane] < 0;
   }
+}
+
+std::size_t EmbreeScene::bare_queries(const RayQueue& closest, const RayQueue& shadow,
+                                      std::span<const uint32_t> order) const {
+  Query query(kIncoherent);
+  std::size_t hits = 0;
+  for (const uint32_t code : order) {
+    if (code & 1) {
+      RTCRay ray = load_ray(shadow, code >> 1);
+      occluded1(impl_->scene, query, ray);
+      hits += ray.tfar < 0;
+    } else {
+      RTCRayHit ray{};
+      ray.ray = load_ray(closest, code >> 1);
+      ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      intersect1(impl_->scene, query, ray);
+      hits += ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+  return hits;
 }
 
 }  // namespace kiloband

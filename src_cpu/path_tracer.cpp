@@ -90,27 +90,25 @@ void PathTracer::start_paths(const PixelRect& block, const SampleId& id) {
   }
 }
 
+void PathTracer::record(bool shadow) {
+  const RayQueue& from = shadow ? shadow_rays_ : rays_queue_;
+  RayQueue& to = shadow ? recording_->shadow : recording_->closest;
+  to.reserve(to.size + from.size);
+  for (std::size_t i = 0; i < from.size; ++i) {
+    push_ray(to, ray_origin(from, i), ray_direction(from, i), from.t_min[i], from.t_max[i]);
+    (shadow ? recording_->shadow_path : recording_->closest_path).push_back(shadow ? shadow_path_[i] : active_[i]);
+  }
+}
+
 void PathTracer::trace_closest(bool primary) {
   rays_ += rays_queue_.size;
-  if (recording_) {
-    for (std::size_t i = 0; i < rays_queue_.size; ++i) {
-      recording_->closest.reserve(recording_->closest.size + 1);
-      push_ray(recording_->closest, ray_origin(rays_queue_, i), ray_direction(rays_queue_, i), rays_queue_.t_min[i],
-               rays_queue_.t_max[i]);
-    }
-  }
+  if (recording_) record(false);
   scene_.embree->closest_hits(rays_queue_, hits_, primary ? RayMode::kPackets : scene_.secondary_mode);
 }
 
 void PathTracer::trace_shadows() {
   rays_ += shadow_rays_.size;
-  if (recording_) {
-    for (std::size_t i = 0; i < shadow_rays_.size; ++i) {
-      recording_->shadow.reserve(recording_->shadow.size + 1);
-      push_ray(recording_->shadow, ray_origin(shadow_rays_, i), ray_direction(shadow_rays_, i), shadow_rays_.t_min[i],
-               shadow_rays_.t_max[i]);
-    }
-  }
+  if (recording_) record(true);
   scene_.embree->occlusions(shadow_rays_, occluded_, scene_.secondary_mode);
   for (std::size_t i = 0; i < shadow_rays_.size; ++i) {
     if (occluded_[i]) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
@@ -122,6 +120,7 @@ void PathTracer::shade_all(const SampleId& id, uint32_t bounce, std::span<const 
   next_rays_.clear();
   shadow_rays_.clear();
   shadow_slot_.clear();
+  shadow_path_.clear();
   for (std::size_t i = 0; i < active_.size(); ++i) {
     Path& path = paths_[active_[i]];
     if (hits_.shape[i] == KB_NONE) {

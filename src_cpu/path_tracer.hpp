@@ -52,9 +52,10 @@ class PathTracer {
   uint64_t rays() const { return rays_; }
   uint64_t vertices() const { return vertices_; }
 
-  /// When set, every ray that is traced is appended here (benchmarks of bare queries).
+  /// When set, every ray that is traced is appended here with its path's index in the block (benchmarks of bare queries).
   struct Recording {
     RayQueue closest, shadow;
+    std::vector<uint32_t> closest_path, shadow_path;
   };
   void record_into(Recording* recording) { recording_ = recording; }
 
@@ -83,6 +84,7 @@ class PathTracer {
   };
 
   void start_paths(const PixelRect& block, const SampleId& id);
+  void record(bool shadow);
   void trace_closest(bool primary);
   void trace_shadows();
   void shade_all(const SampleId& id, uint32_t bounce, std::span<const float> mu);
@@ -115,6 +117,7 @@ class PathTracer {
   RayQueue rays_queue_, next_rays_, shadow_rays_;
   HitQueue hits_;
   std::vector<uint32_t> shadow_slot_;  // vertex of each shadow ray
+  std::vector<uint32_t> shadow_path_;  // while recording: its path
   std::vector<uint8_t> occluded_;
   std::vector<Slot> slots_;
   Recording* recording_ = nullptr;

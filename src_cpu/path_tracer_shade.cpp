@@ -89,6 +89,7 @@ bool PathTracer::shade(Path& path, std::size_t ray, const SampleId& id, uint32_t
   }
   finish(goes_on);
   if (lit) shadow_slot_.push_back(path.last_slot);
+  if (lit && recording_) shadow_path_.push_back(path.pixel);
   return goes_on;
 }
 

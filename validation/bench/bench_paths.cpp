@@ -1,0 +1,189 @@
+// Path generation against the bare ray queries that it contains, and whole renders against the number of channels.
+//
+//   bench_paths --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
+//
+// Counter paths_per_second. "bare" sends the recorded rays of the same paths, path by path in the order of a scalar
+// tracer (closest hit and shadow ray of each bounce), through rtcIntersect1 / rtcOccluded1 on the same scene: the rate
+// of a tracer whose shading and random numbers cost nothing.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "scene/reader.hpp"
+#include "src_cpu/block_worker.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr uint32_t kSamples = 2;  // per benchmark iteration
+constexpr const char* kConferenceScene = R"(<scene version="3.0.0">
+  <integrator type="path"><integer name="max_depth" value="6"/></integrator>
+  <sensor type="perspective"><float name="fov" value="75"/><float name="near_clip" value="0.01"/>
+    <transform name="to_world"><lookat origin="1, 1.6, 2" target="4, 0.8, -0.5" up="0, 1, 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="256"/><integer name="height" value="256"/><rfilter type="box"/></film>
+  </sensor>
+  <shape type="ply"><string name="filename" value="meshes/conference.ply"/><boolean name="face_normals" value="true"/>
+    <transform name="to_world"><scale value="0.003"/></transform>
+    <bsdf type="twosided"><bsdf type="diffuse"><spectrum name="reflectance" value="0.6"/></bsdf></bsdf></shape>
+  <shape type="rectangle"><transform name="to_world"><scale value="0.5"/><rotate x="1" angle="90"/>
+    <translate x="3.5" y="2.2" z="0"/></transform><emitter type="area"><spectrum name="radiance" value="10"/></emitter></shape>
+</scene>)";
+
+std::filesystem::path data_directory() {
+  if (const char* named = std::getenv("KILOBAND_DATA")) return named;
+  return std::filesystem::path(KILOBAND_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+/// A scene made ready once: "cornell" from the repository, "conference" from the folder of public data.
+struct Bench {
+  FlatScene flat;
+  std::unique_ptr<EmbreeScene> embree;
+  TracerScene tracer;
+  std::vector<PixelRect> blocks;
+
+  Bench(const std::string& name, std::size_t channels) {
+    const SceneDescription scene =
+        name == "cornell" ? read_scene(std::filesystem::path(KILOBAND_SOURCE_DIR) / "scenes/cornell_box/cornell_box.xml")
+                          : read_scene_text(kConferenceScene, name, data_directory());
+    flat = flatten(scene, {parse_channels("400:700:" + std::to_string(channels)), {}, {}});
+    embree = std::make_unique<EmbreeScene>(flat, "avx512", 1);
+    tracer.flat = &flat;
+    tracer.embree = embree.get();
+    tracer.rough.resize(flat.materials.size());
+    tracer.secondary_mode = choose_ray_mode(flat);
+    blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
+  }
+};
+
+Bench& bench_of(const std::string& name, std::size_t channels) {
+  static std::map<std::pair<std::string, std::size_t>, std::unique_ptr<Bench>> cache;
+  auto& bench = cache[{name, channels}];
+  if (!bench) bench = std::make_unique<Bench>(name, channels);
+  return *bench;
+}
+
+std::size_t pixels_of(const Bench& bench) { return std::size_t{bench.flat.film.crop_width} * bench.flat.film.crop_height; }
+
+void count_paths(benchmark::State& state, std::size_t paths_per_iteration) {
+  state.counters["paths_per_second"] = benchmark::Counter(static_cast<double>(paths_per_iteration),
+                                                          benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void generate(benchmark::State& state, const std::string& name, SamplerType sampler, RayMode mode, bool chosen) {
+  Bench& bench = bench_of(name, 8);
+  TracerScene scene = bench.tracer;
+  if (!chosen) scene.secondary_mode = mode;
+  SamplingSettings settings;
+  settings.sampler = sampler;
+  settings.replicates = 1;
+  PathTracer tracer(scene, settings);
+  PathBuffer paths;
+  std::vector<uint32_t> invalid;
+  const float mu[1] = {0.5f};
+  for (auto _ : state) {
+    for (const PixelRect& block : bench.blocks) {
+      for (uint32_t s = 0; s < kSamples; ++s) tracer.trace(block, {s, 0, s}, mu, paths, invalid);
+    }
+    benchmark::DoNotOptimize(paths.slots.data());
+  }
+  count_paths(state, pixels_of(bench) * kSamples);
+  state.counters["rays_per_path"] = static_cast<double>(tracer.rays()) /
+                                    (static_cast<double>(state.iterations()) * static_cast<double>(pixels_of(bench) * kSamples));
+}
+
+/// The recorded rays of all blocks in path order.
+struct BareRays {
+  RayQueue closest, shadow;
+  std::vector<uint32_t> order;  // index << 1 | is_shadow
+};
+
+void append_in_path_order(const PathTracer::Recording& recording, BareRays& rays) {
+  std::vector<std::pair<uint32_t, uint32_t>> keyed;  // (path, order code); stable: bounce order stays
+  const auto closest_base = static_cast<uint32_t>(rays.closest.size);
+  const auto shadow_base = static_cast<uint32_t>(rays.shadow.size);
+  const auto copy = [](const RayQueue& from, RayQueue& to) {
+    to.reserve(to.size + from.size);
+    for (std::size_t i = 0; i < from.size; ++i) {
+      to.push({from.ox[i], from.oy[i], from.oz[i]}, {from.dx[i], from.dy[i], from.dz[i]}, from.t_min[i], from.t_max[i]);
+    }
+  };
+  copy(recording.closest, rays.closest);
+  copy(recording.shadow, rays.shadow);
+  for (uint32_t i = 0; i < recording.closest.size; ++i) keyed.push_back({recording.closest_path[i], (closest_base + i) << 1});
+  for (uint32_t i = 0; i < recording.shadow.size; ++i) keyed.push_back({recording.shadow_path[i], (shadow_base + i) << 1 | 1});
+  std::ranges::stable_sort(keyed, {}, &std::pair<uint32_t, uint32_t>::first);
+  for (const auto& [path, code] : keyed) rays.order.push_back(code);
+}
+
+void bare(benchmark::State& state, const std::string& name) {
+  Bench& bench = bench_of(name, 8);
+  SamplingSettings settings;
+  settings.sampler = SamplerType::kIndependent;
+  settings.replicates = 1;
+  PathTracer tracer(bench.tracer, settings);
+  PathBuffer paths;
+  std::vector<uint32_t> invalid;
+  const float mu[1] = {0.5f};
+  BareRays rays;
+  for (const PixelRect& block : bench.blocks) {
+    for (uint32_t s = 0; s < kSamples; ++s) {
+      PathTracer::Recording recording;
+      tracer.record_into(&recording);
+      tracer.trace(block, {s, 0, s}, mu, paths, invalid);
+      append_in_path_order(recording, rays);
+    }
+  }
+  for (auto _ : state) benchmark::DoNotOptimize(bench.embree->bare_queries(rays.closest, rays.shadow, rays.order));
+  count_paths(state, pixels_of(bench) * kSamples);
+}
+
+void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) {
+  Bench& bench = bench_of("cornell", static_cast<std::size_t>(state.range(0)));
+  SamplingSettings settings;
+  settings.replicates = variance ? 16 : 1;
+  settings.wavelengths = wavelengths;
+  BlockWorker worker(bench.tracer, {}, settings, Isa::kAuto);
+  const std::atomic<bool> stop{false};
+  constexpr uint32_t kSpp = 64;
+  for (auto _ : state) {
+    SpectralFilm film({0, 0, 64, 64}, {bench.flat.channels.size(), settings.replicates, variance, false});
+    for (uint32_t r = 0; r < settings.replicates; ++r) {
+      for (uint32_t b = 0; b < film.blocks().size(); ++b) {
+        film.add(worker.render(film.blocks()[b], b, {r, 0, kSpp / settings.replicates}, stop, [](uint64_t) {},
+                               [](const InvalidSample&) {}));
+      }
+    }
+  }
+  count_paths(state, 64 * 64 * kSpp);
+}
+
+void register_all() {
+  const bool data = std::filesystem::exists(data_directory() / "meshes" / "conference.ply");
+  for (const std::string name : {"cornell", "conference"}) {
+    if (name == "conference" && !data) continue;
+    benchmark::RegisterBenchmark(("bare/" + name).c_str(), bare, name);
+    const auto add = [&](const char* what, SamplerType sampler, RayMode mode, bool chosen) {
+      benchmark::RegisterBenchmark(("paths/" + name + "/" + what).c_str(), generate, name, sampler, mode, chosen);
+    };
+    add("independent", SamplerType::kIndependent, RayMode::kPackets, true);
+    add("sobol", SamplerType::kSobol, RayMode::kPackets, true);
+    add("independent-packets", SamplerType::kIndependent, RayMode::kPackets, false);
+    add("independent-single", SamplerType::kIndependent, RayMode::kSingle, false);
+  }
+  benchmark::RegisterBenchmark("render/shared", render, false, WavelengthMode::kShared)->Arg(8)->Arg(64)->Arg(512)->Arg(1000);
+  benchmark::RegisterBenchmark("render/shared-variance", render, true, WavelengthMode::kShared)->Arg(8)->Arg(512);
+  benchmark::RegisterBenchmark("render/per-path", render, false, WavelengthMode::kPerPath)->Arg(8)->Arg(512);
+}
+
+}  // namespace
+}  // namespace kiloband
+
+int main(int argc, char** argv) {
+  kiloband::register_all();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}
