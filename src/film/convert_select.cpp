@@ -18,6 +18,7 @@ struct Recipe {
   std::vector<std::size_t> sources;
 };
 
+/// Steps 1 and 2 of CubeSelection: indices, then the wavelength range.
 std::vector<Recipe> select_bands(const std::vector<Band>& bands, const CubeSelection& selection) {
   std::vector<Recipe> chosen;
   const auto take = [&](std::size_t k) {
@@ -40,6 +41,7 @@ std::vector<Recipe> select_bands(const std::vector<Band>& bands, const CubeSelec
   return chosen;
 }
 
+/// Step 3: each coarse channel as the union of selected bands.
 std::vector<Recipe> rebin(const std::vector<Recipe>& fine, const ChannelList& coarse) {
   if (coarse.empty()) throw InputError("re-binning: no channels are given");
   std::vector<Band> bands;
@@ -60,6 +62,8 @@ PixelRect choose_crop(const CubeInfo& info, const std::optional<PixelRect>& want
   return rect;
 }
 
+/// Reads whole rows of the source and picks from them; the scratch buffers are as large as the rows asked
+/// for.
 class SelectedCube : public CubeReader {
  public:
   SelectedCube(std::unique_ptr<CubeReader> source, std::vector<Recipe> recipes, PixelRect crop,
@@ -148,6 +152,7 @@ class SelectedCube : public CubeReader {
   std::vector<float> mean_, variance_;
 };
 
+/// Says once how many channels lose their error bars and what to do about it.
 void note_lost_variances(const std::vector<Recipe>& recipes, const DiagnosticSink& sink) {
   const auto sums =
       std::count_if(recipes.begin(), recipes.end(), [](const Recipe& r) { return r.sources.size() > 1; });

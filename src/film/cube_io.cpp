@@ -1,3 +1,4 @@
+// The formats by the names of files.
 #include "film/cube_io.hpp"
 
 #include "film/cube_layout.hpp"

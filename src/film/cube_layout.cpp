@@ -1,3 +1,4 @@
+// Limits, checks and arithmetic that EXR and ENVI have in common.
 #include "film/cube_layout.hpp"
 
 #include <algorithm>
@@ -10,6 +11,8 @@
 namespace kiloband {
 namespace {
 
+/// A name must fit into every format with its prefixes and suffixes, and into one line of a header.
+/// what   whose name it is, for the message
 void check_name(const std::string& name, const std::string& what, const std::string& where) {
   if (name.size() > kMaxNameLength)
     throw InputError(where + ": " + what + " '" + printable(name) + "': longer than " +
@@ -18,6 +21,7 @@ void check_name(const std::string& name, const std::string& what, const std::str
     throw InputError(where + ": " + what + " '" + printable(name) + "': contains a control character");
 }
 
+/// Ordinary bands need a width that values can be divided by; derived ones only a name.
 void check_band(const Band& band, std::size_t index, const std::string& where) {
   const Channel& c = band.channel;
   const std::string what = "band " + std::to_string(index);
@@ -79,6 +83,7 @@ StripOrder::StripOrder(const CubeInfo& info, uint32_t rows_per_strip)
 }
 
 void StripOrder::accept(const CubeRows& strip) {
+  // Only the last strip may be shorter: EXR tiles and ENVI blocks would be torn otherwise.
   const uint64_t expected = std::min<uint64_t>(rows_per_strip_, height_ - next_row_);
   if (finished_ || strip.y0 != next_row_ || strip.rows != expected || strip.rows == 0)
     throw std::logic_error("cube writer: strips must come once, whole and in ascending order");
@@ -101,6 +106,8 @@ void check_read(const CubeInfo& info, uint32_t y0, uint32_t rows, std::size_t fl
 }
 
 ChannelList channels_from_centres(const std::vector<double>& centres_nm, const std::string& where) {
+  // Neighbours are those in the spectrum, not those in the file: sort indices, keep the file's order in the
+  // result.
   std::vector<std::size_t> order(centres_nm.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),

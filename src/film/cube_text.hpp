@@ -1,13 +1,13 @@
 // Numbers and names as cube headers spell them: locale-free, exact, and safe against foreign bytes.
 #pragma once
 
-#include "base/text.hpp"
-
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/text.hpp"
 
 namespace kiloband {
 /// With at most six decimals, none that are zero: "550", "384.878049".

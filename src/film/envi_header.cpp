@@ -1,3 +1,5 @@
+// The grammar of ENVI headers is small but loose: keys in any case, lists over many lines, ';' before
+// comments.
 #include "film/envi_header.hpp"
 
 #include <algorithm>
@@ -27,6 +29,7 @@ EnviHeader::EnviHeader(const std::filesystem::path& file, std::string_view text)
   const auto fail = [&](int at, const std::string& why) {
     throw InputError(file.string() + ":" + std::to_string(at) + ": " + why);
   };
+  // Editors on some systems put a byte-order mark in front.
   if (text.starts_with("\xEF\xBB\xBF")) position = 3;
   if (trim(next_line(text, position, line)) != "ENVI")
     fail(1, "not an ENVI header: the first line must be 'ENVI'");
@@ -42,7 +45,8 @@ EnviHeader::EnviHeader(const std::filesystem::path& file, std::string_view text)
     entry.lower = to_lower(entry.key);
     const std::string_view value = trim(content.substr(equals + 1));
     entry.list = value.starts_with('{');
-    if (entry.list) {
+    if (entry.list) {  // up to the closing brace, which may stand many lines below; the rest of its line is
+                       // dropped
       const std::size_t open = text.find('{', text.find('=', begin));
       const std::size_t close = text.find('}', open);
       if (close == std::string_view::npos) fail(entry.line, printable(entry.key) + ": '{' without '}'");
@@ -101,6 +105,7 @@ std::vector<double> EnviHeader::numbers(std::string_view key, std::size_t size) 
 }
 
 uint64_t EnviStorage::bytes_per_value() const {
+  // Codes of the format; read_envi_storage lets no others pass.
   switch (data_type) {
     case 1:
       return 1;
@@ -127,6 +132,7 @@ EnviStorage read_envi_storage(const EnviHeader& header) {
   storage.offset = header.count("header offset", uint64_t{1} << 40, 0);
   storage.big_endian = header.count("byte order", 1) == 1;
   storage.data_type = static_cast<int>(header.count("data type", 1000));
+  // 6 and 9 are complex; 7, 8, 10 and 11 are not numbers of one pixel.
   constexpr std::array kReadable = {1, 2, 3, 4, 5, 12, 13, 14, 15};
   if (std::find(kReadable.begin(), kReadable.end(), storage.data_type) == kReadable.end())
     throw InputError(header.where(*header.find("data type")) + " '" + std::to_string(storage.data_type) +

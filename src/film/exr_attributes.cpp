@@ -14,22 +14,24 @@
 namespace kiloband {
 namespace {
 
-/// One line per band in scene order: channel name, bounds in nm, the band's own name; blanks separate.
+constexpr std::string_view kListSpecial = " ;";
+
+/// "channel min max [own name];" per band in scene order, bounds in nm.
 std::string bands_text(const ExrLayout& layout) {
   std::string text;
   for (std::size_t k = 0; k < layout.means.size(); ++k) {
     const Channel& c = layout.info.bands[k].channel;
-    text += encode_text(layout.means[k], " ") + std::string(" ") + format_number(c.min_nm) + " " +
+    text += encode_text(layout.means[k], kListSpecial) + std::string(" ") + format_number(c.min_nm) + " " +
             format_number(c.max_nm);
-    if (!c.name.empty()) text.append(" ").append(encode_text(c.name, " "));
-    text += '\n';
+    if (!c.name.empty()) text.append(" ").append(encode_text(c.name, kListSpecial));
+    text += ';';
   }
   return text;
 }
 
 std::string aux_text(const CubeInfo& info) {
   std::string text;
-  for (const std::string& name : info.aux) text += encode_text(name, " ") + "\n";
+  for (const std::string& name : info.aux) text += encode_text(name, kListSpecial) + ";";
   return text;
 }
 

