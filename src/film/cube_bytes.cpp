@@ -39,6 +39,7 @@ void InputFileBytes::read_at(uint64_t offset, std::span<char> out) const {
         pread(descriptor_, out.data(), std::min(out.size(), kLargest), static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw DeviceError("cannot read '" + path_.string() + "': " + std::strerror(errno));
+    // The size was checked before, so the file shrank while it was read.
     if (got == 0) throw InputError(path_.string() + ": the file ends too early");
     out = out.subspan(static_cast<std::size_t>(got));
     offset += static_cast<uint64_t>(got);

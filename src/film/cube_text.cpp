@@ -8,12 +8,14 @@
 namespace kiloband {
 namespace {
 
+/// Line ends count as blanks: headers come from every system.
 constexpr std::string_view kBlanks = " \t\r\n";
 
 bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
 }
 
+/// Two upper-case digits.
 std::string hex_byte(char c) {
   constexpr std::string_view kDigits = "0123456789ABCDEF";
   const auto byte = static_cast<unsigned char>(c);

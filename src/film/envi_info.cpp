@@ -42,6 +42,7 @@ std::vector<Band> index_bands(const EnviHeader& header, std::size_t count, const
   return bands;
 }
 
+/// Centres with widths, or with bounds half-way to the neighbours, or names only.
 std::vector<Band> foreign_bands(const EnviHeader& header, std::size_t count, const DiagnosticSink& sink) {
   std::vector<double> centres = header.numbers("wavelength", count), widths = header.numbers("fwhm", count);
   const double unit = centres.empty() ? 0 : wavelength_unit(header, centres, sink);
@@ -65,6 +66,7 @@ std::vector<Band> foreign_bands(const EnviHeader& header, std::size_t count, con
   return bands;
 }
 
+/// Exact bounds from our own lists; centre and fwhm would round them.
 std::vector<Band> own_bands(const EnviHeader& header, std::size_t count) {
   const auto low = header.numbers(kEnviMinKey, count), high = header.numbers(kEnviMaxKey, count);
   const auto derived = header.numbers(kEnviDerivedKey, count);
@@ -79,6 +81,7 @@ std::vector<Band> own_bands(const EnviHeader& header, std::size_t count) {
   return bands;
 }
 
+/// Others' cubes hold reflectances or spectral radiances: never integrals over a band.
 Quantity read_quantity(const EnviHeader& header, const DiagnosticSink& sink) {
   const EnviHeader::Entry* entry = header.find(kEnviQuantityKey);
   if (!entry) {
@@ -91,6 +94,7 @@ Quantity read_quantity(const EnviHeader& header, const DiagnosticSink& sink) {
   throw InputError(header.where(*entry) + " '" + printable(entry->value) + "': must be integral or density");
 }
 
+/// Everything that has no other meaning. Only our own files encode special characters.
 void read_metadata(const EnviHeader& header, bool own, CubeInfo& info) {
   for (const EnviHeader::Entry& entry : header.entries()) {
     if (is_reserved_envi_key(entry.lower)) continue;

@@ -27,6 +27,7 @@ void add(std::string& text, std::string_view key, const std::string& value) {
   text += std::string(key) + " = " + value + "\n";
 }
 
+/// What the numbers are, for people who open the header in an editor.
 std::string describe(const CubeInfo& info, EnviContent content) {
   if (content == EnviContent::kAux) return "auxiliary planes of a cube by kiloband";
   const std::string quantity = info.quantity == Quantity::kIntegral
@@ -60,6 +61,7 @@ void add_default_bands(std::string& text, const std::vector<Band>& bands) {
   });
 }
 
+/// Standard keys for every ENVI reader, then ours with the exact bounds and the scene's own names.
 void add_bands(std::string& text, const CubeInfo& info) {
   const auto& bands = info.bands;
   const std::vector<std::string> names = unique_band_names(bands);
@@ -78,6 +80,7 @@ void add_bands(std::string& text, const CubeInfo& info) {
     list(kEnviNamesKey, [&](std::size_t k) { return encode_text(channel(k).name, kListSpecial); });
 }
 
+/// Entries whose names are taken (or begin with the prefix themselves) get the prefix.
 void add_metadata(std::string& text, const CubeInfo& info) {
   for (const auto& [key, value] : info.metadata) {
     const bool taken = key.starts_with(kEnviMetaPrefix) || is_reserved_envi_key(to_lower(key));

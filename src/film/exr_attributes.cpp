@@ -29,6 +29,7 @@ std::string bands_text(const ExrLayout& layout) {
   return text;
 }
 
+/// "plane;" per auxiliary plane in order; channels alone would come back sorted by name.
 std::string aux_text(const CubeInfo& info) {
   std::string text;
   for (const std::string& name : info.aux) text += encode_text(name, kListSpecial) + ";";

@@ -21,6 +21,7 @@ std::optional<std::string> text_attribute(const Imf::Header& header, const std::
   return attribute->value();
 }
 
+/// A number that we wrote as text (EXR's integers have 32 bits); 0 where it is missing.
 uint64_t count_attribute(const Imf::Header& header, const char* name) {
   const auto text = text_attribute(header, name);
   return text ? parse_unsigned(*text).value_or(0) : 0;
@@ -86,6 +87,7 @@ std::vector<ForeignBand> find_spectral_channels(const Imf::Header& header, const
   return bands;
 }
 
+/// Bounds from sensitivities where there are any, otherwise half-way to the neighbours.
 void read_foreign_bands(const Imf::Header& header, ExrLayout& layout, const std::string& where,
                         const DiagnosticSink& sink) {
   layout.means.clear();
@@ -137,6 +139,7 @@ void read_aux(const Imf::Header& header, ExrLayout& layout) {
   layout.info.aux = sorted == other ? own : other;  // channels of a file are in the order of their names
 }
 
+/// String attributes that mean nothing else to us.
 void read_metadata(const Imf::Header& header, CubeInfo& info) {
   for (auto a = header.begin(); a != header.end(); ++a) {
     const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute());
@@ -147,6 +150,8 @@ void read_metadata(const Imf::Header& header, CubeInfo& info) {
   }
 }
 
+/// The layout's unit leaves open whether values are per nm; its reference code and other renderers take them
+/// so.
 Quantity read_quantity(const Imf::Header& header, const std::string& where, const DiagnosticSink& sink) {
   const auto units = text_attribute(header, "emissiveUnits");
   if (units && *units != kExrUnits)

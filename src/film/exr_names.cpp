@@ -48,6 +48,7 @@ double to_nm(double value, int exponent, bool hertz) {
   return shift >= 0 ? value * std::pow(10.0, shift) : value / std::pow(10.0, -shift);
 }
 
+/// As written, and as a wavelength.
 struct NumberWithUnit {
   double value, nm;
 };
@@ -77,6 +78,7 @@ std::optional<NumberWithUnit> parse_with_unit(std::string_view text, char decima
     }
   }
   std::string_view unit = text.substr(i);
+  // What is left before the unit's letter must be a prefix, or nothing.
   const bool hertz = unit.ends_with("Hz");
   if (digits == 0 || (!hertz && !unit.ends_with('m'))) return std::nullopt;
   const auto exponent = prefix_exponent(unit.substr(0, unit.size() - (hertz ? 2 : 1)));

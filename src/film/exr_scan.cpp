@@ -58,6 +58,7 @@ uint64_t walk_header(const InputFileBytes& file, ExrInputStream& stream) {
   return stream.tellg();
 }
 
+/// Lines that a compression of scan-line files packs together; fixed by the file format.
 uint64_t lines_per_chunk(Imf::Compression compression) {
   switch (compression) {
     case Imf::ZIP_COMPRESSION:
@@ -75,6 +76,7 @@ uint64_t lines_per_chunk(Imf::Compression compression) {
   }
 }
 
+/// Bytes of one pixel.
 uint64_t check_channels(const InputFileBytes& file, const Imf::Header& header) {
   uint64_t bytes = 0, count = 0;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c, ++count) {

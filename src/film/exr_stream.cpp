@@ -17,6 +17,7 @@ ExrOutputStream::ExrOutputStream(AtomicFile& file) : OStream(file.target().c_str
 }
 
 void ExrOutputStream::write(const char bytes[], int count) {
+  // Header fields are collected; tiles are larger than the buffer and go straight to the file.
   const std::span<const char> data(bytes, static_cast<std::size_t>(count));
   if (buffer_.size() + data.size() > kBufferBytes) flush();
   if (data.size() <= kBufferBytes) {
@@ -67,6 +68,7 @@ bool ExrInputStream::read(char bytes[], int count) {
   return position_ < file_.size();
 }
 
+/// Small reads come from a window of the file; one outside it moves the window to the current position.
 void ExrInputStream::read_buffered(char bytes[], std::size_t count) {
   const bool inside = position_ >= buffer_begin_ && position_ + count <= buffer_begin_ + buffer_.size();
   if (!inside) {
@@ -77,6 +79,7 @@ void ExrInputStream::read_buffered(char bytes[], std::size_t count) {
   std::memcpy(bytes, buffer_.data() + (position_ - buffer_begin_), count);
 }
 
+/// Only failures of the machine are kept: OpenEXR would turn them into complaints about the file.
 void ExrInputStream::read_file(uint64_t offset, std::span<char> out) {
   try {
     file_.read_at(offset, out);
