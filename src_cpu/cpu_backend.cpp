@@ -55,7 +55,6 @@ class CpuBackend final : public Backend {
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
     tracer_scene_.flat = &scene_;
     tracer_scene_.embree = embree_.get();
-    tracer_scene_.secondary_mode = choose_ray_mode(scene_);
     for (int i = 0; i < threads_; ++i) {
       workers_.push_back(std::make_unique<BlockWorker>(tracer_scene_, derived_, settings_, isa_));
     }

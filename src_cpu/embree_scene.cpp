@@ -65,14 +65,6 @@ void intersect16(const int* valid, RTCScene scene, Query& query, RTCRayHit16& ra
 #endif
 }
 
-void occluded16(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded16(valid, scene, &rays, &query.occlude);
-#else
-  rtcOccluded16(valid, scene, &query.context, &rays);
-#endif
-}
-
 /// Interval that an analytic shape covers along one axis, from that row of its to_world: a circle or sphere of unit radius
 /// reaches |row| to both sides; a cylinder also spans its axis. Grown by a few units in the last place.
 void axis_bounds(const KbShape& shape, int axis, float& low, float& high) {
@@ -126,18 +118,12 @@ void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
   }
 }
 
-constexpr std::size_t kPacketTriangles = 5000;
-
 [[noreturn]] void fail(RTCDevice device, const char* what) {
   const RTCError code = rtcGetDeviceError(device);
   throw DeviceError(fmt::format("Embree: {} failed (error {})", what, static_cast<int>(code)));
 }
 
 }  // namespace
-
-RayMode choose_ray_mode(const FlatScene& scene) {
-  return scene.triangles.size() / 3 <= kPacketTriangles ? RayMode::kPackets : RayMode::kSingle;
-}
 
 void RayQueue::reserve(std::size_t count) {
   const std::size_t padded = (count + kPacketSize - 1) / kPacketSize * kPacketSize;
@@ -223,8 +209,7 @@ EmbreeScene::~EmbreeScene() = default;
 namespace {
 
 /// Copies packet `first` of the queue; lanes past its end are invalid.
-template <class Ray16>
-void load_packet(const RayQueue& rays, std::size_t first, Ray16& ray, int (&valid)[kPacketSize]) {
+void load_packet(const RayQueue& rays, std::size_t first, RTCRay16& ray, int (&valid)[kPacketSize]) {
   const auto copy = [first](const std::vector<float>& from, float* to) { std::copy_n(&from[first], kPacketSize, to); };
   copy(rays.ox, ray.org_x);
   copy(rays.oy, ray.org_y);
@@ -292,24 +277,13 @@ void EmbreeScene::closest_hits(const RayQueue& rays, HitQueue& hits, RayMode mod
   }
 }
 
-void EmbreeScene::occlusions(const RayQueue& rays, std::vector<uint8_t>& occluded, RayMode mode) const {
-  occluded.resize((rays.size + kPacketSize - 1) / kPacketSize * kPacketSize);
-  if (mode == RayMode::kSingle) {
-    Query query(kIncoherent);
-    for (std::size_t i = 0; i < rays.size; ++i) {
-      RTCRay ray = load_ray(rays, i);
-      occluded1(impl_->scene, query, ray);
-      occluded[i] = ray.tfar < 0;
-    }
-    return;
-  }
-  Query query(kCoherent);
-  alignas(64) RTCRay16 packet;
-  alignas(64) int valid[kPacketSize];
-  for (std::size_t first = 0; first < rays.size; first += kPacketSize) {
-    load_packet(rays, first, packet, valid);
-    occluded16(valid, impl_->scene, query, packet);
-    for (std::size_t lane = 0; lane < kPacketSize; ++lane) occluded[first + lane] = packet.tfar[lane] < 0;
+void EmbreeScene::occlusions(const RayQueue& rays, std::vector<uint8_t>& occluded) const {
+  occluded.resize(rays.size);
+  Query query(kIncoherent);
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    RTCRay ray = load_ray(rays, i);
+    occluded1(impl_->scene, query, ray);
+    occluded[i] = ray.tfar < 0;
   }
 }
 

@@ -34,10 +34,6 @@ struct HitQueue {
 /// Whether rays go to Embree in packets of 16 or one by one.
 enum class RayMode { kPackets, kSingle };
 
-/// How secondary rays of a scene are sent: incoherent packets win in small scenes and lose in large ones (measured by
-/// validation/bench/bench_paths, figures in validation/README.md).
-RayMode choose_ray_mode(const FlatScene& scene);
-
 class EmbreeScene {
  public:
   /// isa: "sse4.2", "avx2" or "avx512": Embree's own code path, whose hits differ in their last bits.
@@ -47,7 +43,7 @@ class EmbreeScene {
 
   void closest_hits(const RayQueue& rays, HitQueue& hits, RayMode mode) const;
   /// occluded[i] = 1 if anything lies in (t_min, t_max) of ray i.
-  void occlusions(const RayQueue& rays, std::vector<uint8_t>& occluded, RayMode mode) const;
+  void occlusions(const RayQueue& rays, std::vector<uint8_t>& occluded) const;
   /// Benchmarks: sends rays one by one in the given order (index << 1 | is_shadow) and returns the number of hits.
   std::size_t bare_queries(const RayQueue& closest, const RayQueue& shadow, std::span<const uint32_t> order) const;
 

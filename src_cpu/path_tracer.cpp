@@ -12,6 +12,7 @@
 namespace kiloband {
 namespace {
 
+constexpr uint32_t kWavefront = kPacketSize;  // paths that advance together
 constexpr uint32_t kMaxVertices = 100000;  // a longer path counts as invalid and is reported
 /// Tables are finite and of order 1 (emission in film units), so a path's value is finite if its weights stay below this.
 constexpr float kLargestWeight = 1e34f;
@@ -40,11 +41,6 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
   slots_.reserve(8 * kPixels);
 }
 
-KbFloat4 PathTracer::random(const Path& path, const SampleId& id, uint32_t dimension_block) const {
-  const uint32_t sampler = settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
-  return kb_sample_block(sampler, settings_.seed, path.pixel_key, id.sample, id.replicate, id.index, dimension_block);
-}
-
 bool PathTracer::wants_bounce(uint32_t bounce) const {
   const int max_depth = flat_.integrator.max_depth;
   return max_depth < 0 || bounce + 1 < static_cast<uint32_t>(max_depth);
@@ -56,33 +52,41 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
   invalid.clear();
   slots_.clear();
   if (flat_.integrator.max_depth == 0) return;
-  start_paths(block, id);
-  for (uint32_t bounce = 0; !active_.empty(); ++bounce) {
-    if (bounce >= kMaxVertices) {
-      for (const uint32_t path : active_) paths_[path].invalid = true;
-      break;
-    }
-    trace_closest(bounce == 0);
-    shade_all(id, bounce, mu);
-    trace_shadows();
+  paths_.clear();
+  const auto pixels = static_cast<uint32_t>(block.pixels());
+  for (uint32_t first = 0; first < pixels; first += kWavefront) {
+    start_paths(block, first, std::min(kWavefront, pixels - first), id);
+    run_wavefront(id, mu);
   }
   gather(out, invalid);
 }
 
-void PathTracer::start_paths(const PixelRect& block, const SampleId& id) {
-  paths_.clear();
+void PathTracer::run_wavefront(const SampleId& id, std::span<const float> mu) {
+  for (uint32_t bounce = 0; !active_.empty(); ++bounce) {
+    if (bounce >= kMaxVertices) {
+      for (const uint32_t path : active_) paths_[path].invalid = true;
+      return;
+    }
+    trace_closest(bounce == 0 ? RayMode::kPackets : RayMode::kSingle);
+    shade_all(id, bounce, mu);
+    trace_shadows();
+  }
+}
+
+void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id) {
   active_.clear();
   rays_queue_.clear();
-  for (uint32_t i = 0; i < block.pixels(); ++i) {
+  const uint32_t sampler = settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  for (uint32_t i = first; i < first + count; ++i) {
     const uint32_t x = block.x0 + i % block.width;
     const uint32_t y = block.y0 + i / block.width;
     Path path{};
     path.pixel = i;
-    path.pixel_key = y * flat_.camera.film_width + x;
+    path.key = kb_sampler_key(sampler, settings_.seed, y * flat_.camera.film_width + x, id.sample, id.replicate, id.index);
     path.bound = path.magnitude = 1;
     path.previous_delta = true;
     path.channel = path.first_slot = path.last_slot = KB_NONE;
-    const CameraRay ray = sample_camera_ray(flat_.camera, x, y, random(path, id, KB_BLOCK_CAMERA));
+    const CameraRay ray = sample_camera_ray(flat_.camera, x, y, kb_sampler_block(path.key, KB_BLOCK_CAMERA));
     path.previous_point = ray.origin;
     paths_.push_back(path);
     active_.push_back(i);
@@ -100,16 +104,16 @@ void PathTracer::record(bool shadow) {
   }
 }
 
-void PathTracer::trace_closest(bool primary) {
+void PathTracer::trace_closest(RayMode mode) {
   rays_ += rays_queue_.size;
   if (recording_) record(false);
-  scene_.embree->closest_hits(rays_queue_, hits_, primary ? RayMode::kPackets : scene_.secondary_mode);
+  scene_.embree->closest_hits(rays_queue_, hits_, mode);
 }
 
 void PathTracer::trace_shadows() {
   rays_ += shadow_rays_.size;
   if (recording_) record(true);
-  scene_.embree->occlusions(shadow_rays_, occluded_, scene_.secondary_mode);
+  scene_.embree->occlusions(shadow_rays_, occluded_);
   for (std::size_t i = 0; i < shadow_rays_.size; ++i) {
     if (occluded_[i]) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
   }

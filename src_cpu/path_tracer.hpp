@@ -4,7 +4,9 @@
 // BSDF samples, and Russian roulette with survival q = min(1, upper bound of the throughput over all channels). At a
 // refraction whose index depends on wavelength one channel goes on with weight K (degradation).
 //
-// All paths of a block advance together, bounce by bounce (wavefront), so that rays reach Embree in packets.
+// Sixteen neighbouring pixels advance together, bounce by bounce: their camera rays are one packet for Embree, and what one
+// bounce touched of the scene is still in the caches at the next. Secondary rays go one by one (packets lose: see
+// validation/README.md).
 #pragma once
 
 #include <cstdint>
@@ -15,6 +17,7 @@
 
 #include "film/spectral_film.hpp"
 #include "render/backend.hpp"
+#include "shared/sampler.h"
 #include "src_cpu/bsdf.hpp"
 #include "src_cpu/emitter.hpp"
 #include "src_cpu/embree_scene.hpp"
@@ -28,7 +31,6 @@ struct TracerScene {
   const FlatScene* flat = nullptr;
   const EmbreeScene* embree = nullptr;
   std::vector<RoughTransmittance> rough;  // one per material; only rough plastics use theirs
-  RayMode secondary_mode = RayMode::kPackets;
 };
 
 /// Which sample of every pixel: number `sample` of the pixel, `index` of its replicate.
@@ -65,7 +67,7 @@ class PathTracer {
     float previous_pdf;      // solid angle, of the BSDF sample that led here
     float bound;             // upper bound of the throughput over all channels, without radiance scaling
     uint32_t pixel;          // in the block
-    uint32_t pixel_key;      // of the full film, for random numbers
+    KbSamplerKey key;        // of the path's random numbers
     uint32_t channel;        // after degradation, else KB_NONE
     uint32_t first_slot, last_slot;  // linked list in slots_
     float magnitude;         // product of the scatter weights: where this overflows the sample is invalid
@@ -83,9 +85,10 @@ class PathTracer {
     uint32_t sample_count = 0;
   };
 
-  void start_paths(const PixelRect& block, const SampleId& id);
+  void start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id);
+  void run_wavefront(const SampleId& id, std::span<const float> mu);
   void record(bool shadow);
-  void trace_closest(bool primary);
+  void trace_closest(RayMode mode);
   void trace_shadows();
   void shade_all(const SampleId& id, uint32_t bounce, std::span<const float> mu);
   /// Returns false where the path ends.
@@ -105,7 +108,6 @@ class PathTracer {
   void append(Path& path, const Draft& draft);
   void resolve_spectra(Draft& draft, const KbMaterial& material, const SurfaceHit& hit, bool use_b_for_a);
   void gather(PathBuffer& out, std::vector<uint32_t>& invalid);
-  KbFloat4 random(const Path& path, const SampleId& id, uint32_t dimension_block) const;
   float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
   bool wants_bounce(uint32_t bounce) const;
 

@@ -39,7 +39,7 @@ bool PathTracer::shade(Path& path, std::size_t ray, const SampleId& id, uint32_t
   if (!wants_bounce(bounce)) return finish(false);
 
   const KbSurface& surface = flat_.surfaces[flat_.shapes[hit.shape].surface];
-  KbFloat4 u = random(path, id, kb_block_bsdf(bounce));
+  KbFloat4 u = kb_sampler_block(path.key, kb_block_bsdf(bounce));
   float opacity = surface.opacity;
   if (surface.opacity_ref != KB_NONE) {
     const ResolvedSpectrum value = resolve_spectrum(flat_, surface.opacity_ref, hit.uv);
@@ -112,7 +112,7 @@ bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hi
                                   const MaterialContext& material, glm::vec3 wi, float opacity, const SampleId& id,
                                   uint32_t bounce) {
   if (flat_.emitters.empty()) return false;
-  const KbFloat4 u = random(path, id, kb_block_light(bounce));
+  const KbFloat4 u = kb_sampler_block(path.key, kb_block_light(bounce));
   const LightSample light = sample_light(flat_, hit.point, {u.x, u.y}, {u.z, u.w});
   if (!(light.pdf > 0) || !(light.factor > 0)) return false;
   const BsdfValue value = eval_bsdf(material, wi, frame.to_local(light.direction));
@@ -210,7 +210,7 @@ float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, floa
 bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi, BsdfSample& sample,
                                      const SampleId& id, uint32_t bounce, float mu) {
   const auto channels = static_cast<uint32_t>(flat_.channels.size());
-  const float u = kb_degrade_sample(settings_.seed, path.pixel_key, id.sample, bounce);
+  const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
   path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
   const float probability = sample.pdf / static_cast<float>(channels);
   sample = transmit_dispersive(material, wi, channel_eta(material, path.channel, mu), probability);
@@ -226,7 +226,7 @@ bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial&
 /// A rough dispersive boundary: the channel is chosen on arrival, before light and BSDF samples.
 void PathTracer::degrade(Path& path, const SampleId& id, uint32_t bounce) {
   const auto channels = static_cast<uint32_t>(flat_.channels.size());
-  const float u = kb_degrade_sample(settings_.seed, path.pixel_key, id.sample, bounce);
+  const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
   path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
   Draft draft;
   draft.vertex.head = KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE;

@@ -7,12 +7,14 @@
 #include "app/render_options.hpp"
 #include "film/convert.hpp"
 #include "film/cube_io.hpp"
+#include "film/cube_text.hpp"
 
 namespace kiloband {
 namespace {
 
 struct ConvertOptions {
-  std::string in, out, select, range, rebin, crop, quantity;
+  std::string in, out;
+  std::optional<std::string> select, range, rebin, crop, quantity;
   std::vector<std::string> pixels, regions;
 };
 
@@ -41,17 +43,17 @@ PixelRect parse_rect(const std::string& option, const std::string& text) {
 }
 
 WavelengthRange parse_range(const std::string& text) {
-  const ChannelList one = parse_channels(text);
+  const ChannelList one = parse_channels_option("--range", text);
   if (one.size() != 1) throw InputError("--range " + text + ": must be one interval such as 400-500");
   return {one.front().min_nm, one.front().max_nm};
 }
 
 CubeSelection selection_of(const ConvertOptions& options, const CubeInfo& info) {
   CubeSelection selection;
-  if (!options.select.empty()) selection.bands = parse_band_indices(options.select, info.bands.size());
-  if (!options.range.empty()) selection.range = parse_range(options.range);
-  if (!options.rebin.empty()) selection.rebin = parse_channels(options.rebin);
-  if (!options.crop.empty()) selection.crop = parse_rect("--crop", options.crop);
+  if (options.select) selection.bands = parse_band_indices(*options.select, info.bands.size());
+  if (options.range) selection.range = parse_range(*options.range);
+  if (options.rebin) selection.rebin = parse_channels_option("--rebin", *options.rebin);
+  if (options.crop) selection.crop = parse_rect("--crop", *options.crop);
   if (options.quantity == "integral") selection.quantity = Quantity::kIntegral;
   if (options.quantity == "density") selection.quantity = Quantity::kDensity;
   return selection;
@@ -62,7 +64,7 @@ int convert(const ConvertOptions& options) {
   const std::filesystem::path out = options.out;
   auto cube = open_cube(options.in, sink);
   const CubeSelection selection = selection_of(options, cube->info());
-  const bool table = out.extension() == ".csv";
+  const bool table = to_lower(out.extension().string()) == ".csv";
   if (!table) {
     if (!options.pixels.empty() || !options.regions.empty()) {
       throw InputError("--pixel and --region write CSV: the output must end in .csv");

@@ -1,11 +1,15 @@
 // kiloband render SCENE.xml: loads, renders, writes.
 #include <chrono>
+#include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fmt/core.h>
 #include <map>
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/messages.hpp"
+#include "app/output_files.hpp"
 #include "app/progress_bar.hpp"
 #include "app/render_options.hpp"
 #include "app/render_statistics.hpp"
@@ -20,11 +24,10 @@ struct RenderOptions {
   SceneOptions scene;
   std::vector<std::string> outputs, responses, aux;
   std::string backend = "auto", isa = "auto", wavelengths = "shared", sampler = "sobol", quantity;
-  std::string preview, stats;
+  std::optional<std::string> preview, stats, time, target_error;
   int threads = 0;
   uint64_t seed = 0;
   std::optional<uint64_t> spp;
-  std::string time, target_error;
   uint32_t replicates = 16;
   bool variance = false, keep_replicates = false, quiet = false;
 };
@@ -54,7 +57,7 @@ double parse_error(const std::string& text) {
   } catch (const std::exception&) {
   }
   const std::string unit = text.substr(end);
-  if (end == 0 || (unit != "" && unit != "%") || !(value > 0)) {
+  if (end == 0 || (unit != "" && unit != "%") || !(value > 0) || !std::isfinite(value)) {
     throw InputError("--target-error " + text + ": must be positive, such as 1% or 0.01");
   }
   return unit == "%" ? value / 100 : value;
@@ -62,8 +65,8 @@ double parse_error(const std::string& text) {
 
 SessionSettings session_settings(const RenderOptions& options, const SceneDescription& scene) {
   SessionSettings settings;
-  if (!options.time.empty()) settings.stop.seconds = parse_duration(options.time);
-  if (!options.target_error.empty()) settings.stop.relative_error = parse_error(options.target_error);
+  if (options.time) settings.stop.seconds = parse_duration(*options.time);
+  if (options.target_error) settings.stop.relative_error = parse_error(*options.target_error);
   if (!settings.stop.seconds && !settings.stop.relative_error) {
     settings.stop.samples_per_pixel = options.spp.value_or(scene.sensor.sample_count);
   }
@@ -74,7 +77,7 @@ SessionSettings session_settings(const RenderOptions& options, const SceneDescri
   if (settings.outputs.empty()) settings.outputs.push_back(scene.file.stem().string() + ".exr");
   if (options.quantity == "integral") settings.quantity = Quantity::kIntegral;
   if (options.quantity == "density") settings.quantity = Quantity::kDensity;
-  if (!options.preview.empty()) settings.preview = options.preview;
+  if (options.preview) settings.preview = *options.preview;
   settings.aux = options.aux;
   if (settings.stop.relative_error && options.replicates < 2) {
     throw InputError("--target-error needs at least 2 replicates");
@@ -111,45 +114,48 @@ void describe_render(SessionSettings& settings, const RenderOptions& options, co
 
 void print_summary(const RenderReport& report, const Backend& backend, double setup_seconds) {
   const uint64_t paths = backend.counters().paths;
-  fmt::print(stderr, "{} paths in {:.2f} s ({:.2f} Mpaths/s on {}, {}); set-up {:.2f} s, output {:.2f} s\n", paths,
+  tell("{} paths in {:.2f} s ({:.2f} Mpaths/s on {}, {}); set-up {:.2f} s, output {:.2f} s\n", paths,
              report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, backend.name(),
              backend.isa(), setup_seconds, report.output_seconds);
-  if (report.replicates < 2) fmt::print(stderr, "1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
-  if (report.mean_relative_error) fmt::print(stderr, "mean relative error {:.3g} %\n", 100 * *report.mean_relative_error);
-  for (const auto& file : report.written) fmt::print(stderr, "wrote {}\n", file.string());
+  if (report.replicates < 2) tell("1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
+  if (report.mean_relative_error) tell("mean relative error {:.3g} %\n", 100 * *report.mean_relative_error);
+  for (const auto& file : report.written) tell("wrote {}\n", file.string());
 }
 
 void print_problems(const RenderReport& report, const Backend& backend) {
   const uint64_t invalid = backend.counters().invalid_samples;
   if (invalid > 0) {
-    fmt::print(stderr, "warning: {} invalid samples (not finite or endless) left the mean; the first:\n", invalid);
+    tell("warning: {} invalid samples (not finite or endless) left the mean; the first:\n", invalid);
     for (const InvalidSample& s : backend.invalid_samples()) {
-      fmt::print(stderr, "  pixel {},{} sample {}\n", s.x, s.y, s.sample);
+      tell("  pixel {},{} sample {}\n", s.x, s.y, s.sample);
     }
   }
   if (report.underflowed_values > 0) {
-    fmt::print(stderr, "warning: {} values are too small for float32 and became 0\n", report.underflowed_values);
+    tell("warning: {} values are too small for float32 and became 0\n", report.underflowed_values);
   }
   if (report.pixels_without_sample > 0) {
-    fmt::print(stderr, "warning: {} pixels have no sample: NaN\n", report.pixels_without_sample);
+    tell("warning: {} pixels have no sample: NaN\n", report.pixels_without_sample);
   }
 }
 
 int render(const RenderOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // who reads our messages may go away before the render ends
   const auto start = std::chrono::steady_clock::now();
   const DiagnosticSink sink = print_diagnostics(options.quiet);
   const LoadedScene loaded = load_scene(options.scene, sink);
   SessionSettings settings = session_settings(options, loaded.description);
   const SamplingSettings sampling = sampling_settings(options, settings);
+  check_output_files({options.scene.scene, settings.outputs, settings.preview, options.stats});
   const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
   const auto backend = make_cpu_backend(scene, derived, sampling, {parse_isa(options.isa), options.threads});
   describe_render(settings, options, sampling, *backend);
   if (options.backend == "auto" && !options.quiet) {
-    fmt::print(stderr, "backend cpu ({}, {})\n", backend->device(), backend->isa());
+    tell("backend cpu ({}, {})\n", backend->device(), backend->isa());
   }
   const double setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+  catch_stop_signals();
   ProgressBar bar(!options.quiet);
   Progress last;
   const RenderReport report = run_session(scene, derived.names, *backend, settings, stop_requested,
@@ -157,12 +163,18 @@ int render(const RenderOptions& options) {
   if (last.pixel_samples > 0) bar.finish(last);
   if (!options.quiet) print_summary(report, *backend, setup);
   print_problems(report, *backend);
-  if (!options.stats.empty()) {
+  if (options.stats) {
     const RenderContext context{sampling, scene.film.crop_width, scene.film.crop_height, scene.channels.size(), setup,
                                 scene.features.names()};
-    write_file_atomically(options.stats, statistics_json(context, report, *backend));
+    write_file_atomically(*options.stats, statistics_json(context, report, *backend));
   }
   return report.interrupted ? kInterrupted : kDone;
+}
+
+/// CLI11 would take -1 for 2^64 - 1.
+std::string check_seed(const std::string& text) {
+  if (text.find_first_not_of("0123456789") == std::string::npos) return {};
+  return "Value " + text + " not a whole number from 0 to 18446744073709551615";
 }
 
 void add_sampling_options(CLI::App& command, RenderOptions& o) {
@@ -174,7 +186,7 @@ void add_sampling_options(CLI::App& command, RenderOptions& o) {
       ->check(CLI::IsMember({"shared", "per-path"}))->capture_default_str();
   command.add_option("--sampler", o.sampler, "random numbers")
       ->check(CLI::IsMember({"sobol", "independent"}))->capture_default_str();
-  command.add_option("--seed", o.seed, "seed of all random numbers")->capture_default_str();
+  command.add_option("--seed", o.seed, "seed of all random numbers")->check(CLI::Validator(check_seed, ""))->capture_default_str();
   auto* spp = command.add_option("--spp", o.spp, "samples per pixel (default: the scene's)")
                   ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32));
   auto* time = command.add_option("--time", o.time, "render for this long: 60s, 5min, 2h")->excludes(spp);

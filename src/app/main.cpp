@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "app/commands.hpp"
+#include "app/messages.hpp"
 #include "base/error.hpp"
 
 namespace kiloband {
@@ -16,18 +17,15 @@ namespace {
 
 void on_signal(int) { stop_requested = true; }
 
-/// A second Ctrl-C ends the program at once: SA_RESETHAND restores the default action after the first.
-void install_signal_handlers() {
-  struct sigaction action = {};
-  action.sa_handler = on_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+int fail(int code, const std::string& message, const char* hint = "") {
+  tell("kiloband: {}{}\n", message, hint);
+  return code;
 }
 
-int fail(int code, const char* message, const char* hint = "") {
-  fmt::print(stderr, "kiloband: {}{}\n", message, hint);
-  return code;
+/// CLI11 would call an unknown command a missing one.
+void check_command(const std::map<std::string, Command>& commands, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-' || commands.contains(argv[1])) return;
+  throw InputError(fmt::format("unknown command '{}': must be render, info or convert (see kiloband --help)", argv[1]));
 }
 
 int run(int argc, char** argv) {
@@ -38,23 +36,36 @@ int run(int argc, char** argv) {
   commands["render"] = add_render(program);
   commands["info"] = add_info(program);
   commands["convert"] = add_convert(program);
+  check_command(commands, argc, argv);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& e) {
     return program.exit(e);  // --help, --version
   } catch (const CLI::ParseError& e) {
-    program.exit(e);
-    return kInputWrong;
+    const auto chosen = program.get_subcommands();
+    const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+    throw InputError(fmt::format("{} (see kiloband{} --help)", e.what(), command));
   }
   return commands.at(program.get_subcommands().front()->get_name())();
 }
 
 }  // namespace
+
+void catch_stop_signals() {
+  struct sigaction action = {}, before = {};
+  action.sa_handler = on_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+  }
+}
+
 }  // namespace kiloband
 
 int main(int argc, char** argv) {
   using namespace kiloband;
-  install_signal_handlers();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is to be an error message (EFBIG), not the end
   try {
     return run(argc, argv);
   } catch (const InputError& e) {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "app/messages.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -48,18 +50,17 @@ void ProgressBar::update(const Progress& progress) {
 
 void ProgressBar::print(const Progress& progress) const {
   if (!terminal_) {
-    fmt::print(stderr, "{}\n", describe(progress));
+    tell("{}\n", describe(progress));
     return;
   }
   const int filled = static_cast<int>(std::lround(progress.fraction * kBarWidth));
-  fmt::print(stderr, "\r[{}{}] {}\x1b[K", std::string(filled, '#'), std::string(kBarWidth - filled, '.'), describe(progress));
-  std::fflush(stderr);
+  tell("\r[{}{}] {}\x1b[K", std::string(filled, '#'), std::string(kBarWidth - filled, '.'), describe(progress));
 }
 
 void ProgressBar::finish(const Progress& last) {
   if (!enabled_) return;
   print(last);
-  if (terminal_) fmt::print(stderr, "\n");
+  if (terminal_) tell("\n");
 }
 
 }  // namespace kiloband

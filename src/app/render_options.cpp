@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <set>
 
+#include "app/messages.hpp"
 #include "base/error.hpp"
 #include "spectral/spectrum_files.hpp"
 
@@ -75,18 +76,18 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) 
   ReadOptions read;
   for (const std::string& define : options.defines) read.defines.push_back(parse_define(define));
   read.sink = sink;
-  if (!options.size.empty()) read.film_size = parse_size(options.size);
+  if (options.size) read.film_size = parse_size(*options.size);
   LoadedScene loaded;
   loaded.description = read_scene(options.scene, read);
   if (options.max_depth) loaded.description.integrator.max_depth = *options.max_depth;
   Film& film = loaded.description.sensor.film;
-  if (!options.bands.empty() || !options.bands_file.empty()) {
-    loaded.channels = options.bands.empty() ? read_channels_file(options.bands_file) : parse_channels(options.bands);
+  if (options.bands || options.bands_file) {
+    loaded.channels = options.bands ? parse_channels_option("--bands", *options.bands) : read_channels_file(*options.bands_file);
     film.responses.clear();  // the command line beats the scene
   } else {
     loaded.channels = film.channels.empty() ? parse_channels(kDefaultBands) : film.channels;
   }
-  loaded.guide = options.guide_bands.empty() ? loaded.channels : parse_channels(options.guide_bands);
+  loaded.guide = options.guide_bands ? parse_channels_option("--guide-bands", *options.guide_bands) : loaded.channels;
   return loaded;
 }
 
@@ -110,10 +111,21 @@ DerivedChannels load_responses(const std::vector<std::string>& files, const Load
   return derived;
 }
 
+ChannelList parse_channels_option(const std::string& option, const std::string& text) {
+  static constexpr std::string_view kSubject = "bands";  // what parse_channels() calls its text
+  try {
+    return parse_channels(text);
+  } catch (const InputError& error) {
+    const std::string_view message = error.what();
+    if (!message.starts_with(kSubject)) throw;
+    throw InputError(option + std::string(message.substr(kSubject.size())));
+  }
+}
+
 DiagnosticSink print_diagnostics(bool quiet) {
   return [quiet](const Diagnostic& diagnostic) {
     if (quiet && diagnostic.severity == Severity::kNote) return;
-    fmt::print(stderr, "{}\n", diagnostic.to_string());
+    tell("{}\n", diagnostic.to_string());
   };
 }
 

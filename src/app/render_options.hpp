@@ -16,7 +16,7 @@ namespace kiloband {
 struct SceneOptions {
   std::string scene;
   std::vector<std::string> defines;
-  std::string bands, bands_file, guide_bands, size;
+  std::optional<std::string> bands, bands_file, guide_bands, size;
   std::optional<int> max_depth;
 
   void add_to(CLI::App& command);
@@ -34,6 +34,9 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink);
 /// Responses of files (--response) and of a specfilm, tabulated over the channels; a response that reaches beyond the
 /// channels gives a warning with the part of its integral that is missing.
 DerivedChannels load_responses(const std::vector<std::string>& files, const LoadedScene& scene, const DiagnosticSink& sink);
+
+/// The channels of an option; messages begin with its name. throws InputError
+ChannelList parse_channels_option(const std::string& option, const std::string& text);
 
 /// Prints warnings and notes to standard error (notes only if not quiet).
 DiagnosticSink print_diagnostics(bool quiet);

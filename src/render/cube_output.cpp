@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "film/cube_text.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -14,7 +16,7 @@ std::filesystem::path replicate_path(const std::filesystem::path& file, uint32_t
   return std::filesystem::path(file).replace_extension(fmt::format(".r{:02}{}", replicate, file.extension().string()));
 }
 
-bool is_exr(const std::filesystem::path& file) { return file.extension() == ".exr"; }
+bool is_exr(const std::filesystem::path& file) { return to_lower(file.extension().string()) == ".exr"; }
 
 }  // namespace
 

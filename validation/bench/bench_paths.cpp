@@ -23,14 +23,14 @@ constexpr uint32_t kSamples = 2;  // per benchmark iteration
 constexpr const char* kConferenceScene = R"(<scene version="3.0.0">
   <integrator type="path"><integer name="max_depth" value="6"/></integrator>
   <sensor type="perspective"><float name="fov" value="75"/><float name="near_clip" value="0.01"/>
-    <transform name="to_world"><lookat origin="1, 1.6, 2" target="4, 0.8, -0.5" up="0, 1, 0"/></transform>
+    <transform name="to_world"><lookat origin="4.3, 1.45, 1.5" target="0, 0.5, -1" up="0, 1, 0"/></transform>
     <film type="hdrfilm"><integer name="width" value="256"/><integer name="height" value="256"/><rfilter type="box"/></film>
   </sensor>
   <shape type="ply"><string name="filename" value="meshes/conference.ply"/><boolean name="face_normals" value="true"/>
     <transform name="to_world"><scale value="0.003"/></transform>
     <bsdf type="twosided"><bsdf type="diffuse"><spectrum name="reflectance" value="0.6"/></bsdf></bsdf></shape>
   <shape type="rectangle"><transform name="to_world"><scale value="0.5"/><rotate x="1" angle="90"/>
-    <translate x="3.5" y="2.2" z="0"/></transform><emitter type="area"><spectrum name="radiance" value="10"/></emitter></shape>
+    <translate x="1" y="1.8" z="-0.5"/></transform><emitter type="area"><spectrum name="radiance" value="10"/></emitter></shape>
 </scene>)";
 
 std::filesystem::path data_directory() {
@@ -54,7 +54,6 @@ struct Bench {
     tracer.flat = &flat;
     tracer.embree = embree.get();
     tracer.rough.resize(flat.materials.size());
-    tracer.secondary_mode = choose_ray_mode(flat);
     blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
   }
 };
@@ -73,14 +72,12 @@ void count_paths(benchmark::State& state, std::size_t paths_per_iteration) {
                                                           benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void generate(benchmark::State& state, const std::string& name, SamplerType sampler, RayMode mode, bool chosen) {
+void generate(benchmark::State& state, const std::string& name, SamplerType sampler) {
   Bench& bench = bench_of(name, 8);
-  TracerScene scene = bench.tracer;
-  if (!chosen) scene.secondary_mode = mode;
   SamplingSettings settings;
   settings.sampler = sampler;
   settings.replicates = 1;
-  PathTracer tracer(scene, settings);
+  PathTracer tracer(bench.tracer, settings);
   PathBuffer paths;
   std::vector<uint32_t> invalid;
   const float mu[1] = {0.5f};
@@ -166,13 +163,8 @@ void register_all() {
   for (const std::string name : {"cornell", "conference"}) {
     if (name == "conference" && !data) continue;
     benchmark::RegisterBenchmark(("bare/" + name).c_str(), bare, name);
-    const auto add = [&](const char* what, SamplerType sampler, RayMode mode, bool chosen) {
-      benchmark::RegisterBenchmark(("paths/" + name + "/" + what).c_str(), generate, name, sampler, mode, chosen);
-    };
-    add("independent", SamplerType::kIndependent, RayMode::kPackets, true);
-    add("sobol", SamplerType::kSobol, RayMode::kPackets, true);
-    add("independent-packets", SamplerType::kIndependent, RayMode::kPackets, false);
-    add("independent-single", SamplerType::kIndependent, RayMode::kSingle, false);
+    benchmark::RegisterBenchmark(("paths/" + name + "/independent").c_str(), generate, name, SamplerType::kIndependent);
+    benchmark::RegisterBenchmark(("paths/" + name + "/sobol").c_str(), generate, name, SamplerType::kSobol);
   }
   benchmark::RegisterBenchmark("render/shared", render, false, WavelengthMode::kShared)->Arg(8)->Arg(64)->Arg(512)->Arg(1000);
   benchmark::RegisterBenchmark("render/shared-variance", render, true, WavelengthMode::kShared)->Arg(8)->Arg(512);
