@@ -1,4 +1,5 @@
 // kiloband render SCENE.xml: loads, renders, writes.
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -80,7 +81,7 @@ SessionSettings session_settings(const RenderOptions& options, const SceneDescri
   if (options.preview) settings.preview = *options.preview;
   settings.aux = options.aux;
   if (settings.stop.relative_error && options.replicates < 2) {
-    throw InputError("--target-error needs at least 2 replicates");
+    throw InputError("--target-error needs error bars, --replicates 1 gives none: must be at least 2");
   }
   return settings;
 }
@@ -171,9 +172,11 @@ int render(const RenderOptions& options) {
   return report.interrupted ? kInterrupted : kDone;
 }
 
-/// CLI11 would take -1 for 2^64 - 1.
+/// CLI11 would take -1 for 2^64 - 1, and a larger number too.
 std::string check_seed(const std::string& text) {
-  if (text.find_first_not_of("0123456789") == std::string::npos) return {};
+  uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return {};
   return "Value " + text + " not a whole number from 0 to 18446744073709551615";
 }
 

@@ -74,7 +74,11 @@ void SceneOptions::add_to(CLI::App& command) {
 
 LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) {
   ReadOptions read;
-  for (const std::string& define : options.defines) read.defines.push_back(parse_define(define));
+  std::set<std::string> defined;
+  for (const std::string& define : options.defines) {
+    read.defines.push_back(parse_define(define));
+    if (!defined.insert(read.defines.back().first).second) throw InputError("-D " + define + ": the parameter is given twice");
+  }
   read.sink = sink;
   if (options.size) read.film_size = parse_size(*options.size);
   LoadedScene loaded;

@@ -1,0 +1,61 @@
+#include "app/output_files.hpp"
+
+#include <fmt/core.h>
+#include <set>
+#include <string>
+
+#include "base/error.hpp"
+#include "film/atomic_file.hpp"
+#include "film/cube_text.hpp"
+
+namespace kiloband {
+namespace {
+
+std::filesystem::path identity(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(file, error), error);
+  return error ? file : real;
+}
+
+std::string extension_of(const std::filesystem::path& file) { return to_lower(file.extension().string()); }
+
+/// The names that are taken so far.
+class Claims {
+ public:
+  explicit Claims(const std::filesystem::path& scene) : scene_(identity(scene)) {}
+
+  void claim(const char* option, const std::filesystem::path& file) {
+    const auto name = identity(file);
+    if (name == scene_) throw InputError(fmt::format("{} {}: would replace the scene", option, file.string()));
+    if (!taken_.insert(name).second) {
+      throw InputError(fmt::format("{} {}: another output has this name", option, file.string()));
+    }
+  }
+
+ private:
+  std::filesystem::path scene_;
+  std::set<std::filesystem::path> taken_;
+};
+
+}  // namespace
+
+void check_output_files(const OutputFiles& files) {
+  Claims claims(files.scene);
+  for (const auto& cube : files.cubes) {
+    claims.claim("-o", cube);
+    if (extension_of(cube) == ".hdr") claims.claim("-o", std::filesystem::path(cube).replace_extension(".img"));
+  }
+  if (files.preview) {
+    claims.claim("--preview", *files.preview);
+    if (extension_of(*files.preview) != ".png") {
+      throw InputError(fmt::format("--preview {}: must end in .png", files.preview->string()));
+    }
+    const AtomicFile trial(*files.preview);  // its temporary file vanishes at once
+  }
+  if (files.stats) {
+    claims.claim("--stats", *files.stats);
+    const AtomicFile trial(*files.stats);
+  }
+}
+
+}  // namespace kiloband
