@@ -10,7 +10,6 @@
 
 #include "src_cpu/block_worker.hpp"
 #include "src_cpu/camera.hpp"
-#include "src_cpu/path_tracer_detail.hpp"
 
 namespace kiloband {
 namespace {
@@ -142,23 +141,22 @@ void CpuBackend::render(SpectralFilm& film, const SampleRange& range, const std:
 
 std::vector<AuxiliaryPixel> CpuBackend::auxiliary(const PixelRect& rect) {
   std::vector<AuxiliaryPixel> pixels(rect.pixels());
-  RayQueue rays;
+  std::vector<TraceRay> rays;
   rays.reserve(rect.pixels());
   for (uint32_t i = 0; i < rect.pixels(); ++i) {
     const CameraRay ray = centre_camera_ray(scene_.camera, rect.x0 + i % rect.width, rect.y0 + i / rect.width);
-    push_ray(rays, ray.origin, ray.direction, ray.t_min, ray.t_max);
+    rays.emplace_back(ray.origin, ray.direction, ray.t_min, ray.t_max);
   }
-  HitQueue hits;
-  embree_->closest_hits(rays, hits, RayMode::kPackets);
+  embree_->closest_hits(rays, true);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (hits.shape[i] == KB_NONE) continue;
-    const glm::vec3 direction = ray_direction(rays, i);
-    const SurfaceHit hit = make_surface_hit(scene_, hits.shape[i], hits.primitive[i], hits.u[i], hits.v[i],
-                                            ray_origin(rays, i), direction, hits.t[i]);
+    const TraceRay& ray = rays[i];
+    if (ray.shape == KB_NONE) continue;
+    const SurfaceHit hit =
+        make_surface_hit(scene_, ray.shape, ray.primitive, ray.u, ray.v, ray.origin(), ray.direction(), ray.t_max);
     const KbSurface& surface = scene_.surfaces[scene_.shapes[hit.shape].surface];
-    const bool behind = glm::dot(hit.shading_normal, direction) > 0 && surface.back != KB_NONE;
+    const bool behind = glm::dot(hit.shading_normal, ray.direction()) > 0 && surface.back != KB_NONE;
     const glm::vec3 n = hit.shading_normal;
-    pixels[i] = {hits.t[i], {n.x, n.y, n.z}, static_cast<float>(hit.shape),
+    pixels[i] = {ray.t_max, {n.x, n.y, n.z}, static_cast<float>(hit.shape),
                  static_cast<float>(behind ? surface.back : surface.front)};
   }
   return pixels;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <fmt/format.h>
 #include <limits>
 
@@ -125,30 +126,6 @@ void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
 
 }  // namespace
 
-void RayQueue::reserve(std::size_t count) {
-  const std::size_t padded = (count + kPacketSize - 1) / kPacketSize * kPacketSize;
-  for (auto* array : {&ox, &oy, &oz, &dx, &dy, &dz, &t_min, &t_max}) array->resize(padded);
-}
-
-void RayQueue::push(const float (&origin)[3], const float (&direction)[3], float near_t, float far_t) {
-  ox[size] = origin[0];
-  oy[size] = origin[1];
-  oz[size] = origin[2];
-  dx[size] = direction[0];
-  dy[size] = direction[1];
-  dz[size] = direction[2];
-  t_min[size] = near_t;
-  t_max[size] = far_t;
-  ++size;
-}
-
-void HitQueue::resize(std::size_t count) {
-  const std::size_t padded = (count + kPacketSize - 1) / kPacketSize * kPacketSize;
-  if (t.size() >= padded) return;
-  for (auto* array : {&t, &u, &v}) array->resize(padded);
-  for (auto* array : {&shape, &primitive}) array->resize(padded);
-}
-
 struct EmbreeScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
@@ -206,105 +183,68 @@ EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int thr
 
 EmbreeScene::~EmbreeScene() = default;
 
+static_assert(sizeof(TraceRay) == sizeof(RTCRayHit) && sizeof(ShadowRay) == sizeof(RTCRay));
+static_assert(offsetof(TraceRay, t_max) == offsetof(RTCRay, tfar) && offsetof(TraceRay, flags) == offsetof(RTCRay, flags));
+static_assert(offsetof(TraceRay, u) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, u));
+static_assert(offsetof(TraceRay, shape) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, geomID));
+static_assert(offsetof(TraceRay, instance) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, instID));
+
 namespace {
 
-/// Copies packet `first` of the queue; lanes past its end are invalid.
-void load_packet(const RayQueue& rays, std::size_t first, RTCRay16& ray, int (&valid)[kPacketSize]) {
-  const auto copy = [first](const std::vector<float>& from, float* to) { std::copy_n(&from[first], kPacketSize, to); };
-  copy(rays.ox, ray.org_x);
-  copy(rays.oy, ray.org_y);
-  copy(rays.oz, ray.org_z);
-  copy(rays.dx, ray.dir_x);
-  copy(rays.dy, ray.dir_y);
-  copy(rays.dz, ray.dir_z);
-  copy(rays.t_min, ray.tnear);
-  copy(rays.t_max, ray.tfar);
+/// Copies up to 16 rays into a packet; lanes past the end are invalid.
+void load_packet(std::span<const TraceRay> rays, RTCRay16& packet, int (&valid)[kPacketSize]) {
   for (std::size_t lane = 0; lane < kPacketSize; ++lane) {
-    valid[lane] = first + lane < rays.size ? -1 : 0;
-    ray.time[lane] = 0;
-    ray.mask[lane] = ~0u;
-    ray.id[lane] = 0;
-    ray.flags[lane] = 0;
+    const TraceRay& ray = rays[std::min(lane, rays.size() - 1)];
+    valid[lane] = lane < rays.size() ? -1 : 0;
+    packet.org_x[lane] = ray.ox;
+    packet.org_y[lane] = ray.oy;
+    packet.org_z[lane] = ray.oz;
+    packet.dir_x[lane] = ray.dx;
+    packet.dir_y[lane] = ray.dy;
+    packet.dir_z[lane] = ray.dz;
+    packet.tnear[lane] = ray.t_min;
+    packet.tfar[lane] = ray.t_max;
+    packet.time[lane] = 0;
+    packet.mask[lane] = ~0u;
+    packet.id[lane] = packet.flags[lane] = 0;
   }
 }
 
-RTCRay load_ray(const RayQueue& rays, std::size_t i) {
-  RTCRay ray{};
-  ray.org_x = rays.ox[i];
-  ray.org_y = rays.oy[i];
-  ray.org_z = rays.oz[i];
-  ray.dir_x = rays.dx[i];
-  ray.dir_y = rays.dy[i];
-  ray.dir_z = rays.dz[i];
-  ray.tnear = rays.t_min[i];
-  ray.tfar = rays.t_max[i];
-  ray.mask = ~0u;
-  return ray;
+void store_packet(const RTCRayHit16& packet, std::span<TraceRay> rays) {
+  for (std::size_t lane = 0; lane < rays.size(); ++lane) {
+    TraceRay& ray = rays[lane];
+    ray.t_max = packet.ray.tfar[lane];
+    ray.u = packet.hit.u[lane];
+    ray.v = packet.hit.v[lane];
+    ray.primitive = packet.hit.primID[lane];
+    ray.shape = packet.hit.geomID[lane];
+  }
 }
 
 }  // namespace
 
-void EmbreeScene::closest_hits(const RayQueue& rays, HitQueue& hits, RayMode mode) const {
-  hits.resize(rays.size);
-  if (mode == RayMode::kSingle) {
+void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
+  if (!coherent) {
     Query query(kIncoherent);
-    for (std::size_t i = 0; i < rays.size; ++i) {
-      RTCRayHit ray{};
-      ray.ray = load_ray(rays, i);
-      ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      intersect1(impl_->scene, query, ray);
-      hits.t[i] = ray.ray.tfar;
-      hits.u[i] = ray.hit.u;
-      hits.v[i] = ray.hit.v;
-      hits.shape[i] = ray.hit.geomID;
-      hits.primitive[i] = ray.hit.primID;
-    }
+    for (TraceRay& ray : rays) intersect1(impl_->scene, query, reinterpret_cast<RTCRayHit&>(ray));
     return;
   }
   Query query(kCoherent);
   alignas(64) RTCRayHit16 packet;
   alignas(64) int valid[kPacketSize];
-  for (std::size_t first = 0; first < rays.size; first += kPacketSize) {
-    load_packet(rays, first, packet.ray, valid);
+  for (std::size_t first = 0; first < rays.size(); first += kPacketSize) {
+    const auto some = rays.subspan(first, std::min(kPacketSize, rays.size() - first));
+    load_packet(some, packet.ray, valid);
     std::fill_n(packet.hit.geomID, kPacketSize, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], kPacketSize, RTC_INVALID_GEOMETRY_ID);
     intersect16(valid, impl_->scene, query, packet);
-    std::copy_n(packet.ray.tfar, kPacketSize, &hits.t[first]);
-    std::copy_n(packet.hit.u, kPacketSize, &hits.u[first]);
-    std::copy_n(packet.hit.v, kPacketSize, &hits.v[first]);
-    std::copy_n(packet.hit.geomID, kPacketSize, &hits.shape[first]);
-    std::copy_n(packet.hit.primID, kPacketSize, &hits.primitive[first]);
+    store_packet(packet, some);
   }
 }
 
-void EmbreeScene::occlusions(const RayQueue& rays, std::vector<uint8_t>& occluded) const {
-  occluded.resize(rays.size);
+void EmbreeScene::occlusions(std::span<ShadowRay> rays) const {
   Query query(kIncoherent);
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    RTCRay ray = load_ray(rays, i);
-    occluded1(impl_->scene, query, ray);
-    occluded[i] = ray.tfar < 0;
-  }
-}
-
-std::size_t EmbreeScene::bare_queries(const RayQueue& closest, const RayQueue& shadow,
-                                      std::span<const uint32_t> order) const {
-  Query query(kIncoherent);
-  std::size_t hits = 0;
-  for (const uint32_t code : order) {
-    if (code & 1) {
-      RTCRay ray = load_ray(shadow, code >> 1);
-      occluded1(impl_->scene, query, ray);
-      hits += ray.tfar < 0;
-    } else {
-      RTCRayHit ray{};
-      ray.ray = load_ray(closest, code >> 1);
-      ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      intersect1(impl_->scene, query, ray);
-      hits += ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-    }
-  }
-  return hits;
+  for (ShadowRay& ray : rays) occluded1(impl_->scene, query, reinterpret_cast<RTCRay&>(ray));
 }
 
 }  // namespace kiloband

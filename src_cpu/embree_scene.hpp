@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,26 +14,37 @@ namespace kiloband {
 
 inline constexpr std::size_t kPacketSize = 16;
 
-/// Rays in structure-of-arrays form, padded to whole packets. direction need not be unit; hits lie in (t_min, t_max).
-struct RayQueue {
-  std::vector<float> ox, oy, oz, dx, dy, dz, t_min, t_max;
-  std::size_t size = 0;
+/// A closest-hit query and its answer, laid out as Embree's RTCRayHit so that nothing is copied. direction need not be a
+/// unit vector; hits lie in (t_min, t_max).
+struct alignas(16) TraceRay {
+  float ox, oy, oz, t_min;
+  float dx, dy, dz, time = 0;
+  float t_max;  // in: far end; out: the hit's distance
+  uint32_t mask = ~0u, id = 0, flags = 0;
+  float ng_x, ng_y, ng_z;  // not used
+  float u, v;              // barycentric coordinates of a mesh hit
+  uint32_t primitive;      // triangle within the shape
+  uint32_t shape = KB_NONE, instance = KB_NONE;  // KB_NONE: a miss
 
-  void reserve(std::size_t count);  // rounds up to whole packets
-  void clear() { size = 0; }
-  void push(const float (&origin)[3], const float (&direction)[3], float near_t, float far_t);
+  TraceRay(glm::vec3 origin, glm::vec3 direction, float near_t, float far_t)
+      : ox(origin.x), oy(origin.y), oz(origin.z), t_min(near_t), dx(direction.x), dy(direction.y), dz(direction.z),
+        t_max(far_t) {}
+  glm::vec3 origin() const { return {ox, oy, oz}; }
+  glm::vec3 direction() const { return {dx, dy, dz}; }
 };
 
-/// Nearest hits of the rays of a queue. shape is KB_NONE for a miss; primitive is the triangle within the shape.
-struct HitQueue {
-  std::vector<float> t, u, v;
-  std::vector<uint32_t> shape, primitive;
+/// An occlusion query, laid out as Embree's RTCRay; t_max < 0 afterwards: something is in between.
+struct alignas(16) ShadowRay {
+  float ox, oy, oz, t_min;
+  float dx, dy, dz, time = 0;
+  float t_max;
+  uint32_t mask = ~0u, id = 0, flags = 0;
 
-  void resize(std::size_t count);
+  ShadowRay(glm::vec3 origin, glm::vec3 direction, float far_t)
+      : ox(origin.x), oy(origin.y), oz(origin.z), t_min(0), dx(direction.x), dy(direction.y), dz(direction.z),
+        t_max(far_t) {}
+  bool occluded() const { return t_max < 0; }
 };
-
-/// Whether rays go to Embree in packets of 16 or one by one.
-enum class RayMode { kPackets, kSingle };
 
 class EmbreeScene {
  public:
@@ -41,11 +53,10 @@ class EmbreeScene {
   EmbreeScene(const FlatScene& scene, const std::string& isa, int threads);
   ~EmbreeScene();
 
-  void closest_hits(const RayQueue& rays, HitQueue& hits, RayMode mode) const;
-  /// occluded[i] = 1 if anything lies in (t_min, t_max) of ray i.
-  void occlusions(const RayQueue& rays, std::vector<uint8_t>& occluded) const;
-  /// Benchmarks: sends rays one by one in the given order (index << 1 | is_shadow) and returns the number of hits.
-  std::size_t bare_queries(const RayQueue& closest, const RayQueue& shadow, std::span<const uint32_t> order) const;
+  /// Answers in place. coherent: neighbouring rays go together, in packets of 16 (camera rays; packets lose for others,
+  /// see validation/README.md).
+  void closest_hits(std::span<TraceRay> rays, bool coherent) const;
+  void occlusions(std::span<ShadowRay> rays) const;
 
  private:
   struct Impl;

@@ -36,7 +36,6 @@ void set_flag(KbPathVertex& vertex, uint32_t flag) { vertex.head |= flag; }
 PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& settings)
     : scene_(scene), flat_(*scene.flat), settings_(settings) {
   constexpr std::size_t kPixels = std::size_t{kBlockSize} * kBlockSize;
-  for (RayQueue* queue : {&rays_queue_, &next_rays_, &shadow_rays_}) queue->reserve(kPixels);
   paths_.reserve(kPixels);
   slots_.reserve(8 * kPixels);
 }
@@ -67,7 +66,7 @@ void PathTracer::run_wavefront(const SampleId& id, std::span<const float> mu) {
       for (const uint32_t path : active_) paths_[path].invalid = true;
       return;
     }
-    trace_closest(bounce == 0 ? RayMode::kPackets : RayMode::kSingle);
+    trace_closest(bounce == 0);
     shade_all(id, bounce, mu);
     trace_shadows();
   }
@@ -90,36 +89,54 @@ void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t co
     path.previous_point = ray.origin;
     paths_.push_back(path);
     active_.push_back(i);
-    push_ray(rays_queue_, ray.origin, ray.direction, ray.t_min, ray.t_max);
+    rays_queue_.emplace_back(ray.origin, ray.direction, ray.t_min, ray.t_max);
   }
 }
 
-void PathTracer::record(bool shadow) {
-  const RayQueue& from = shadow ? shadow_rays_ : rays_queue_;
-  RayQueue& to = shadow ? recording_->shadow : recording_->closest;
-  to.reserve(to.size + from.size);
-  for (std::size_t i = 0; i < from.size; ++i) {
-    push_ray(to, ray_origin(from, i), ray_direction(from, i), from.t_min[i], from.t_max[i]);
-    (shadow ? recording_->shadow_path : recording_->closest_path).push_back(shadow ? shadow_path_[i] : active_[i]);
-  }
+void PathTracer::record_closest() {
+  recording_->closest.insert(recording_->closest.end(), rays_queue_.begin(), rays_queue_.end());
+  recording_->closest_path.insert(recording_->closest_path.end(), active_.begin(), active_.end());
 }
 
-void PathTracer::trace_closest(RayMode mode) {
-  rays_ += rays_queue_.size;
-  if (recording_) record(false);
-  scene_.embree->closest_hits(rays_queue_, hits_, mode);
+void PathTracer::record_shadows() {
+  recording_->shadow.insert(recording_->shadow.end(), shadow_rays_.begin(), shadow_rays_.end());
+  recording_->shadow_path.insert(recording_->shadow_path.end(), shadow_path_.begin(), shadow_path_.end());
+}
+
+void PathTracer::trace_closest(bool coherent) {
+  rays_ += rays_queue_.size();
+  if (recording_) record_closest();
+  scene_.embree->closest_hits(rays_queue_, coherent);
 }
 
 void PathTracer::trace_shadows() {
-  rays_ += shadow_rays_.size;
-  if (recording_) record(true);
-  scene_.embree->occlusions(shadow_rays_, occluded_);
-  for (std::size_t i = 0; i < shadow_rays_.size; ++i) {
-    if (occluded_[i]) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
+  rays_ += shadow_rays_.size();
+  if (recording_) record_shadows();
+  scene_.embree->occlusions(shadow_rays_);
+  for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
+    if (shadow_rays_[i].occluded()) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
+  }
+}
+
+/// Large meshes do not fit the caches: asks for the triangles, then for the vertices, of all hits before the first is shaded.
+void PathTracer::prefetch_hits() const {
+  const auto first_index = [this](const TraceRay& ray) {
+    return &flat_.triangles[3 * (std::size_t{flat_.shapes[ray.shape].first_triangle} + ray.primitive)];
+  };
+  const auto is_mesh = [this](const TraceRay& ray) {
+    return ray.shape != KB_NONE && flat_.shapes[ray.shape].type == KB_SHAPE_MESH;
+  };
+  for (const TraceRay& ray : rays_queue_) {
+    if (is_mesh(ray)) __builtin_prefetch(first_index(ray));
+  }
+  for (const TraceRay& ray : rays_queue_) {
+    if (!is_mesh(ray)) continue;
+    for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&flat_.positions[first_index(ray)[corner]]);
   }
 }
 
 void PathTracer::shade_all(const SampleId& id, uint32_t bounce, std::span<const float> mu) {
+  prefetch_hits();
   next_active_.clear();
   next_rays_.clear();
   shadow_rays_.clear();
@@ -127,9 +144,10 @@ void PathTracer::shade_all(const SampleId& id, uint32_t bounce, std::span<const 
   shadow_path_.clear();
   for (std::size_t i = 0; i < active_.size(); ++i) {
     Path& path = paths_[active_[i]];
-    if (hits_.shape[i] == KB_NONE) {
-      add_escaped(path, i, bounce);
-    } else if (shade(path, i, id, bounce, mu)) {
+    const TraceRay& ray = rays_queue_[i];
+    if (ray.shape == KB_NONE) {
+      add_escaped(path, ray, bounce);
+    } else if (shade(path, ray, id, bounce, mu)) {
       next_active_.push_back(active_[i]);
     }
   }
@@ -137,9 +155,9 @@ void PathTracer::shade_all(const SampleId& id, uint32_t bounce, std::span<const 
   std::swap(rays_queue_, next_rays_);
 }
 
-void PathTracer::add_escaped(Path& path, std::size_t ray, uint32_t bounce) {
+void PathTracer::add_escaped(Path& path, const TraceRay& ray, uint32_t bounce) {
   if (flat_.environment == KB_NONE || (bounce == 0 && flat_.integrator.hide_emitters)) return;
-  const glm::vec3 direction = ray_direction(rays_queue_, ray);
+  const glm::vec3 direction = ray.direction();
   Draft draft;
   set_flag(draft.vertex, KB_VERTEX_EMIT);
   draft.vertex.emit_weight =

@@ -56,7 +56,8 @@ class PathTracer {
 
   /// When set, every ray that is traced is appended here with its path's index in the block (benchmarks of bare queries).
   struct Recording {
-    RayQueue closest, shadow;
+    std::vector<TraceRay> closest;
+    std::vector<ShadowRay> shadow;
     std::vector<uint32_t> closest_path, shadow_path;
   };
   void record_into(Recording* recording) { recording_ = recording; }
@@ -87,13 +88,15 @@ class PathTracer {
 
   void start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id);
   void run_wavefront(const SampleId& id, std::span<const float> mu);
-  void record(bool shadow);
-  void trace_closest(RayMode mode);
+  void record_closest();
+  void record_shadows();
+  void trace_closest(bool coherent);
   void trace_shadows();
+  void prefetch_hits() const;
   void shade_all(const SampleId& id, uint32_t bounce, std::span<const float> mu);
   /// Returns false where the path ends.
-  bool shade(Path& path, std::size_t ray, const SampleId& id, uint32_t bounce, std::span<const float> mu);
-  void add_escaped(Path& path, std::size_t ray, uint32_t bounce);
+  bool shade(Path& path, const TraceRay& ray, const SampleId& id, uint32_t bounce, std::span<const float> mu);
+  void add_escaped(Path& path, const TraceRay& ray, uint32_t bounce);
   void add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction, uint32_t bounce);
   bool add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
                         const MaterialContext& material, glm::vec3 wi, float opacity, const SampleId& id, uint32_t bounce);
@@ -116,11 +119,10 @@ class PathTracer {
   SamplingSettings settings_;
   std::vector<Path> paths_;
   std::vector<uint32_t> active_, next_active_;
-  RayQueue rays_queue_, next_rays_, shadow_rays_;
-  HitQueue hits_;
+  std::vector<TraceRay> rays_queue_, next_rays_;
+  std::vector<ShadowRay> shadow_rays_;
   std::vector<uint32_t> shadow_slot_;  // vertex of each shadow ray
   std::vector<uint32_t> shadow_path_;  // while recording: its path
-  std::vector<uint8_t> occluded_;
   std::vector<Slot> slots_;
   Recording* recording_ = nullptr;
   uint64_t rays_ = 0, vertices_ = 0;

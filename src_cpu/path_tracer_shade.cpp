@@ -25,11 +25,10 @@ bool is_rough_dispersive(const KbMaterial& material) {
 
 }  // namespace
 
-bool PathTracer::shade(Path& path, std::size_t ray, const SampleId& id, uint32_t bounce, std::span<const float> mu) {
-  const glm::vec3 origin = ray_origin(rays_queue_, ray);
-  const glm::vec3 direction = ray_direction(rays_queue_, ray);
-  const SurfaceHit hit = make_surface_hit(flat_, hits_.shape[ray], hits_.primitive[ray], hits_.u[ray], hits_.v[ray], origin,
-                                          direction, hits_.t[ray]);
+bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint32_t bounce, std::span<const float> mu) {
+  const glm::vec3 direction = ray.direction();
+  const SurfaceHit hit =
+      make_surface_hit(flat_, ray.shape, ray.primitive, ray.u, ray.v, ray.origin(), direction, ray.t_max);
   Draft draft;
   add_emission(draft, path, hit, direction, bounce);
   const auto finish = [&](bool goes_on) {
@@ -103,7 +102,7 @@ void PathTracer::pass_through(Path& path, const SurfaceHit& hit, glm::vec3 direc
 }
 
 void PathTracer::continue_ray(const SurfaceHit& hit, glm::vec3 direction) {
-  push_ray(next_rays_, leave_surface(hit, direction), direction, 0, kInfiniteDistance);
+  next_rays_.emplace_back(leave_surface(hit, direction), direction, 0.0f, kInfiniteDistance);
 }
 
 /// Next-event estimation: queues a shadow ray and stores the weights as if it were visible. The shadow ray's vertex is
@@ -137,9 +136,9 @@ bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hi
   }
   const glm::vec3 origin = leave_surface(hit, light.direction);
   if (light.infinite) {
-    push_ray(shadow_rays_, origin, light.direction, 0, kInfiniteDistance);
+    shadow_rays_.emplace_back(origin, light.direction, kInfiniteDistance);
   } else {
-    push_ray(shadow_rays_, origin, light.target - origin, 0, 1);
+    shadow_rays_.emplace_back(origin, light.target - origin, 1.0f);
   }
   return true;
 }
@@ -177,7 +176,8 @@ bool PathTracer::scatter(Draft& draft, Path& path, const SurfaceHit& hit, const 
   const bool survives = roulette(draft, path, bounce, u.w);
   if (survives || has_light) resolve_spectra(draft, record, hit, use_b);
   if (!survives) return false;
-  const glm::vec3 direction = glm::normalize(frame.to_world(sample.wo));
+  glm::vec3 direction = frame.to_world(sample.wo);
+  if (sample.delta) direction = glm::normalize(direction);  // rounding would add up along specular chains
   continue_ray(hit, direction);
   path.previous_point = hit.point;
   return true;
