@@ -1,0 +1,31 @@
+// Scenes of these tests, as text: an open box of diffuse walls under an area light, as the Cornell box.
+#pragma once
+
+#include <string>
+
+namespace kiloband::test {
+
+/// The part of the film that is rendered. full: edge of the whole film, pixels.
+struct Crop {
+  unsigned full, x, y, width, height;
+};
+
+/// A rectangle of the box, [-1, 1] on a side before `steps` (transform steps); contents: BSDF and emitter.
+std::string rectangle(const std::string& steps, const std::string& contents);
+
+/// The sensor in front of the box.
+std::string box_sensor(const Crop& crop);
+/// Five walls (red left, green right) with spectra from 400 to 780 nm.
+std::string box_walls();
+/// The light below the ceiling. radiance: points "nm:value, ..."
+std::string box_light(const std::string& radiance);
+/// A diffuse block on the floor.
+std::string box_block();
+/// <scene> around the parts. max_depth as in the scene format
+std::string scene(int max_depth, const std::string& parts);
+
+/// A triangle wave: low at first_nm + i period_nm, high in the middle between. On channels of one period
+/// each, the wavelength offset changes all of them together and strongly.
+std::string comb(double first_nm, double last_nm, double period_nm, double low, double high);
+
+}  // namespace kiloband::test

@@ -1,0 +1,191 @@
+// A channel does not depend on the channels that are rendered with it.
+//
+// With fixed guide bands and without dispersion the paths, and a channel's arithmetic, are the same whatever
+// else is rendered: values must be the same bits on one instruction set. Otherwise (decisions follow the
+// channels, or a dispersive surface leaves one of K channels) only the expectation is the same: tested with
+// other seeds for both renders, by the difference over its standard error.
+//
+// The statistical tests make kComparisons comparisons each of image means of 16 replicates; the two-sided
+// critical value is t's at a family-wise error rate of 1e-4 with 15 degrees of freedom, conservative for a
+// difference (15 to 30). A difference of 9 standard errors is then detected with probability 0.99; each test
+// states what that is.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "box_scene.hpp"
+#include "tests/support/render_harness.hpp"
+
+namespace kiloband::test {
+namespace {
+
+constexpr Crop kCrop{64, 20, 20, 24, 24};
+constexpr const char* kSpikes = "400:1, 450:4, 470:0.5, 552:3, 560:8, 568:3, 640:1, 700:5";
+
+/// Spectra of every kind, coupled with direction (conductor) or not, and lights of two colours.
+std::string spectral_parts() {
+  const std::string ball =
+      "<shape type=\"sphere\"><point name=\"center\" x=\"0.45\" y=\"-0.6\" z=\"0.2\"/>"
+      "<float name=\"radius\" value=\"0.38\"/><bsdf type=\"roughconductor\">"
+      "<float name=\"alpha\" value=\"0.2\"/><spectrum name=\"eta\" value=\"400:1.5, 500:0.9, 700:0.15\"/>"
+      "<spectrum name=\"k\" value=\"400:1.9, 500:2.1, 700:3.8\"/></bsdf></shape>";
+  const std::string glass =
+      "<shape type=\"sphere\"><point name=\"center\" x=\"-0.45\" y=\"0.35\" z=\"0.1\"/>"
+      "<float name=\"radius\" value=\"0.3\"/><bsdf type=\"dielectric\"/></shape>";
+  const std::string coat =
+      rectangle("<scale value=\"0.4\"/><translate x=\"0.3\" y=\"0.3\" z=\"-0.98\"/>",
+                "<bsdf type=\"plastic\"><rgb name=\"diffuse_reflectance\" value=\"0.7, 0.2, 0.1\"/>"
+                "<boolean name=\"nonlinear\" value=\"true\"/></bsdf>");
+  const std::string lamp =
+      "<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0.2\" z=\"0.9\"/>"
+      "<spectrum type=\"blackbody\" name=\"intensity\"><float name=\"temperature\" value=\"3200\"/>"
+      "</spectrum></emitter>";
+  return box_walls() + box_block() + box_light(kSpikes) + ball + glass + coat + lamp;
+}
+
+RenderSpec base_spec(const std::string& parts, const std::string& bands) {
+  RenderSpec spec;
+  spec.xml = scene(5, box_sensor(kCrop) + parts);
+  spec.bands = bands;
+  spec.spp = 8;
+  spec.sampling.replicates = 4;
+  spec.sampling.seed = 11;
+  spec.threads = 1;
+  return spec;
+}
+
+/// The channel as a list of one, every digit kept.
+std::string alone(const Channel& channel) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.17g-%.17g", channel.min_nm, channel.max_nm);
+  return text;
+}
+
+struct ChannelCase {
+  const char* bands;
+  std::vector<std::size_t> compared;
+};
+
+const ChannelCase kCases[] = {
+    {"400:700:1", {0}},
+    {"400:700:7", {0, 1, 2, 3, 4, 5, 6}},
+    {"400:700:100", {0, 1, 15, 50, 63, 64, 99}},
+    {"400:700:1000", {0, 1, 63, 64, 531, 998, 999}},
+    {"400-500, 450-550, 480-520, 450-550, 400-700", {0, 1, 2, 3, 4}},  // overlaps, one twice
+    {"405-410, 500-520, 690-700", {0, 1, 2}},                          // gaps
+    {"555:565:100", {0, 49, 50, 99}}};                                 // 0.1 nm
+
+class ChannelsWithGuide : public ::testing::TestWithParam<WavelengthMode> {};
+
+TEST_P(ChannelsWithGuide, EqualTheSameChannelAlone) {
+  for (const ChannelCase& test : kCases) {
+    SCOPED_TRACE(test.bands);
+    RenderSpec spec = base_spec(spectral_parts(), test.bands);
+    spec.guide = "400:700:30";
+    spec.sampling.wavelengths = GetParam();
+    const RenderResult together = render(spec);
+    ASSERT_GT(together.image_mean[0], 0);
+    const ChannelList channels = together.scene.channels;
+    for (const std::size_t c : test.compared) {
+      spec.bands = alone(channels[c]);
+      const RenderResult single = render(spec);
+      ASSERT_EQ(single.channels, 1u);
+      std::size_t different = 0, different_errors = 0;
+      for (std::size_t p = 0; p < single.mean.size(); ++p) {
+        different += single.mean[p] != together.mean[p * together.channels + c];
+        different_errors += single.variance[p] != together.variance[p * together.channels + c];
+      }
+      EXPECT_EQ(different, 0u) << "channel " << c;
+      EXPECT_EQ(different_errors, 0u) << "channel " << c;
+      EXPECT_EQ(single.image_mean[0], together.image_mean[c]);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, ChannelsWithGuide,
+                         ::testing::Values(WavelengthMode::kShared, WavelengthMode::kPerPath));
+
+/// Image means of channels rendered together and alone (other seeds), by t-tests; `detectable` bounds 9
+/// standard errors of each difference, relative to the mean.
+void expect_same_means(RenderSpec spec, const std::vector<ChannelCase>& cases, double detectable) {
+  std::size_t comparisons = 0;
+  for (const ChannelCase& test : cases) comparisons += test.compared.size();
+  const double critical = critical_t(1e-4, comparisons, 16);
+  uint64_t seed = 100;
+  double worst = 0;
+  for (const ChannelCase& test : cases) {
+    SCOPED_TRACE(test.bands);
+    spec.bands = test.bands;
+    spec.sampling.seed = ++seed;
+    const RenderResult together = render(spec);
+    RenderSpec single_spec = spec;
+    for (const std::size_t c : test.compared) {
+      single_spec.bands = alone(together.scene.channels[c]);
+      single_spec.sampling.seed = ++seed;
+      const RenderResult single = render(single_spec);
+      const double variance = single.image_variance[0] + together.image_variance[c];
+      worst = std::max(worst, 9 * std::sqrt(variance) / single.image_mean[0]);
+      EXPECT_LT(z_score(together.image_mean[c], single.image_mean[0], variance), critical) << "channel " << c;
+    }
+  }
+  EXPECT_LT(worst, detectable);
+}
+
+TEST(ChannelsWithoutGuide, AgreeInTheMean) {
+  // Detectable: a bias of 7 % of any channel's image mean.
+  RenderSpec spec = base_spec(spectral_parts(), "");
+  spec.spp = 128;
+  spec.sampling.replicates = 16;
+  expect_same_means(spec,
+                    {{"400:700:7", {0, 3, 6}},
+                     {"400:700:1000", {0, 531, 999}},
+                     {"400-500, 450-550, 450-550, 400-700", {0, 2, 3}},
+                     {"405-410, 690-700", {0, 1}},
+                     {"555:565:100", {0, 50}}},
+                    0.07);
+}
+
+class DispersiveChannels : public ::testing::Test {
+ protected:
+  DispersiveChannels() {
+    directory_ = std::filesystem::temp_directory_path() / ("kiloband_channels_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(directory_);
+    std::ofstream(directory_ / "flint.txt") << "400 1.85\n500 1.80\n600 1.78\n700 1.77\n";
+  }
+  ~DispersiveChannels() override { std::filesystem::remove_all(directory_); }
+
+  RenderSpec spec(const std::string& type) const {
+    const std::string ball =
+        "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"-0.4\" z=\"0.3\"/>"
+        "<float name=\"radius\" value=\"0.55\"/><bsdf type=\"" +
+        type +
+        "\">"
+        "<string name=\"int_material\" value=\"flint.txt\"/></bsdf></shape>";
+    RenderSpec spec = base_spec(box_walls() + box_light(kSpikes) + ball, "");
+    spec.directory = directory_;
+    spec.guide = "400:700:30";
+    spec.spp = 256;
+    spec.sampling.replicates = 16;
+    return spec;
+  }
+
+  std::filesystem::path directory_;
+};
+
+TEST_F(DispersiveChannels, SmoothGlassAgreesInTheMean) {
+  // One of K channels goes on behind the glass: noisier with every channel. Detectable: 11 % of a channel's
+  // image mean.
+  expect_same_means(spec("dielectric"), {{"400:700:7", {0, 3, 6}}, {"400-500, 450-550, 600-601", {0, 1, 2}}},
+                    0.11);
+}
+
+TEST_F(DispersiveChannels, RoughGlassAgreesInTheMean) {
+  expect_same_means(spec("roughdielectric"),
+                    {{"400:700:7", {0, 3, 6}}, {"400-500, 450-550, 600-601", {0, 1, 2}}}, 0.11);
+}
+
+}  // namespace
+}  // namespace kiloband::test
