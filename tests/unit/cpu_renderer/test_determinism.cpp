@@ -1,0 +1,137 @@
+// What a render must not depend on: threads, the part of the film, how its samples are divided; and what an
+// instruction set may change.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "room_scene.hpp"
+#include "scene/reader.hpp"
+#include "src_cpu/cpu_backend.hpp"
+
+namespace kiloband::test {
+namespace {
+
+constexpr WavelengthMode kModes[] = {WavelengthMode::kShared, WavelengthMode::kPerPath};
+constexpr SamplerType kSamplers[] = {SamplerType::kSobol, SamplerType::kIndependent};
+
+TEST(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
+  for (const WavelengthMode mode : kModes) {
+    RenderSpec spec = room_spec({80, 48});  // six blocks, two of them narrow, two low
+    spec.sampling.wavelengths = mode;
+    const RenderResult one = render(spec);
+    EXPECT_GT(one.image_mean[0], 0);
+    for (const int threads : {2, 3}) {
+      spec.threads = threads;
+      const RenderResult more = render(spec);
+      EXPECT_EQ(one.mean, more.mean) << threads;
+      EXPECT_EQ(one.variance, more.variance) << threads;
+      EXPECT_EQ(one.tile_variance, more.tile_variance) << threads;
+      EXPECT_EQ(one.image_mean, more.image_mean) << threads;
+      EXPECT_EQ(one.image_variance, more.image_variance) << threads;
+      EXPECT_EQ(one.vertices, more.vertices);
+    }
+  }
+}
+
+TEST(Determinism, SeedsDiffer) {
+  RenderSpec spec = room_spec({16, 16});
+  const RenderResult first = render(spec);
+  spec.sampling.seed = 6;
+  EXPECT_NE(first.mean, render(spec).mean);
+}
+
+TEST(Determinism, CropsRenderThePixelsOfTheFullFilm) {
+  constexpr FilmSize kWhole{80, 48}, kCrop{80, 48, 21, 13, 37, 22};  // parts of four blocks
+  for (const WavelengthMode mode : kModes) {
+    for (const SamplerType sampler : kSamplers) {
+      RenderSpec spec = room_spec(kWhole);
+      spec.sampling.wavelengths = mode;
+      spec.sampling.sampler = sampler;
+      const RenderResult whole = render(spec);
+      spec.xml = room_spec(kCrop).xml;
+      const RenderResult crop = render(spec);
+      ASSERT_EQ(crop.width, kCrop.crop_width);
+      std::size_t different = 0;
+      for (uint32_t y = 0; y < crop.height; ++y) {
+        for (uint32_t x = 0; x < crop.width; ++x) {
+          for (std::size_t c = 0; c < crop.channels; ++c) {
+            different += crop.at(x, y, c) != whole.at(x + kCrop.crop_x, y + kCrop.crop_y, c);
+          }
+        }
+      }
+      EXPECT_EQ(different, 0u) << "mode " << static_cast<int>(mode) << ", sampler "
+                               << static_cast<int>(sampler);
+    }
+  }
+}
+
+/// A held film of the room rendered in the given numbers of samples per replicate, one pass after the other.
+std::vector<float> render_in_passes(const std::vector<uint32_t>& passes, SamplingSettings sampling) {
+  const SceneDescription description = read_scene_text(room_spec({40, 40}).xml, "test.xml", ".", {});
+  const FlatScene scene = flatten(description, {parse_channels("500:600:4"), {}, {}});
+  sampling.replicates = 4;
+  const auto backend = make_cpu_backend(scene, {}, sampling, {Isa::kAuto, 1});
+  SpectralFilm film({0, 0, 40, 40}, {4, 4, true, true});
+  std::vector<uint32_t> blocks(film.blocks().size());
+  std::iota(blocks.begin(), blocks.end(), 0u);
+  uint32_t first = 0;
+  for (const uint32_t count : passes) {
+    for (uint32_t r = 0; r < 4; ++r) backend->render(film, {r, first, count}, blocks, false, {});
+    first += count;
+  }
+  std::vector<float> values(2 * std::size_t{40} * 40 * 4);
+  for (uint32_t y = 0; y < 40; ++y) {
+    EXPECT_EQ(film.samples(0, y), 4u * first);
+    film.row(y, std::span(values).subspan(y * 160, 160), std::span(values).subspan(6400 + y * 160, 160));
+  }
+  return values;
+}
+
+TEST(Determinism, AnExtendedRenderEqualsOneInOneGo) {
+  for (const WavelengthMode mode : kModes) {
+    for (const SamplerType sampler : kSamplers) {
+      SamplingSettings sampling;
+      sampling.wavelengths = mode;
+      sampling.sampler = sampler;
+      const std::vector<float> whole = render_in_passes({7}, sampling);
+      const std::vector<float> extended = render_in_passes({4, 1, 2}, sampling);
+      double mean_difference = 0, variance_difference = 0;
+      for (std::size_t i = 0; i < 6400; ++i) {
+        mean_difference = std::max(mean_difference, std::abs(extended[i] / double{whole[i]} - 1));
+        // A variance's rounding is that of the means, 1e-7, over the standard error: measured against both.
+        const double scale = whole[6400 + i] + 1e-4 * whole[i] * whole[i];
+        variance_difference =
+            std::max(variance_difference, std::abs(extended[6400 + i] - whole[6400 + i]) / scale);
+      }
+      EXPECT_LT(mean_difference, 1e-6);
+      EXPECT_LT(variance_difference, 1e-3);
+    }
+  }
+}
+
+/// Hits of other code paths differ in their last bits, and so does all that follows; now and then a path
+/// takes another turn. Equal random numbers keep nearly all pixels the same: a systematic difference would
+/// show in every pixel.
+TEST(Determinism, InstructionSetsAgree) {
+  RenderSpec spec = room_spec({48, 48});
+  spec.isa = "sse4";
+  const RenderResult baseline = render(spec);
+  for (const Isa isa : {Isa::kAvx2, Isa::kAvx512}) {
+    if (!is_available(isa)) continue;
+    spec.isa = to_string(isa);
+    const RenderResult other = render(spec);
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < other.mean.size(); ++i) {
+      different += std::abs(other.mean[i] - baseline.mean[i]) > 1e-4 * std::abs(baseline.mean[i]);
+    }
+    EXPECT_LT(static_cast<double>(different), 0.03 * static_cast<double>(other.mean.size())) << spec.isa;
+    for (std::size_t c = 0; c < other.channels; ++c) {
+      const double error = std::sqrt(baseline.image_variance[c]);
+      EXPECT_NEAR(other.image_mean[c], baseline.image_mean[c], 0.1 * error) << spec.isa << ", channel " << c;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kiloband::test
