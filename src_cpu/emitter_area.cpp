@@ -158,11 +158,6 @@ float sphere_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point
 
 }  // namespace
 
-uint32_t find_interval(const float* cdf, uint32_t count, float u) {
-  // The first inner entry above u ends the interval; none: the last interval.
-  return static_cast<uint32_t>(std::upper_bound(cdf + 1, cdf + count, u) - (cdf + 1));
-}
-
 AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,
                                   float u_triangle, glm::vec2 u, bool need_uv) {
   if (shape.type == KB_SHAPE_MESH) {

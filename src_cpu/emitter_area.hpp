@@ -9,7 +9,16 @@ namespace kiloband {
 
 /// Largest i in [0, count) with cdf[i] <= u; intervals of zero width are never chosen. cdf has count + 1
 /// entries, 0 to 1.
-uint32_t find_interval(const float* cdf, uint32_t count, float u);
+inline uint32_t find_interval(const float* cdf, uint32_t count, float u) {
+  // The last entry that is not above u begins the interval. Without branches: their outcome would be random.
+  uint32_t first = 0;
+  for (uint32_t length = count; length > 1;) {
+    const uint32_t half = length / 2;
+    first += cdf[first + half] <= u ? half : 0;
+    length -= half;
+  }
+  return first;
+}
 
 /// A point on an area light as seen from a shaded point.
 struct AreaLightSample {

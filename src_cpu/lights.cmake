@@ -2,3 +2,4 @@
 kiloband_library(kiloband_cpu_lights
   SOURCES camera.cpp texture_lookup.cpp shape_geometry.cpp emitter.cpp emitter_area.cpp emitter_environment.cpp
   DEPENDS kiloband_base glm::glm)
+kiloband_hot(kiloband_cpu_lights)

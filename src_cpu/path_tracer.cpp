@@ -12,7 +12,7 @@
 namespace kiloband {
 namespace {
 
-constexpr uint32_t kWavefront = kPacketSize;  // paths that advance together
+constexpr uint32_t kWavefront = 16;  // paths that advance together
 constexpr uint32_t kMaxVertices = 100000;  // a longer path counts as invalid and is reported
 /// Tables are finite and of order 1 (emission in film units), so a path's value is finite if its weights stay below this.
 constexpr float kLargestWeight = 1e34f;

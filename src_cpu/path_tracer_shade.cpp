@@ -77,7 +77,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
     if (path.channel != KB_NONE) material.dispersion.eta = channel_eta(record, path.channel, mu[mu.size() == 1 ? 0 : path.pixel]);
   }
   draft.vertex.head |= eval_kind(record) | side << KB_VERTEX_MATERIAL_SHIFT;
-  const bool lit = has_smooth_lobe(record) && add_light_sample(draft, path, hit, frame, material, wi, opacity, id, bounce);
+  const bool lit = has_smooth_lobe(record) && add_light_sample(draft, path, hit, frame, material, wi, opacity, bounce);
   bool goes_on = false;
   if (passes) {
     if (draft.vertex.head & KB_VERTEX_NEE) resolve_spectra(draft, record, hit, false);
@@ -108,8 +108,7 @@ void PathTracer::continue_ray(const SurfaceHit& hit, glm::vec3 direction) {
 /// Next-event estimation: queues a shadow ray and stores the weights as if it were visible. The shadow ray's vertex is
 /// noted by the caller once the vertex is appended. Returns whether a ray was queued.
 bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
-                                  const MaterialContext& material, glm::vec3 wi, float opacity, const SampleId& id,
-                                  uint32_t bounce) {
+                                  const MaterialContext& material, glm::vec3 wi, float opacity, uint32_t bounce) {
   if (flat_.emitters.empty()) return false;
   const KbFloat4 u = kb_sampler_block(path.key, kb_block_light(bounce));
   const LightSample light = sample_light(flat_, hit.point, {u.x, u.y}, {u.z, u.w});

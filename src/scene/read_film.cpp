@@ -16,8 +16,10 @@ constexpr std::size_t kMaxBands = 65536;  // spectra of a specfilm
 uint32_t side(const ObjectReader& object, std::string_view name, int64_t fallback, int64_t lowest,
               int64_t highest) {
   const int64_t value = object.get_int(name, fallback);
-  object.check(value >= lowest && value <= highest, name, static_cast<double>(value),
-               "must be from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  if (value < lowest || value > highest) {
+    object.fail_at(name, std::string(name) + " " + std::to_string(value) + ": must be from " +
+                             std::to_string(lowest) + " to " + std::to_string(highest));
+  }
   return static_cast<uint32_t>(value);
 }
 
