@@ -151,12 +151,12 @@ int render(const RenderOptions& options) {
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
   const auto backend = make_cpu_backend(scene, derived, sampling, {parse_isa(options.isa), options.threads});
   describe_render(settings, options, sampling, *backend);
+  catch_stop_signals();
   if (options.backend == "auto" && !options.quiet) {
     tell("backend cpu ({}, {})\n", backend->device(), backend->isa());
   }
   const double setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  catch_stop_signals();
   ProgressBar bar(!options.quiet);
   Progress last;
   const RenderReport report = run_session(scene, derived.names, *backend, settings, stop_requested,

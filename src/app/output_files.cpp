@@ -1,6 +1,7 @@
 #include "app/output_files.hpp"
 
 #include <fmt/core.h>
+
 #include <set>
 #include <string>
 
@@ -17,7 +18,9 @@ std::filesystem::path identity(const std::filesystem::path& file) {
   return error ? file : real;
 }
 
-std::string extension_of(const std::filesystem::path& file) { return to_lower(file.extension().string()); }
+std::string extension_of(const std::filesystem::path& file) {
+  return to_lower(file.extension().string());
+}
 
 /// The names that are taken so far.
 class Claims {
@@ -26,7 +29,8 @@ class Claims {
 
   void claim(const char* option, const std::filesystem::path& file) {
     const auto name = identity(file);
-    if (name == scene_) throw InputError(fmt::format("{} {}: would replace the scene", option, file.string()));
+    if (name == scene_)
+      throw InputError(fmt::format("{} {}: would replace the scene", option, file.string()));
     if (!taken_.insert(name).second) {
       throw InputError(fmt::format("{} {}: another output has this name", option, file.string()));
     }
@@ -43,7 +47,8 @@ void check_output_files(const OutputFiles& files) {
   Claims claims(files.scene);
   for (const auto& cube : files.cubes) {
     claims.claim("-o", cube);
-    if (extension_of(cube) == ".hdr") claims.claim("-o", std::filesystem::path(cube).replace_extension(".img"));
+    if (extension_of(cube) == ".hdr")
+      claims.claim("-o", std::filesystem::path(cube).replace_extension(".img"));
   }
   if (files.preview) {
     claims.claim("--preview", *files.preview);

@@ -53,6 +53,7 @@ class Session {
     output.finish(report_);
     report_.output_seconds += seconds_since(writing);
     report_.interrupted = stop_;
+    if (!report_.mean_relative_error) report_.mean_relative_error = error_;  // --target-error without --variance
     finish_image_moments();
     return report_;
   }

@@ -6,11 +6,13 @@
 // the variance at 550 nm infinite; a cap below 1 would read low. Depth is unlimited; the guide bands are the
 // channels.
 //
-// Means: over kSeeds seeds x 16 pixels x 32 samples the bright channel's relative standard error is about
-// 0.25 %; three channels are tested at a family-wise error rate of 1e-4 (|t| < 4.2): a bias of 1.4 % is
-// detected with probability 0.95. Error bars: as in test_replicate_errors.cpp, for pixels and the image's
-// mean; a ratio of exactly 1 is refused with probability 1e-3 (image, standard error 3 %), 1.1 or more at the
-// pixels (1 %) is detected.
+// Means: over kSeeds seeds x 8 pixels x 32 samples the bright channel's relative standard error is 0.2 %;
+// three channels are tested at a family-wise error rate of 1e-4 (|t| < 4.2): a bias of 1.2 % is detected with
+// probability 0.95.
+// Error bars: as in test_replicate_errors.cpp. Standard errors of the ratio are 2.4 % for the image's mean
+// and 0.9 % for pixels: a ratio of exactly 1 is refused with probability 3e-5 per image statistic (two are
+// independent); 0.86 or 1.14 is detected with probability 0.95 there, 0.89 or 1.12 at the pixels.
+// (3000 other seeds gave 1.007 +- 0.011 for the image.)
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +24,7 @@
 namespace kiloband::test {
 namespace {
 
-constexpr uint64_t kSeeds = 600;
+constexpr uint64_t kSeeds = 1000;
 constexpr std::size_t kChannels = 3;
 constexpr double kRadiance = 0.5;  // W m^-2 sr^-1 nm^-1
 
@@ -32,7 +34,7 @@ RenderSpec closed_box() {
       -1,
       "<sensor type=\"perspective\"><float name=\"fov\" value=\"60\"/><transform name=\"to_world\">"
       "<lookat origin=\"0.1, 0.2, 0.3\" target=\"1, 0.3, 0.4\" up=\"0, 1, 0\"/></transform>"
-      "<film type=\"hdrfilm\"><integer name=\"width\" value=\"4\"/><integer name=\"height\" value=\"4\"/>"
+      "<film type=\"hdrfilm\"><integer name=\"width\" value=\"4\"/><integer name=\"height\" value=\"2\"/>"
       "<rfilter type=\"box\"/></film></sensor><shape type=\"cube\"><boolean name=\"flip_normals\" "
       "value=\"true\"/>"
       "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"500:0.1, 549:0.1, 549.5:0.98, "
@@ -71,7 +73,7 @@ TEST(Roulette, BrightNarrowChannelIsUnbiasedAndItsErrorHonest) {
     EXPECT_LT(error, 0.004 * expected);
     EXPECT_LT(z_score(image[c].grand_mean(0), expected, error * error), critical_t(1e-4, kChannels, kSeeds));
     expect_honest("pixels_" + std::to_string(c), pixels[c], 0.012);
-    expect_honest("image_" + std::to_string(c), image[c], 0.032);
+    expect_honest("image_" + std::to_string(c), image[c], 0.03);
   }
 }
 

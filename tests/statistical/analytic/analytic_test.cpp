@@ -1,0 +1,234 @@
+#include "tests/statistical/analytic/analytic_test.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+namespace kiloband::test {
+namespace {
+
+std::size_t g_comparisons = 0;
+
+/// (t_alpha, t_0.9) of one comparison among all.
+std::pair<double, double> quantiles(uint32_t replicates) {
+  static std::pair<uint32_t, std::pair<double, double>> last{0, {0, 0}};
+  if (last.first != replicates) {
+    // critical_t() is two-sided: a rate of 0.2 leaves 0.1 on one side.
+    last = {replicates,
+            {critical_t(kFamilyErrorRate, kComparisons, replicates), critical_t(0.2, 1, replicates)}};
+  }
+  return last.second;
+}
+
+std::string channel_label(const std::string& what, std::size_t channel) {
+  return what + ", channel " + std::to_string(channel);
+}
+
+}  // namespace
+
+std::string name_of(const Mode& mode) {
+  return std::string(mode.wavelengths == WavelengthMode::kShared ? "shared" : "per_path") +
+         (mode.sampler == SamplerType::kSobol ? "_sobol" : "_independent");
+}
+
+std::vector<Mode> all_modes() {
+  return {{WavelengthMode::kShared, SamplerType::kSobol},
+          {WavelengthMode::kShared, SamplerType::kIndependent},
+          {WavelengthMode::kPerPath, SamplerType::kSobol},
+          {WavelengthMode::kPerPath, SamplerType::kIndependent}};
+}
+
+double Knots::operator()(double lambda_nm) const {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const auto [x0, y0] = points[i - 1];
+    const auto [x1, y1] = points[i];
+    if (lambda_nm >= x0 && lambda_nm <= x1) return y0 + (y1 - y0) * (lambda_nm - x0) / (x1 - x0);
+  }
+  return 0;
+}
+
+std::string Knots::text(const std::string& name) const {
+  std::ostringstream out;
+  out.precision(17);
+  out << "<spectrum name=\"" << name << "\" value=\"";
+  for (std::size_t i = 0; i < points.size(); ++i)
+    out << (i ? ", " : "") << points[i].first << ":" << points[i].second;
+  out << "\"/>";
+  return out.str();
+}
+
+double channel_integral(const Function& f, const Channel& channel) {
+  constexpr int kSteps = 400;
+  const double step = channel.width_nm() / kSteps;
+  double sum = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double weight = i == 0 || i == kSteps ? 1 : i % 2 ? 4 : 2;
+    sum += weight * f(i == kSteps ? channel.max_nm : channel.min_nm + i * step);
+  }
+  return sum * step / 3;
+}
+
+std::vector<double> channel_integrals(const Function& f, const RenderResult& result) {
+  std::vector<double> integrals;
+  for (const Channel& channel : result.scene.channels) integrals.push_back(channel_integral(f, channel));
+  return integrals;
+}
+
+std::string number(const std::string& tag, const std::string& name, double value) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "<" << tag << " name=\"" << name << "\" value=\"" << value << "\"/>";
+  return out.str();
+}
+
+std::string scene(int max_depth, const std::string& body) {
+  return "<scene version=\"3.0.0\"><integrator type=\"path\">" + number("integer", "max_depth", max_depth) +
+         "</integrator>" + body + "</scene>";
+}
+
+std::string to_world(const std::string& steps) {
+  return "<transform name=\"to_world\">" + steps + "</transform>";
+}
+std::string shape(const std::string& type, const std::string& content) {
+  return "<shape type=\"" + type + "\">" + content + "</shape>";
+}
+std::string bsdf(const std::string& type, const std::string& content) {
+  return "<bsdf type=\"" + type + "\">" + content + "</bsdf>";
+}
+std::string area_light(const std::string& radiance) {
+  return "<emitter type=\"area\">" + radiance + "</emitter>";
+}
+std::string flat(const std::string& name, double value) {
+  return number("spectrum", name, value);
+}
+std::string constant_environment(double radiance) {
+  return "<emitter type=\"constant\">" + flat("radiance", radiance) + "</emitter>";
+}
+std::string lookat(const std::string& origin, const std::string& target, const std::string& up) {
+  return "<lookat origin=\"" + origin + "\" target=\"" + target + "\" up=\"" + up + "\"/>";
+}
+
+std::string vec(double x, double y, double z) {
+  std::ostringstream out;
+  out.precision(17);
+  out << x << ", " << y << ", " << z;
+  return out.str();
+}
+
+namespace {
+std::string film(uint32_t width, uint32_t height) {
+  return "<film type=\"hdrfilm\">" + number("integer", "width", width) + number("integer", "height", height) +
+         "<rfilter type=\"box\"/></film>";
+}
+}  // namespace
+
+std::string wide_sensor(const std::string& steps, double fov_degrees, uint32_t width, uint32_t height) {
+  return "<sensor type=\"perspective\">" + number("float", "fov", fov_degrees) +
+         number("float", "near_clip", 1e-4) + number("float", "far_clip", 1e5) + to_world(steps) +
+         film(width, height) + "</sensor>";
+}
+
+std::string plane_sensor(uint32_t size) {
+  return "<sensor type=\"orthographic\">" + to_world(lookat("0, 0, 5", "0, 0, 0")) + film(size, size) +
+         "</sensor>";
+}
+
+TemporaryFolder::TemporaryFolder() {
+  static std::atomic<int> count{0};
+  path_ = std::filesystem::temp_directory_path() /
+          ("kiloband_analytic_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+  std::filesystem::create_directories(path_);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+void TemporaryFolder::write(const std::string& name, const std::string& content) const {
+  std::ofstream(path_ / name, std::ios::binary) << content;
+}
+
+std::string pfm_image(uint32_t width, uint32_t height, uint32_t components,
+                      const std::vector<float>& values) {
+  static_assert(std::endian::native == std::endian::little);
+  std::string text =
+      (components == 3 ? "PF\n" : "Pf\n") + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n";
+  const std::size_t row = std::size_t{width} * components;
+  for (uint32_t y = height; y-- > 0;) {  // the format begins with the bottom row
+    text.append(reinterpret_cast<const char*>(&values[y * row]), row * sizeof(float));
+  }
+  return text;
+}
+
+RenderResult render_valid(const std::string& xml, const std::string& bands, const Mode& mode,
+                          const Effort& effort, const std::filesystem::path& folder) {
+  RenderSpec spec;
+  spec.xml = xml;
+  spec.bands = bands;
+  spec.directory = folder;
+  spec.threads = 1;  // images are one or a few blocks, and programs run side by side
+  spec.spp = effort.samples * effort.replicates;
+  spec.sampling = {mode.wavelengths, mode.sampler, effort.seed, effort.replicates};
+  RenderResult result = render(spec);
+  EXPECT_EQ(result.invalid_samples, 0u);
+  EXPECT_EQ(result.replicates, effort.replicates);
+  return result;
+}
+
+void expect_mean(const std::string& what, double mean, double variance, double expected, uint32_t replicates,
+                 double largest_bias) {
+  ASSERT_LT(g_comparisons++, kComparisons) << "more comparisons than the error rate was divided by";
+  ASSERT_GE(variance, 0) << what;
+  const auto [t_alpha, t_power] = quantiles(replicates);
+  const double error = std::sqrt(variance);
+  const double rounding = kRounding * std::abs(expected);
+  EXPECT_LE(std::abs(mean - expected), t_alpha * error + rounding)
+      << what << ": mean " << mean << ", expected " << expected << " (" << (mean / expected - 1) * 100
+      << " %), standard error " << error << ", t " << (mean - expected) / error;
+  const double detectable = (t_alpha + t_power) * error + rounding;
+  EXPECT_LE(detectable, largest_bias * std::abs(expected))
+      << what << ": detectable bias " << detectable / expected * 100 << " %";
+}
+
+void expect_image_mean(const RenderResult& result, const std::vector<double>& expected, double largest_bias) {
+  ASSERT_EQ(expected.size(), result.channels);
+  double largest = 0;
+  for (std::size_t c = 0; c < expected.size(); ++c) {
+    expect_mean(channel_label("image", c), result.image_mean[c], result.image_variance[c], expected[c],
+                result.replicates, largest_bias);
+    const auto [t_alpha, t_power] = quantiles(result.replicates);
+    if (expected[c] > 0)
+      largest = std::max(largest,
+                         (t_alpha + t_power) * std::sqrt(result.image_variance[c]) / expected[c] + kRounding);
+  }
+  ::testing::Test::RecordProperty("detectable_bias_percent", std::to_string(100 * largest));
+  if (std::getenv("KILOBAND_PRINT_BIAS"))
+    std::printf("  detectable bias %.3f %% (promised %.3f)\n", 100 * largest, 100 * largest_bias);
+}
+
+void expect_pixel(const RenderResult& result, uint32_t x, uint32_t y, const std::vector<double>& expected) {
+  ASSERT_EQ(expected.size(), result.channels);
+  for (std::size_t c = 0; c < expected.size(); ++c) {
+    const std::size_t index = (std::size_t{y} * result.width + x) * result.channels + c;
+    expect_mean(channel_label("pixel " + std::to_string(x) + " " + std::to_string(y), c), result.mean[index],
+                result.variance[index], expected[c], result.replicates,
+                std::numeric_limits<double>::infinity());
+  }
+}
+
+void expect_exactly(const RenderResult& result, const std::vector<double>& expected) {
+  ASSERT_EQ(expected.size(), result.channels);
+  for (std::size_t i = 0; i < result.mean.size(); ++i) {
+    const std::size_t c = i % result.channels;
+    ASSERT_NEAR(result.mean[i], expected[c], kRounding * expected[c])
+        << channel_label("pixel " + std::to_string(i / result.channels), c);
+  }
+}
+
+}  // namespace kiloband::test
