@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace kiloband::test {
@@ -53,13 +54,12 @@ double ErrorBarStudy::ratio_of(const Sums& sums) {
 }
 
 ErrorBarRatio ErrorBarStudy::ratio() const {
-  const auto count = static_cast<double>(groups_.size());
-  std::vector<double> partial;
-  double mean = 0;
+  std::vector<double> partial;  // without one group
   for (const Sums& group : groups_) {
-    partial.push_back(ratio_of(all_but(&group)));
-    mean += partial.back() / count;
+    if (group.seeds > 0) partial.push_back(ratio_of(all_but(&group)));
   }
+  const auto count = static_cast<double>(partial.size());
+  const double mean = std::accumulate(partial.begin(), partial.end(), 0.0) / count;
   double squares = 0;
   for (const double value : partial) squares += (value - mean) * (value - mean);
   return {ratio_of(all_but(nullptr)), std::sqrt(squares * (count - 1) / count)};

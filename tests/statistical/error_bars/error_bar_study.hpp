@@ -30,8 +30,8 @@ class ErrorBarStudy {
 
   /// The units' means and reported variances of one more seed; the same number of units each time.
   void add(std::span<const double> means, std::span<const double> variances);
-  /// Needs at least two seeds in every group. Units whose reported variance is 0 for every seed are left out
-  /// if their spread is 0 too, and make the ratio 0 if it is not.
+  /// Needs three seeds. Groups without a seed do not count. Units whose reported variance is 0 for every seed
+  /// are left out if their spread is 0 too, and make the ratio 0 if it is not.
   ErrorBarRatio ratio() const;
   /// Mean over all seeds and the standard error of it that their spread gives, of one unit.
   double grand_mean(std::size_t unit) const;
