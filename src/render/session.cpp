@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fmt/format.h>
-#include <mutex>
+#include <cmath>
+#include <map>
 #include <numeric>
 
+#include "render/checkpoint.hpp"
 #include "render/cube_output.hpp"
 
 namespace kiloband {
@@ -37,18 +38,15 @@ class Session {
     options.channels = channels_;
     options.replicates = replicates_;
     options.variance = settings_.variance;
-    options.held = settings_.keep_replicates || !settings_.stop.samples_per_pixel;
+    const bool revisits = settings_.checkpoint || !settings_.stop.samples_per_pixel;  // passes come back to replicates
+    options.held = settings_.keep_replicates || revisits;
+    options.memory_bytes = settings_.memory_budget_bytes;
     const std::size_t row_bytes = image.width * (SpectralFilm::bytes_per_pixel(options) + output_bytes_per_pixel());
     const std::size_t strip = strip_rows(row_bytes, image.height);
     report_.replicates = replicates_;
-    const bool fits = row_bytes * image.height <= settings_.memory_budget_bytes;
-    if (!fits && !settings_.stop.samples_per_pixel) {
-      throw InputError(fmt::format("the image needs {} MiB to be rendered in passes (--time, --target-error), more than {} MiB: "
-                                   "render it with --spp, which streams, or make it smaller",
-                                   row_bytes * image.height >> 20, settings_.memory_budget_bytes >> 20));
-    }
+    const bool whole = revisits || row_bytes * image.height <= settings_.memory_budget_bytes;
     CubeOutput output(scene_, bands_, backend_.film_scale(), settings_, replicates_, static_cast<uint32_t>(strip));
-    fits ? run_whole(image, options, output) : run_strips(image, options, static_cast<uint32_t>(strip), output);
+    whole ? run_whole(image, options, output) : run_strips(image, options, static_cast<uint32_t>(strip), output);
     const auto writing = Clock::now();
     output.finish(report_);
     report_.output_seconds += seconds_since(writing);
@@ -68,10 +66,14 @@ class Session {
     return std::min<std::size_t>(rows, height);
   }
 
-  /// The whole image is in memory: replicate after replicate over all blocks, so that an interrupted render is even.
+  /// The whole image is one film (in memory, or held in a scratch file): replicate after replicate over all blocks, so that
+  /// an interrupted render is even.
   void run_whole(const PixelRect& image, const FilmOptions& options, CubeOutput& output) {
     SpectralFilm film(image, options);
-    start_ = Clock::now();
+    if (settings_.resume && std::filesystem::exists(*settings_.checkpoint)) {
+      report_.resumed_samples = done_ = read_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
+    }
+    start_ = last_checkpoint_ = Clock::now();
     if (settings_.stop.samples_per_pixel) {
       total_ = image.pixels() * *settings_.stop.samples_per_pixel;
       render_fixed(film);
@@ -79,6 +81,7 @@ class Session {
       render_passes(film);
     }
     report_.sampling_seconds += seconds_since(start_);
+    if (settings_.checkpoint) write_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
     film.add_image_sums(image_sums_, image_counts_);
     write(film, output);
   }
@@ -110,10 +113,43 @@ class Session {
 
   void render_fixed(SpectralFilm& film) {
     const ReplicatePlan plan = ReplicatePlan::deal(*settings_.stop.samples_per_pixel, replicates_);
+    const auto on_samples = [this](uint64_t pixels) { advance(pixels); };
     for (uint32_t r = 0; r < plan.replicates && !stop_; ++r) {
-      backend_.render(film, {r, 0, static_cast<uint32_t>(plan.size(r))}, all_blocks(film), stop_,
-                      [this](uint64_t pixels) { advance(pixels); });
+      const auto target = static_cast<uint32_t>(plan.size(r));
+      if (!film.options().held) {
+        backend_.render(film, {r, 0, target}, all_blocks(film), stop_, on_samples);
+      } else {
+        bring_to(film, r, target, stop_, on_samples);
+      }
     }
+  }
+
+  /// Renders what blocks of a held film lack of a replicate's first `target` samples; with a checkpoint in steps of a few
+  /// samples, so that it can be saved in between.
+  void bring_to(SpectralFilm& film, uint32_t replicate, uint32_t target, const std::atomic<bool>& stop,
+                const std::function<void(uint64_t)>& on_samples) {
+    std::map<uint32_t, std::vector<uint32_t>> behind;  // samples that blocks have: which blocks
+    for (uint32_t b = 0; b < film.blocks().size(); ++b) {
+      if (const uint32_t done = film.attempted(replicate, b); done < target) behind[done].push_back(b);
+    }
+    for (const auto& [done, blocks] : behind) {
+      for (uint32_t first = done; first < target && !stop;) {
+        const uint32_t count = std::min(target - first, settings_.checkpoint ? step_ : target - first);
+        const auto begin = Clock::now();
+        backend_.render(film, {replicate, first, count}, blocks, stop, on_samples);
+        first += count;
+        if (settings_.checkpoint) save_now_and_then(film, seconds_since(begin));
+      }
+    }
+  }
+
+  void save_now_and_then(const SpectralFilm& film, double step_seconds) {
+    const double interval = settings_.checkpoint_interval_seconds;
+    if (step_seconds < interval / 8 && step_ < 1u << 20) step_ *= 2;
+    if (step_seconds > interval / 2 && step_ > 1) step_ /= 2;
+    if (seconds_since(last_checkpoint_) < interval) return;
+    write_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
+    last_checkpoint_ = Clock::now();
   }
 
   /// Passes over all replicates, each as long as all before it, until the rule is met.
@@ -123,18 +159,30 @@ class Session {
       advance(pixels);
       if (stop_ || out_of_time()) halt = true;
     };
-    uint32_t first = 0;
-    for (uint32_t count = 1; !halt; count = std::max(1u, first)) {
-      if (settings_.stop.seconds) count = samples_that_fit(first, count);
-      for (uint32_t r = 0; r < replicates_ && !halt; ++r) {
-        backend_.render(film, {r, first, count}, all_blocks(film), halt, on_samples);
-      }
-      first += count;
-      if (settings_.stop.relative_error && !halt) {
-        error_ = film_error(film);
-        if (error_ && *error_ <= *settings_.stop.relative_error) break;
-      }
+    uint32_t done = least_attempted(film);
+    const uint32_t begin = done;
+    if (done > 0 && error_is_small(film)) return;
+    while (!halt) {
+      uint32_t count = std::max(1u, done);
+      if (settings_.stop.seconds) count = samples_that_fit(done - begin, count);
+      done += count;
+      for (uint32_t r = 0; r < replicates_ && !halt; ++r) bring_to(film, r, done, halt, on_samples);
+      if (!halt && error_is_small(film)) return;
     }
+  }
+
+  uint32_t least_attempted(const SpectralFilm& film) const {
+    uint32_t least = ~0u;
+    for (uint32_t r = 0; r < replicates_; ++r) {
+      for (uint32_t b = 0; b < film.blocks().size(); ++b) least = std::min(least, film.attempted(r, b));
+    }
+    return least;
+  }
+
+  bool error_is_small(const SpectralFilm& film) {
+    if (!settings_.stop.relative_error) return false;
+    error_ = film_error(film);
+    return error_ && *error_ <= *settings_.stop.relative_error;
   }
 
   /// Samples per replicate of the next pass, so that it ends near the time limit: all replicates stay even.
@@ -165,6 +213,9 @@ class Session {
     if (!progress_) return;
     Progress state;
     state.pixel_samples = done_;
+    state.rate = seconds_since(start_) + report_.sampling_seconds > 0
+                     ? static_cast<double>(done_ - report_.resumed_samples) / (report_.sampling_seconds + seconds_since(start_))
+                     : 0;
     state.seconds = report_.sampling_seconds + seconds_since(start_);
     state.error = error_;
     if (total_ > 0) state.fraction = static_cast<double>(done_) / static_cast<double>(total_);
@@ -192,7 +243,8 @@ class Session {
   std::size_t channels_;
   uint32_t replicates_;
   RenderReport report_;
-  Clock::time_point start_;
+  Clock::time_point start_, last_checkpoint_;
+  uint32_t step_ = 1;  // samples per replicate between looks at the checkpoint clock
   uint64_t done_ = 0, total_ = 0;
   std::optional<double> error_;
   std::vector<std::vector<double>> image_sums_;
