@@ -15,6 +15,7 @@
 #include "app/render_options.hpp"
 #include "app/render_statistics.hpp"
 #include "film/atomic_file.hpp"
+#include "render/checkpoint.hpp"
 #include "render/session.hpp"
 #include "src_cpu/cpu_backend.hpp"
 
@@ -25,16 +26,16 @@ struct RenderOptions {
   SceneOptions scene;
   std::vector<std::string> outputs, responses, aux;
   std::string backend = "auto", isa = "auto", wavelengths = "shared", sampler = "sobol", quantity;
-  std::optional<std::string> preview, stats, time, target_error;
+  std::optional<std::string> preview, stats, time, target_error, checkpoint, checkpoint_interval;
   int threads = 0;
   uint64_t seed = 0;
   std::optional<uint64_t> spp;
   uint32_t replicates = 16;
-  bool variance = false, keep_replicates = false, quiet = false;
+  bool variance = false, keep_replicates = false, resume = false, quiet = false;
 };
 
 /// "60", "60s", "5min", "2h" to seconds.
-double parse_duration(const std::string& text) {
+double parse_duration(const std::string& option, const std::string& text) {
   static const std::map<std::string, double> kUnits{{"", 1}, {"s", 1}, {"min", 60}, {"h", 3600}};
   std::size_t end = 0;
   double value = 0;
@@ -44,7 +45,7 @@ double parse_duration(const std::string& text) {
   }
   const auto unit = kUnits.find(text.substr(end));
   if (end == 0 || unit == kUnits.end() || !(value > 0) || value * unit->second > 1e9) {
-    throw InputError("--time " + text + ": must be a positive time such as 60s, 5min or 2h");
+    throw InputError(option + " " + text + ": must be a positive time such as 60s, 5min or 2h");
   }
   return value * unit->second;
 }
@@ -66,7 +67,7 @@ double parse_error(const std::string& text) {
 
 SessionSettings session_settings(const RenderOptions& options, const SceneDescription& scene) {
   SessionSettings settings;
-  if (options.time) settings.stop.seconds = parse_duration(*options.time);
+  if (options.time) settings.stop.seconds = parse_duration("--time", *options.time);
   if (options.target_error) settings.stop.relative_error = parse_error(*options.target_error);
   if (!settings.stop.seconds && !settings.stop.relative_error) {
     settings.stop.samples_per_pixel = options.spp.value_or(scene.sensor.sample_count);
@@ -83,7 +84,22 @@ SessionSettings session_settings(const RenderOptions& options, const SceneDescri
   if (settings.stop.relative_error && options.replicates < 2) {
     throw InputError("--target-error needs error bars, --replicates 1 gives none: must be at least 2");
   }
+  if (options.checkpoint) settings.checkpoint = *options.checkpoint;
+  if (options.checkpoint_interval) {
+    settings.checkpoint_interval_seconds = parse_duration("--checkpoint-interval", *options.checkpoint_interval);
+  }
+  settings.resume = options.resume;
   return settings;
+}
+
+/// A checkpoint belongs to one render; without one to go on from, the render starts afresh and says so.
+void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const SamplingSettings& sampling,
+                        const Backend& backend, const std::vector<std::string>& derived_names) {
+  if (!settings.checkpoint) return;
+  settings.fingerprint = render_fingerprint(scene, sampling, backend.isa(), derived_names);
+  if (settings.resume && !std::filesystem::exists(*settings.checkpoint)) {
+    tell("note: no checkpoint {}: starting afresh\n", settings.checkpoint->string());
+  }
 }
 
 Isa parse_isa(const std::string& text) {
@@ -151,6 +167,7 @@ int render(const RenderOptions& options) {
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
   const auto backend = make_cpu_backend(scene, derived, sampling, {parse_isa(options.isa), options.threads});
   describe_render(settings, options, sampling, *backend);
+  prepare_checkpoint(settings, scene, sampling, *backend, derived.names);
   catch_stop_signals();
   if (options.backend == "auto" && !options.quiet) {
     tell("backend cpu ({}, {})\n", backend->device(), backend->isa());
@@ -211,6 +228,9 @@ void add_output_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--quantity", o.quantity, "of the values on disk (default: density in EXR, integral in ENVI)")
       ->check(CLI::IsMember({"integral", "density"}));
   command.add_option("--preview", o.preview, "PNG preview");
+  auto* checkpoint = command.add_option("--checkpoint", o.checkpoint, "file that the unfinished render is saved in");
+  command.add_option("--checkpoint-interval", o.checkpoint_interval, "how often: 60s (the default), 10min")->needs(checkpoint);
+  command.add_flag("--resume", o.resume, "go on from the checkpoint; more --spp extend a render")->needs(checkpoint);
   command.add_option("--stats", o.stats, "statistics as JSON");
   command.add_flag("--quiet", o.quiet, "only errors and warnings");
 }

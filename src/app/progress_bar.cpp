@@ -27,7 +27,7 @@ std::string rate(double per_second) {
 
 std::string describe(const Progress& progress) {
   std::string text = fmt::format("{:3.0f} %", 100 * progress.fraction);
-  if (progress.seconds > 0) text += "  " + rate(static_cast<double>(progress.pixel_samples) / progress.seconds);
+  if (progress.rate > 0) text += "  " + rate(progress.rate);
   if (progress.fraction > 0.001 && progress.fraction < 1) {
     text += "  " + duration(progress.seconds * (1 - progress.fraction) / progress.fraction) + " left";
   }

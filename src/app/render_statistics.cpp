@@ -41,7 +41,7 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["device_memory_bytes"] = 0;
   json["invalid_samples"] = counters.invalid_samples.load();
-  json["resumed_samples"] = 0;
+  json["resumed_samples"] = report.resumed_samples;
   json["mean_relative_error"] = nullptr;
   if (report.mean_relative_error) json["mean_relative_error"] = *report.mean_relative_error;
   json["underflowed_values"] = report.underflowed_values;
