@@ -1,0 +1,79 @@
+// Runs the kiloband program in a temporary folder and reads what it wrote.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/cube_io.hpp"
+
+namespace kiloband::test {
+
+/// A folder of its own that vanishes with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  void write(const std::string& name, const std::string& contents) const;
+  std::string read(const std::string& name) const;
+  /// Names of all files, hidden ones too, sorted.
+  std::vector<std::string> list() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What is done to the running program.
+struct Treatment {
+  int signal = 0;  // sent once `after_text` has appeared on standard error, then `after_seconds`
+  std::string after_text;
+  double after_seconds = 0;
+  std::optional<uint64_t> file_size_limit;  // bytes, as `ulimit -f`: what a full disk is tried with
+  bool unprivileged = false;                // as user 65534 if we are root, to whom no folder is read-only
+};
+
+struct Outcome {
+  int code = -1;   // exit code; -1 if a signal ended the program
+  int signal = 0;  // that ended it
+  std::string out, err;
+  double seconds = 0;
+};
+
+/// Runs with the folder as working directory; a program that takes longer than 120 s is killed.
+Outcome run_program(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
+                    const Treatment& treatment = {});
+
+/// A cube in memory, values as they are on disk, [y][x][band].
+struct Cube {
+  CubeInfo info;
+  std::vector<float> mean, variance, aux;
+
+  std::size_t pixels() const { return std::size_t{info.width} * info.height; }
+};
+Cube read_cube(const std::filesystem::path& file);
+
+nlohmann::json read_json(const TemporaryFolder& folder, const std::string& name);
+
+/// The Cornell box that comes with the project.
+std::string cornell_box();
+/// Arguments of a render without messages: "render", scene, "--quiet", then `more`.
+std::vector<std::string> quiet_render(const std::string& scene, const std::vector<std::string>& more);
+
+/// <scene> with the body in line 2; a sensor of 8 x 8 pixels, a sky, a sphere.
+std::string scene_text(const std::string& body);
+inline const std::string kSensor =
+    R"(<sensor type="perspective"><film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film></sensor>)";
+inline const std::string kLight = R"(<emitter type="constant"/>)";
+inline const std::string kSphere = R"(<shape type="sphere"/>)";
+/// scene_text() of a body with sensor, light and sphere in the line after it.
+std::string complete_scene(const std::string& body);
+
+}  // namespace kiloband::test

@@ -1,0 +1,101 @@
+// Options that change what is rendered: parameters, size, stopping rules.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/end_to_end/support/program.hpp"
+
+namespace kiloband::test {
+namespace {
+
+TEST(RenderOptions, DefinitionsBeatTheScenesDefaults) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_program(folder, quiet_render(cornell_box(), {"-D", "res=8", "-D", "spp=3", "-D", "bands=450:650:4",
+                                                       "-o", "a.hdr", "--stats", "a.json"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Cube cube = read_cube(folder / "a.hdr");
+  EXPECT_EQ(cube.info.width, 8u);
+  EXPECT_EQ(cube.info.height, 8u);
+  ASSERT_EQ(cube.info.bands.size(), 4u);
+  EXPECT_EQ(cube.info.bands[0].channel.min_nm, 450);
+  EXPECT_EQ(read_json(folder, "a.json")["spp"], 3);
+}
+
+TEST(RenderOptions, CommandLineBeatsTheScene) {
+  const TemporaryFolder folder;
+  folder.write("bands.csv", "min_nm,max_nm\n400,450\n600,601\n");
+  const Outcome outcome = run_program(
+      folder,
+      quiet_render(cornell_box(), {"-D", "spp=3", "--spp", "2", "--size", "4x6", "--bands-file", "bands.csv",
+                                   "--max-depth", "1", "-o", "a.hdr", "--stats", "a.json"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Cube cube = read_cube(folder / "a.hdr");
+  EXPECT_EQ(cube.info.width, 4u);
+  EXPECT_EQ(cube.info.height, 6u);
+  ASSERT_EQ(cube.info.bands.size(), 2u);
+  EXPECT_EQ(cube.info.bands[1].channel.max_nm, 601);
+  const nlohmann::json stats = read_json(folder, "a.json");
+  EXPECT_EQ(stats["spp"], 2);
+  // Depth 1 is emission only: no shadow rays.
+  EXPECT_EQ(stats["rays"], stats["paths"]);
+}
+
+/// A square of 1 m at 1 m in a field of view of 90 degrees along `axis`: 2 m of that side of the image are
+/// seen.
+std::size_t pixels_of_the_square(const TemporaryFolder& folder, const std::string& axis,
+                                 const std::string& size) {
+  folder.write("square.xml", scene_text(R"(<sensor type="perspective"><float name="fov" value="90"/>
+<string name="fov_axis" value=")" + axis +
+                                        R"("/></sensor><emitter type="constant"/>
+<shape type="rectangle"><transform name="to_world"><scale x="0.5" y="0.5"/><translate z="1"/></transform></shape>)"));
+  const Outcome outcome =
+      run_program(folder, quiet_render("square.xml", {"--size", size, "--spp", "1", "--bands", "500-600",
+                                                      "--aov", "object", "-o", "square.hdr"}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Cube cube = read_cube(folder / "square.hdr");
+  return static_cast<std::size_t>(std::count(cube.aux.begin(), cube.aux.end(), 0.0f));
+}
+
+TEST(RenderOptions, SizeKeepsTheFieldOfViewsAxis) {
+  const TemporaryFolder folder;
+  // 16 x 8: along x half of the columns and all rows; along y half of the rows and a quarter of the columns.
+  EXPECT_EQ(pixels_of_the_square(folder, "x", "16x8"), 8u * 8);
+  EXPECT_EQ(pixels_of_the_square(folder, "y", "16x8"), 4u * 4);
+  EXPECT_EQ(pixels_of_the_square(folder, "x", "8x16"), 4u * 4);
+  EXPECT_EQ(pixels_of_the_square(folder, "y", "8x16"), 8u * 8);
+}
+
+TEST(RenderOptions, TimeStops) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      folder, quiet_render(cornell_box(), {"--size", "16x16", "--bands", "400:700:4", "--time", "0.5s", "-o",
+                                           "a.hdr", "--stats", "a.json", "--variance"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json stats = read_json(folder, "a.json");
+  // One sample of a block (32 x 32) is the grain: far below a second even with sanitizers and a loaded
+  // machine.
+  EXPECT_GE(stats["seconds"].get<double>(), 0.45);
+  EXPECT_LT(stats["seconds"].get<double>(), 5);
+  EXPECT_GE(stats["spp"].get<uint64_t>(), 16u);
+  EXPECT_EQ(stats["replicates"], 16);
+  EXPECT_EQ(stats["interrupted"], false);
+}
+
+TEST(RenderOptions, TargetErrorStops) {
+  const TemporaryFolder folder;
+  for (const bool variance : {false, true}) {
+    std::vector<std::string> options{"--size", "16x16", "--bands", "400:700:4", "--target-error",
+                                     "20%",    "-o",    "a.hdr",   "--stats",   "a.json"};
+    if (variance) options.push_back("--variance");
+    const Outcome outcome = run_program(folder, quiet_render(cornell_box(), options));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const nlohmann::json stats = read_json(folder, "a.json");
+    ASSERT_TRUE(stats["mean_relative_error"].is_number());
+    EXPECT_GT(stats["mean_relative_error"].get<double>(), 0);
+    EXPECT_LE(stats["mean_relative_error"].get<double>(), 0.2);
+  }
+}
+
+}  // namespace
+}  // namespace kiloband::test

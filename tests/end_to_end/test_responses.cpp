@@ -1,0 +1,93 @@
+// Sensor responses through the program, in a scene whose every pixel is known: an empty sky of 1 W m^-2 sr^-1
+// nm^-1.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/end_to_end/support/program.hpp"
+
+namespace kiloband::test {
+namespace {
+
+const std::string kSky = R"(<emitter type="constant"><spectrum name="radiance" value="1"/></emitter>)";
+
+/// `film` is what stands inside the film besides its size.
+std::string sky_scene(const std::string& type, const std::string& film) {
+  return scene_text(R"(<sensor type="perspective"><film type=")" + type +
+                    R"("><integer name="width" value="4"/><integer name="height" value="3"/>)" + film +
+                    "</film></sensor>\n" + kSky);
+}
+
+/// Largest error of the mean of a response that changes by `slope_per_nm` over `range_nm`, in sub-channels of
+/// at most 5 nm: the 32 samples of a replicate are stratified in wavelength, so each is within 5 nm / 32 of
+/// its stratum's centre.
+double stratified_bound(double slope_per_nm, double range_nm) {
+  return range_nm * slope_per_nm * 5.0 / 32;
+}
+
+void expect_band(const Cube& cube, std::size_t band, const std::string& name, double value, double bound) {
+  ASSERT_LT(band, cube.info.bands.size());
+  EXPECT_EQ(cube.info.bands[band].channel.name, name);
+  for (std::size_t pixel = 0; pixel < cube.pixels(); ++pixel) {
+    EXPECT_NEAR(cube.mean[pixel * cube.info.bands.size() + band], value, bound) << name;
+  }
+}
+
+TEST(Responses, NamedBandsOfASpecfilm) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", sky_scene("specfilm", R"(
+    <spectrum name="blue" value="400:1, 500:1"/>
+    <spectrum name="ramp" value="500:0, 600:1"/>)"));
+  const Outcome outcome = run_program(folder, quiet_render("scene.xml", {"--spp", "64", "--replicates", "2",
+                                                                         "-o", "out.exr", "-o", "out.hdr"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* file : {"out.exr", "out.hdr"}) {
+    const Cube cube = read_cube(folder / file);
+    ASSERT_EQ(cube.info.bands.size(), 2u) << "sub-channels are not written";
+    // A response of 1 is a channel: 100 nm of the sky, or its density.
+    const bool density = cube.info.quantity == Quantity::kDensity;
+    expect_band(cube, 0, "blue", density ? 1 : 100, 1e-4);
+    expect_band(cube, 1, "ramp", 50, stratified_bound(0.01, 100));
+    EXPECT_TRUE(cube.info.bands[1].derived);
+  }
+}
+
+TEST(Responses, CommandLineBandsBeatTheFilms) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", sky_scene("specfilm", R"(<spectrum name="ramp" value="500:0, 600:1"/>)"));
+  ASSERT_EQ(
+      run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "400:700:3", "-o", "out.hdr"}))
+          .code,
+      0);
+  const Cube cube = read_cube(folder / "out.hdr");
+  ASSERT_EQ(cube.info.bands.size(), 3u);
+  for (std::size_t band = 0; band < 3; ++band) expect_band(cube, band, "", 100, 1e-4);
+}
+
+TEST(Responses, FilesAreAccumulatedBesideTheChannels) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", sky_scene("hdrfilm", ""));
+  folder.write("camera.csv", "wavelength_nm,wide,ramp\n400,1,0\n500,1,1\n");
+  const Outcome outcome = run_program(
+      folder, quiet_render("scene.xml", {"--spp", "64", "--replicates", "2", "--bands", "400:500:20",
+                                         "--response", "camera.csv", "-o", "out.hdr", "--variance"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Cube cube = read_cube(folder / "out.hdr");
+  ASSERT_EQ(cube.info.bands.size(), 22u);
+  expect_band(cube, 20, "wide", 100, 1e-3);
+  expect_band(cube, 21, "ramp", 50, stratified_bound(0.01, 100));
+}
+
+TEST(Responses, PartOutsideTheChannelsIsAWarning) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", sky_scene("hdrfilm", ""));
+  folder.write("camera.csv", "wavelength_nm,wide\n400,1\n800,1\n");
+  const Outcome outcome =
+      run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "400:500:2", "--response",
+                                                     "camera.csv", "-o", "out.hdr"}));
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, "warning: response 'wide': 75 % of its integral lies outside the channels\n");
+}
+
+}  // namespace
+}  // namespace kiloband::test
