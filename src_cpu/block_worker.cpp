@@ -24,10 +24,11 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
   sums_.assign(pixels * evaluator_.stride(), 0.0f);
   folded_.clear();
   counts_.assign(pixels, 0);
-  for (uint32_t i = 0; i < range.count && !stop; ++i) {
-    const uint32_t index = range.first + i;
+  uint32_t done = 0;
+  for (; done < range.count && !stop; ++done) {
+    const uint32_t index = range.first + done;
     const SampleId id{range.replicate + index * settings_.replicates, range.replicate, index};
-    if (i > 0 && i % kFoldInterval == 0) fold_sums();
+    if (done > 0 && done % kFoldInterval == 0) fold_sums();
     add_sample(block, id);
     for (uint32_t& count : counts_) ++count;
     for (const uint32_t pixel : invalid_) {
@@ -37,7 +38,7 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
     on_sample(pixels);
   }
   finish_means(pixels);
-  return {block_index, range.replicate, counts_, sums_, evaluator_.stride()};
+  return {block_index, range.replicate, counts_, sums_, evaluator_.stride(), done};
 }
 
 void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
+
+#include "film/scratch_memory.hpp"
 
 namespace kiloband {
 namespace {
@@ -33,16 +36,18 @@ std::vector<PixelRect> cut_into_blocks(const PixelRect& rect) {
 
 /// Means of every replicate: [replicate][pixel][channel] and counts.
 struct SpectralFilm::Held {
-  std::vector<std::vector<float>> means;
-  std::vector<std::vector<uint64_t>> counts;
+  ScratchFloats means;
+  std::vector<std::vector<uint64_t>> samples;    // [replicate][pixel]
+  std::vector<std::vector<uint32_t>> attempted;  // [replicate][block]
 };
 
 SpectralFilm::SpectralFilm(const PixelRect& rect, const FilmOptions& options)
     : rect_(rect), options_(options), blocks_(cut_into_blocks(rect)) {
   if (options.held) {
-    held_ = std::make_unique<Held>();
-    held_->means.assign(options.replicates, std::vector<float>(rect.pixels() * options.channels));
-    held_->counts.assign(options.replicates, std::vector<uint64_t>(rect.pixels()));
+    held_ = std::unique_ptr<Held>(new Held{
+        ScratchFloats(std::size_t{options.replicates} * rect.pixels() * options.channels, options.memory_bytes),
+        std::vector(options.replicates, std::vector<uint64_t>(rect.pixels())),
+        std::vector(options.replicates, std::vector<uint32_t>(blocks_.size()))});
   } else {
     pixels_ = std::make_unique<ReplicateMoments>(rect.pixels(), options.channels, options.variance);
     if (options.variance) {
@@ -84,8 +89,9 @@ void SpectralFilm::add_folded(const BlockSamples& samples, const PixelRect& bloc
 }
 
 void SpectralFilm::add_held(const BlockSamples& samples, const PixelRect& block) {
-  auto& means = held_->means[samples.replicate];
-  auto& counts = held_->counts[samples.replicate];
+  float* means = held_->means.values().data() + samples.replicate * rect_.pixels() * options_.channels;
+  auto& counts = held_->samples[samples.replicate];
+  held_->attempted[samples.replicate][samples.block] += samples.attempted;
   for (std::size_t p = 0; p < block.pixels(); ++p) {
     if (samples.counts[p] == 0) continue;
     const std::size_t pixel = pixel_index(block, p);
@@ -151,18 +157,53 @@ uint64_t SpectralFilm::samples(uint32_t x, uint32_t y) const {
   const std::size_t pixel = std::size_t{y} * rect_.width + x;
   if (!held_) return pixels_->samples(pixel);
   uint64_t sum = 0;
-  for (const auto& counts : held_->counts) sum += counts[pixel];
+  for (const auto& counts : held_->samples) sum += counts[pixel];
   return sum;
 }
 
-std::span<const float> SpectralFilm::replicate_mean(uint32_t replicate, std::size_t pixel) const {
+void SpectralFilm::require_held() const {
   if (!held_) throw std::logic_error("SpectralFilm: replicates are not held");
-  return std::span<const float>(held_->means.at(replicate)).subspan(pixel * options_.channels, options_.channels);
+}
+
+std::span<const float> SpectralFilm::replicate_mean(uint32_t replicate, std::size_t pixel) const {
+  return held_means().subspan((replicate * rect_.pixels() + pixel) * options_.channels, options_.channels);
 }
 
 uint64_t SpectralFilm::replicate_samples(uint32_t replicate, std::size_t pixel) const {
-  if (!held_) throw std::logic_error("SpectralFilm: replicates are not held");
-  return held_->counts.at(replicate)[pixel];
+  require_held();
+  return held_->samples.at(replicate)[pixel];
+}
+
+uint32_t SpectralFilm::attempted(uint32_t replicate, uint32_t block) const {
+  require_held();
+  return held_->attempted.at(replicate).at(block);
+}
+
+std::span<float> SpectralFilm::held_means() {
+  require_held();
+  return held_->means.values();
+}
+
+std::span<const float> SpectralFilm::held_means() const {
+  require_held();
+  return std::as_const(held_->means).values();
+}
+
+HeldCounts SpectralFilm::held_counts() const {
+  require_held();
+  return {held_->samples, held_->attempted, block_sums_, block_counts_};
+}
+
+void SpectralFilm::restore(HeldCounts counts) {
+  require_held();
+  if (counts.samples.size() != options_.replicates || counts.attempted.size() != options_.replicates ||
+      counts.block_sums.size() != blocks_.size() || counts.block_samples.size() != blocks_.size()) {
+    throw std::logic_error("SpectralFilm::restore: counts do not have the film's shape");
+  }
+  held_->samples = std::move(counts.samples);
+  held_->attempted = std::move(counts.attempted);
+  block_sums_ = std::move(counts.block_sums);
+  block_counts_ = std::move(counts.block_samples);
 }
 
 const ReplicateMoments& SpectralFilm::tile_moments() const {

@@ -36,6 +36,7 @@ struct BlockSamples {
   std::span<const uint32_t> counts;
   std::span<const float> means;
   std::size_t stride = 0;  // floats between pixels in means, >= channels
+  uint32_t attempted = 0;  // samples per pixel, invalid ones included
 };
 
 struct FilmOptions {
@@ -43,6 +44,15 @@ struct FilmOptions {
   uint32_t replicates = 1;
   bool variance = false;
   bool held = false;
+  std::size_t memory_bytes = std::size_t{1} << 30;  // held means beyond it go to a scratch file
+};
+
+/// What a held film consists of beside its means: small, and enough to go on with it (checkpoints).
+struct HeldCounts {
+  std::vector<std::vector<uint64_t>> samples;        // [replicate][pixel], valid samples
+  std::vector<std::vector<uint32_t>> attempted;      // [replicate][block], samples per pixel
+  std::vector<std::vector<double>> block_sums;       // [block][replicate * channels + channel]; empty: no sample yet
+  std::vector<std::vector<uint64_t>> block_samples;  // [block][replicate]
 };
 
 class SpectralFilm {
@@ -66,6 +76,14 @@ class SpectralFilm {
   /// held films: mean of one replicate at a pixel, and its number of samples.
   std::span<const float> replicate_mean(uint32_t replicate, std::size_t pixel) const;
   uint64_t replicate_samples(uint32_t replicate, std::size_t pixel) const;
+  /// held films: samples per pixel that a block has had of a replicate; where the next range begins.
+  uint32_t attempted(uint32_t replicate, uint32_t block) const;
+  /// held films: all means [replicate][pixel][channel] and the counts beside them, to be saved and restored.
+  std::span<float> held_means();
+  std::span<const float> held_means() const;
+  HeldCounts held_counts() const;
+  /// throws std::logic_error if the shapes differ
+  void restore(HeldCounts counts);
 
   /// Moments of the 8x8-pixel tiles' means (tiles are aligned to the blocks, row by row within a block: index
   /// block * 16 + (y / 8) * 4 + x / 8, coordinates relative to the block) and of the whole rectangle's mean (unit 0).
@@ -79,6 +97,7 @@ class SpectralFilm {
 
  private:
   struct Held;
+  void require_held() const;
   void add_folded(const BlockSamples& samples, const PixelRect& block);
   void add_held(const BlockSamples& samples, const PixelRect& block);
   void add_coarse(const BlockSamples& samples, const PixelRect& block);

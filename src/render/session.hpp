@@ -30,6 +30,10 @@ struct SessionSettings {
   std::optional<std::filesystem::path> preview;  // PNG
   std::vector<std::string> aux;                  // depth, normal, object, material
   std::map<std::string, std::string> metadata;
+  std::optional<std::filesystem::path> checkpoint;  // saved now and then and at the end
+  double checkpoint_interval_seconds = 60;
+  bool resume = false;            // go on from the checkpoint if it exists
+  uint64_t fingerprint = 0;       // render_fingerprint(), for checkpoints
   std::size_t memory_budget_bytes = std::size_t{1} << 30;  // for the film; beyond it strips of rows are streamed
 };
 
@@ -38,6 +42,7 @@ struct Progress {
   double fraction = 0;   // of the work (time rule: of the time)
   uint64_t pixel_samples = 0;
   double seconds = 0;
+  double rate = 0;       // pixel samples per second, those of a checkpoint not counted
   std::optional<double> error;
 };
 
@@ -50,6 +55,7 @@ struct RenderReport {
   std::optional<double> mean_relative_error;
   uint64_t pixels_without_sample = 0;
   uint64_t underflowed_values = 0;     // positive in the film, 0 as the file's float
+  uint64_t resumed_samples = 0;        // pixel samples that came from a checkpoint
   bool interrupted = false;
   bool streamed = false;               // strips, since the film did not fit the budget
   std::vector<std::filesystem::path> written;

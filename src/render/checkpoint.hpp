@@ -1,0 +1,25 @@
+// Checkpoints: the held film of an unfinished render, to go on from later.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "film/spectral_film.hpp"
+#include "render/backend.hpp"
+#include "scene/flat_scene.hpp"
+
+namespace kiloband {
+
+/// A number that differs (but for 1 in 2^64) if anything differs that samples depend on: scene data, channels, guide bands,
+/// camera, sampling settings, instruction set, size. The number of samples is not part of it: a render may be extended.
+uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& sampling, const std::string& isa,
+                            const std::vector<std::string>& derived_names);
+
+/// Writes the film to `file`, whole or not at all, with a checksum. throws DeviceError
+void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint);
+
+/// Fills a fresh film from `file` and returns the number of pixel samples it holds.
+/// throws InputError  missing, damaged (checksum), or of another render (fingerprint)
+uint64_t read_checkpoint(const std::filesystem::path& file, SpectralFilm& film, uint64_t fingerprint);
+
+}  // namespace kiloband

@@ -1,0 +1,200 @@
+// The render session: whole, streamed, held in a scratch file, interrupted and resumed renders are the same render.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "film/cube_io.hpp"
+#include "render/checkpoint.hpp"
+#include "render/session.hpp"
+#include "scene/reader.hpp"
+#include "src_cpu/cpu_backend.hpp"
+#include "tests/support/render_harness.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr uint32_t kSize = 72;  // more than two blocks, the last clipped
+
+class SessionTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("kiloband_session_" + std::to_string(getpid()) + "_" +
+                                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    const std::string xml = "<scene version=\"3.0.0\">" + test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSize) +
+                            "<shape type=\"sphere\"/><emitter type=\"point\"><spectrum name=\"intensity\" value=\"400:1, 700:9\"/>"
+                            "<point name=\"position\" x=\"3\" y=\"2\" z=\"4\"/></emitter>"
+                            "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0.5\"/></emitter></scene>";
+    scene_ = flatten(read_scene_text(xml, "test.xml", "."), {parse_channels("400:700:5"), {}, {}});
+    settings_.stop.samples_per_pixel = 40;
+    settings_.variance = true;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::unique_ptr<Backend> backend(uint64_t seed = 3) const {
+    SamplingSettings sampling;
+    sampling.seed = seed;
+    sampling.replicates = session_replicates(settings_);
+    return make_cpu_backend(scene_, {}, sampling, {});
+  }
+
+  struct Values {
+    std::vector<float> mean, variance;
+  };
+
+  RenderReport run(Backend& backend, const std::string& name, const std::atomic<bool>& stop = false,
+                   const std::function<void(const Progress&)>& progress = {}) {
+    SessionSettings settings = settings_;
+    settings.outputs = {folder_ / name};
+    return run_session(scene_, {}, backend, settings, stop, progress);
+  }
+
+  Values read(const std::string& name) const {
+    const auto cube = open_cube(folder_ / name);
+    const std::size_t size = std::size_t{kSize} * kSize * cube->info().bands.size();
+    Values values{std::vector<float>(size), std::vector<float>(size)};
+    cube->read_rows(0, kSize, values.mean, values.variance);
+    return values;
+  }
+
+  std::filesystem::path folder_;
+  FlatScene scene_;
+  SessionSettings settings_;
+};
+
+void expect_same(const std::vector<float>& a, const std::vector<float>& b, double tolerance) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_LE(std::abs(a[i] - b[i]), tolerance * std::abs(a[i])) << i;
+}
+
+TEST_F(SessionTest, StreamedStripsGiveTheBitsOfTheWholeImage) {
+  const RenderReport whole = run(*backend(), "whole.hdr");
+  EXPECT_FALSE(whole.streamed);
+  settings_.memory_budget_bytes = 100000;
+  const RenderReport strips = run(*backend(), "strips.hdr");
+  EXPECT_TRUE(strips.streamed);
+  const Values a = read("whole.hdr"), b = read("strips.hdr");
+  expect_same(a.mean, b.mean, 0);
+  expect_same(a.variance, b.variance, 0);
+  EXPECT_EQ(whole.image_mean.size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(strips.image_mean[k], whole.image_mean[k], 1e-6 * whole.image_mean[k]);
+  EXPECT_NEAR(*whole.mean_relative_error, *strips.mean_relative_error, 1e-9);
+}
+
+TEST_F(SessionTest, HeldReplicatesInAScratchFileChangeNothing) {
+  settings_.checkpoint = folder_ / "memory.ck";
+  run(*backend(), "memory.hdr");
+  settings_.memory_budget_bytes = 1000;
+  settings_.checkpoint = folder_ / "scratch.ck";
+  run(*backend(), "scratch.hdr");
+  const Values a = read("memory.hdr"), b = read("scratch.hdr");
+  expect_same(a.mean, b.mean, 0);
+  expect_same(a.variance, b.variance, 0);
+}
+
+// Means of a replicate that was rendered in parts are combined in float: a rounding or two of difference.
+TEST_F(SessionTest, InterruptedAndResumedEqualsUninterrupted) {
+  run(*backend(), "once.hdr");
+  settings_.checkpoint = folder_ / "render.ck";
+  settings_.resume = true;
+  std::atomic<bool> stop{false};
+  const RenderReport first = run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.4; });
+  EXPECT_TRUE(first.interrupted);
+  EXPECT_LT(first.samples_per_pixel, 40u);
+  const auto fresh = backend();
+  const RenderReport second = run(*fresh, "resumed.hdr");
+  EXPECT_FALSE(second.interrupted);
+  EXPECT_GT(second.resumed_samples, 0u);
+  EXPECT_EQ(second.resumed_samples + fresh->counters().paths, std::size_t{kSize} * kSize * 40);
+  EXPECT_EQ(second.samples_per_pixel, 40u);
+  const Values a = read("once.hdr"), b = read("resumed.hdr");
+  expect_same(a.mean, b.mean, 5e-7);
+}
+
+TEST_F(SessionTest, ResumeExtendsARender) {
+  settings_.stop.samples_per_pixel = 96;
+  run(*backend(), "once.hdr");
+  settings_.stop.samples_per_pixel = 32;
+  settings_.checkpoint = folder_ / "render.ck";
+  run(*backend(), "short.hdr");
+  settings_.resume = true;
+  settings_.stop.samples_per_pixel = 96;
+  const RenderReport extended = run(*backend(), "long.hdr");
+  EXPECT_EQ(extended.resumed_samples, std::size_t{kSize} * kSize * 32);
+  expect_same(read("once.hdr").mean, read("long.hdr").mean, 5e-7);
+}
+
+TEST_F(SessionTest, CheckpointsOfOtherRendersAndDamagedOnesAreRefused) {
+  settings_.checkpoint = folder_ / "render.ck";
+  settings_.fingerprint = 7;
+  run(*backend(), "first.hdr");
+  settings_.resume = true;
+  settings_.fingerprint = 8;
+  const auto message = [&]() -> std::string {
+    try {
+      run(*backend(), "second.hdr");
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  const std::string name = "checkpoint " + settings_.checkpoint->string();
+  EXPECT_EQ(message(), name + " belongs to another render: scene, channels, sampling, size or instruction set differ");
+  settings_.fingerprint = 7;
+  const auto size = std::filesystem::file_size(*settings_.checkpoint);
+  std::fstream(*settings_.checkpoint, std::ios::in | std::ios::out | std::ios::binary).seekp(5000).put('\x55');
+  EXPECT_EQ(message(), name + " is damaged: the checksum differs");
+  std::filesystem::resize_file(*settings_.checkpoint, size / 2);
+  EXPECT_EQ(message(), name + " is not a checkpoint or ends early");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "second.hdr"));
+}
+
+TEST_F(SessionTest, FingerprintSeesSceneSamplingAndInstructionSet) {
+  const SamplingSettings sampling;
+  SamplingSettings other = sampling;
+  other.seed = 1;
+  FlatScene moved = scene_;
+  moved.shapes[0].to_world[3] += 1e-6f;
+  const uint64_t base = render_fingerprint(scene_, sampling, "avx2", {});
+  EXPECT_EQ(base, render_fingerprint(scene_, sampling, "avx2", {}));
+  EXPECT_NE(base, render_fingerprint(scene_, other, "avx2", {}));
+  EXPECT_NE(base, render_fingerprint(moved, sampling, "avx2", {}));
+  EXPECT_NE(base, render_fingerprint(scene_, sampling, "sse4", {}));
+  EXPECT_NE(base, render_fingerprint(scene_, sampling, "avx2", {"x"}));
+}
+
+TEST_F(SessionTest, TargetErrorIsReached) {
+  settings_.stop = {};
+  settings_.stop.relative_error = 0.02;
+  const RenderReport report = run(*backend(), "error.hdr");
+  EXPECT_LE(*report.mean_relative_error, 0.02);
+  EXPECT_GT(*report.mean_relative_error, 0.002);  // and not by rendering for ever
+}
+
+TEST_F(SessionTest, TimeLimitIsKept) {
+  settings_.stop = {};
+  settings_.stop.seconds = 0.3;
+  const RenderReport report = run(*backend(), "time.hdr");
+  EXPECT_GE(report.sampling_seconds, 0.29);
+  EXPECT_GE(report.samples_per_pixel, 1u);
+  EXPECT_FALSE(report.interrupted);
+}
+
+TEST_F(SessionTest, InterruptedStripsBecomeNan) {
+  settings_.memory_budget_bytes = 100000;
+  std::atomic<bool> stop{false};
+  const RenderReport report = run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.5; });
+  EXPECT_TRUE(report.interrupted);
+  EXPECT_GT(report.pixels_without_sample, 0u);
+  const Values values = read("part.hdr");
+  EXPECT_TRUE(std::isfinite(values.mean.front()));
+  EXPECT_TRUE(std::isnan(values.mean.back()));
+  const auto missing = std::ranges::count_if(values.mean, [](float v) { return std::isnan(v); });
+  EXPECT_EQ(static_cast<uint64_t>(missing), 5 * report.pixels_without_sample);
+}
+
+}  // namespace
+}  // namespace kiloband
