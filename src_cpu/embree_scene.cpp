@@ -127,6 +127,7 @@ void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
 }  // namespace
 
 struct EmbreeScene::Impl {
+  const FlatScene* flat = nullptr;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
@@ -134,17 +135,25 @@ struct EmbreeScene::Impl {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
   }
-  void add_mesh(const FlatScene& flat, const KbShape& shape, unsigned id);
+  void add_mesh(const KbShape& shape, unsigned id);
   void add_analytic(const KbShape& shape, unsigned id);
+  /// Large meshes do not fit the caches: asks for the hit triangle's indices while the next ray is traced.
+  void prefetch_triangle(const TraceRay& ray) const {
+    if (ray.shape == KB_NONE) return;
+    const KbShape& shape = flat->shapes[ray.shape];
+    if (shape.type == KB_SHAPE_MESH) {
+      __builtin_prefetch(&flat->triangles[3 * (std::size_t{shape.first_triangle} + ray.primitive)]);
+    }
+  }
 };
 
-void EmbreeScene::Impl::add_mesh(const FlatScene& flat, const KbShape& shape, unsigned id) {
+void EmbreeScene::Impl::add_mesh(const KbShape& shape, unsigned id) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (!geometry) fail(device, "rtcNewGeometry");
   // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare vertex at their end.
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat.positions.data(), 0,
-                             sizeof(KbFloat3), flat.positions.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat.triangles.data(),
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat->positions.data(), 0,
+                             sizeof(KbFloat3), flat->positions.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat->triangles.data(),
                              std::size_t{shape.first_triangle} * 3 * sizeof(uint32_t), 3 * sizeof(uint32_t),
                              shape.triangle_count);
   rtcCommitGeometry(geometry);
@@ -166,6 +175,7 @@ void EmbreeScene::Impl::add_analytic(const KbShape& shape, unsigned id) {
 }
 
 EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int threads) : impl_(std::make_unique<Impl>()) {
+  impl_->flat = &scene;
   const std::string config = fmt::format("isa={},threads={}", isa, threads);
   impl_->device = rtcNewDevice(config.c_str());
   if (!impl_->device) throw DeviceError("Embree: cannot create a device with " + config);
@@ -175,7 +185,7 @@ EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int thr
   rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
   for (unsigned id = 0; id < scene.shapes.size(); ++id) {
     const KbShape& shape = scene.shapes[id];
-    shape.type == KB_SHAPE_MESH ? impl_->add_mesh(scene, shape, id) : impl_->add_analytic(shape, id);
+    shape.type == KB_SHAPE_MESH ? impl_->add_mesh(shape, id) : impl_->add_analytic(shape, id);
   }
   rtcCommitScene(impl_->scene);
   if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE) throw DeviceError("Embree: building the scene failed");
@@ -226,7 +236,10 @@ void store_packet(const RTCRayHit16& packet, std::span<TraceRay> rays) {
 void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
   if (!coherent) {
     Query query(kIncoherent);
-    for (TraceRay& ray : rays) intersect1(impl_->scene, query, reinterpret_cast<RTCRayHit&>(ray));
+    for (TraceRay& ray : rays) {
+      intersect1(impl_->scene, query, reinterpret_cast<RTCRayHit&>(ray));
+      impl_->prefetch_triangle(ray);
+    }
     return;
   }
   Query query(kCoherent);
@@ -239,6 +252,7 @@ void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
     std::fill_n(packet.hit.instID[0], kPacketSize, RTC_INVALID_GEOMETRY_ID);
     intersect16(valid, impl_->scene, query, packet);
     store_packet(packet, some);
+    for (const TraceRay& ray : some) impl_->prefetch_triangle(ray);
   }
 }
 

@@ -48,6 +48,7 @@ struct alignas(16) ShadowRay {
 
 class EmbreeScene {
  public:
+  /// The scene must outlive this object.
   /// isa: "sse4.2", "avx2" or "avx512": Embree's own code path, whose hits differ in their last bits.
   /// throws DeviceError naming Embree's error
   EmbreeScene(const FlatScene& scene, const std::string& isa, int threads);

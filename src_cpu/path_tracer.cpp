@@ -118,25 +118,19 @@ void PathTracer::trace_shadows() {
   }
 }
 
-/// Large meshes do not fit the caches: asks for the triangles, then for the vertices, of all hits before the first is shaded.
-void PathTracer::prefetch_hits() const {
-  const auto first_index = [this](const TraceRay& ray) {
-    return &flat_.triangles[3 * (std::size_t{flat_.shapes[ray.shape].first_triangle} + ray.primitive)];
-  };
-  const auto is_mesh = [this](const TraceRay& ray) {
-    return ray.shape != KB_NONE && flat_.shapes[ray.shape].type == KB_SHAPE_MESH;
-  };
+/// Asks for the vertices of all hits before the first is shaded (their indices were asked for while rays were traced).
+void PathTracer::prefetch_vertices() const {
   for (const TraceRay& ray : rays_queue_) {
-    if (is_mesh(ray)) __builtin_prefetch(first_index(ray));
-  }
-  for (const TraceRay& ray : rays_queue_) {
-    if (!is_mesh(ray)) continue;
-    for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&flat_.positions[first_index(ray)[corner]]);
+    if (ray.shape == KB_NONE) continue;
+    const KbShape& shape = flat_.shapes[ray.shape];
+    if (shape.type != KB_SHAPE_MESH) continue;
+    const uint32_t* index = &flat_.triangles[3 * (std::size_t{shape.first_triangle} + ray.primitive)];
+    for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&flat_.positions[index[corner]]);
   }
 }
 
 void PathTracer::shade_all(const SampleId& id, uint32_t bounce, std::span<const float> mu) {
-  prefetch_hits();
+  prefetch_vertices();
   next_active_.clear();
   next_rays_.clear();
   shadow_rays_.clear();

@@ -92,7 +92,7 @@ class PathTracer {
   void record_shadows();
   void trace_closest(bool coherent);
   void trace_shadows();
-  void prefetch_hits() const;
+  void prefetch_vertices() const;
   void shade_all(const SampleId& id, uint32_t bounce, std::span<const float> mu);
   /// Returns false where the path ends.
   bool shade(Path& path, const TraceRay& ray, const SampleId& id, uint32_t bounce, std::span<const float> mu);

@@ -44,7 +44,8 @@ std::optional<double> relative_error(const std::vector<double>& mean_sum, const 
 }
 
 CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands, const std::vector<double>& film_scale,
-                       const SessionSettings& settings, uint32_t replicates, uint32_t rows_per_strip)
+                       const SessionSettings& settings, uint32_t replicates, uint64_t samples_per_pixel,
+                       uint32_t rows_per_strip)
     : bands_(bands), scale_(film_scale), settings_(settings), width_(scene.film.crop_width),
       height_(scene.film.crop_height), strip_(rows_per_strip), aux_names_(auxiliary_planes(settings.aux)) {
   CubeInfo info;
@@ -52,7 +53,7 @@ CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands, const
   info.height = height_;
   info.bands = bands.bands;
   info.variance = settings.variance;
-  info.samples_per_pixel = settings.stop.samples_per_pixel.value_or(0);
+  info.samples_per_pixel = samples_per_pixel;
   info.replicates = replicates;
   info.aux = aux_names_;
   info.metadata = settings.metadata;

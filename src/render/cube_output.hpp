@@ -10,9 +10,9 @@ namespace kiloband {
 
 class CubeOutput {
  public:
-  /// rows_per_strip as create_cube_writer(); film_scale per film channel
+  /// rows_per_strip as create_cube_writer(); film_scale per film channel; samples_per_pixel is stated in the files
   CubeOutput(const FlatScene& scene, const BandSelection& bands, const std::vector<double>& film_scale,
-             const SessionSettings& settings, uint32_t replicates, uint32_t rows_per_strip);
+             const SessionSettings& settings, uint32_t replicates, uint64_t samples_per_pixel, uint32_t rows_per_strip);
 
   /// Appends all rows of a film that covers the next rows of the image.
   void write(const SpectralFilm& film, Backend& backend);

@@ -45,11 +45,8 @@ class Session {
     const std::size_t strip = strip_rows(row_bytes, image.height);
     report_.replicates = replicates_;
     const bool whole = revisits || row_bytes * image.height <= settings_.memory_budget_bytes;
-    CubeOutput output(scene_, bands_, backend_.film_scale(), settings_, replicates_, static_cast<uint32_t>(strip));
-    whole ? run_whole(image, options, output) : run_strips(image, options, static_cast<uint32_t>(strip), output);
-    const auto writing = Clock::now();
-    output.finish(report_);
-    report_.output_seconds += seconds_since(writing);
+    strip_ = static_cast<uint32_t>(strip);
+    whole ? run_whole(image, options) : run_strips(image, options);
     report_.interrupted = stop_;
     if (!report_.mean_relative_error) report_.mean_relative_error = error_;  // --target-error without --variance
     finish_image_moments();
@@ -68,7 +65,8 @@ class Session {
 
   /// The whole image is one film (in memory, or held in a scratch file): replicate after replicate over all blocks, so that
   /// an interrupted render is even.
-  void run_whole(const PixelRect& image, const FilmOptions& options, CubeOutput& output) {
+  void run_whole(const PixelRect& image, const FilmOptions& options) {
+    make_output(settings_.stop.samples_per_pixel.value_or(0));  // hours of rendering must not end at a file name
     SpectralFilm film(image, options);
     if (settings_.resume && std::filesystem::exists(*settings_.checkpoint)) {
       report_.resumed_samples = done_ = read_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
@@ -83,17 +81,39 @@ class Session {
     report_.sampling_seconds += seconds_since(start_);
     if (settings_.checkpoint) write_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
     film.add_image_sums(image_sums_, image_counts_);
-    write(film, output);
+    const auto output = make_output(least_samples(film));
+    write(film, *output);
+    finish(*output);
+  }
+
+  std::unique_ptr<CubeOutput> make_output(uint64_t samples_per_pixel) const {
+    return std::make_unique<CubeOutput>(scene_, bands_, backend_.film_scale(), settings_, replicates_, samples_per_pixel,
+                                        strip_);
+  }
+
+  static uint64_t least_samples(const SpectralFilm& film) {
+    uint64_t least = ~0ull;
+    for (uint32_t y = 0; y < film.rect().height; ++y) {
+      for (uint32_t x = 0; x < film.rect().width; ++x) least = std::min(least, film.samples(x, y));
+    }
+    return least;
+  }
+
+  void finish(CubeOutput& output) {
+    const auto writing = Clock::now();
+    output.finish(report_);
+    report_.output_seconds += seconds_since(writing);
   }
 
   /// Strips of rows: each is finished and written before the next begins.
-  void run_strips(const PixelRect& image, const FilmOptions& options, uint32_t strip, CubeOutput& output) {
+  void run_strips(const PixelRect& image, const FilmOptions& options) {
     report_.streamed = true;
     total_ = image.pixels() * *settings_.stop.samples_per_pixel;
-    for (uint32_t y = 0; y < image.height; y += strip) {
-      const PixelRect rect{image.x0, image.y0 + y, image.width, std::min(strip, image.height - y)};
+    const auto output = make_output(*settings_.stop.samples_per_pixel);
+    for (uint32_t y = 0; y < image.height; y += strip_) {
+      const PixelRect rect{image.x0, image.y0 + y, image.width, std::min(strip_, image.height - y)};
       if (stop_) {
-        output.write_missing(rect);
+        output->write_missing(rect);
         continue;
       }
       SpectralFilm film(rect, options);
@@ -101,8 +121,9 @@ class Session {
       render_fixed(film);
       report_.sampling_seconds += seconds_since(start_);
       film.add_image_sums(image_sums_, image_counts_);
-      write(film, output);
+      write(film, *output);
     }
+    finish(*output);
   }
 
   void write(const SpectralFilm& film, CubeOutput& output) {
@@ -241,7 +262,7 @@ class Session {
   const std::function<void(const Progress&)>& progress_;
   BandSelection bands_;
   std::size_t channels_;
-  uint32_t replicates_;
+  uint32_t replicates_, strip_ = 0;
   RenderReport report_;
   Clock::time_point start_, last_checkpoint_;
   uint32_t step_ = 1;  // samples per replicate between looks at the checkpoint clock

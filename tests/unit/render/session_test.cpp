@@ -104,6 +104,7 @@ TEST_F(SessionTest, InterruptedAndResumedEqualsUninterrupted) {
   const RenderReport first = run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.4; });
   EXPECT_TRUE(first.interrupted);
   EXPECT_LT(first.samples_per_pixel, 40u);
+  EXPECT_EQ(open_cube(folder_ / "part.hdr")->info().samples_per_pixel, first.samples_per_pixel);
   const auto fresh = backend();
   const RenderReport second = run(*fresh, "resumed.hdr");
   EXPECT_FALSE(second.interrupted);
