@@ -2,7 +2,6 @@
 // boundary conditions (Born, Wolf, Principles of Optics, 1.5.2 and 14.2).
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -17,9 +16,10 @@ inline double fresnel_reflectance(double cos_i, std::complex<double> index) {
   return 0.5 * (std::norm(s) + std::norm(p));
 }
 
-/// eta: transmitted over incident index; 1 beyond the critical angle (cos_t is imaginary there).
+/// eta: transmitted over incident index; exactly 1 beyond the critical angle.
 inline double dielectric_reflectance(double cos_i, double eta) {
-  return std::min(1.0, fresnel_reflectance(cos_i, eta));
+  if (1 - cos_i * cos_i >= eta * eta) return 1;
+  return fresnel_reflectance(cos_i, eta);
 }
 
 /// Diffuse reflectance 2 int_0^1 R(c) c dc by the midpoint rule, error below 1e-6 for eta > 1.

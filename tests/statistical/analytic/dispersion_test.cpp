@@ -1,0 +1,99 @@
+// Channels at boundaries whose index depends on wavelength (degradation).
+//
+// Where such a boundary refracts, one of K channels goes on with weight K; reflection keeps all of them. The
+// mean of every channel must be Fresnel's value where one is known, and otherwise what the channel rendered
+// alone gives: two renders are compared, both with their error bars.
+//
+// Error rate: 1e-4 for the whole program. Detectable bias: stated with each test.
+#include <cmath>
+#include <numbers>
+
+#include "tests/statistical/analytic/dispersive_glass.hpp"
+#include "tests/statistical/analytic/fresnel_exact.hpp"
+
+namespace kiloband::test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// A plane of dispersive glass: reflection keeps all channels, transmission one. Detectable bias:
+/// 1.5 %.
+TEST(Dispersion, PlaneBoundaryPerWavelength) {
+  const TemporaryFolder folder;
+  folder.write("glass.txt", index_columns());
+  const double theta = 70 * kPi / 180;
+  const std::string camera =
+      wide_sensor(lookat(vec(-4 * std::sin(theta), 0, 4 * std::cos(theta)), "0, 0, 0"), 0.05, 8, 8);
+  const std::string plane = shape("rectangle", to_world("<scale value=\"3, 3, 1\"/>") + glass("dielectric"));
+  for (const bool above : {true, false}) {
+    SCOPED_TRACE(above ? "reflected" : "transmitted");
+    const std::string turn =
+        above ? "<rotate x=\"1\" angle=\"180\"/><translate z=\"5\"/>" : "<translate z=\"-5\"/>";
+    const std::string light =
+        shape("rectangle", to_world("<scale value=\"60, 60, 1\"/>" + turn) + area_light(flat("radiance", 2)));
+    const RenderResult result =
+        render_valid(scene(-1, camera + plane + light), kDispersionBands, {}, {512, 62}, folder.path());
+    const Function expected = [=](double nm) {
+      const double r = dielectric_reflectance(std::cos(theta), kGlassIndex(nm));
+      return 2 * (above ? r : (1 - r) / (kGlassIndex(nm) * kGlassIndex(nm)));
+    };
+    expect_image_mean(result, channel_integrals(expected, result), 0.015);
+  }
+}
+
+/// A ball of glass before a coloured square and a dim sky. `material`: the ball's.
+std::string ball_scene(const std::string& material) {
+  const Knots colour{{{380, 2}, {500, 4}, {600, 2}, {720, 3}}};
+  const std::string square =
+      shape("rectangle", to_world("<scale value=\"1, 1, 1\"/>" + lookat("0.5, 1, -4", "0, 0, 0")) +
+                             area_light(colour.text("radiance")));
+  return scene(-1, perspective_sensor("0, 0, 4", "0, 0, 0", 30, 16) + shape("sphere", material) + square +
+                       constant_environment(1));
+}
+
+/// Image means of all channels together against each channel alone (other seeds). Detectable bias: 2 %.
+void expect_channels_as_alone(const std::string& xml, const Mode& mode, const std::filesystem::path& folder) {
+  const uint64_t samples = mode.sampler == SamplerType::kSobol ? 64 : 96;
+  const RenderResult together = render_valid(xml, kDispersionBands, mode, {samples, 63}, folder);
+  for (const std::size_t c : {0, 2, 4}) {
+    const Channel& channel = together.scene.channels[c];
+    const std::string alone_band = std::to_string(channel.min_nm) + "-" + std::to_string(channel.max_nm);
+    const RenderResult alone = render_valid(xml, alone_band, mode, {32, 64 + c}, folder);
+    expect_mean("channel " + std::to_string(c), together.image_mean[c],
+                together.image_variance[c] + alone.image_variance[0], alone.image_mean[0],
+                together.replicates, 0.02);
+  }
+}
+
+class DegradationTest : public ::testing::TestWithParam<Mode> {};
+INSTANTIATE_TEST_SUITE_P(Modes, DegradationTest,
+                         ::testing::Values(Mode{WavelengthMode::kShared, SamplerType::kSobol},
+                                           Mode{WavelengthMode::kPerPath, SamplerType::kIndependent}),
+                         mode_name);
+
+TEST_P(DegradationTest, SmoothBall) {
+  const TemporaryFolder folder;
+  folder.write("glass.txt", index_columns());
+  expect_channels_as_alone(ball_scene(glass("dielectric")), GetParam(), folder.path());
+}
+
+TEST_P(DegradationTest, RoughBall) {
+  const TemporaryFolder folder;
+  folder.write("glass.txt", index_columns());
+  expect_channels_as_alone(ball_scene(glass("roughdielectric", number("float", "alpha", 0.2))), GetParam(),
+                           folder.path());
+}
+
+/// A white sky alone: a smooth ball of glass vanishes in every channel, dispersive or not. Detectable bias: 1
+/// %.
+TEST(Dispersion, GlassBallVanishesInTheFurnace) {
+  const TemporaryFolder folder;
+  folder.write("glass.txt", index_columns());
+  const std::string xml = scene(-1, perspective_sensor("0, 0, 4", "0, 0, 0", 30, 16) +
+                                        shape("sphere", glass("dielectric")) + constant_environment(1));
+  const RenderResult result = render_valid(xml, kDispersionBands, {}, {128, 70}, folder.path());
+  expect_image_mean(result, {10, 10, 10, 10, 10}, 0.01);
+}
+
+}  // namespace
+}  // namespace kiloband::test
