@@ -28,7 +28,7 @@ namespace kiloband::test {
 
 inline constexpr double kFamilyErrorRate = 1e-4;
 /// Upper bound of the comparisons in this program; checked while they are made.
-inline constexpr std::size_t kComparisons = 6000;
+inline constexpr std::size_t kComparisons = 2000;
 inline constexpr uint32_t kReplicates = 64;
 /// Relative allowance for single precision and for tabulated spectra (their stated bound is 1e-5 of the
 /// maximum).
