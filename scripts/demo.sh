@@ -18,7 +18,7 @@ cat <<END
 The Cornell box in 100 channels from 400 to 700 nm:
   $out/cornell_box.png       preview in colour: open it with any image viewer
   $out/cornell_box.exr       spectral OpenEXR, mean spectral radiance and its variance: tev, oiiotool --info -v
-  $out/cornell_box.hdr/.img  ENVI, channel values: QGIS, gdalinfo $out/cornell_box.img
+  $out/cornell_box.hdr/.img  ENVI, channel values: QGIS, gdalinfo $out/cornell_box.img (Debian: gdal-bin)
   $out/cornell_box.json      statistics of the render
 Next: build/release/src/app/kiloband render --help, or the spectrum of the pixel at (128, 128):
   build/release/src/app/kiloband convert $out/cornell_box.hdr $out/pixel.csv --pixel 128,128
