@@ -7,18 +7,23 @@
 namespace kiloband {
 namespace {
 
-// Float sums take at most this many samples before they go to double: their rounding error stays below 64 * 2^-24 = 4e-6
-// in the worst case (all samples equal) and 5e-7 typically, however many samples follow.
+// Float sums take at most this many samples before they go to double: their rounding error stays below 64 *
+// 2^-24 = 4e-6 in the worst case (all samples equal) and 5e-7 typically, however many samples follow.
 constexpr uint32_t kFoldInterval = 64;
 
 }  // namespace
 
-BlockWorker::BlockWorker(const TracerScene& scene, const DerivedChannels& derived, const SamplingSettings& settings, Isa isa)
-    : scene_(scene), settings_(settings), derived_count_(derived.names.size()), tracer_(scene, settings),
+BlockWorker::BlockWorker(const TracerScene& scene, const DerivedChannels& derived,
+                         const SamplingSettings& settings, Isa isa)
+    : scene_(scene),
+      settings_(settings),
+      derived_count_(derived.names.size()),
+      tracer_(scene, settings),
       evaluator_(*scene.flat, derived, isa) {}
 
 BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, const SampleRange& range,
-                                 const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_sample,
+                                 const std::atomic<bool>& stop,
+                                 const std::function<void(uint64_t)>& on_sample,
                                  const std::function<void(const InvalidSample&)>& on_invalid) {
   const std::size_t pixels = block.pixels();
   sums_.assign(pixels * evaluator_.stride(), 0.0f);
@@ -43,16 +48,19 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
 
 void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {
   if (settings_.wavelengths == WavelengthMode::kShared) {
-    const float mu = kb_shared_mu(settings_.seed, id.replicate, block.x0 / kBlockSize, block.y0 / kBlockSize, id.index);
+    const float mu =
+        kb_shared_mu(settings_.seed, id.replicate, block.x0 / kBlockSize, block.y0 / kBlockSize, id.index);
     mu_.assign(1, mu);
     tracer_.trace(block, id, mu_, paths_, invalid_);
     evaluator_.add_shared(paths_, mu, sums_);
     return;
   }
-  const uint32_t sampler = settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  const uint32_t sampler =
+      settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
   mu_.resize(block.pixels());
   for (uint32_t i = 0; i < mu_.size(); ++i) {
-    const uint32_t key = (block.y0 + i / block.width) * scene_.flat->camera.film_width + block.x0 + i % block.width;
+    const uint32_t key =
+        (block.y0 + i / block.width) * scene_.flat->camera.film_width + block.x0 + i % block.width;
     mu_[i] = kb_path_mu(sampler, settings_.seed, key, id.sample, id.replicate, id.index);
   }
   tracer_.trace(block, id, mu_, paths_, invalid_);

@@ -13,12 +13,14 @@ namespace kiloband {
 
 class BlockWorker {
  public:
-  BlockWorker(const TracerScene& scene, const DerivedChannels& derived, const SamplingSettings& settings, Isa isa);
+  BlockWorker(const TracerScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
+              Isa isa);
 
-  /// Renders range.count samples (fewer if stop becomes true) of every pixel of the block; the result stays valid until the
-  /// next call. on_sample is called after each sample with the number of pixels; on_invalid for every invalid sample.
-  BlockSamples render(const PixelRect& block, uint32_t block_index, const SampleRange& range, const std::atomic<bool>& stop,
-                      const std::function<void(uint64_t)>& on_sample,
+  /// Renders range.count samples (fewer if stop becomes true) of every pixel of the block; the result stays
+  /// valid until the next call. on_sample is called after each sample with the number of pixels; on_invalid
+  /// for every invalid sample.
+  BlockSamples render(const PixelRect& block, uint32_t block_index, const SampleRange& range,
+                      const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_sample,
                       const std::function<void(const InvalidSample&)>& on_invalid);
 
   PathTracer& tracer() { return tracer_; }
@@ -36,8 +38,8 @@ class BlockWorker {
   Evaluator evaluator_;
   PathBuffer paths_;
   std::vector<float> mu_, path_mu_;
-  std::vector<float> sums_;      // [pixel][stride], at most kFoldInterval samples
-  std::vector<double> folded_;   // the samples before those; empty until needed
+  std::vector<float> sums_;     // [pixel][stride], at most kFoldInterval samples
+  std::vector<double> folded_;  // the samples before those; empty until needed
   std::vector<uint32_t> counts_, invalid_;
 };
 

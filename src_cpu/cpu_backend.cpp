@@ -18,9 +18,12 @@ constexpr std::size_t kReportedInvalid = 16;
 
 const char* embree_isa(Isa isa) {
   switch (isa) {
-    case Isa::kAvx512: return "avx512";
-    case Isa::kAvx2: return "avx2";
-    default: return "sse4.2";
+    case Isa::kAvx512:
+      return "avx512";
+    case Isa::kAvx2:
+      return "avx2";
+    default:
+      return "sse4.2";
   }
 }
 
@@ -48,7 +51,10 @@ class CpuBackend final : public Backend {
  public:
   CpuBackend(const FlatScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
              const CpuOptions& options)
-      : scene_(scene), derived_(derived), settings_(settings), isa_(resolve_isa(options.isa)),
+      : scene_(scene),
+        derived_(derived),
+        settings_(settings),
+        isa_(resolve_isa(options.isa)),
         threads_(options.threads > 0 ? options.threads : omp_get_num_procs()) {
     complete_rough_plastics();
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
@@ -88,7 +94,8 @@ class CpuBackend final : public Backend {
   std::vector<InvalidSample> invalid_;
 };
 
-/// Rough plastics need the transmittance of their rough boundary; its internal reflectance replaces the smooth one.
+/// Rough plastics need the transmittance of their rough boundary; its internal reflectance replaces the
+/// smooth one.
 void CpuBackend::complete_rough_plastics() {
   tracer_scene_.rough.resize(scene_.materials.size());
   for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
@@ -144,19 +151,22 @@ std::vector<AuxiliaryPixel> CpuBackend::auxiliary(const PixelRect& rect) {
   std::vector<TraceRay> rays;
   rays.reserve(rect.pixels());
   for (uint32_t i = 0; i < rect.pixels(); ++i) {
-    const CameraRay ray = centre_camera_ray(scene_.camera, rect.x0 + i % rect.width, rect.y0 + i / rect.width);
+    const CameraRay ray =
+        centre_camera_ray(scene_.camera, rect.x0 + i % rect.width, rect.y0 + i / rect.width);
     rays.emplace_back(ray.origin, ray.direction, ray.t_min, ray.t_max);
   }
   embree_->closest_hits(rays, true);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const TraceRay& ray = rays[i];
     if (ray.shape == KB_NONE) continue;
-    const SurfaceHit hit =
-        make_surface_hit(scene_, ray.shape, ray.primitive, ray.u, ray.v, ray.origin(), ray.direction(), ray.t_max);
+    const SurfaceHit hit = make_surface_hit(scene_, ray.shape, ray.primitive, ray.u, ray.v, ray.origin(),
+                                            ray.direction(), ray.t_max);
     const KbSurface& surface = scene_.surfaces[scene_.shapes[hit.shape].surface];
     const bool behind = glm::dot(hit.shading_normal, ray.direction()) > 0 && surface.back != KB_NONE;
     const glm::vec3 n = hit.shading_normal;
-    pixels[i] = {ray.t_max, {n.x, n.y, n.z}, static_cast<float>(hit.shape),
+    pixels[i] = {ray.t_max,
+                 {n.x, n.y, n.z},
+                 static_cast<float>(hit.shape),
                  static_cast<float>(behind ? surface.back : surface.front)};
   }
   return pixels;
@@ -164,7 +174,8 @@ std::vector<AuxiliaryPixel> CpuBackend::auxiliary(const PixelRect& rect) {
 
 std::vector<double> CpuBackend::film_scale() const {
   std::vector<double> scale = scene_.channel_scale;
-  for (std::size_t d = 0; d < derived_.names.size(); ++d) scale.push_back(workers_.front()->evaluator().derived_scale(d));
+  for (std::size_t d = 0; d < derived_.names.size(); ++d)
+    scale.push_back(workers_.front()->evaluator().derived_scale(d));
   return scale;
 }
 

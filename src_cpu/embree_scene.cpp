@@ -6,10 +6,11 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <fmt/format.h>
 #include <limits>
 
 #include "base/error.hpp"
@@ -66,8 +67,9 @@ void intersect16(const int* valid, RTCScene scene, Query& query, RTCRayHit16& ra
 #endif
 }
 
-/// Interval that an analytic shape covers along one axis, from that row of its to_world: a circle or sphere of unit radius
-/// reaches |row| to both sides; a cylinder also spans its axis. Grown by a few units in the last place.
+/// Interval that an analytic shape covers along one axis, from that row of its to_world: a circle or sphere
+/// of unit radius reaches |row| to both sides; a cylinder also spans its axis. Grown by a few units in the
+/// last place.
 void axis_bounds(const KbShape& shape, int axis, float& low, float& high) {
   const float* row = &shape.to_world[4 * axis];
   const double round = row[0] * double{row[0]} + row[1] * double{row[1]};
@@ -88,10 +90,12 @@ void analytic_bounds(const RTCBoundsFunctionArguments* args) {
 }
 
 bool hit_shape(const KbShape& shape, RTCRayN* rays, unsigned count, unsigned lane, double& t) {
-  const glm::dvec3 origin(RTCRayN_org_x(rays, count, lane), RTCRayN_org_y(rays, count, lane), RTCRayN_org_z(rays, count, lane));
+  const glm::dvec3 origin(RTCRayN_org_x(rays, count, lane), RTCRayN_org_y(rays, count, lane),
+                          RTCRayN_org_z(rays, count, lane));
   const glm::dvec3 direction(RTCRayN_dir_x(rays, count, lane), RTCRayN_dir_y(rays, count, lane),
                              RTCRayN_dir_z(rays, count, lane));
-  return intersect_analytic(shape, origin, direction, RTCRayN_tnear(rays, count, lane), RTCRayN_tfar(rays, count, lane), t);
+  return intersect_analytic(shape, origin, direction, RTCRayN_tnear(rays, count, lane),
+                            RTCRayN_tfar(rays, count, lane), t);
 }
 
 void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
@@ -150,9 +154,10 @@ struct EmbreeScene::Impl {
 void EmbreeScene::Impl::add_mesh(const KbShape& shape, unsigned id) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (!geometry) fail(device, "rtcNewGeometry");
-  // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare vertex at their end.
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat->positions.data(), 0,
-                             sizeof(KbFloat3), flat->positions.size());
+  // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare vertex at their
+  // end.
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat->positions.data(),
+                             0, sizeof(KbFloat3), flat->positions.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat->triangles.data(),
                              std::size_t{shape.first_triangle} * 3 * sizeof(uint32_t), 3 * sizeof(uint32_t),
                              shape.triangle_count);
@@ -174,7 +179,8 @@ void EmbreeScene::Impl::add_analytic(const KbShape& shape, unsigned id) {
   rtcReleaseGeometry(geometry);
 }
 
-EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int threads) : impl_(std::make_unique<Impl>()) {
+EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int threads)
+    : impl_(std::make_unique<Impl>()) {
   impl_->flat = &scene;
   const std::string config = fmt::format("isa={},threads={}", isa, threads);
   impl_->device = rtcNewDevice(config.c_str());
@@ -188,13 +194,15 @@ EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int thr
     shape.type == KB_SHAPE_MESH ? impl_->add_mesh(shape, id) : impl_->add_analytic(shape, id);
   }
   rtcCommitScene(impl_->scene);
-  if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE) throw DeviceError("Embree: building the scene failed");
+  if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
+    throw DeviceError("Embree: building the scene failed");
 }
 
 EmbreeScene::~EmbreeScene() = default;
 
 static_assert(sizeof(TraceRay) == sizeof(RTCRayHit) && sizeof(ShadowRay) == sizeof(RTCRay));
-static_assert(offsetof(TraceRay, t_max) == offsetof(RTCRay, tfar) && offsetof(TraceRay, flags) == offsetof(RTCRay, flags));
+static_assert(offsetof(TraceRay, t_max) == offsetof(RTCRay, tfar) &&
+              offsetof(TraceRay, flags) == offsetof(RTCRay, flags));
 static_assert(offsetof(TraceRay, u) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, u));
 static_assert(offsetof(TraceRay, shape) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, geomID));
 static_assert(offsetof(TraceRay, instance) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, instID));

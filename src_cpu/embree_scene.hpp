@@ -14,20 +14,26 @@ namespace kiloband {
 
 inline constexpr std::size_t kPacketSize = 16;
 
-/// A closest-hit query and its answer, laid out as Embree's RTCRayHit so that nothing is copied. direction need not be a
-/// unit vector; hits lie in (t_min, t_max).
+/// A closest-hit query and its answer, laid out as Embree's RTCRayHit so that nothing is copied. direction
+/// need not be a unit vector; hits lie in (t_min, t_max).
 struct alignas(16) TraceRay {
   float ox, oy, oz, t_min;
   float dx, dy, dz, time = 0;
   float t_max;  // in: far end; out: the hit's distance
   uint32_t mask = ~0u, id = 0, flags = 0;
-  float ng_x, ng_y, ng_z;  // not used
-  float u, v;              // barycentric coordinates of a mesh hit
-  uint32_t primitive;      // triangle within the shape
+  float ng_x, ng_y, ng_z;                        // not used
+  float u, v;                                    // barycentric coordinates of a mesh hit
+  uint32_t primitive;                            // triangle within the shape
   uint32_t shape = KB_NONE, instance = KB_NONE;  // KB_NONE: a miss
 
   TraceRay(glm::vec3 origin, glm::vec3 direction, float near_t, float far_t)
-      : ox(origin.x), oy(origin.y), oz(origin.z), t_min(near_t), dx(direction.x), dy(direction.y), dz(direction.z),
+      : ox(origin.x),
+        oy(origin.y),
+        oz(origin.z),
+        t_min(near_t),
+        dx(direction.x),
+        dy(direction.y),
+        dz(direction.z),
         t_max(far_t) {}
   glm::vec3 origin() const { return {ox, oy, oz}; }
   glm::vec3 direction() const { return {dx, dy, dz}; }
@@ -41,7 +47,13 @@ struct alignas(16) ShadowRay {
   uint32_t mask = ~0u, id = 0, flags = 0;
 
   ShadowRay(glm::vec3 origin, glm::vec3 direction, float far_t)
-      : ox(origin.x), oy(origin.y), oz(origin.z), t_min(0), dx(direction.x), dy(direction.y), dz(direction.z),
+      : ox(origin.x),
+        oy(origin.y),
+        oz(origin.z),
+        t_min(0),
+        dx(direction.x),
+        dy(direction.y),
+        dz(direction.z),
         t_max(far_t) {}
   bool occluded() const { return t_max < 0; }
 };
@@ -54,8 +66,8 @@ class EmbreeScene {
   EmbreeScene(const FlatScene& scene, const std::string& isa, int threads);
   ~EmbreeScene();
 
-  /// Answers in place. coherent: neighbouring rays go together, in packets of 16 (camera rays; packets lose for others,
-  /// see validation/README.md).
+  /// Answers in place. coherent: neighbouring rays go together, in packets of 16 (camera rays; packets lose
+  /// for others, see validation/README.md).
   void closest_hits(std::span<TraceRay> rays, bool coherent) const;
   void occlusions(std::span<ShadowRay> rays) const;
 

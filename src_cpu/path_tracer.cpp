@@ -12,13 +12,14 @@
 namespace kiloband {
 namespace {
 
-constexpr uint32_t kWavefront = 16;  // paths that advance together
+constexpr uint32_t kWavefront = 16;        // paths that advance together
 constexpr uint32_t kMaxVertices = 100000;  // a longer path counts as invalid and is reported
-/// Tables are finite and of order 1 (emission in film units), so a path's value is finite if its weights stay below this.
+/// Tables are finite and of order 1 (emission in film units), so a path's value is finite if its weights stay
+/// below this.
 constexpr float kLargestWeight = 1e34f;
 
-/// Multiplies `magnitude` by the vertex's scatter weight; false where a contribution could leave the range of floats or is
-/// NaN already.
+/// Multiplies `magnitude` by the vertex's scatter weight; false where a contribution could leave the range of
+/// floats or is NaN already.
 bool stays_finite(const KbPathVertex& v, float& magnitude) {
   const float emitted = v.head & KB_VERTEX_EMIT ? v.emit_weight : 0.0f;
   const float lit = v.head & KB_VERTEX_NEE ? std::fabs(v.nee0) + std::fabs(v.nee1) : 0.0f;
@@ -29,7 +30,9 @@ bool stays_finite(const KbPathVertex& v, float& magnitude) {
   return fits && magnitude < kLargestWeight;
 }
 
-void set_flag(KbPathVertex& vertex, uint32_t flag) { vertex.head |= flag; }
+void set_flag(KbPathVertex& vertex, uint32_t flag) {
+  vertex.head |= flag;
+}
 
 }  // namespace
 
@@ -75,13 +78,15 @@ void PathTracer::run_wavefront(const SampleId& id, std::span<const float> mu) {
 void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id) {
   active_.clear();
   rays_queue_.clear();
-  const uint32_t sampler = settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  const uint32_t sampler =
+      settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
   for (uint32_t i = first; i < first + count; ++i) {
     const uint32_t x = block.x0 + i % block.width;
     const uint32_t y = block.y0 + i / block.width;
     Path path{};
     path.pixel = i;
-    path.key = kb_sampler_key(sampler, settings_.seed, y * flat_.camera.film_width + x, id.sample, id.replicate, id.index);
+    path.key = kb_sampler_key(sampler, settings_.seed, y * flat_.camera.film_width + x, id.sample,
+                              id.replicate, id.index);
     path.bound = path.magnitude = 1;
     path.previous_delta = true;
     path.channel = path.first_slot = path.last_slot = KB_NONE;
@@ -118,7 +123,8 @@ void PathTracer::trace_shadows() {
   }
 }
 
-/// Asks for the vertices of all hits before the first is shaded (their indices were asked for while rays were traced).
+/// Asks for the vertices of all hits before the first is shaded (their indices were asked for while rays were
+/// traced).
 void PathTracer::prefetch_vertices() const {
   for (const TraceRay& ray : rays_queue_) {
     if (ray.shape == KB_NONE) continue;
@@ -172,8 +178,8 @@ void PathTracer::add_emission(Draft& draft, const Path& path, const SurfaceHit& 
   if (bounce == 0 && flat_.integrator.hide_emitters) return;
   float weight = 1;
   if (!path.previous_delta) {
-    weight = power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit.shape, path.previous_point, hit.point,
-                                                               hit.geometric_normal));
+    weight = power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit.shape, path.previous_point,
+                                                               hit.point, hit.geometric_normal));
   }
   set_flag(draft.vertex, KB_VERTEX_EMIT);
   draft.vertex.emit_weight = weight;
@@ -185,8 +191,10 @@ void PathTracer::add_emission(Draft& draft, const Path& path, const SurfaceHit& 
   }
 }
 
-/// Rows or texture samples of the factors S_a and S_b; they stand before those of emission and light in the vertex.
-void PathTracer::resolve_spectra(Draft& draft, const KbMaterial& material, const SurfaceHit& hit, bool use_b_for_a) {
+/// Rows or texture samples of the factors S_a and S_b; they stand before those of emission and light in the
+/// vertex.
+void PathTracer::resolve_spectra(Draft& draft, const KbMaterial& material, const SurfaceHit& hit,
+                                 bool use_b_for_a) {
   const uint32_t kind = draft.vertex.head & KB_VERTEX_KIND_MASK;
   const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
   KbTextureSample front[2];
@@ -201,7 +209,8 @@ void PathTracer::resolve_spectra(Draft& draft, const KbMaterial& material, const
   resolve(use_b_for_a ? material.ref_b : material.ref_a, draft.vertex.row_a, KB_VERTEX_TEX_A);
   if (two) resolve(material.ref_b, draft.vertex.row_b, KB_VERTEX_TEX_B);
   if (front_count == 0) return;
-  std::copy_backward(draft.samples, draft.samples + draft.sample_count, draft.samples + draft.sample_count + front_count);
+  std::copy_backward(draft.samples, draft.samples + draft.sample_count,
+                     draft.samples + draft.sample_count + front_count);
   std::copy_n(front, front_count, draft.samples);
   draft.sample_count += front_count;
 }
@@ -216,13 +225,14 @@ void PathTracer::append(Path& path, const Draft& draft) {
   for (uint32_t i = 0; i < draft.sample_count; i += 2) {
     Slot extension{};
     extension.next = KB_NONE;
-    std::memcpy(&extension.vertex, &draft.samples[i], std::min(draft.sample_count - i, 2u) * sizeof(KbTextureSample));
+    std::memcpy(&extension.vertex, &draft.samples[i],
+                std::min(draft.sample_count - i, 2u) * sizeof(KbTextureSample));
     slots_.push_back(extension);  // directly behind its vertex; not linked
   }
 }
 
-/// Copies the linked vertices of every path to one contiguous run, without what cannot contribute: everything behind
-/// the last vertex that has light.
+/// Copies the linked vertices of every path to one contiguous run, without what cannot contribute: everything
+/// behind the last vertex that has light.
 void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) {
   for (const Path& path : paths_) {
     if (path.invalid) {
@@ -238,7 +248,8 @@ void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) {
     for (uint32_t s = path.first_slot;; s = slots_[s].next) {
       KbPathVertex vertex = slots_[s].vertex;
       const auto samples = static_cast<uint32_t>(__builtin_popcount(vertex.head & KB_VERTEX_TEX_MASK));
-      if (!(vertex.head & KB_VERTEX_NEE)) vertex.head &= ~KB_VERTEX_TEX_NEE;  // its sample comes last: drop it
+      if (!(vertex.head & KB_VERTEX_NEE))
+        vertex.head &= ~KB_VERTEX_TEX_NEE;  // its sample comes last: drop it
       if (s == last_lit) vertex.head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
       out.slots.push_back(vertex);
       const auto kept = static_cast<uint32_t>(__builtin_popcount(vertex.head & KB_VERTEX_TEX_MASK));

@@ -1,12 +1,13 @@
 // Path generation: paths are built without looking at a wavelength and saved for deferred evaluation.
 //
-// Estimator (DESIGN 2): unidirectional path tracing with next-event estimation, power-heuristic MIS over the light and
-// BSDF samples, and Russian roulette with survival q = min(1, upper bound of the throughput over all channels). At a
-// refraction whose index depends on wavelength one channel goes on with weight K (degradation).
+// Estimator (DESIGN 2): unidirectional path tracing with next-event estimation, power-heuristic MIS over the
+// light and BSDF samples, and Russian roulette with survival q = min(1, upper bound of the throughput over
+// all channels). At a refraction whose index depends on wavelength one channel goes on with weight K
+// (degradation).
 //
-// Sixteen neighbouring pixels advance together, bounce by bounce: their camera rays are one packet for Embree, and what one
-// bounce touched of the scene is still in the caches at the next. Secondary rays go one by one (packets lose: see
-// validation/README.md).
+// Sixteen neighbouring pixels advance together, bounce by bounce: their camera rays are one packet for
+// Embree, and what one bounce touched of the scene is still in the caches at the next. Secondary rays go one
+// by one (packets lose: see validation/README.md).
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@
 #include "render/backend.hpp"
 #include "shared/sampler.h"
 #include "src_cpu/bsdf.hpp"
-#include "src_cpu/emitter.hpp"
 #include "src_cpu/embree_scene.hpp"
+#include "src_cpu/emitter.hpp"
 #include "src_cpu/path_buffer.hpp"
 #include "src_cpu/surface_hit.hpp"
 
@@ -54,7 +55,8 @@ class PathTracer {
   uint64_t rays() const { return rays_; }
   uint64_t vertices() const { return vertices_; }
 
-  /// When set, every ray that is traced is appended here with its path's index in the block (benchmarks of bare queries).
+  /// When set, every ray that is traced is appended here with its path's index in the block (benchmarks of
+  /// bare queries).
   struct Recording {
     std::vector<TraceRay> closest;
     std::vector<ShadowRay> shadow;
@@ -65,13 +67,13 @@ class PathTracer {
  private:
   struct Path {
     glm::vec3 previous_point;
-    float previous_pdf;      // solid angle, of the BSDF sample that led here
-    float bound;             // upper bound of the throughput over all channels, without radiance scaling
-    uint32_t pixel;          // in the block
-    KbSamplerKey key;        // of the path's random numbers
-    uint32_t channel;        // after degradation, else KB_NONE
+    float previous_pdf;  // solid angle, of the BSDF sample that led here
+    float bound;         // upper bound of the throughput over all channels, without radiance scaling
+    uint32_t pixel;      // in the block
+    KbSamplerKey key;    // of the path's random numbers
+    uint32_t channel;    // after degradation, else KB_NONE
     uint32_t first_slot, last_slot;  // linked list in slots_
-    float magnitude;         // product of the scatter weights: where this overflows the sample is invalid
+    float magnitude;  // product of the scatter weights: where this overflows the sample is invalid
     bool previous_delta;
     bool invalid;
   };
@@ -97,13 +99,15 @@ class PathTracer {
   /// Returns false where the path ends.
   bool shade(Path& path, const TraceRay& ray, const SampleId& id, uint32_t bounce, std::span<const float> mu);
   void add_escaped(Path& path, const TraceRay& ray, uint32_t bounce);
-  void add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction, uint32_t bounce);
+  void add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction,
+                    uint32_t bounce);
   bool add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
                         const MaterialContext& material, glm::vec3 wi, float opacity, uint32_t bounce);
-  bool scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame, MaterialContext& material,
-               glm::vec3 wi, const KbFloat4& u, float opacity, const SampleId& id, uint32_t bounce, float mu);
-  bool refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi, BsdfSample& sample,
-                           const SampleId& id, uint32_t bounce, float mu);
+  bool scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
+               MaterialContext& material, glm::vec3 wi, const KbFloat4& u, float opacity, const SampleId& id,
+               uint32_t bounce, float mu);
+  bool refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi,
+                           BsdfSample& sample, const SampleId& id, uint32_t bounce, float mu);
   void degrade(Path& path, const SampleId& id, uint32_t bounce);
   bool roulette(Draft& draft, Path& path, uint32_t bounce, float u);
   void continue_ray(const SurfaceHit& hit, glm::vec3 direction);

@@ -7,8 +7,8 @@ namespace kiloband {
 
 inline constexpr float kInfiniteDistance = std::numeric_limits<float>::infinity();
 
-/// Veach's power heuristic with beta = 2: the weight of the technique with density pdf against one with density other.
-/// Safe for densities whose squares would overflow.
+/// Veach's power heuristic with beta = 2: the weight of the technique with density pdf against one with
+/// density other. Safe for densities whose squares would overflow.
 inline float power_heuristic(float pdf, float other) {
   if (!(pdf < kInfiniteDistance)) return 1;
   const float ratio = other / pdf;

@@ -11,13 +11,16 @@
 namespace kiloband {
 namespace {
 
-/// The point from which a ray towards `direction` leaves the surface: off it, on the side that the ray goes to.
+/// The point from which a ray towards `direction` leaves the surface: off it, on the side that the ray goes
+/// to.
 glm::vec3 leave_surface(const SurfaceHit& hit, glm::vec3 direction) {
   const glm::vec3 n = hit.geometric_normal;
   return offset_ray_origin(hit.point, glm::dot(n, direction) >= 0 ? n : -n);
 }
 
-bool is_black(const KbMaterial& material) { return material.bound_a == 0 && material.bound_b == 0; }
+bool is_black(const KbMaterial& material) {
+  return material.bound_a == 0 && material.bound_b == 0;
+}
 
 bool is_rough_dispersive(const KbMaterial& material) {
   return material.type == KB_MATERIAL_ROUGH_DIELECTRIC && (material.flags & KB_MATERIAL_DISPERSIVE);
@@ -25,7 +28,8 @@ bool is_rough_dispersive(const KbMaterial& material) {
 
 }  // namespace
 
-bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint32_t bounce, std::span<const float> mu) {
+bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint32_t bounce,
+                       std::span<const float> mu) {
   const glm::vec3 direction = ray.direction();
   const SurfaceHit hit =
       make_surface_hit(flat_, ray.shape, ray.primitive, ray.u, ray.v, ray.origin(), direction, ray.t_max);
@@ -74,17 +78,20 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
       draft = Draft{};
       degrade(path, id, bounce);
     }
-    if (path.channel != KB_NONE) material.dispersion.eta = channel_eta(record, path.channel, mu[mu.size() == 1 ? 0 : path.pixel]);
+    if (path.channel != KB_NONE)
+      material.dispersion.eta = channel_eta(record, path.channel, mu[mu.size() == 1 ? 0 : path.pixel]);
   }
   draft.vertex.head |= eval_kind(record) | side << KB_VERTEX_MATERIAL_SHIFT;
-  const bool lit = has_smooth_lobe(record) && add_light_sample(draft, path, hit, frame, material, wi, opacity, bounce);
+  const bool lit =
+      has_smooth_lobe(record) && add_light_sample(draft, path, hit, frame, material, wi, opacity, bounce);
   bool goes_on = false;
   if (passes) {
     if (draft.vertex.head & KB_VERTEX_NEE) resolve_spectra(draft, record, hit, false);
     pass_through(path, hit, direction);
     goes_on = true;
   } else {
-    goes_on = scatter(draft, path, hit, frame, material, wi, u, opacity, id, bounce, mu[mu.size() == 1 ? 0 : path.pixel]);
+    goes_on = scatter(draft, path, hit, frame, material, wi, u, opacity, id, bounce,
+                      mu[mu.size() == 1 ? 0 : path.pixel]);
   }
   finish(goes_on);
   if (lit) shadow_slot_.push_back(path.last_slot);
@@ -92,8 +99,8 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   return goes_on;
 }
 
-/// A mask's transparent part: the ray goes on as if nothing were there. Shadow rays stop at masks, so what lies behind
-/// is found by this ray alone and gets weight 1.
+/// A mask's transparent part: the ray goes on as if nothing were there. Shadow rays stop at masks, so what
+/// lies behind is found by this ray alone and gets weight 1.
 void PathTracer::pass_through(Path& path, const SurfaceHit& hit, glm::vec3 direction) {
   path.previous_delta = true;
   path.previous_pdf = 0;
@@ -105,10 +112,11 @@ void PathTracer::continue_ray(const SurfaceHit& hit, glm::vec3 direction) {
   next_rays_.emplace_back(leave_surface(hit, direction), direction, 0.0f, kInfiniteDistance);
 }
 
-/// Next-event estimation: queues a shadow ray and stores the weights as if it were visible. The shadow ray's vertex is
-/// noted by the caller once the vertex is appended. Returns whether a ray was queued.
+/// Next-event estimation: queues a shadow ray and stores the weights as if it were visible. The shadow ray's
+/// vertex is noted by the caller once the vertex is appended. Returns whether a ray was queued.
 bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
-                                  const MaterialContext& material, glm::vec3 wi, float opacity, uint32_t bounce) {
+                                  const MaterialContext& material, glm::vec3 wi, float opacity,
+                                  uint32_t bounce) {
   if (flat_.emitters.empty()) return false;
   const KbFloat4 u = kb_sampler_block(path.key, kb_block_light(bounce));
   const LightSample light = sample_light(flat_, hit.point, {u.x, u.y}, {u.z, u.w});
@@ -143,18 +151,20 @@ bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hi
 }
 
 bool PathTracer::scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
-                         MaterialContext& material, glm::vec3 wi, const KbFloat4& u, float opacity, const SampleId& id,
-                         uint32_t bounce, float mu) {
+                         MaterialContext& material, glm::vec3 wi, const KbFloat4& u, float opacity,
+                         const SampleId& id, uint32_t bounce, float mu) {
   const KbMaterial& record = *material.material;
   BsdfSample sample = sample_bsdf(material, wi, u.x, {u.y, u.z});
   const bool has_light = draft.vertex.head & KB_VERTEX_NEE;
   bool use_b = sample.lobe_b;
-  if (sample.needs_channel && !refract_one_channel(draft, path, record, wi, sample, id, bounce, mu)) sample.pdf = 0;
+  if (sample.needs_channel && !refract_one_channel(draft, path, record, wi, sample, id, bounce, mu))
+    sample.pdf = 0;
   if (sample.needs_channel) use_b = true;
   const bool alive = sample.pdf > 0 && sample.bound > 0;
   if (alive) {
     draft.vertex.head |= KB_VERTEX_SCATTER;
-    if (record.type == KB_MATERIAL_ROUGH_DIELECTRIC && (has_light || (draft.vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_TWO_TERM)) {
+    if (record.type == KB_MATERIAL_ROUGH_DIELECTRIC &&
+        (has_light || (draft.vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_TWO_TERM)) {
       draft.vertex.head = (draft.vertex.head & ~KB_VERTEX_KIND_MASK) | KB_KIND_TWO_TERM;
       draft.vertex.scatter0 = sample.lobe_b ? 0 : sample.w0;
       draft.vertex.scatter1 = sample.lobe_b ? sample.w0 : 0;
@@ -182,7 +192,8 @@ bool PathTracer::scatter(Draft& draft, Path& path, const SurfaceHit& hit, const 
   return true;
 }
 
-/// Survival q = min(1, bound): never below what any channel still carries, so no channel's variance becomes infinite.
+/// Survival q = min(1, bound): never below what any channel still carries, so no channel's variance becomes
+/// infinite.
 bool PathTracer::roulette(Draft& draft, Path& path, uint32_t bounce, float u) {
   if (bounce + 1 < static_cast<uint32_t>(flat_.integrator.rr_depth)) return true;
   const float q = std::min(1.0f, path.bound);
@@ -201,13 +212,14 @@ bool PathTracer::roulette(Draft& draft, Path& path, uint32_t bounce, float u) {
 float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, float mu) const {
   const Channel& c = flat_.channels[channel];
   const double lambda_nm = (1.0 - mu) * c.min_nm + mu * c.max_nm;
-  const double exterior = material.k_row == KB_NONE ? material.eta_ext : flat_.spectra[material.k_row].table(lambda_nm);
+  const double exterior =
+      material.k_row == KB_NONE ? material.eta_ext : flat_.spectra[material.k_row].table(lambda_nm);
   return static_cast<float>(flat_.spectra[material.eta_row].table(lambda_nm) / exterior);
 }
 
 /// Refraction by an index that depends on wavelength: one channel, chosen uniformly, goes on with weight K.
-bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi, BsdfSample& sample,
-                                     const SampleId& id, uint32_t bounce, float mu) {
+bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi,
+                                     BsdfSample& sample, const SampleId& id, uint32_t bounce, float mu) {
   const auto channels = static_cast<uint32_t>(flat_.channels.size());
   const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
   path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
@@ -215,7 +227,8 @@ bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial&
   sample = transmit_dispersive(material, wi, channel_eta(material, path.channel, mu), probability);
   sample.needs_channel = true;
   if (!(sample.pdf > 0)) return false;
-  // Roulette follows the one channel that is left: the weight K is shared by all channels' chances, not a gain of it.
+  // Roulette follows the one channel that is left: the weight K is shared by all channels' chances, not a
+  // gain of it.
   sample.bound /= static_cast<float>(channels);
   draft.vertex.head |= KB_VERTEX_DEGRADE;
   draft.vertex.scatter1 = kb_as_f32(path.channel);

@@ -7,10 +7,13 @@
 namespace kiloband {
 namespace {
 
-glm::vec3 to_glm(const KbFloat3& v) { return {v.x, v.y, v.z}; }
+glm::vec3 to_glm(const KbFloat3& v) {
+  return {v.x, v.y, v.z};
+}
 
 /// dp/du of a triangle with texture coordinates; zero if they are degenerate.
-glm::vec3 triangle_tangent(glm::vec3 e1, glm::vec3 e2, const KbFloat2& uv0, const KbFloat2& uv1, const KbFloat2& uv2) {
+glm::vec3 triangle_tangent(glm::vec3 e1, glm::vec3 e2, const KbFloat2& uv0, const KbFloat2& uv1,
+                           const KbFloat2& uv2) {
   const float du1 = uv1.x - uv0.x;
   const float dv1 = uv1.y - uv0.y;
   const float du2 = uv2.x - uv0.x;
@@ -20,7 +23,8 @@ glm::vec3 triangle_tangent(glm::vec3 e1, glm::vec3 e2, const KbFloat2& uv0, cons
   return (e1 * dv2 - e2 * dv1) / determinant;
 }
 
-void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primitive, float u, float v, SurfaceHit& hit) {
+void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primitive, float u, float v,
+                   SurfaceHit& hit) {
   const uint32_t* index = &scene.triangles[3 * (std::size_t{shape.first_triangle} + primitive)];
   const glm::vec3 p0 = to_glm(scene.positions[index[0]]);
   const glm::vec3 p1 = to_glm(scene.positions[index[1]]);
@@ -33,8 +37,9 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
   const glm::vec3 cross = glm::cross(e1, e2);
   const float length2 = glm::dot(cross, cross);
   // Tiny triangles: the squared length may underflow where the cross product does not.
-  hit.geometric_normal = length2 > 1e-30f ? cross * (flip / std::sqrt(length2))
-                                          : glm::vec3(glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2)))) * flip;
+  hit.geometric_normal = length2 > 1e-30f
+                             ? cross * (flip / std::sqrt(length2))
+                             : glm::vec3(glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2)))) * flip;
   hit.shading_normal = hit.geometric_normal;
   if (shape.flags & KB_SHAPE_HAS_NORMALS) {
     const glm::vec3 n = w * to_glm(scene.normals[index[0]]) + u * to_glm(scene.normals[index[1]]) +
@@ -54,8 +59,8 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
 
 }  // namespace
 
-SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape_index, uint32_t primitive, float u, float v,
-                            glm::vec3 ray_origin, glm::vec3 direction, float t) {
+SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape_index, uint32_t primitive, float u,
+                            float v, glm::vec3 ray_origin, glm::vec3 direction, float t) {
   SurfaceHit hit;
   hit.shape = shape_index;
   const KbShape& shape = scene.shapes[shape_index];

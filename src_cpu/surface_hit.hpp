@@ -16,7 +16,8 @@ struct SurfaceHit {
   uint32_t shape = KB_NONE;
 };
 
-/// ray_origin + t * direction is only used for analytic shapes; mesh points come from barycentric coordinates.
+/// ray_origin + t * direction is only used for analytic shapes; mesh points come from barycentric
+/// coordinates.
 SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape, uint32_t primitive, float u, float v,
                             glm::vec3 ray_origin, glm::vec3 direction, float t);
 

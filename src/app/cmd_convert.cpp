@@ -1,6 +1,7 @@
 // kiloband convert IN OUT: formats, channel selection, coarser channels, regions and pixels as CSV.
-#include <charconv>
 #include <fmt/core.h>
+
+#include <charconv>
 #include <memory>
 
 #include "app/commands.hpp"
@@ -89,16 +90,21 @@ int convert(const ConvertOptions& options) {
 
 Command add_convert(CLI::App& program) {
   auto o = std::make_shared<ConvertOptions>();
-  CLI::App* command = program.add_subcommand("convert", "Convert a cube: EXR, ENVI, coarser channels, regions and pixels to CSV");
+  CLI::App* command = program.add_subcommand(
+      "convert", "Convert a cube: EXR, ENVI, coarser channels, regions and pixels to CSV");
   command->add_option("IN", o->in, "spectral EXR or ENVI cube")->required();
   command->add_option("OUT", o->out, ".exr, .hdr (ENVI) or .csv")->required();
   command->add_option("--select", o->select, "channels by index from 0, such as 0-9,20");
   command->add_option("--range", o->range, "channels inside an interval in nm, such as 400-500");
   command->add_option("--rebin", o->rebin, "coarser channels, unions of whole ones: 400:700:10");
   command->add_option("--crop", o->crop, "X,Y,WIDTH,HEIGHT");
-  command->add_option("--quantity", o->quantity, "of the values written")->check(CLI::IsMember({"integral", "density"}));
-  command->add_option("--pixel", o->pixels, "X,Y: the spectrum of a pixel (CSV); may be repeated")->allow_extra_args(false);
-  command->add_option("--region", o->regions, "X,Y,WIDTH,HEIGHT: the mean spectrum of a region (CSV); may be repeated")
+  command->add_option("--quantity", o->quantity, "of the values written")
+      ->check(CLI::IsMember({"integral", "density"}));
+  command->add_option("--pixel", o->pixels, "X,Y: the spectrum of a pixel (CSV); may be repeated")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--region", o->regions,
+                   "X,Y,WIDTH,HEIGHT: the mean spectrum of a region (CSV); may be repeated")
       ->allow_extra_args(false);
   return [o] { return convert(*o); };
 }

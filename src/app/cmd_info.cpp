@@ -1,6 +1,7 @@
 // kiloband info SCENE.xml: what the scene contains.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
+
 #include <memory>
 
 #include "app/commands.hpp"
@@ -17,8 +18,8 @@ const char* name_of(uint32_t emitter_type) {
 }
 
 const char* name_of_material(uint32_t type) {
-  static constexpr const char* kNames[] = {"diffuse", "conductor", "roughconductor", "dielectric",
-                                           "roughdielectric", "plastic", "roughplastic"};
+  static constexpr const char* kNames[] = {"diffuse",         "conductor", "roughconductor", "dielectric",
+                                           "roughdielectric", "plastic",   "roughplastic"};
   return kNames[type];
 }
 
@@ -27,7 +28,8 @@ void print_channels(const LoadedScene& loaded) {
   fmt::print("channels     {} from {:g} to {:g} nm\n", loaded.channels.size(), range.min_nm, range.max_nm);
   const Channel guide = hull(loaded.guide);
   fmt::print("guide bands  {} from {:g} to {:g} nm\n", loaded.guide.size(), guide.min_nm, guide.max_nm);
-  for (const auto& [name, response] : loaded.description.sensor.film.responses) fmt::print("response     {}\n", name);
+  for (const auto& [name, response] : loaded.description.sensor.film.responses)
+    fmt::print("response     {}\n", name);
 }
 
 void print_contents(const FlatScene& scene) {
@@ -48,17 +50,22 @@ void print_contents(const FlatScene& scene) {
   fmt::print("features     {}\n", fmt::join(scene.features.names(), ", "));
 }
 
-double mebibytes(double bytes) { return bytes / (1024.0 * 1024.0); }
+double mebibytes(double bytes) {
+  return bytes / (1024.0 * 1024.0);
+}
 
 void print_memory(const FlatScene& scene, std::size_t derived) {
   const double pixels = static_cast<double>(scene.film.crop_width) * scene.film.crop_height;
   const std::size_t channels = scene.channels.size() + derived;
   const auto film = [&](bool variance) {
-    return mebibytes(pixels * static_cast<double>(SpectralFilm::bytes_per_pixel({channels, 16, variance, false})));
+    return mebibytes(pixels *
+                     static_cast<double>(SpectralFilm::bytes_per_pixel({channels, 16, variance, false})));
   };
   fmt::print("image        {} x {} pixels\n", scene.film.crop_width, scene.film.crop_height);
-  fmt::print("film         {:.1f} MiB, with variance {:.1f} MiB (beyond 1024 MiB strips are streamed)\n", film(false), film(true));
-  fmt::print("path vertex  {} bytes, {} more for each two textured values\n", sizeof(KbPathVertex), 2 * sizeof(KbTextureSample));
+  fmt::print("film         {:.1f} MiB, with variance {:.1f} MiB (beyond 1024 MiB strips are streamed)\n",
+             film(false), film(true));
+  fmt::print("path vertex  {} bytes, {} more for each two textured values\n", sizeof(KbPathVertex),
+             2 * sizeof(KbTextureSample));
 }
 
 int info(const SceneOptions& options) {
@@ -70,8 +77,8 @@ int info(const SceneOptions& options) {
   print_channels(loaded);
   print_memory(scene, loaded.description.sensor.film.responses.size());
   const Integrator& integrator = scene.integrator;
-  fmt::print("integrator   max_depth {}, rr_depth {}, {} samples per pixel\n", integrator.max_depth, integrator.rr_depth,
-             loaded.description.sensor.sample_count);
+  fmt::print("integrator   max_depth {}, rr_depth {}, {} samples per pixel\n", integrator.max_depth,
+             integrator.rr_depth, loaded.description.sensor.sample_count);
   return kDone;
 }
 

@@ -1,10 +1,11 @@
 // kiloband render SCENE.xml: loads, renders, writes.
+#include <fmt/core.h>
+
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <fmt/core.h>
 #include <map>
 #include <memory>
 
@@ -86,7 +87,8 @@ SessionSettings session_settings(const RenderOptions& options, const SceneDescri
   }
   if (options.checkpoint) settings.checkpoint = *options.checkpoint;
   if (options.checkpoint_interval) {
-    settings.checkpoint_interval_seconds = parse_duration("--checkpoint-interval", *options.checkpoint_interval);
+    settings.checkpoint_interval_seconds =
+        parse_duration("--checkpoint-interval", *options.checkpoint_interval);
   }
   settings.resume = options.resume;
   return settings;
@@ -118,8 +120,8 @@ SamplingSettings sampling_settings(const RenderOptions& options, const SessionSe
   return sampling;
 }
 
-void describe_render(SessionSettings& settings, const RenderOptions& options, const SamplingSettings& sampling,
-                     const Backend& backend) {
+void describe_render(SessionSettings& settings, const RenderOptions& options,
+                     const SamplingSettings& sampling, const Backend& backend) {
   settings.metadata["software"] = fmt::format("kiloband {}", KILOBAND_VERSION);
   settings.metadata["scene"] = std::filesystem::path(options.scene.scene).filename().string();
   settings.metadata["backend"] = backend.name();
@@ -132,9 +134,10 @@ void describe_render(SessionSettings& settings, const RenderOptions& options, co
 void print_summary(const RenderReport& report, const Backend& backend, double setup_seconds) {
   const uint64_t paths = backend.counters().paths;
   tell("{} paths in {:.2f} s ({:.2f} Mpaths/s on {}, {}); set-up {:.2f} s, output {:.2f} s\n", paths,
-             report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, backend.name(),
-             backend.isa(), setup_seconds, report.output_seconds);
-  if (report.replicates < 2) tell("1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
+       report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, backend.name(),
+       backend.isa(), setup_seconds, report.output_seconds);
+  if (report.replicates < 2)
+    tell("1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
   if (report.mean_relative_error) tell("mean relative error {:.3g} %\n", 100 * *report.mean_relative_error);
   for (const auto& file : report.written) tell("wrote {}\n", file.string());
 }
@@ -182,8 +185,9 @@ int render(const RenderOptions& options) {
   if (!options.quiet) print_summary(report, *backend, setup);
   print_problems(report, *backend);
   if (options.stats) {
-    const RenderContext context{sampling, scene.film.crop_width, scene.film.crop_height, scene.channels.size(), setup,
-                                scene.features.names()};
+    const RenderContext context{
+        sampling, scene.film.crop_width, scene.film.crop_height, scene.channels.size(),
+        setup,    scene.features.names()};
     write_file_atomically(*options.stats, statistics_json(context, report, *backend));
   }
   return report.interrupted ? kInterrupted : kDone;
@@ -198,39 +202,57 @@ std::string check_seed(const std::string& text) {
 }
 
 void add_sampling_options(CLI::App& command, RenderOptions& o) {
-  command.add_option("--backend", o.backend, "auto or cpu")->check(CLI::IsMember({"auto", "cpu"}))->capture_default_str();
-  command.add_option("--threads", o.threads, "threads (0: all)")->check(CLI::Range(0, 4096))->capture_default_str();
+  command.add_option("--backend", o.backend, "auto or cpu")
+      ->check(CLI::IsMember({"auto", "cpu"}))
+      ->capture_default_str();
+  command.add_option("--threads", o.threads, "threads (0: all)")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
   command.add_option("--isa", o.isa, "instruction set")
-      ->check(CLI::IsMember({"auto", "sse4", "avx2", "avx512"}))->capture_default_str();
+      ->check(CLI::IsMember({"auto", "sse4", "avx2", "avx512"}))
+      ->capture_default_str();
   command.add_option("--wavelengths", o.wavelengths, "wavelength sampling")
-      ->check(CLI::IsMember({"shared", "per-path"}))->capture_default_str();
+      ->check(CLI::IsMember({"shared", "per-path"}))
+      ->capture_default_str();
   command.add_option("--sampler", o.sampler, "random numbers")
-      ->check(CLI::IsMember({"sobol", "independent"}))->capture_default_str();
-  command.add_option("--seed", o.seed, "seed of all random numbers")->check(CLI::Validator(check_seed, ""))->capture_default_str();
+      ->check(CLI::IsMember({"sobol", "independent"}))
+      ->capture_default_str();
+  command.add_option("--seed", o.seed, "seed of all random numbers")
+      ->check(CLI::Validator(check_seed, ""))
+      ->capture_default_str();
   auto* spp = command.add_option("--spp", o.spp, "samples per pixel (default: the scene's)")
                   ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32));
   auto* time = command.add_option("--time", o.time, "render for this long: 60s, 5min, 2h")->excludes(spp);
   command.add_option("--target-error", o.target_error, "render until the mean relative error is below: 1%")
-      ->excludes(spp)->excludes(time);
+      ->excludes(spp)
+      ->excludes(time);
   command.add_option("--replicates", o.replicates, "independent replicates that error bars come from")
-      ->check(CLI::Range(1, 4096))->capture_default_str();
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
 }
 
 void add_output_options(CLI::App& command, RenderOptions& o) {
   command.add_option("-o", o.outputs, "output: .exr, or .hdr (ENVI); may be repeated (default: SCENE.exr)")
       ->allow_extra_args(false);
   command.add_flag("--variance", o.variance, "write the variance of the mean of every channel");
-  command.add_flag("--keep-replicates", o.keep_replicates, "also write the mean of every replicate (OUT.rNN)");
+  command.add_flag("--keep-replicates", o.keep_replicates,
+                   "also write the mean of every replicate (OUT.rNN)");
   command.add_option("--response", o.responses, "file of sensor responses to accumulate; may be repeated")
       ->allow_extra_args(false);
-  command.add_option("--aov", o.aux, "auxiliary images: depth,normal,object,material")->delimiter(',')
+  command.add_option("--aov", o.aux, "auxiliary images: depth,normal,object,material")
+      ->delimiter(',')
       ->check(CLI::IsMember({"depth", "normal", "object", "material"}));
-  command.add_option("--quantity", o.quantity, "of the values on disk (default: density in EXR, integral in ENVI)")
+  command
+      .add_option("--quantity", o.quantity,
+                  "of the values on disk (default: density in EXR, integral in ENVI)")
       ->check(CLI::IsMember({"integral", "density"}));
   command.add_option("--preview", o.preview, "PNG preview");
-  auto* checkpoint = command.add_option("--checkpoint", o.checkpoint, "file that the unfinished render is saved in");
-  command.add_option("--checkpoint-interval", o.checkpoint_interval, "how often: 60s (the default), 10min")->needs(checkpoint);
-  command.add_flag("--resume", o.resume, "go on from the checkpoint; more --spp extend a render")->needs(checkpoint);
+  auto* checkpoint =
+      command.add_option("--checkpoint", o.checkpoint, "file that the unfinished render is saved in");
+  command.add_option("--checkpoint-interval", o.checkpoint_interval, "how often: 60s (the default), 10min")
+      ->needs(checkpoint);
+  command.add_flag("--resume", o.resume, "go on from the checkpoint; more --spp extend a render")
+      ->needs(checkpoint);
   command.add_option("--stats", o.stats, "statistics as JSON");
   command.add_flag("--quiet", o.quiet, "only errors and warnings");
 }

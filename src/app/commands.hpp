@@ -8,13 +8,20 @@
 namespace kiloband {
 
 /// Exit codes, DESIGN 9.
-enum ExitCode { kDone = 0, kFailed = 1, kInputWrong = 2, kMachineFailed = 3, kInternalError = 70, kInterrupted = 130 };
+enum ExitCode {
+  kDone = 0,
+  kFailed = 1,
+  kInputWrong = 2,
+  kMachineFailed = 3,
+  kInternalError = 70,
+  kInterrupted = 130
+};
 
 /// Set by SIGINT and SIGTERM after catch_stop_signals().
 extern std::atomic<bool> stop_requested;
 
-/// To be called when there begins to be something to save: until then the signals end the program. The second one ends it
-/// at once again. Signals that the caller ignores (nohup, scripts) stay ignored.
+/// To be called when there begins to be something to save: until then the signals end the program. The second
+/// one ends it at once again. Signals that the caller ignores (nohup, scripts) stay ignored.
 void catch_stop_signals();
 
 using Command = std::function<int()>;

@@ -1,6 +1,7 @@
+#include <fmt/core.h>
+
 #include <csignal>
 #include <exception>
-#include <fmt/core.h>
 #include <map>
 #include <new>
 #include <system_error>
@@ -15,7 +16,9 @@ std::atomic<bool> stop_requested{false};
 
 namespace {
 
-void on_signal(int) { stop_requested = true; }
+void on_signal(int) {
+  stop_requested = true;
+}
 
 int fail(int code, const std::string& message, const char* hint = "") {
   tell("kiloband: {}{}\n", message, hint);
@@ -25,7 +28,8 @@ int fail(int code, const std::string& message, const char* hint = "") {
 /// CLI11 would call an unknown command a missing one.
 void check_command(const std::map<std::string, Command>& commands, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-' || commands.contains(argv[1])) return;
-  throw InputError(fmt::format("unknown command '{}': must be render, info or convert (see kiloband --help)", argv[1]));
+  throw InputError(
+      fmt::format("unknown command '{}': must be render, info or convert (see kiloband --help)", argv[1]));
 }
 
 int run(int argc, char** argv) {

@@ -36,7 +36,9 @@ std::string describe(const Progress& progress) {
 }
 
 ProgressBar::ProgressBar(bool enabled)
-    : enabled_(enabled), terminal_(isatty(STDERR_FILENO) == 1), last_print_(std::chrono::steady_clock::now()),
+    : enabled_(enabled),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      last_print_(std::chrono::steady_clock::now()),
       interval_seconds_(terminal_ ? 0.1 : 10.0) {}
 
 void ProgressBar::update(const Progress& progress) {
@@ -54,7 +56,8 @@ void ProgressBar::print(const Progress& progress) const {
     return;
   }
   const int filled = static_cast<int>(std::lround(progress.fraction * kBarWidth));
-  tell("\r[{}{}] {}\x1b[K", std::string(filled, '#'), std::string(kBarWidth - filled, '.'), describe(progress));
+  tell("\r[{}{}] {}\x1b[K", std::string(filled, '#'), std::string(kBarWidth - filled, '.'),
+       describe(progress));
 }
 
 void ProgressBar::finish(const Progress& last) {

@@ -1,7 +1,8 @@
 #include "app/render_options.hpp"
 
-#include <charconv>
 #include <fmt/core.h>
+
+#include <charconv>
 #include <set>
 
 #include "app/messages.hpp"
@@ -31,7 +32,8 @@ uint32_t parse_extent(std::string_view text, const std::string& whole) {
 
 std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
   const auto cross = text.find('x');
-  if (cross == std::string::npos) throw InputError("--size " + text + ": must be WIDTHxHEIGHT, for example 640x480");
+  if (cross == std::string::npos)
+    throw InputError("--size " + text + ": must be WIDTHxHEIGHT, for example 640x480");
   return {parse_extent(std::string_view(text).substr(0, cross), text),
           parse_extent(std::string_view(text).substr(cross + 1), text)};
 }
@@ -64,12 +66,17 @@ double uncovered_part(const Spectrum& response, const ChannelList& channels) {
 
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("SCENE", scene, "Mitsuba 3 scene file (XML)")->required();
-  command.add_option("-D", defines, "name=value: sets a scene parameter ($name); may be repeated")->allow_extra_args(false);
-  auto* bands_option = command.add_option("--bands", bands, "channels: first:last:count in nm, or \"400-410, 450-500\"");
-  command.add_option("--bands-file", bands_file, "channels from a CSV file of min,max in nm")->excludes(bands_option);
-  command.add_option("--guide-bands", guide_bands, "channels that sampling decisions are averaged over (default: the rendered)");
+  command.add_option("-D", defines, "name=value: sets a scene parameter ($name); may be repeated")
+      ->allow_extra_args(false);
+  auto* bands_option =
+      command.add_option("--bands", bands, "channels: first:last:count in nm, or \"400-410, 450-500\"");
+  command.add_option("--bands-file", bands_file, "channels from a CSV file of min,max in nm")
+      ->excludes(bands_option);
+  command.add_option("--guide-bands", guide_bands,
+                     "channels that sampling decisions are averaged over (default: the rendered)");
   command.add_option("--size", size, "WxH: image size in pixels");
-  command.add_option("--max-depth", max_depth, "longest path (1: emission only, -1: unlimited)")->check(CLI::Range(-1, 1 << 30));
+  command.add_option("--max-depth", max_depth, "longest path (1: emission only, -1: unlimited)")
+      ->check(CLI::Range(-1, 1 << 30));
 }
 
 LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) {
@@ -77,7 +84,8 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) 
   std::set<std::string> defined;
   for (const std::string& define : options.defines) {
     read.defines.push_back(parse_define(define));
-    if (!defined.insert(read.defines.back().first).second) throw InputError("-D " + define + ": the parameter is given twice");
+    if (!defined.insert(read.defines.back().first).second)
+      throw InputError("-D " + define + ": the parameter is given twice");
   }
   read.sink = sink;
   if (options.size) read.film_size = parse_size(*options.size);
@@ -86,16 +94,19 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) 
   if (options.max_depth) loaded.description.integrator.max_depth = *options.max_depth;
   Film& film = loaded.description.sensor.film;
   if (options.bands || options.bands_file) {
-    loaded.channels = options.bands ? parse_channels_option("--bands", *options.bands) : read_channels_file(*options.bands_file);
+    loaded.channels = options.bands ? parse_channels_option("--bands", *options.bands)
+                                    : read_channels_file(*options.bands_file);
     film.responses.clear();  // the command line beats the scene
   } else {
     loaded.channels = film.channels.empty() ? parse_channels(kDefaultBands) : film.channels;
   }
-  loaded.guide = options.guide_bands ? parse_channels_option("--guide-bands", *options.guide_bands) : loaded.channels;
+  loaded.guide =
+      options.guide_bands ? parse_channels_option("--guide-bands", *options.guide_bands) : loaded.channels;
   return loaded;
 }
 
-DerivedChannels load_responses(const std::vector<std::string>& files, const LoadedScene& scene, const DiagnosticSink& sink) {
+DerivedChannels load_responses(const std::vector<std::string>& files, const LoadedScene& scene,
+                               const DiagnosticSink& sink) {
   std::vector<std::pair<std::string, Spectrum>> responses = scene.description.sensor.film.responses;
   for (const std::string& file : files) {
     for (auto& response : read_response_file(file)) responses.push_back(std::move(response));
@@ -107,7 +118,9 @@ DerivedChannels load_responses(const std::vector<std::string>& files, const Load
     if (!names.insert(name).second) throw InputError("response '" + name + "' is given twice");
     const double missing = uncovered_part(response, scene.channels);
     if (missing > kUncovered) {
-      warn(sink, {}, fmt::format("response '{}': {:.2g} % of its integral lies outside the channels", name, 100 * missing));
+      warn(sink, {},
+           fmt::format("response '{}': {:.2g} % of its integral lies outside the channels", name,
+                       100 * missing));
     }
     derived.names.push_back(name);
     derived.responses.push_back(resample(response, range.min_nm, range.max_nm));

@@ -31,9 +31,10 @@ struct LoadedScene {
 /// throws InputError for options and files
 LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink);
 
-/// Responses of files (--response) and of a specfilm, tabulated over the channels; a response that reaches beyond the
-/// channels gives a warning with the part of its integral that is missing.
-DerivedChannels load_responses(const std::vector<std::string>& files, const LoadedScene& scene, const DiagnosticSink& sink);
+/// Responses of files (--response) and of a specfilm, tabulated over the channels; a response that reaches
+/// beyond the channels gives a warning with the part of its integral that is missing.
+DerivedChannels load_responses(const std::vector<std::string>& files, const LoadedScene& scene,
+                               const DiagnosticSink& sink);
 
 /// The channels of an option; messages begin with its name. throws InputError
 ChannelList parse_channels_option(const std::string& option, const std::string& text);

@@ -6,8 +6,12 @@
 
 namespace kiloband {
 
-const char* to_string(WavelengthMode mode) { return mode == WavelengthMode::kShared ? "shared" : "per-path"; }
-const char* to_string(SamplerType sampler) { return sampler == SamplerType::kSobol ? "sobol" : "independent"; }
+const char* to_string(WavelengthMode mode) {
+  return mode == WavelengthMode::kShared ? "shared" : "per-path";
+}
+const char* to_string(SamplerType sampler) {
+  return sampler == SamplerType::kSobol ? "sobol" : "independent";
+}
 
 uint64_t peak_memory_bytes() {
   rusage usage{};
@@ -15,7 +19,8 @@ uint64_t peak_memory_bytes() {
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-std::string statistics_json(const RenderContext& context, const RenderReport& report, const Backend& backend) {
+std::string statistics_json(const RenderContext& context, const RenderReport& report,
+                            const Backend& backend) {
   const RenderCounters& counters = backend.counters();
   nlohmann::ordered_json json;
   json["backend"] = backend.name();
@@ -34,8 +39,9 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["setup_seconds"] = context.setup_seconds;
   json["output_seconds"] = report.output_seconds;
   json["paths"] = counters.paths.load();
-  json["paths_per_second"] =
-      report.sampling_seconds > 0 ? static_cast<double>(counters.paths.load()) / report.sampling_seconds : 0.0;
+  json["paths_per_second"] = report.sampling_seconds > 0
+                                 ? static_cast<double>(counters.paths.load()) / report.sampling_seconds
+                                 : 0.0;
   json["vertices"] = counters.vertices.load();
   json["rays"] = counters.rays.load();
   json["peak_memory_bytes"] = peak_memory_bytes();

@@ -14,7 +14,11 @@ std::string shortest(T value) {
 
 }  // namespace
 
-std::string format_number(double value) { return shortest(value); }
-std::string format_number(float value) { return shortest(value); }
+std::string format_number(double value) {
+  return shortest(value);
+}
+std::string format_number(float value) {
+  return shortest(value);
+}
 
 }  // namespace kiloband

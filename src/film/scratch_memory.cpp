@@ -45,6 +45,8 @@ ScratchFloats::ScratchFloats(std::size_t count, std::size_t budget_bytes)
   data_ = static_cast<float*>(address);
 }
 
-ScratchFloats::~ScratchFloats() { munmap(data_, std::max<std::size_t>(count_, 1) * sizeof(float)); }
+ScratchFloats::~ScratchFloats() {
+  munmap(data_, std::max<std::size_t>(count_, 1) * sizeof(float));
+}
 
 }  // namespace kiloband

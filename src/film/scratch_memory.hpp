@@ -6,8 +6,9 @@
 
 namespace kiloband {
 
-/// `count` floats, zero at first. Up to `budget_bytes` they live in memory; a larger array is mapped onto a scratch file in
-/// the system's temporary folder (TMPDIR), which the system pages in and out and which vanishes with the object.
+/// `count` floats, zero at first. Up to `budget_bytes` they live in memory; a larger array is mapped onto a
+/// scratch file in the system's temporary folder (TMPDIR), which the system pages in and out and which
+/// vanishes with the object.
 class ScratchFloats {
  public:
   /// throws DeviceError  no memory, no space in the temporary folder (names it and the system's message)

@@ -44,10 +44,11 @@ struct SpectralFilm::Held {
 SpectralFilm::SpectralFilm(const PixelRect& rect, const FilmOptions& options)
     : rect_(rect), options_(options), blocks_(cut_into_blocks(rect)) {
   if (options.held) {
-    held_ = std::unique_ptr<Held>(new Held{
-        ScratchFloats(std::size_t{options.replicates} * rect.pixels() * options.channels, options.memory_bytes),
-        std::vector(options.replicates, std::vector<uint64_t>(rect.pixels())),
-        std::vector(options.replicates, std::vector<uint32_t>(blocks_.size()))});
+    held_ = std::unique_ptr<Held>(
+        new Held{ScratchFloats(std::size_t{options.replicates} * rect.pixels() * options.channels,
+                               options.memory_bytes),
+                 std::vector(options.replicates, std::vector<uint64_t>(rect.pixels())),
+                 std::vector(options.replicates, std::vector<uint32_t>(blocks_.size()))});
   } else {
     pixels_ = std::make_unique<ReplicateMoments>(rect.pixels(), options.channels, options.variance);
     if (options.variance) {
@@ -62,7 +63,9 @@ SpectralFilm::~SpectralFilm() = default;
 SpectralFilm::SpectralFilm(SpectralFilm&&) noexcept = default;
 
 std::size_t SpectralFilm::bytes_per_pixel(const FilmOptions& options) {
-  const std::size_t per_channel = options.held ? sizeof(float) * options.replicates : options.variance ? 9 : sizeof(float);
+  const std::size_t per_channel = options.held       ? sizeof(float) * options.replicates
+                                  : options.variance ? 9
+                                                     : sizeof(float);
   return options.channels * per_channel + options.channels * options.replicates * sizeof(double) / 1024 + 32;
 }
 
@@ -84,7 +87,8 @@ void SpectralFilm::add(const BlockSamples& samples) {
 
 void SpectralFilm::add_folded(const BlockSamples& samples, const PixelRect& block) {
   for (std::size_t p = 0; p < block.pixels(); ++p) {
-    pixels_->add(pixel_index(block, p), samples.counts[p], samples.means.subspan(p * samples.stride, options_.channels));
+    pixels_->add(pixel_index(block, p), samples.counts[p],
+                 samples.means.subspan(p * samples.stride, options_.channels));
   }
 }
 
@@ -125,7 +129,8 @@ void SpectralFilm::add_coarse(const BlockSamples& samples, const PixelRect& bloc
     if (tile_counts[tile] == 0) continue;
     for (std::size_t c = 0; c < channels; ++c) {
       block_sums[samples.replicate * channels + c] += tile_sums[tile * channels + c];
-      tile_mean[c] = static_cast<float>(tile_sums[tile * channels + c] / static_cast<double>(tile_counts[tile]));
+      tile_mean[c] =
+          static_cast<float>(tile_sums[tile * channels + c] / static_cast<double>(tile_counts[tile]));
     }
     block_counts_[samples.block][samples.replicate] += tile_counts[tile];
     if (tiles_) tiles_->add(samples.block * kTilesPerBlock + tile, tile_counts[tile], tile_mean);
@@ -211,7 +216,8 @@ const ReplicateMoments& SpectralFilm::tile_moments() const {
   return *tiles_;
 }
 
-void SpectralFilm::add_image_sums(std::vector<std::vector<double>>& sums, std::vector<uint64_t>& counts) const {
+void SpectralFilm::add_image_sums(std::vector<std::vector<double>>& sums,
+                                  std::vector<uint64_t>& counts) const {
   sums.resize(options_.replicates, std::vector<double>(options_.channels));
   counts.resize(options_.replicates);
   for (std::size_t block = 0; block < blocks_.size(); ++block) {
@@ -231,13 +237,15 @@ ReplicateMoments SpectralFilm::image_moments() const {
   return moments_of_sums(sums, counts);
 }
 
-ReplicateMoments moments_of_sums(const std::vector<std::vector<double>>& sums, const std::vector<uint64_t>& counts) {
+ReplicateMoments moments_of_sums(const std::vector<std::vector<double>>& sums,
+                                 const std::vector<uint64_t>& counts) {
   const std::size_t channels = sums.empty() ? 0 : sums.front().size();
   ReplicateMoments moments(1, channels, true);
   std::vector<float> mean(channels);
   for (std::size_t r = 0; r < sums.size(); ++r) {
     if (counts[r] == 0) continue;
-    for (std::size_t c = 0; c < channels; ++c) mean[c] = static_cast<float>(sums[r][c] / static_cast<double>(counts[r]));
+    for (std::size_t c = 0; c < channels; ++c)
+      mean[c] = static_cast<float>(sums[r][c] / static_cast<double>(counts[r]));
     moments.add(0, counts[r], mean);
   }
   return moments;

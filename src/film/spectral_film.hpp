@@ -1,7 +1,8 @@
 // SpectralFilm: what a backend adds samples to, for a rectangle of the image.
 //
-// The rectangle is cut into blocks of 32x32 pixels (aligned to the FULL film, as the shared wavelength offsets are).
-// A backend delivers, per block and replicate, the means of the replicate's samples. Two ways of keeping them:
+// The rectangle is cut into blocks of 32x32 pixels (aligned to the FULL film, as the shared wavelength
+// offsets are). A backend delivers, per block and replicate, the means of the replicate's samples. Two ways
+// of keeping them:
 //   folded  each block finishes one replicate after the other: mean and sum of squares per channel (8 bytes)
 //   held    the means of every replicate stay (4 R bytes): needed when passes return to replicates (--time,
 //           --target-error), for --keep-replicates and checkpoints
@@ -29,7 +30,8 @@ struct PixelRect {
 /// The blocks that cover a rectangle, clipped to it, row by row.
 std::vector<PixelRect> cut_into_blocks(const PixelRect& rect);
 
-/// The samples of one replicate in one block: per pixel their number and mean; means are [pixel][channel], row by row.
+/// The samples of one replicate in one block: per pixel their number and mean; means are [pixel][channel],
+/// row by row.
 struct BlockSamples {
   uint32_t block = 0;
   uint32_t replicate = 0;
@@ -40,7 +42,7 @@ struct BlockSamples {
 };
 
 struct FilmOptions {
-  std::size_t channels = 0;   // rendered and derived
+  std::size_t channels = 0;  // rendered and derived
   uint32_t replicates = 1;
   bool variance = false;
   bool held = false;
@@ -49,9 +51,10 @@ struct FilmOptions {
 
 /// What a held film consists of beside its means: small, and enough to go on with it (checkpoints).
 struct HeldCounts {
-  std::vector<std::vector<uint64_t>> samples;        // [replicate][pixel], valid samples
-  std::vector<std::vector<uint32_t>> attempted;      // [replicate][block], samples per pixel
-  std::vector<std::vector<double>> block_sums;       // [block][replicate * channels + channel]; empty: no sample yet
+  std::vector<std::vector<uint64_t>> samples;    // [replicate][pixel], valid samples
+  std::vector<std::vector<uint32_t>> attempted;  // [replicate][block], samples per pixel
+  std::vector<std::vector<double>>
+      block_sums;  // [block][replicate * channels + channel]; empty: no sample yet
   std::vector<std::vector<uint64_t>> block_samples;  // [block][replicate]
 };
 
@@ -65,11 +68,13 @@ class SpectralFilm {
   const FilmOptions& options() const { return options_; }
   const std::vector<PixelRect>& blocks() const { return blocks_; }
 
-  /// Thread-safe for different blocks. Folded films take the replicates of a block in order; several deliveries of the same
-  /// replicate of a block are only for held films (the means are combined by their counts).
+  /// Thread-safe for different blocks. Folded films take the replicates of a block in order; several
+  /// deliveries of the same replicate of a block are only for held films (the means are combined by their
+  /// counts).
   void add(const BlockSamples& samples);
 
-  /// Mean and variance of the mean of one row of pixels (y relative to the rectangle): [x][channel]. variance may be empty.
+  /// Mean and variance of the mean of one row of pixels (y relative to the rectangle): [x][channel]. variance
+  /// may be empty.
   void row(uint32_t y, std::span<float> mean, std::span<float> variance) const;
   /// Samples of a pixel (x, y relative to the rectangle).
   uint64_t samples(uint32_t x, uint32_t y) const;
@@ -86,10 +91,12 @@ class SpectralFilm {
   void restore(HeldCounts counts);
 
   /// Moments of the 8x8-pixel tiles' means (tiles are aligned to the blocks, row by row within a block: index
-  /// block * 16 + (y / 8) * 4 + x / 8, coordinates relative to the block) and of the whole rectangle's mean (unit 0).
+  /// block * 16 + (y / 8) * 4 + x / 8, coordinates relative to the block) and of the whole rectangle's mean
+  /// (unit 0).
   const ReplicateMoments& tile_moments() const;
   ReplicateMoments image_moments() const;
-  /// Sums over the rectangle of pixel means of a replicate times counts, and the number of samples: to be added over strips.
+  /// Sums over the rectangle of pixel means of a replicate times counts, and the number of samples: to be
+  /// added over strips.
   void add_image_sums(std::vector<std::vector<double>>& sums, std::vector<uint64_t>& counts) const;
 
   /// Bytes that a film of this shape takes, per pixel.
@@ -108,12 +115,13 @@ class SpectralFilm {
   std::vector<PixelRect> blocks_;
   std::unique_ptr<ReplicateMoments> pixels_;  // folded
   std::unique_ptr<Held> held_;
-  std::unique_ptr<ReplicateMoments> tiles_;   // folded, with variance
-  std::vector<std::vector<double>> block_sums_;     // [block][replicate * channels + channel], sum of samples
-  std::vector<std::vector<uint64_t>> block_counts_; // [block][replicate]
+  std::unique_ptr<ReplicateMoments> tiles_;      // folded, with variance
+  std::vector<std::vector<double>> block_sums_;  // [block][replicate * channels + channel], sum of samples
+  std::vector<std::vector<uint64_t>> block_counts_;  // [block][replicate]
 };
 
 /// Mean and variance of the mean from sums over samples per replicate.
-ReplicateMoments moments_of_sums(const std::vector<std::vector<double>>& sums, const std::vector<uint64_t>& counts);
+ReplicateMoments moments_of_sums(const std::vector<std::vector<double>>& sums,
+                                 const std::vector<uint64_t>& counts);
 
 }  // namespace kiloband

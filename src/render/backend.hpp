@@ -16,7 +16,8 @@ namespace kiloband {
 enum class WavelengthMode { kShared, kPerPath };
 enum class SamplerType { kIndependent, kSobol };
 
-/// What defines the random numbers of a render; equal settings give equal bits on a device and instruction set.
+/// What defines the random numbers of a render; equal settings give equal bits on a device and instruction
+/// set.
 struct SamplingSettings {
   WavelengthMode wavelengths = WavelengthMode::kShared;
   SamplerType sampler = SamplerType::kSobol;
@@ -24,8 +25,8 @@ struct SamplingSettings {
   uint32_t replicates = 16;
 };
 
-/// Samples first .. first + count - 1 of one replicate, in every pixel. Sample i of replicate r of R is the pixel's
-/// sample number r + i R.
+/// Samples first .. first + count - 1 of one replicate, in every pixel. Sample i of replicate r of R is the
+/// pixel's sample number r + i R.
 struct SampleRange {
   uint32_t replicate = 0;
   uint32_t first = 0;
@@ -44,18 +45,19 @@ struct InvalidSample {
 
 /// Auxiliary values of one pixel, from the ray through its centre.
 struct AuxiliaryPixel {
-  float depth = 0;  // m along the ray; 0 where nothing is hit
+  float depth = 0;           // m along the ray; 0 where nothing is hit
   KbFloat3 normal{0, 0, 0};  // shading normal, world
-  float object = -1;    // shape index, -1: nothing
-  float material = -1;  // material index of the side that is seen
+  float object = -1;         // shape index, -1: nothing
+  float material = -1;       // material index of the side that is seen
 };
 
 class Backend {
  public:
   virtual ~Backend() = default;
 
-  /// Renders the range in the film's blocks `blocks` and adds them. Returns early when stop becomes true: samples in flight are
-  /// finished and delivered. `progress` is called now and then, from one thread at a time, with the pixel samples done.
+  /// Renders the range in the film's blocks `blocks` and adds them. Returns early when stop becomes true:
+  /// samples in flight are finished and delivered. `progress` is called now and then, from one thread at a
+  /// time, with the pixel samples done.
   virtual void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) = 0;
   /// [y][x] of the rectangle.

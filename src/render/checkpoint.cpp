@@ -9,9 +9,10 @@
 namespace kiloband {
 namespace {
 
-// Layout, little endian: magic, fingerprint, replicates, pixels, channels, blocks (u64 each); means; samples; attempted;
-// block samples; block sums (those of empty blocks as zeros); checksum of all before it.
-constexpr std::array<char, 16> kMagic{'k', 'i', 'l', 'o', 'b', 'a', 'n', 'd', ' ', 'c', 'h', 'e', 'c', 'k', ' ', '1'};
+// Layout, little endian: magic, fingerprint, replicates, pixels, channels, blocks (u64 each); means; samples;
+// attempted; block samples; block sums (those of empty blocks as zeros); checksum of all before it.
+constexpr std::array<char, 16> kMagic{'k', 'i', 'l', 'o', 'b', 'a', 'n', 'd',
+                                      ' ', 'c', 'h', 'e', 'c', 'k', ' ', '1'};
 
 /// FNV-1a over 64-bit words (the rest bytewise): fast enough for gigabytes, and every bit counts.
 class Hash {
@@ -57,8 +58,8 @@ void add_channels(Hash& hash, const ChannelList& channels) {
 void add_spectra(Hash& hash, const std::vector<SpectrumRow>& spectra) {
   for (const SpectrumRow& row : spectra) {
     hash.add_all(row.table.values);
-    for (const double v : {row.table.min_nm, row.table.step_nm, row.temperature_k, row.planck_scale, row.planck_min_nm,
-                           row.planck_max_nm}) {
+    for (const double v : {row.table.min_nm, row.table.step_nm, row.temperature_k, row.planck_scale,
+                           row.planck_min_nm, row.planck_max_nm}) {
       hash.add_value(v);
     }
     hash.add_value(row.is_planck);
@@ -112,7 +113,9 @@ class Reader {
     const uint64_t expected = hash_.value();
     if (get() != expected) fail("is damaged: the checksum differs");
   }
-  [[noreturn]] void fail(const std::string& what) const { throw InputError("checkpoint " + name_ + " " + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError("checkpoint " + name_ + " " + what);
+  }
 
  private:
   std::string name_;
@@ -121,7 +124,8 @@ class Reader {
 };
 
 std::array<uint64_t, 5> header_of(const SpectralFilm& film, uint64_t fingerprint) {
-  return {fingerprint, film.options().replicates, film.rect().pixels(), film.options().channels, film.blocks().size()};
+  return {fingerprint, film.options().replicates, film.rect().pixels(), film.options().channels,
+          film.blocks().size()};
 }
 
 }  // namespace
@@ -144,7 +148,8 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   hash.add_all(scene.triangles);
   hash.add_all(scene.emitters);
   hash.add_value(scene.camera);
-  for (const uint32_t value : {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height}) {
+  for (const uint32_t value :
+       {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height}) {
     hash.add_value(value);
   }
   hash.add_value(scene.integrator.max_depth);
@@ -179,7 +184,8 @@ uint64_t read_checkpoint(const std::filesystem::path& file, SpectralFilm& film, 
   in.get_all<char>(magic);
   if (magic != kMagic) in.fail("is not a checkpoint");
   for (const uint64_t expected : header_of(film, fingerprint)) {
-    if (in.get() != expected) in.fail("belongs to another render: scene, channels, sampling, size or instruction set differ");
+    if (in.get() != expected)
+      in.fail("belongs to another render: scene, channels, sampling, size or instruction set differ");
   }
   HeldCounts counts = film.held_counts();
   in.get_all<float>(film.held_means());

@@ -10,8 +10,9 @@
 
 namespace kiloband {
 
-/// A number that differs (but for 1 in 2^64) if anything differs that samples depend on: scene data, channels, guide bands,
-/// camera, sampling settings, instruction set, size. The number of samples is not part of it: a render may be extended.
+/// A number that differs (but for 1 in 2^64) if anything differs that samples depend on: scene data,
+/// channels, guide bands, camera, sampling settings, instruction set, size. The number of samples is not part
+/// of it: a render may be extended.
 uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& sampling, const std::string& isa,
                             const std::vector<std::string>& derived_names);
 

@@ -1,8 +1,9 @@
 #include "render/cube_output.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <limits>
 
 #include "film/cube_text.hpp"
@@ -13,10 +14,13 @@ namespace {
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 std::filesystem::path replicate_path(const std::filesystem::path& file, uint32_t replicate) {
-  return std::filesystem::path(file).replace_extension(fmt::format(".r{:02}{}", replicate, file.extension().string()));
+  return std::filesystem::path(file).replace_extension(
+      fmt::format(".r{:02}{}", replicate, file.extension().string()));
 }
 
-bool is_exr(const std::filesystem::path& file) { return to_lower(file.extension().string()) == ".exr"; }
+bool is_exr(const std::filesystem::path& file) {
+  return to_lower(file.extension().string()) == ".exr";
+}
 
 }  // namespace
 
@@ -32,8 +36,8 @@ std::vector<std::string> auxiliary_planes(const std::vector<std::string>& images
   return planes;
 }
 
-std::optional<double> relative_error(const std::vector<double>& mean_sum, const std::vector<double>& variance_sum,
-                                     uint64_t pixels) {
+std::optional<double> relative_error(const std::vector<double>& mean_sum,
+                                     const std::vector<double>& variance_sum, uint64_t pixels) {
   std::optional<double> largest;
   for (std::size_t b = 0; b < mean_sum.size() && pixels > 0; ++b) {
     if (!(mean_sum[b] > 0) || !std::isfinite(variance_sum[b])) continue;
@@ -43,11 +47,16 @@ std::optional<double> relative_error(const std::vector<double>& mean_sum, const 
   return largest;
 }
 
-CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands, const std::vector<double>& film_scale,
-                       const SessionSettings& settings, uint32_t replicates, uint64_t samples_per_pixel,
-                       uint32_t rows_per_strip)
-    : bands_(bands), scale_(film_scale), settings_(settings), width_(scene.film.crop_width),
-      height_(scene.film.crop_height), strip_(rows_per_strip), aux_names_(auxiliary_planes(settings.aux)) {
+CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
+                       const std::vector<double>& film_scale, const SessionSettings& settings,
+                       uint32_t replicates, uint64_t samples_per_pixel, uint32_t rows_per_strip)
+    : bands_(bands),
+      scale_(film_scale),
+      settings_(settings),
+      width_(scene.film.crop_width),
+      height_(scene.film.crop_height),
+      strip_(rows_per_strip),
+      aux_names_(auxiliary_planes(settings.aux)) {
   CubeInfo info;
   info.width = width_;
   info.height = height_;

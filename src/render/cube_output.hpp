@@ -1,4 +1,5 @@
-// Film rows to files: scales film values to W m^-2 sr^-1, feeds all writers and the preview, gathers the error figure.
+// Film rows to files: scales film values to W m^-2 sr^-1, feeds all writers and the preview, gathers the
+// error figure.
 #pragma once
 
 #include <memory>
@@ -10,9 +11,11 @@ namespace kiloband {
 
 class CubeOutput {
  public:
-  /// rows_per_strip as create_cube_writer(); film_scale per film channel; samples_per_pixel is stated in the files
+  /// rows_per_strip as create_cube_writer(); film_scale per film channel; samples_per_pixel is stated in the
+  /// files
   CubeOutput(const FlatScene& scene, const BandSelection& bands, const std::vector<double>& film_scale,
-             const SessionSettings& settings, uint32_t replicates, uint64_t samples_per_pixel, uint32_t rows_per_strip);
+             const SessionSettings& settings, uint32_t replicates, uint64_t samples_per_pixel,
+             uint32_t rows_per_strip);
 
   /// Appends all rows of a film that covers the next rows of the image.
   void write(const SpectralFilm& film, Backend& backend);
@@ -35,7 +38,7 @@ class CubeOutput {
   std::vector<std::unique_ptr<CubeWriter>> writers_;
   std::vector<std::vector<std::unique_ptr<CubeWriter>>> replicate_writers_;  // [replicate][output]
   std::vector<std::string> aux_names_;
-  std::vector<float> mean_, variance_, aux_;  // rows since the last flush
+  std::vector<float> mean_, variance_, aux_;      // rows since the last flush
   std::vector<float> film_mean_, film_variance_;  // one row of the film
   uint32_t first_row_ = 0, rows_ = 0;
   std::vector<std::array<float, 3>> preview_weights_;
@@ -49,7 +52,7 @@ class CubeOutput {
 std::vector<std::string> auxiliary_planes(const std::vector<std::string>& images);
 
 /// RMS standard error over image mean, the largest over bands with a positive mean.
-std::optional<double> relative_error(const std::vector<double>& mean_sum, const std::vector<double>& variance_sum,
-                                     uint64_t pixels);
+std::optional<double> relative_error(const std::vector<double>& mean_sum,
+                                     const std::vector<double>& variance_sum, uint64_t pixels);
 
 }  // namespace kiloband

@@ -14,7 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
   std::vector<uint32_t> blocks(film.blocks().size());
@@ -28,33 +30,44 @@ class Session {
   Session(const FlatScene& scene, const std::vector<std::string>& derived_names, Backend& backend,
           const SessionSettings& settings, const std::atomic<bool>& stop,
           const std::function<void(const Progress&)>& progress)
-      : scene_(scene), backend_(backend), settings_(settings), stop_(stop), progress_(progress),
+      : scene_(scene),
+        backend_(backend),
+        settings_(settings),
+        stop_(stop),
+        progress_(progress),
         bands_(select_bands(scene, derived_names)),
-        channels_(scene.channels.size() + derived_names.size()), replicates_(session_replicates(settings)) {}
+        channels_(scene.channels.size() + derived_names.size()),
+        replicates_(session_replicates(settings)) {}
 
   RenderReport run() {
-    const PixelRect image{scene_.film.crop_x, scene_.film.crop_y, scene_.film.crop_width, scene_.film.crop_height};
+    const PixelRect image{scene_.film.crop_x, scene_.film.crop_y, scene_.film.crop_width,
+                          scene_.film.crop_height};
     FilmOptions options;
     options.channels = channels_;
     options.replicates = replicates_;
     options.variance = settings_.variance;
-    const bool revisits = settings_.checkpoint || !settings_.stop.samples_per_pixel;  // passes come back to replicates
+    const bool revisits =
+        settings_.checkpoint || !settings_.stop.samples_per_pixel;  // passes come back to replicates
     options.held = settings_.keep_replicates || revisits;
     options.memory_bytes = settings_.memory_budget_bytes;
-    const std::size_t row_bytes = image.width * (SpectralFilm::bytes_per_pixel(options) + output_bytes_per_pixel());
+    const std::size_t row_bytes =
+        image.width * (SpectralFilm::bytes_per_pixel(options) + output_bytes_per_pixel());
     const std::size_t strip = strip_rows(row_bytes, image.height);
     report_.replicates = replicates_;
     const bool whole = revisits || row_bytes * image.height <= settings_.memory_budget_bytes;
     strip_ = static_cast<uint32_t>(strip);
     whole ? run_whole(image, options) : run_strips(image, options);
     report_.interrupted = stop_;
-    if (!report_.mean_relative_error) report_.mean_relative_error = error_;  // --target-error without --variance
+    if (!report_.mean_relative_error)
+      report_.mean_relative_error = error_;  // --target-error without --variance
     finish_image_moments();
     return report_;
   }
 
  private:
-  std::size_t output_bytes_per_pixel() const { return bands_.bands.size() * sizeof(float) * (settings_.variance ? 2 : 1) / 8; }
+  std::size_t output_bytes_per_pixel() const {
+    return bands_.bands.size() * sizeof(float) * (settings_.variance ? 2 : 1) / 8;
+  }
 
   /// Rows of a strip: a quarter of the budget, whole blocks.
   std::size_t strip_rows(std::size_t row_bytes, uint32_t height) const {
@@ -63,10 +76,11 @@ class Session {
     return std::min<std::size_t>(rows, height);
   }
 
-  /// The whole image is one film (in memory, or held in a scratch file): replicate after replicate over all blocks, so that
-  /// an interrupted render is even.
+  /// The whole image is one film (in memory, or held in a scratch file): replicate after replicate over all
+  /// blocks, so that an interrupted render is even.
   void run_whole(const PixelRect& image, const FilmOptions& options) {
-    make_output(settings_.stop.samples_per_pixel.value_or(0));  // hours of rendering must not end at a file name
+    make_output(
+        settings_.stop.samples_per_pixel.value_or(0));  // hours of rendering must not end at a file name
     SpectralFilm film(image, options);
     if (settings_.resume && std::filesystem::exists(*settings_.checkpoint)) {
       report_.resumed_samples = done_ = read_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
@@ -87,8 +101,8 @@ class Session {
   }
 
   std::unique_ptr<CubeOutput> make_output(uint64_t samples_per_pixel) const {
-    return std::make_unique<CubeOutput>(scene_, bands_, backend_.film_scale(), settings_, replicates_, samples_per_pixel,
-                                        strip_);
+    return std::make_unique<CubeOutput>(scene_, bands_, backend_.film_scale(), settings_, replicates_,
+                                        samples_per_pixel, strip_);
   }
 
   static uint64_t least_samples(const SpectralFilm& film) {
@@ -145,8 +159,8 @@ class Session {
     }
   }
 
-  /// Renders what blocks of a held film lack of a replicate's first `target` samples; with a checkpoint in steps of a few
-  /// samples, so that it can be saved in between.
+  /// Renders what blocks of a held film lack of a replicate's first `target` samples; with a checkpoint in
+  /// steps of a few samples, so that it can be saved in between.
   void bring_to(SpectralFilm& film, uint32_t replicate, uint32_t target, const std::atomic<bool>& stop,
                 const std::function<void(uint64_t)>& on_samples) {
     std::map<uint32_t, std::vector<uint32_t>> behind;  // samples that blocks have: which blocks
@@ -214,7 +228,9 @@ class Session {
     return static_cast<uint32_t>(std::clamp(rate * left, 1.0, static_cast<double>(wanted)));
   }
 
-  bool out_of_time() const { return settings_.stop.seconds && seconds_since(start_) >= *settings_.stop.seconds; }
+  bool out_of_time() const {
+    return settings_.stop.seconds && seconds_since(start_) >= *settings_.stop.seconds;
+  }
 
   std::optional<double> film_error(const SpectralFilm& film) const {
     std::vector<double> mean_sum(channels_), variance_sum(channels_);
@@ -235,12 +251,14 @@ class Session {
     Progress state;
     state.pixel_samples = done_;
     state.rate = seconds_since(start_) + report_.sampling_seconds > 0
-                     ? static_cast<double>(done_ - report_.resumed_samples) / (report_.sampling_seconds + seconds_since(start_))
+                     ? static_cast<double>(done_ - report_.resumed_samples) /
+                           (report_.sampling_seconds + seconds_since(start_))
                      : 0;
     state.seconds = report_.sampling_seconds + seconds_since(start_);
     state.error = error_;
     if (total_ > 0) state.fraction = static_cast<double>(done_) / static_cast<double>(total_);
-    if (settings_.stop.seconds) state.fraction = std::min(1.0, seconds_since(start_) / *settings_.stop.seconds);
+    if (settings_.stop.seconds)
+      state.fraction = std::min(1.0, seconds_since(start_) / *settings_.stop.seconds);
     progress_(state);
   }
 
@@ -281,7 +299,8 @@ uint32_t session_replicates(const SessionSettings& settings) {
 
 BandSelection select_bands(const FlatScene& scene, const std::vector<std::string>& derived_names) {
   BandSelection selection;
-  const bool named_only = !scene.film.responses.empty();  // sub-channels of a specfilm's responses are not output
+  const bool named_only =
+      !scene.film.responses.empty();  // sub-channels of a specfilm's responses are not output
   for (std::size_t k = 0; k < scene.channels.size(); ++k) {
     if (named_only && scene.channels[k].name.empty()) continue;
     selection.bands.push_back({scene.channels[k], false});
@@ -295,8 +314,8 @@ BandSelection select_bands(const FlatScene& scene, const std::vector<std::string
   return selection;
 }
 
-RenderReport run_session(const FlatScene& scene, const std::vector<std::string>& derived_names, Backend& backend,
-                         const SessionSettings& settings, const std::atomic<bool>& stop,
+RenderReport run_session(const FlatScene& scene, const std::vector<std::string>& derived_names,
+                         Backend& backend, const SessionSettings& settings, const std::atomic<bool>& stop,
                          const std::function<void(const Progress&)>& progress) {
   return Session(scene, derived_names, backend, settings, stop, progress).run();
 }

@@ -22,7 +22,7 @@ struct StopRule {
 
 struct SessionSettings {
   StopRule stop;
-  uint32_t replicates = 16;       // wanted; fewer where there are not 2 samples for each
+  uint32_t replicates = 16;  // wanted; fewer where there are not 2 samples for each
   bool variance = false;
   bool keep_replicates = false;
   std::vector<std::filesystem::path> outputs;
@@ -32,48 +32,51 @@ struct SessionSettings {
   std::map<std::string, std::string> metadata;
   std::optional<std::filesystem::path> checkpoint;  // saved now and then and at the end
   double checkpoint_interval_seconds = 60;
-  bool resume = false;            // go on from the checkpoint if it exists
-  uint64_t fingerprint = 0;       // render_fingerprint(), for checkpoints
-  std::size_t memory_budget_bytes = std::size_t{1} << 30;  // for the film; beyond it strips of rows are streamed
+  bool resume = false;       // go on from the checkpoint if it exists
+  uint64_t fingerprint = 0;  // render_fingerprint(), for checkpoints
+  std::size_t memory_budget_bytes = std::size_t{1}
+                                    << 30;  // for the film; beyond it strips of rows are streamed
 };
 
 /// How far a render is. error is the last known mean_relative_error.
 struct Progress {
-  double fraction = 0;   // of the work (time rule: of the time)
+  double fraction = 0;  // of the work (time rule: of the time)
   uint64_t pixel_samples = 0;
   double seconds = 0;
-  double rate = 0;       // pixel samples per second, those of a checkpoint not counted
+  double rate = 0;  // pixel samples per second, those of a checkpoint not counted
   std::optional<double> error;
 };
 
 struct RenderReport {
-  uint64_t samples_per_pixel = 0;      // smallest over pixels
+  uint64_t samples_per_pixel = 0;  // smallest over pixels
   uint64_t largest_samples_per_pixel = 0;
   uint32_t replicates = 0;
   double sampling_seconds = 0, output_seconds = 0;
   /// RMS standard error over image mean, the largest over channels; needs variance and two replicates.
   std::optional<double> mean_relative_error;
   uint64_t pixels_without_sample = 0;
-  uint64_t underflowed_values = 0;     // positive in the film, 0 as the file's float
-  uint64_t resumed_samples = 0;        // pixel samples that came from a checkpoint
+  uint64_t underflowed_values = 0;  // positive in the film, 0 as the file's float
+  uint64_t resumed_samples = 0;     // pixel samples that came from a checkpoint
   bool interrupted = false;
-  bool streamed = false;               // strips, since the film did not fit the budget
+  bool streamed = false;  // strips, since the film did not fit the budget
   std::vector<std::filesystem::path> written;
   /// Per output band, replicate moments of the image's mean (W m^-2 sr^-1).
   std::vector<double> image_mean, image_standard_error;
 };
 
-/// The bands of the output: every rendered channel, or the named ones and the derived if the film is a specfilm with responses.
+/// The bands of the output: every rendered channel, or the named ones and the derived if the film is a
+/// specfilm with responses.
 struct BandSelection {
   std::vector<Band> bands;
   std::vector<std::size_t> film_channels;  // per band, index into the film's channels
 };
 BandSelection select_bands(const FlatScene& scene, const std::vector<std::string>& derived_names);
 
-/// Renders and writes. `make_backend` gets the replicates that the stop rule leaves (SamplingSettings::replicates).
-/// throws InputError, DeviceError; nothing half written is left under the final names
-RenderReport run_session(const FlatScene& scene, const std::vector<std::string>& derived_names, Backend& backend,
-                         const SessionSettings& settings, const std::atomic<bool>& stop,
+/// Renders and writes. `make_backend` gets the replicates that the stop rule leaves
+/// (SamplingSettings::replicates). throws InputError, DeviceError; nothing half written is left under the
+/// final names
+RenderReport run_session(const FlatScene& scene, const std::vector<std::string>& derived_names,
+                         Backend& backend, const SessionSettings& settings, const std::atomic<bool>& stop,
                          const std::function<void(const Progress&)>& progress);
 
 /// The replicates that a session will use, to be given to the backend's SamplingSettings.

@@ -14,7 +14,8 @@ namespace kiloband {
 
 /// What the scene needs. Backends are specialised for it; what is false costs nothing.
 struct SceneFeatures {
-  bool diffuse = false, conductor = false, rough_conductor = false, dielectric = false, rough_dielectric = false;
+  bool diffuse = false, conductor = false, rough_conductor = false, dielectric = false,
+       rough_dielectric = false;
   bool plastic = false, rough_plastic = false, two_sided = false, mask = false, dispersion = false;
   bool bitmap = false, checkerboard = false;
   bool area_light = false, constant_light = false, envmap_light = false, delta_light = false;
@@ -26,9 +27,9 @@ struct SceneFeatures {
 
 /// One row of the spectrum table.
 struct SpectrumRow {
-  std::string name;          // where it comes from, for messages
-  RegularTable table;        // reflectances, indices, tabulated emission
-  bool is_planck = false;    // then: planck_scale * planck_radiance(lambda, temperature_k) on [min_nm, max_nm]
+  std::string name;        // where it comes from, for messages
+  RegularTable table;      // reflectances, indices, tabulated emission
+  bool is_planck = false;  // then: planck_scale * planck_radiance(lambda, temperature_k) on [min_nm, max_nm]
   double temperature_k = 0, planck_scale = 1, planck_min_nm = 0, planck_max_nm = 1e300;
   bool is_emission = false;  // values are divided by the channel's scale
 };
@@ -40,14 +41,16 @@ struct EnvmapSampling {
   std::vector<float> row_cdf;       // height rows of width + 1
 };
 
-/// The flattened scene. Positions carry one spare vertex at the end: ray tracers read vertices with 16-byte loads.
+/// The flattened scene. Positions carry one spare vertex at the end: ray tracers read vertices with 16-byte
+/// loads.
 struct FlatScene {
-  ChannelList channels;          // K rendered channels
-  ChannelList guide;             // guide bands
-  std::vector<double> channel_scale;  // K powers of two; emission rows are divided by it, the film multiplies by it
+  ChannelList channels;  // K rendered channels
+  ChannelList guide;     // guide bands
+  std::vector<double>
+      channel_scale;  // K powers of two; emission rows are divided by it, the film multiplies by it
 
-  std::vector<SpectrumRow> spectra;   // at most 65535
-  uint32_t unit_row = KB_NONE;        // a reflectance of 1, where the scene needs one (rough dispersive boundaries)
+  std::vector<SpectrumRow> spectra;  // at most 65535
+  uint32_t unit_row = KB_NONE;  // a reflectance of 1, where the scene needs one (rough dispersive boundaries)
   std::vector<KbTexture> textures;
   std::vector<KbFloat4> texels;
   std::vector<KbCheckerboard> checkerboards;
@@ -56,28 +59,28 @@ struct FlatScene {
   std::vector<KbSurface> surfaces;
   std::vector<KbShape> shapes;
   std::vector<std::string> shape_names, material_names;
-  std::vector<KbFloat3> positions;    // world, m
-  std::vector<KbFloat3> normals;      // world, unit; zero where a shape has none; empty if no shape has
-  std::vector<KbFloat2> uvs;          // empty if no shape has
-  std::vector<uint32_t> triangles;    // 3 absolute vertex indices each
-  std::vector<float> area_cdf;        // see KbShape::first_cdf
+  std::vector<KbFloat3> positions;  // world, m
+  std::vector<KbFloat3> normals;    // world, unit; zero where a shape has none; empty if no shape has
+  std::vector<KbFloat2> uvs;        // empty if no shape has
+  std::vector<uint32_t> triangles;  // 3 absolute vertex indices each
+  std::vector<float> area_cdf;      // see KbShape::first_cdf
 
   std::vector<KbEmitter> emitters;
-  std::vector<float> emitter_cdf;     // emitters + 1 entries, 0 to 1
-  uint32_t environment = KB_NONE;     // emitter index of the constant or envmap emitter
+  std::vector<float> emitter_cdf;  // emitters + 1 entries, 0 to 1
+  uint32_t environment = KB_NONE;  // emitter index of the constant or envmap emitter
   EnvmapSampling envmap;
   KbFloat3 scene_centre{0, 0, 0};
-  float scene_radius = 0;             // bounding sphere of the geometry, m
+  float scene_radius = 0;  // bounding sphere of the geometry, m
 
   KbCamera camera{};
-  Film film;                          // crop window; channels as in `channels`
+  Film film;  // crop window; channels as in `channels`
   Integrator integrator;
   SceneFeatures features;
 };
 
 struct FlattenOptions {
-  ChannelList channels;   // rendered channels, not empty
-  ChannelList guide;      // empty: the rendered channels
+  ChannelList channels;  // rendered channels, not empty
+  ChannelList guide;     // empty: the rendered channels
   DiagnosticSink sink;
 };
 

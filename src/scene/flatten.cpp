@@ -44,16 +44,23 @@ FlatScene flatten(const SceneDescription& scene, const FlattenOptions& options) 
 }
 
 std::vector<std::string> SceneFeatures::names() const {
-  const std::pair<const char*, bool> all[] = {
-      {"diffuse", diffuse},           {"conductor", conductor},
-      {"roughconductor", rough_conductor}, {"dielectric", dielectric},
-      {"roughdielectric", rough_dielectric}, {"plastic", plastic},
-      {"roughplastic", rough_plastic}, {"twosided", two_sided},
-      {"mask", mask},                 {"dispersion", dispersion},
-      {"bitmap", bitmap},             {"checkerboard", checkerboard},
-      {"area light", area_light},     {"constant environment", constant_light},
-      {"environment map", envmap_light}, {"delta light", delta_light},
-      {"analytic shapes", analytic_shapes}};
+  const std::pair<const char*, bool> all[] = {{"diffuse", diffuse},
+                                              {"conductor", conductor},
+                                              {"roughconductor", rough_conductor},
+                                              {"dielectric", dielectric},
+                                              {"roughdielectric", rough_dielectric},
+                                              {"plastic", plastic},
+                                              {"roughplastic", rough_plastic},
+                                              {"twosided", two_sided},
+                                              {"mask", mask},
+                                              {"dispersion", dispersion},
+                                              {"bitmap", bitmap},
+                                              {"checkerboard", checkerboard},
+                                              {"area light", area_light},
+                                              {"constant environment", constant_light},
+                                              {"environment map", envmap_light},
+                                              {"delta light", delta_light},
+                                              {"analytic shapes", analytic_shapes}};
   std::vector<std::string> present;
   for (const auto& [name, is_present] : all) {
     if (is_present) present.emplace_back(name);

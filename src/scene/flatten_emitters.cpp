@@ -1,6 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
@@ -13,12 +14,14 @@
 namespace kiloband {
 namespace {
 
-/// Part of the selection probability that is uniform over emitters: a light that is dark in the guide bands may shine
-/// in a rendered channel, and a delta light that is never selected would be lost.
+/// Part of the selection probability that is uniform over emitters: a light that is dark in the guide bands
+/// may shine in a rendered channel, and a delta light that is never selected would be lost.
 constexpr double kUniformSelection = 0.05;
 constexpr double kPi = std::numbers::pi;
 
-std::string describe(const Emitter& emitter) { return emitter.id.empty() ? "emitter" : "emitter '" + emitter.id + "'"; }
+std::string describe(const Emitter& emitter) {
+  return emitter.id.empty() ? "emitter" : "emitter '" + emitter.id + "'";
+}
 
 /// Some transform whose third column is the unit vector z.
 Transform frame_along(const glm::dvec3& z) {
@@ -67,7 +70,9 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
   KbEmitter record{};
   const std::string name = describe(emitter);
   const double disc = kPi * out_.scene_radius * out_.scene_radius;
-  const auto use = [&](const char* what) { return SpectrumSource{name + ": " + what, emitter.position, true}; };
+  const auto use = [&](const char* what) {
+    return SpectrumSource{name + ": " + what, emitter.position, true};
+  };
   set_transforms(record, Transform{1.0});
   if (const auto* constant = std::get_if<ConstantEmitter>(&emitter.model)) {
     record.type = KB_EMITTER_CONSTANT;
@@ -110,7 +115,8 @@ void Flattener::add_emitters() {
   }
 }
 
-void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumSource& use) {
+void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter,
+                                    const SpectrumSource& use) {
   record.type = KB_EMITTER_ENVMAP;
   set_transforms(record, emitter.to_world);
   auto bitmap_texture = std::make_shared<BitmapTexture>();
@@ -165,8 +171,8 @@ void Flattener::select_emitters() {
   }
 }
 
-/// The power of two below the largest channel value that an emission row reaches: path sums are then of order 1 however
-/// dim the channel is (Planck's law at 0.3 um and 200 K is 1e-96).
+/// The power of two below the largest channel value that an emission row reaches: path sums are then of order
+/// 1 however dim the channel is (Planck's law at 0.3 um and 200 K is 1e-96).
 void Flattener::set_channel_scales() {
   out_.channel_scale.assign(out_.channels.size(), 1.0);
   for (std::size_t k = 0; k < out_.channels.size(); ++k) {
@@ -177,9 +183,9 @@ void Flattener::set_channel_scales() {
       for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
         const double lambda = (1 - t) * channel.min_nm + t * channel.max_nm;
         const bool inside = lambda >= row.planck_min_nm && lambda <= row.planck_max_nm;
-        const double value = row.is_planck
-                                 ? (inside ? row.planck_scale * planck_radiance(lambda, row.temperature_k) : 0)
-                                 : row.table(lambda);
+        const double value =
+            row.is_planck ? (inside ? row.planck_scale * planck_radiance(lambda, row.temperature_k) : 0)
+                          : row.table(lambda);
         peak = std::max(peak, value * channel.width_nm());
       }
     }

@@ -1,12 +1,15 @@
-#include <cmath>
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "scene/flattener.hpp"
 
 namespace kiloband {
 namespace {
 
-std::string describe(const Bsdf& bsdf) { return bsdf.id.empty() ? "bsdf" : "bsdf '" + bsdf.id + "'"; }
+std::string describe(const Bsdf& bsdf) {
+  return bsdf.id.empty() ? "bsdf" : "bsdf '" + bsdf.id + "'";
+}
 
 /// Unpolarised Fresnel reflectance of a dielectric for light from the outside (eta: inside over outside).
 double fresnel(double cos_i, double eta) {
@@ -18,7 +21,8 @@ double fresnel(double cos_i, double eta) {
   return 0.5 * (s * s + p * p);
 }
 
-/// Reflectance of diffuse light, 2 int_0^1 F(c) c dc, by the midpoint rule in c^2 (error below 1e-6 for eta in 0.3-3).
+/// Reflectance of diffuse light, 2 int_0^1 F(c) c dc, by the midpoint rule in c^2 (error below 1e-6 for eta
+/// in 0.3-3).
 double diffuse_fresnel(double eta) {
   constexpr int kSteps = 20000;
   double sum = 0;
@@ -27,7 +31,8 @@ double diffuse_fresnel(double eta) {
 }
 
 void set_roughness(KbMaterial& record, const Roughness& roughness) {
-  record.distribution = roughness.distribution == Microfacet::kGgx ? KB_MICROFACET_GGX : KB_MICROFACET_BECKMANN;
+  record.distribution =
+      roughness.distribution == Microfacet::kGgx ? KB_MICROFACET_GGX : KB_MICROFACET_BECKMANN;
   record.alpha_u = static_cast<float>(roughness.alpha_u);
   record.alpha_v = static_cast<float>(roughness.alpha_v);
   if (roughness.sample_visible) record.flags |= KB_MATERIAL_SAMPLE_VISIBLE;
@@ -43,7 +48,8 @@ KbMaterial empty_material(uint32_t type) {
 
 }  // namespace
 
-KbMaterial Flattener::make(const DiffuseBsdf& model, const std::string& name, const SourcePosition& position) {
+KbMaterial Flattener::make(const DiffuseBsdf& model, const std::string& name,
+                           const SourcePosition& position) {
   KbMaterial record = empty_material(KB_MATERIAL_DIFFUSE);
   record.ref_a = reference(model.reflectance, {name + ": reflectance", position, false});
   record.bound_a = static_cast<float>(texture_bound(model.reflectance));
@@ -59,18 +65,20 @@ static void require_data(const Spectrum& spectrum, const FlatScene& scene, const
     for (const Channel& channel : *list) {
       if (channel.min_nm < data->min_nm * (1 - 1e-9) || channel.max_nm > data->max_nm * (1 + 1e-9)) {
         throw InputError(use.position,
-                         fmt::format("{}: data from {:g} to {:g} nm do not cover channel {:g}-{:g} nm", use.name,
-                                     data->min_nm, data->max_nm, channel.min_nm, channel.max_nm));
+                         fmt::format("{}: data from {:g} to {:g} nm do not cover channel {:g}-{:g} nm",
+                                     use.name, data->min_nm, data->max_nm, channel.min_nm, channel.max_nm));
       }
     }
   }
 }
 
-KbMaterial Flattener::make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position) {
+KbMaterial Flattener::make(const ConductorBsdf& model, const std::string& name,
+                           const SourcePosition& position) {
   KbMaterial record = empty_material(model.roughness ? KB_MATERIAL_ROUGH_CONDUCTOR : KB_MATERIAL_CONDUCTOR);
   record.ref_a = reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
   record.bound_a = static_cast<float>(texture_bound(model.specular_reflectance));
-  const bool mirror = model.eta.is_constant() && model.eta(550) == 0 && model.k.is_constant() && model.k(550) == 1;
+  const bool mirror =
+      model.eta.is_constant() && model.eta(550) == 0 && model.k.is_constant() && model.k(550) == 1;
   if (mirror) {
     record.flags |= KB_MATERIAL_PERFECT_MIRROR;
   } else {
@@ -86,10 +94,12 @@ KbMaterial Flattener::make(const ConductorBsdf& model, const std::string& name, 
   return record;
 }
 
-KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position) {
+KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
+                           const SourcePosition& position) {
   KbMaterial record = empty_material(model.roughness ? KB_MATERIAL_ROUGH_DIELECTRIC : KB_MATERIAL_DIELECTRIC);
   record.ref_a = reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
-  record.ref_b = reference(model.specular_transmittance, {name + ": specular_transmittance", position, false});
+  record.ref_b =
+      reference(model.specular_transmittance, {name + ": specular_transmittance", position, false});
   record.bound_a = static_cast<float>(texture_bound(model.specular_reflectance));
   record.bound_b = static_cast<float>(texture_bound(model.specular_transmittance));
   const SpectrumSource int_use{name + ": int_ior", position, false};
@@ -113,7 +123,8 @@ KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
   return record;
 }
 
-KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position) {
+KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name,
+                           const SourcePosition& position) {
   KbMaterial record = empty_material(model.roughness ? KB_MATERIAL_ROUGH_PLASTIC : KB_MATERIAL_PLASTIC);
   record.ref_a = reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
   record.ref_b = reference(model.diffuse_reflectance, {name + ": diffuse_reflectance", position, false});
@@ -123,7 +134,8 @@ KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name, co
   record.fdr_int = static_cast<float>(diffuse_fresnel(model.ext_ior / model.int_ior));
   const double specular = texture_mean(model.specular_reflectance);
   const double diffuse = texture_mean(model.diffuse_reflectance);
-  record.specular_weight = specular + diffuse > 0 ? static_cast<float>(specular / (specular + diffuse)) : 0.5f;
+  record.specular_weight =
+      specular + diffuse > 0 ? static_cast<float>(specular / (specular + diffuse)) : 0.5f;
   if (model.nonlinear) record.flags |= KB_MATERIAL_NONLINEAR;
   if (model.roughness) set_roughness(record, *model.roughness);
   (model.roughness ? out_.features.rough_plastic : out_.features.plastic) = true;
@@ -144,9 +156,11 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf) {
       },
       bsdf->model);
   out_.materials.push_back(record);
-  out_.material_names.push_back(bsdf->id.empty() ? fmt::format("material {}", out_.materials.size() - 1) : bsdf->id);
+  out_.material_names.push_back(bsdf->id.empty() ? fmt::format("material {}", out_.materials.size() - 1)
+                                                 : bsdf->id);
   const auto index = static_cast<uint32_t>(out_.materials.size() - 1);
-  if (index >= 1u << (32 - KB_VERTEX_MATERIAL_SHIFT)) throw InputError(bsdf->position, "more than 1048576 bsdfs");
+  if (index >= 1u << (32 - KB_VERTEX_MATERIAL_SHIFT))
+    throw InputError(bsdf->position, "more than 1048576 bsdfs");
   materials_[bsdf.get()] = index;
   return index;
 }
@@ -180,7 +194,8 @@ uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf) {
   } else {
     record.front = material(inner);
     const uint32_t type = out_.materials[record.front].type;
-    if (type == KB_MATERIAL_DIELECTRIC || type == KB_MATERIAL_ROUGH_DIELECTRIC) record.flags |= KB_SURFACE_TRANSMISSIVE;
+    if (type == KB_MATERIAL_DIELECTRIC || type == KB_MATERIAL_ROUGH_DIELECTRIC)
+      record.flags |= KB_SURFACE_TRANSMISSIVE;
   }
   out_.surfaces.push_back(record);
   return surfaces_[bsdf.get()] = static_cast<uint32_t>(out_.surfaces.size() - 1);

@@ -1,6 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <numbers>
 
 #include "scene/flattener.hpp"
@@ -12,9 +13,12 @@ KbFloat3 to_record(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-glm::dvec3 to_glm(const KbFloat3& v) { return {v.x, v.y, v.z}; }
+glm::dvec3 to_glm(const KbFloat3& v) {
+  return {v.x, v.y, v.z};
+}
 
-/// Area of a canonical analytic shape under its transform (a similarity for spheres; see the reader's checks).
+/// Area of a canonical analytic shape under its transform (a similarity for spheres; see the reader's
+/// checks).
 double analytic_area(uint32_t type, const Transform& m) {
   const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
   const double pi = std::numbers::pi;
@@ -67,7 +71,8 @@ void Flattener::add_shapes() {
 
 void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) {
   const std::size_t first = out_.positions.size();
-  if (first + mesh.positions.size() > 0xffffffffu || out_.triangles.size() / 3 + mesh.triangles.size() > 0x7fffffffu) {
+  if (first + mesh.positions.size() > 0xffffffffu ||
+      out_.triangles.size() / 3 + mesh.triangles.size() > 0x7fffffffu) {
     throw InputError(shape.position, "the scene has more vertices or triangles than 32-bit indices can name");
   }
   record.first_triangle = static_cast<uint32_t>(out_.triangles.size() / 3);
@@ -90,7 +95,8 @@ void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) 
     out_.uvs.resize(first, KbFloat2{0, 0});
     for (const Vec2f& uv : mesh.uvs) out_.uvs.push_back({uv[0], uv[1]});
   }
-  // A mirroring transform turns the winding: swap two indices so that the geometric normal is the transformed one.
+  // A mirroring transform turns the winding: swap two indices so that the geometric normal is the transformed
+  // one.
   const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
   for (const auto& triangle : mesh.triangles) {
     const auto base = static_cast<uint32_t>(first);

@@ -10,9 +10,12 @@ namespace {
 
 constexpr float kFlatCoefficient = 1e10f;  // S(1e10) == 1: a spectrally flat texel, see records.h
 
-KbFloat4 flat_texel(float value) { return {0, 0, kFlatCoefficient, value}; }
+KbFloat4 flat_texel(float value) {
+  return {0, 0, kFlatCoefficient, value};
+}
 
-/// Reflectance: the sigmoid of the colour. Emission: twice the maximum times the sigmoid of rgb / (2 max), as Mitsuba.
+/// Reflectance: the sigmoid of the colour. Emission: twice the maximum times the sigmoid of rgb / (2 max), as
+/// Mitsuba.
 KbFloat4 upsampled_texel(const SigmoidTable& table, const float* rgb, bool emission) {
   const float largest = std::max({rgb[0], rgb[1], rgb[2]});
   if (largest <= 0) return flat_texel(0);
@@ -41,15 +44,18 @@ uint32_t Flattener::d65_row() {
 }
 
 uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use) {
-  if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return KB_REF_SPECTRUM | spectra_.row(*spectrum, use);
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture))
+    return KB_REF_SPECTRUM | spectra_.row(*spectrum, use);
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
     return KB_REF_BITMAP | bitmap(*image, use.emission);
   }
-  return KB_REF_CHECKERBOARD | checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
+  return KB_REF_CHECKERBOARD |
+         checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
 }
 
 uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, bool emission) {
-  const auto [place, is_new] = bitmaps_.try_emplace({texture.get(), emission}, static_cast<uint32_t>(out_.textures.size()));
+  const auto [place, is_new] =
+      bitmaps_.try_emplace({texture.get(), emission}, static_cast<uint32_t>(out_.textures.size()));
   if (!is_new) return place->second;
   out_.features.bitmap = true;
   const Image& image = *texture->image;
@@ -81,8 +87,10 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
   return place->second;
 }
 
-uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use) {
-  const auto [place, is_new] = checkerboards_.try_emplace(texture.get(), static_cast<uint32_t>(out_.checkerboards.size()));
+uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture,
+                                 const SpectrumSource& use) {
+  const auto [place, is_new] =
+      checkerboards_.try_emplace(texture.get(), static_cast<uint32_t>(out_.checkerboards.size()));
   if (!is_new) return place->second;
   out_.features.checkerboard = true;
   KbCheckerboard record{};

@@ -1,14 +1,15 @@
 #include "scene/spectrum_table_builder.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace kiloband {
 namespace {
 
 constexpr std::size_t kMaxRows = 65535;
-// Tables reproduce their spectra to this fraction of the largest value; coarser bounds are tried when a table would
-// become too large (irregular data over a wide range), with a note.
+// Tables reproduce their spectra to this fraction of the largest value; coarser bounds are tried when a table
+// would become too large (irregular data over a wide range), with a note.
 constexpr double kErrorBounds[] = {1e-5, 1e-4, 1e-3};
 
 Channel joint_hull(const ChannelList& a, const ChannelList& b) {
@@ -55,7 +56,8 @@ SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const Spect
     try {
       row.table = resample(spectrum, range_.min_nm, range_.max_nm, {.relative_error = bound});
       if (bound > kErrorBounds[0]) {
-        note(sink_, use.position, fmt::format("{}: tabulated with a relative error bound of {}", use.name, bound));
+        note(sink_, use.position,
+             fmt::format("{}: tabulated with a relative error bound of {}", use.name, bound));
       }
       return row;
     } catch (const InputError&) {
@@ -71,8 +73,8 @@ void SpectrumTableBuilder::check_range(const Spectrum& spectrum, const SpectrumS
   constexpr double kSlackNm = 1e-6;
   if (data->min_nm <= range_.min_nm + kSlackNm && data->max_nm >= range_.max_nm - kSlackNm) return;
   warn(sink_, use.position,
-       fmt::format("{}: data from {:g} to {:g} nm do not cover {:g} to {:g} nm; outside, {}", use.name, data->min_nm,
-                   data->max_nm, range_.min_nm, range_.max_nm,
+       fmt::format("{}: data from {:g} to {:g} nm do not cover {:g} to {:g} nm; outside, {}", use.name,
+                   data->min_nm, data->max_nm, range_.min_nm, range_.max_nm,
                    spectrum.extrapolates() ? "the end values are continued" : "the value is 0"));
 }
 
@@ -84,8 +86,10 @@ double SpectrumTableBuilder::guide_mean(const Spectrum& spectrum) const {
 
 double SpectrumTableBuilder::bound(const Spectrum& spectrum) const {
   double largest = 0;
-  for (const Channel& band : scene_.guide) largest = std::max(largest, spectrum.max_over(band.min_nm, band.max_nm));
-  for (const Channel& band : scene_.channels) largest = std::max(largest, spectrum.max_over(band.min_nm, band.max_nm));
+  for (const Channel& band : scene_.guide)
+    largest = std::max(largest, spectrum.max_over(band.min_nm, band.max_nm));
+  for (const Channel& band : scene_.channels)
+    largest = std::max(largest, spectrum.max_over(band.min_nm, band.max_nm));
   return largest;
 }
 

@@ -1,4 +1,5 @@
-// Builds the spectrum table of a FlatScene: one row per distinct spectrum, with checks against the rendered channels.
+// Builds the spectrum table of a FlatScene: one row per distinct spectrum, with checks against the rendered
+// channels.
 #pragma once
 
 #include <map>
@@ -10,7 +11,7 @@ namespace kiloband {
 
 /// Where a spectrum stands in the scene, for rows' names and messages.
 struct SpectrumSource {
-  std::string name;         // "bsdf 'wall': reflectance"
+  std::string name;  // "bsdf 'wall': reflectance"
   SourcePosition position;
   bool emission = false;
 };
@@ -20,7 +21,8 @@ class SpectrumTableBuilder {
   SpectrumTableBuilder(FlatScene& scene, const DiagnosticSink& sink);
 
   /// Row index of the spectrum; equal constants of the same kind share a row.
-  /// throws InputError if the table would pass 65535 rows or the spectrum cannot be tabulated within its bound
+  /// throws InputError if the table would pass 65535 rows or the spectrum cannot be tabulated within its
+  /// bound
   uint32_t row(const Spectrum& spectrum, const SpectrumSource& use);
 
   /// Mean over the guide bands (each band one vote).

@@ -30,8 +30,8 @@ DerivedChannels derived_of(const RenderSpec& spec, const ChannelList& channels) 
   return derived;
 }
 
-void append(const ReplicateMoments& moments, std::size_t unit, const std::vector<double>& scale, std::vector<double>& mean,
-            std::vector<double>& variance) {
+void append(const ReplicateMoments& moments, std::size_t unit, const std::vector<double>& scale,
+            std::vector<double>& mean, std::vector<double>& variance) {
   std::vector<float> v(moments.channels());
   moments.variance_of_mean(unit, v);
   for (std::size_t c = 0; c < moments.channels(); ++c) {
@@ -54,7 +54,8 @@ void collect(const SpectralFilm& film, const std::vector<double>& scale, RenderR
   append(film.image_moments(), 0, scale, result.image_mean, result.image_variance);
   if (film.options().held) return;
   for (std::size_t tile = 0; tile < film.tile_moments().units(); ++tile) {
-    if (film.tile_moments().samples(tile) > 0) append(film.tile_moments(), tile, scale, result.tile_mean, result.tile_variance);
+    if (film.tile_moments().samples(tile) > 0)
+      append(film.tile_moments(), tile, scale, result.tile_mean, result.tile_variance);
   }
 }
 
@@ -80,7 +81,8 @@ RenderResult render(const RenderSpec& spec) {
   result.width = f.crop_width;
   result.height = f.crop_height;
   result.channels = channels.size() + derived.names.size();
-  SpectralFilm film({f.crop_x, f.crop_y, f.crop_width, f.crop_height}, {result.channels, plan.replicates, true, spec.held});
+  SpectralFilm film({f.crop_x, f.crop_y, f.crop_width, f.crop_height},
+                    {result.channels, plan.replicates, true, spec.held});
   std::vector<uint32_t> blocks(film.blocks().size());
   std::iota(blocks.begin(), blocks.end(), 0u);
   const std::atomic<bool> stop{false};
@@ -94,11 +96,13 @@ RenderResult render(const RenderSpec& spec) {
   return result;
 }
 
-std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees, uint32_t size) {
+std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees,
+                               uint32_t size) {
   const std::string n = std::to_string(size);
   return "<sensor type=\"perspective\"><float name=\"fov\" value=\"" + std::to_string(fov_degrees) +
-         "\"/><float name=\"near_clip\" value=\"1e-4\"/><transform name=\"to_world\"><lookat origin=\"" + origin +
-         "\" target=\"" + target + "\" up=\"0, 1, 0\"/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"" + n +
+         "\"/><float name=\"near_clip\" value=\"1e-4\"/><transform name=\"to_world\"><lookat origin=\"" +
+         origin + "\" target=\"" + target +
+         "\" up=\"0, 1, 0\"/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"" + n +
          "\"/><integer name=\"height\" value=\"" + n + "\"/><rfilter type=\"box\"/></film></sensor>";
 }
 
@@ -110,7 +114,8 @@ std::filesystem::path data_directory() {
 
 double z_score(double value, double expected, double variance) {
   if (variance > 0) return std::abs(value - expected) / std::sqrt(variance);
-  return std::abs(value - expected) <= 1e-5 * std::abs(expected) ? 0 : std::numeric_limits<double>::infinity();
+  return std::abs(value - expected) <= 1e-5 * std::abs(expected) ? 0
+                                                                 : std::numeric_limits<double>::infinity();
 }
 
 double critical_t(double alpha, std::size_t tests, uint32_t replicates) {

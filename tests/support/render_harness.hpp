@@ -15,13 +15,13 @@
 namespace kiloband::test {
 
 struct RenderSpec {
-  std::string xml;                       // a whole <scene>; its film gives the size
-  std::filesystem::path directory = "."; // where its file names start
+  std::string xml;                        // a whole <scene>; its film gives the size
+  std::filesystem::path directory = ".";  // where its file names start
   std::string bands = "500:600:4";
-  std::string guide;                     // empty: the bands
+  std::string guide;  // empty: the bands
   uint64_t spp = 64;
-  SamplingSettings sampling;             // replicates: wanted
-  std::string isa = "auto";              // auto, sse4, avx2, avx512
+  SamplingSettings sampling;  // replicates: wanted
+  std::string isa = "auto";   // auto, sse4, avx2, avx512
   int threads = 0;
   std::vector<std::pair<std::string, Spectrum>> responses;
   bool held = false;
@@ -31,31 +31,38 @@ struct RenderSpec {
 struct RenderResult {
   FlatScene scene;
   uint32_t width = 0, height = 0;
-  std::size_t channels = 0;              // with responses
+  std::size_t channels = 0;  // with responses
   uint32_t replicates = 0;
-  std::vector<double> mean;              // [pixel][channel]
-  std::vector<double> variance;          // of the mean, [pixel][channel]
+  std::vector<double> mean;                        // [pixel][channel]
+  std::vector<double> variance;                    // of the mean, [pixel][channel]
   std::vector<double> tile_mean, tile_variance;    // [tile with samples][channel]
   std::vector<double> image_mean, image_variance;  // [channel]
   uint64_t invalid_samples = 0, vertices = 0, paths = 0;
   std::vector<std::string> diagnostics;
 
-  double at(uint32_t x, uint32_t y, std::size_t channel) const { return mean[(std::size_t{y} * width + x) * channels + channel]; }
+  double at(uint32_t x, uint32_t y, std::size_t channel) const {
+    return mean[(std::size_t{y} * width + x) * channels + channel];
+  }
 };
 
 /// throws what reading, flattening and rendering throw
 RenderResult render(const RenderSpec& spec);
 
-/// A square diffuse-free default sensor block: perspective at `origin` looking at `target`, box filter, size x size pixels.
-std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees, uint32_t size);
+/// A square diffuse-free default sensor block: perspective at `origin` looking at `target`, box filter, size
+/// x size pixels.
+std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees,
+                               uint32_t size);
 
-/// An existing folder of public scenes and meshes (KILOBAND_DATA, or shared/data beside the checkout), or empty.
+/// An existing folder of public scenes and meshes (KILOBAND_DATA, or shared/data beside the checkout), or
+/// empty.
 std::filesystem::path data_directory();
 
-/// |value - expected| in standard errors; infinite if the error is 0 and they differ by more than 1e-5 relative.
+/// |value - expected| in standard errors; infinite if the error is 0 and they differ by more than 1e-5
+/// relative.
 double z_score(double value, double expected, double variance);
 
-/// Two-sided critical |t| for `tests` simultaneous tests at family-wise rate alpha (Sidak) with R - 1 degrees of freedom.
+/// Two-sided critical |t| for `tests` simultaneous tests at family-wise rate alpha (Sidak) with R - 1 degrees
+/// of freedom.
 double critical_t(double alpha, std::size_t tests, uint32_t replicates);
 
 }  // namespace kiloband::test

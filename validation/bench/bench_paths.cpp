@@ -1,10 +1,11 @@
-// Path generation against the bare ray queries that it contains, and whole renders against the number of channels.
+// Path generation against the bare ray queries that it contains, and whole renders against the number of
+// channels.
 //
 //   bench_paths --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 //
-// Counter paths_per_second. "bare" sends the recorded rays of the same paths, path by path in the order of a scalar
-// tracer (closest hit and shadow ray of each bounce), through rtcIntersect1 / rtcOccluded1 on the same scene: the rate
-// of a tracer whose shading and random numbers cost nothing.
+// Counter paths_per_second. "bare" sends the recorded rays of the same paths, path by path in the order of a
+// scalar tracer (closest hit and shadow ray of each bounce), through rtcIntersect1 / rtcOccluded1 on the same
+// scene: the rate of a tracer whose shading and random numbers cost nothing.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -47,8 +48,9 @@ struct Bench {
 
   Bench(const std::string& name, std::size_t channels) {
     const SceneDescription scene =
-        name == "cornell" ? read_scene(std::filesystem::path(KILOBAND_SOURCE_DIR) / "scenes/cornell_box/cornell_box.xml")
-                          : read_scene_text(kConferenceScene, name, data_directory());
+        name == "cornell"
+            ? read_scene(std::filesystem::path(KILOBAND_SOURCE_DIR) / "scenes/cornell_box/cornell_box.xml")
+            : read_scene_text(kConferenceScene, name, data_directory());
     flat = flatten(scene, {parse_channels("400:700:" + std::to_string(channels)), {}, {}});
     embree = std::make_unique<EmbreeScene>(flat, "avx512", 1);
     tracer.flat = &flat;
@@ -65,7 +67,9 @@ Bench& bench_of(const std::string& name, std::size_t channels) {
   return *bench;
 }
 
-std::size_t pixels_of(const Bench& bench) { return std::size_t{bench.flat.film.crop_width} * bench.flat.film.crop_height; }
+std::size_t pixels_of(const Bench& bench) {
+  return std::size_t{bench.flat.film.crop_width} * bench.flat.film.crop_height;
+}
 
 void count_paths(benchmark::State& state, std::size_t paths_per_iteration) {
   state.counters["paths_per_second"] = benchmark::Counter(static_cast<double>(paths_per_iteration),
@@ -88,8 +92,9 @@ void generate(benchmark::State& state, const std::string& name, SamplerType samp
     benchmark::DoNotOptimize(paths.slots.data());
   }
   count_paths(state, pixels_of(bench) * kSamples);
-  state.counters["rays_per_path"] = static_cast<double>(tracer.rays()) /
-                                    (static_cast<double>(state.iterations()) * static_cast<double>(pixels_of(bench) * kSamples));
+  state.counters["rays_per_path"] =
+      static_cast<double>(tracer.rays()) /
+      (static_cast<double>(state.iterations()) * static_cast<double>(pixels_of(bench) * kSamples));
 }
 
 /// The recorded rays of all blocks in path order.
@@ -105,8 +110,10 @@ void append_in_path_order(const PathTracer::Recording& recording, BareRays& rays
   const auto shadow_base = static_cast<uint32_t>(rays.shadow.size());
   rays.closest.insert(rays.closest.end(), recording.closest.begin(), recording.closest.end());
   rays.shadow.insert(rays.shadow.end(), recording.shadow.begin(), recording.shadow.end());
-  for (uint32_t i = 0; i < recording.closest.size(); ++i) keyed.push_back({recording.closest_path[i], (closest_base + i) << 1});
-  for (uint32_t i = 0; i < recording.shadow.size(); ++i) keyed.push_back({recording.shadow_path[i], (shadow_base + i) << 1 | 1});
+  for (uint32_t i = 0; i < recording.closest.size(); ++i)
+    keyed.push_back({recording.closest_path[i], (closest_base + i) << 1});
+  for (uint32_t i = 0; i < recording.shadow.size(); ++i)
+    keyed.push_back({recording.shadow_path[i], (shadow_base + i) << 1 | 1});
   std::ranges::stable_sort(keyed, {}, &std::pair<uint32_t, uint32_t>::first);
   for (const auto& [path, code] : keyed) rays.order.push_back(code);
 }
@@ -162,8 +169,9 @@ void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) 
     SpectralFilm film({0, 0, 64, 64}, {bench.flat.channels.size(), settings.replicates, variance, false});
     for (uint32_t r = 0; r < settings.replicates; ++r) {
       for (uint32_t b = 0; b < film.blocks().size(); ++b) {
-        film.add(worker.render(film.blocks()[b], b, {r, 0, kSpp / settings.replicates}, stop, [](uint64_t) {},
-                               [](const InvalidSample&) {}));
+        film.add(worker.render(
+            film.blocks()[b], b, {r, 0, kSpp / settings.replicates}, stop, [](uint64_t) {},
+            [](const InvalidSample&) {}));
       }
     }
   }
@@ -175,11 +183,18 @@ void register_all() {
   for (const std::string name : {"cornell", "conference"}) {
     if (name == "conference" && !data) continue;
     benchmark::RegisterBenchmark(("bare/" + name).c_str(), bare, name);
-    benchmark::RegisterBenchmark(("paths/" + name + "/independent").c_str(), generate, name, SamplerType::kIndependent);
+    benchmark::RegisterBenchmark(("paths/" + name + "/independent").c_str(), generate, name,
+                                 SamplerType::kIndependent);
     benchmark::RegisterBenchmark(("paths/" + name + "/sobol").c_str(), generate, name, SamplerType::kSobol);
   }
-  benchmark::RegisterBenchmark("render/shared", render, false, WavelengthMode::kShared)->Arg(8)->Arg(64)->Arg(512)->Arg(1000);
-  benchmark::RegisterBenchmark("render/shared-variance", render, true, WavelengthMode::kShared)->Arg(8)->Arg(512);
+  benchmark::RegisterBenchmark("render/shared", render, false, WavelengthMode::kShared)
+      ->Arg(8)
+      ->Arg(64)
+      ->Arg(512)
+      ->Arg(1000);
+  benchmark::RegisterBenchmark("render/shared-variance", render, true, WavelengthMode::kShared)
+      ->Arg(8)
+      ->Arg(512);
   benchmark::RegisterBenchmark("render/per-path", render, false, WavelengthMode::kPerPath)->Arg(8)->Arg(512);
 }
 

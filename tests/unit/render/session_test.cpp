@@ -1,4 +1,7 @@
-// The render session: whole, streamed, held in a scratch file, interrupted and resumed renders are the same render.
+// The render session: whole, streamed, held in a scratch file, interrupted and resumed renders are the same
+// render.
+#include "render/session.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -8,7 +11,6 @@
 
 #include "film/cube_io.hpp"
 #include "render/checkpoint.hpp"
-#include "render/session.hpp"
 #include "scene/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "tests/support/render_harness.hpp"
@@ -21,13 +23,16 @@ constexpr uint32_t kSize = 72;  // more than two blocks, the last clipped
 class SessionTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("kiloband_session_" + std::to_string(getpid()) + "_" +
-                                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = std::filesystem::temp_directory_path() /
+              ("kiloband_session_" + std::to_string(getpid()) + "_" +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder_);
-    const std::string xml = "<scene version=\"3.0.0\">" + test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSize) +
-                            "<shape type=\"sphere\"/><emitter type=\"point\"><spectrum name=\"intensity\" value=\"400:1, 700:9\"/>"
-                            "<point name=\"position\" x=\"3\" y=\"2\" z=\"4\"/></emitter>"
-                            "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0.5\"/></emitter></scene>";
+    const std::string xml =
+        "<scene version=\"3.0.0\">" + test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSize) +
+        "<shape type=\"sphere\"/><emitter type=\"point\"><spectrum name=\"intensity\" value=\"400:1, "
+        "700:9\"/>"
+        "<point name=\"position\" x=\"3\" y=\"2\" z=\"4\"/></emitter>"
+        "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0.5\"/></emitter></scene>";
     scene_ = flatten(read_scene_text(xml, "test.xml", "."), {parse_channels("400:700:5"), {}, {}});
     settings_.stop.samples_per_pixel = 40;
     settings_.variance = true;
@@ -67,7 +72,8 @@ class SessionTest : public ::testing::Test {
 
 void expect_same(const std::vector<float>& a, const std::vector<float>& b, double tolerance) {
   ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_LE(std::abs(a[i] - b[i]), tolerance * std::abs(a[i])) << i;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_LE(std::abs(a[i] - b[i]), tolerance * std::abs(a[i])) << i;
 }
 
 TEST_F(SessionTest, StreamedStripsGiveTheBitsOfTheWholeImage) {
@@ -80,7 +86,8 @@ TEST_F(SessionTest, StreamedStripsGiveTheBitsOfTheWholeImage) {
   expect_same(a.mean, b.mean, 0);
   expect_same(a.variance, b.variance, 0);
   EXPECT_EQ(whole.image_mean.size(), 5u);
-  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(strips.image_mean[k], whole.image_mean[k], 1e-6 * whole.image_mean[k]);
+  for (std::size_t k = 0; k < 5; ++k)
+    EXPECT_NEAR(strips.image_mean[k], whole.image_mean[k], 1e-6 * whole.image_mean[k]);
   EXPECT_NEAR(*whole.mean_relative_error, *strips.mean_relative_error, 1e-9);
 }
 
@@ -101,7 +108,8 @@ TEST_F(SessionTest, InterruptedAndResumedEqualsUninterrupted) {
   settings_.checkpoint = folder_ / "render.ck";
   settings_.resume = true;
   std::atomic<bool> stop{false};
-  const RenderReport first = run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.4; });
+  const RenderReport first =
+      run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.4; });
   EXPECT_TRUE(first.interrupted);
   EXPECT_LT(first.samples_per_pixel, 40u);
   EXPECT_EQ(open_cube(folder_ / "part.hdr")->info().samples_per_pixel, first.samples_per_pixel);
@@ -143,10 +151,13 @@ TEST_F(SessionTest, CheckpointsOfOtherRendersAndDamagedOnesAreRefused) {
     return "accepted";
   };
   const std::string name = "checkpoint " + settings_.checkpoint->string();
-  EXPECT_EQ(message(), name + " belongs to another render: scene, channels, sampling, size or instruction set differ");
+  EXPECT_EQ(message(),
+            name + " belongs to another render: scene, channels, sampling, size or instruction set differ");
   settings_.fingerprint = 7;
   const auto size = std::filesystem::file_size(*settings_.checkpoint);
-  std::fstream(*settings_.checkpoint, std::ios::in | std::ios::out | std::ios::binary).seekp(5000).put('\x55');
+  std::fstream(*settings_.checkpoint, std::ios::in | std::ios::out | std::ios::binary)
+      .seekp(5000)
+      .put('\x55');
   EXPECT_EQ(message(), name + " is damaged: the checksum differs");
   std::filesystem::resize_file(*settings_.checkpoint, size / 2);
   EXPECT_EQ(message(), name + " is not a checkpoint or ends early");
@@ -187,7 +198,8 @@ TEST_F(SessionTest, TimeLimitIsKept) {
 TEST_F(SessionTest, InterruptedStripsBecomeNan) {
   settings_.memory_budget_bytes = 100000;
   std::atomic<bool> stop{false};
-  const RenderReport report = run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.5; });
+  const RenderReport report =
+      run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.5; });
   EXPECT_TRUE(report.interrupted);
   EXPECT_GT(report.pixels_without_sample, 0u);
   const Values values = read("part.hdr");
