@@ -56,10 +56,8 @@ class CpuBackend final : public Backend {
         settings_(settings),
         isa_(resolve_isa(options.isa)),
         threads_(options.threads > 0 ? options.threads : omp_get_num_procs()) {
-    complete_rough_plastics();
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
-    tracer_scene_.flat = &scene_;
-    tracer_scene_.embree = embree_.get();
+    tracer_scene_ = TracerScene(scene_, *embree_);
     for (int i = 0; i < threads_; ++i) {
       workers_.push_back(std::make_unique<BlockWorker>(tracer_scene_, derived_, settings_, isa_));
     }
@@ -77,7 +75,6 @@ class CpuBackend final : public Backend {
   std::vector<double> film_scale() const override;
 
  private:
-  void complete_rough_plastics();
   void note_invalid(const InvalidSample& sample);
   void count(BlockWorker& worker, uint64_t rays_before, uint64_t vertices_before);
 
@@ -93,18 +90,6 @@ class CpuBackend final : public Backend {
   std::mutex mutex_;
   std::vector<InvalidSample> invalid_;
 };
-
-/// Rough plastics need the transmittance of their rough boundary; its internal reflectance replaces the
-/// smooth one.
-void CpuBackend::complete_rough_plastics() {
-  tracer_scene_.rough.resize(scene_.materials.size());
-  for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
-    KbMaterial& material = scene_.materials[m];
-    if (material.type != KB_MATERIAL_ROUGH_PLASTIC) continue;
-    tracer_scene_.rough[m] = make_rough_transmittance(material);
-    material.fdr_int = tracer_scene_.rough[m].internal_reflectance;
-  }
-}
 
 void CpuBackend::note_invalid(const InvalidSample& sample) {
   ++counters_.invalid_samples;

@@ -22,11 +22,12 @@ constexpr float kLargestWeight = 1e34f;
 /// floats or is NaN already.
 bool stays_finite(const KbPathVertex& v, float& magnitude) {
   const float emitted = v.head & KB_VERTEX_EMIT ? v.emit_weight : 0.0f;
-  const float lit = v.head & KB_VERTEX_NEE ? std::fabs(v.nee0) + std::fabs(v.nee1) : 0.0f;
+  const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
+  const bool two =
+      kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;  // else the second number is no weight
+  const float lit = v.head & KB_VERTEX_NEE ? std::fabs(v.nee0) + (two ? std::fabs(v.nee1) : 0.0f) : 0.0f;
   const bool fits = magnitude * (emitted + lit) < kLargestWeight;
-  if (v.head & KB_VERTEX_SCATTER) {
-    magnitude *= std::fabs(v.scatter0) + (v.head & KB_VERTEX_DEGRADE ? 0.0f : std::fabs(v.scatter1));
-  }
+  if (v.head & KB_VERTEX_SCATTER) magnitude *= std::fabs(v.scatter0) + (two ? std::fabs(v.scatter1) : 0.0f);
   return fits && magnitude < kLargestWeight;
 }
 
@@ -35,6 +36,18 @@ void set_flag(KbPathVertex& vertex, uint32_t flag) {
 }
 
 }  // namespace
+
+TracerScene::TracerScene(FlatScene& scene, const EmbreeScene& embree_scene)
+    : flat(&scene), embree(&embree_scene), rough(scene.materials.size()), conductors(scene.materials.size()) {
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    KbMaterial& material = scene.materials[m];
+    if (material.type == KB_MATERIAL_ROUGH_PLASTIC) {
+      rough[m] = make_rough_transmittance(material);
+      material.fdr_int = rough[m].internal_reflectance;
+    }
+    if (eval_kind(material) == KB_KIND_CONDUCTOR) conductors[m] = ConductorBound(scene, material);
+  }
+}
 
 PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& settings)
     : scene_(scene), flat_(*scene.flat), settings_(settings) {
@@ -54,13 +67,12 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
   invalid.clear();
   slots_.clear();
   if (flat_.integrator.max_depth == 0) return;
-  paths_.clear();
   const auto pixels = static_cast<uint32_t>(block.pixels());
   for (uint32_t first = 0; first < pixels; first += kWavefront) {
     start_paths(block, first, std::min(kWavefront, pixels - first), id);
     run_wavefront(id, mu);
+    gather(out, invalid);
   }
-  gather(out, invalid);
 }
 
 void PathTracer::run_wavefront(const SampleId& id, std::span<const float> mu) {
@@ -76,6 +88,8 @@ void PathTracer::run_wavefront(const SampleId& id, std::span<const float> mu) {
 }
 
 void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id) {
+  paths_.clear();
+  slots_.clear();
   active_.clear();
   rays_queue_.clear();
   const uint32_t sampler =
@@ -93,14 +107,14 @@ void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t co
     const CameraRay ray = sample_camera_ray(flat_.camera, x, y, kb_sampler_block(path.key, KB_BLOCK_CAMERA));
     path.previous_point = ray.origin;
     paths_.push_back(path);
-    active_.push_back(i);
+    active_.push_back(i - first);
     rays_queue_.emplace_back(ray.origin, ray.direction, ray.t_min, ray.t_max);
   }
 }
 
 void PathTracer::record_closest() {
   recording_->closest.insert(recording_->closest.end(), rays_queue_.begin(), rays_queue_.end());
-  recording_->closest_path.insert(recording_->closest_path.end(), active_.begin(), active_.end());
+  for (const uint32_t path : active_) recording_->closest_path.push_back(paths_[path].pixel);
 }
 
 void PathTracer::record_shadows() {

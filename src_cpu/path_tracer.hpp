@@ -20,6 +20,7 @@
 #include "render/backend.hpp"
 #include "shared/sampler.h"
 #include "src_cpu/bsdf.hpp"
+#include "src_cpu/conductor_bound.hpp"
 #include "src_cpu/embree_scene.hpp"
 #include "src_cpu/emitter.hpp"
 #include "src_cpu/path_buffer.hpp"
@@ -31,7 +32,12 @@ namespace kiloband {
 struct TracerScene {
   const FlatScene* flat = nullptr;
   const EmbreeScene* embree = nullptr;
-  std::vector<RoughTransmittance> rough;  // one per material; only rough plastics use theirs
+  std::vector<RoughTransmittance> rough;   // one per material; only rough plastics use theirs
+  std::vector<ConductorBound> conductors;  // one per material; only conductors use theirs
+
+  TracerScene() = default;
+  /// Completes the tables of a scene; rough plastics get their internal reflectance.
+  TracerScene(FlatScene& scene, const EmbreeScene& embree_scene);
 };
 
 /// Which sample of every pixel: number `sample` of the pixel, `index` of its replicate.
@@ -114,6 +120,8 @@ class PathTracer {
   void pass_through(Path& path, const SurfaceHit& hit, glm::vec3 direction);
   void append(Path& path, const Draft& draft);
   void resolve_spectra(Draft& draft, const KbMaterial& material, const SurfaceHit& hit, bool use_b_for_a);
+  const KbMaterial& with_local_bounds(const KbMaterial& material, const SurfaceHit& hit,
+                                      KbMaterial& local) const;
   void gather(PathBuffer& out, std::vector<uint32_t>& invalid);
   float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
   bool wants_bounce(uint32_t bounce) const;

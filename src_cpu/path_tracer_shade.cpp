@@ -28,6 +28,21 @@ bool is_rough_dispersive(const KbMaterial& material) {
 
 }  // namespace
 
+/// A textured material with the bounds of this very point (in `local`); the bounds of the whole image would
+/// keep paths alive for ever where one texel is white.
+const KbMaterial& PathTracer::with_local_bounds(const KbMaterial& material, const SurfaceHit& hit,
+                                                KbMaterial& local) const {
+  const auto is_textured = [](uint32_t ref) {
+    return ref != KB_NONE && (ref & KB_REF_KIND_MASK) != KB_REF_SPECTRUM;
+  };
+  const bool a = is_textured(material.ref_a), b = is_textured(material.ref_b);
+  if (!a && !b) return material;
+  local = material;
+  if (a) local.bound_a = spectrum_bound(flat_, resolve_spectrum(flat_, material.ref_a, hit.uv));
+  if (b) local.bound_b = spectrum_bound(flat_, resolve_spectrum(flat_, material.ref_b, hit.uv));
+  return local;
+}
+
 bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint32_t bounce,
                        std::span<const float> mu) {
   const glm::vec3 direction = ray.direction();
@@ -57,7 +72,8 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   const bool below = wi.z < 0;
   if (below && (surface.flags & KB_SURFACE_TWO_SIDED)) side = surface.back;
   const bool black_back = below && !(surface.flags & (KB_SURFACE_TWO_SIDED | KB_SURFACE_TRANSMISSIVE));
-  const KbMaterial& record = flat_.materials[side];
+  KbMaterial local;
+  const KbMaterial& record = with_local_bounds(flat_.materials[side], hit, local);
   if (black_back || is_black(record)) {
     if (!passes) return finish(false);
     finish(true);
@@ -155,6 +171,9 @@ bool PathTracer::scatter(Draft& draft, Path& path, const SurfaceHit& hit, const 
                          const SampleId& id, uint32_t bounce, float mu) {
   const KbMaterial& record = *material.material;
   BsdfSample sample = sample_bsdf(material, wi, u.x, {u.y, u.z});
+  if (sample.kind == KB_KIND_CONDUCTOR) {
+    sample.bound *= scene_.conductors[draft.vertex.head >> KB_VERTEX_MATERIAL_SHIFT].at(sample.w1);
+  }
   const bool has_light = draft.vertex.head & KB_VERTEX_NEE;
   bool use_b = sample.lobe_b;
   if (sample.needs_channel && !refract_one_channel(draft, path, record, wi, sample, id, bounce, mu))

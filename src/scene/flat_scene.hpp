@@ -32,6 +32,7 @@ struct SpectrumRow {
   bool is_planck = false;  // then: planck_scale * planck_radiance(lambda, temperature_k) on [min_nm, max_nm]
   double temperature_k = 0, planck_scale = 1, planck_min_nm = 0, planck_max_nm = 1e300;
   bool is_emission = false;  // values are divided by the channel's scale
+  float bound = 0;           // upper bound over guide bands and rendered channels
 };
 
 /// Importance sampling of an environment map over its texels: piecewise constant in (u, v).
@@ -53,6 +54,7 @@ struct FlatScene {
   uint32_t unit_row = KB_NONE;  // a reflectance of 1, where the scene needs one (rough dispersive boundaries)
   std::vector<KbTexture> textures;
   std::vector<KbFloat4> texels;
+  std::vector<float> texel_bounds;    // per texel: upper bound of its spectrum over guide bands and channels
   std::vector<KbCheckerboard> checkerboards;
 
   std::vector<KbMaterial> materials;

@@ -62,8 +62,15 @@ void Flattener::add_area_emitter(uint32_t shape_index) {
   out_.features.area_light = true;
 
   Spectrum colour = illuminant_d65();
-  if (const auto* spectrum = std::get_if<Spectrum>(&shape.emitter->radiance)) colour = *spectrum;
-  powers_.push_back({colour, kPi * out_.shapes[shape_index].area});
+  double mean = 1;
+  if (const auto* spectrum = std::get_if<Spectrum>(&shape.emitter->radiance)) {
+    colour = *spectrum;
+  } else if (const auto* image =
+                 std::get_if<std::shared_ptr<const BitmapTexture>>(&shape.emitter->radiance)) {
+    if ((*image)->raw) colour = Spectrum::constant(1);
+    mean = texture_means_[record.ref & KB_REF_INDEX_MASK];
+  }
+  powers_.push_back({colour, mean * kPi * out_.shapes[shape_index].area});
 }
 
 KbEmitter Flattener::make_emitter(const Emitter& emitter) {
@@ -121,7 +128,7 @@ void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emit
   set_transforms(record, emitter.to_world);
   auto bitmap_texture = std::make_shared<BitmapTexture>();
   bitmap_texture->image = emitter.image;
-  const uint32_t index = bitmap(bitmap_texture, true);
+  const uint32_t index = bitmap(bitmap_texture, BitmapUse::kEmission);
   record.ref = KB_REF_BITMAP | index;
   KbTexture& texture = out_.textures[index];
   texture.flags = KB_TEXTURE_ENVMAP;
@@ -134,6 +141,7 @@ void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emit
   for (std::size_t i = 0; i < count; ++i) {
     KbFloat4& texel = out_.texels[texture.first_texel + i];
     texel.w *= static_cast<float>(emitter.scale);
+    rgb_emission_peak_ = std::max(rgb_emission_peak_, double{texel.w});
     const std::size_t channels = emitter.image->channels;
     double value = 0;
     for (std::size_t c = 0; c < channels; ++c) value += emitter.image->pixels[channels * i + c];
@@ -171,25 +179,45 @@ void Flattener::select_emitters() {
   }
 }
 
-/// The power of two below the largest channel value that an emission row reaches: path sums are then of order
-/// 1 however dim the channel is (Planck's law at 0.3 um and 200 K is 1e-96).
+namespace {
+
+/// Largest value of an emission row in a channel, W m^-2 sr^-1 nm^-1: at all knots of its table, and at five
+/// wavelengths (Planck's law is smooth).
+double peak_in(const SpectrumRow& row, const Channel& channel) {
+  double peak = 0;
+  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    const double lambda = (1 - t) * channel.min_nm + t * channel.max_nm;
+    const bool inside = lambda >= row.planck_min_nm && lambda <= row.planck_max_nm;
+    const double value = row.is_planck
+                             ? (inside ? row.planck_scale * planck_radiance(lambda, row.temperature_k) : 0)
+                             : row.table(lambda);
+    peak = std::max(peak, value);
+  }
+  if (row.is_planck || row.table.values.empty()) return peak;
+  const auto last = static_cast<double>(row.table.values.size() - 1);
+  const double from = std::clamp((channel.min_nm - row.table.min_nm) / row.table.step_nm, 0.0, last);
+  const double to = std::clamp((channel.max_nm - row.table.min_nm) / row.table.step_nm, 0.0, last);
+  for (auto i = static_cast<std::size_t>(std::ceil(from)); i <= static_cast<std::size_t>(to); ++i) {
+    peak = std::max(peak, row.table.values[i]);
+  }
+  return peak;
+}
+
+}  // namespace
+
+/// The power of two below the largest channel value that an emission row or bitmap reaches: path sums are
+/// then of order 1 however dim the channel is (Planck's law at 0.3 um and 200 K is 1e-96).
 void Flattener::set_channel_scales() {
   out_.channel_scale.assign(out_.channels.size(), 1.0);
   for (std::size_t k = 0; k < out_.channels.size(); ++k) {
     const Channel& channel = out_.channels[k];
-    double peak = 0;
-    for (const SpectrumRow& row : out_.spectra) {
-      if (!row.is_emission) continue;
-      for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-        const double lambda = (1 - t) * channel.min_nm + t * channel.max_nm;
-        const bool inside = lambda >= row.planck_min_nm && lambda <= row.planck_max_nm;
-        const double value =
-            row.is_planck ? (inside ? row.planck_scale * planck_radiance(lambda, row.temperature_k) : 0)
-                          : row.table(lambda);
-        peak = std::max(peak, value * channel.width_nm());
-      }
+    double peak = raw_emission_peak_;
+    for (std::size_t row = 0; row < out_.spectra.size(); ++row) {
+      if (!out_.spectra[row].is_emission) continue;
+      const double scale = row == d65_row_ ? std::max(1.0, rgb_emission_peak_) : 1.0;
+      peak = std::max(peak, scale * peak_in(out_.spectra[row], channel));
     }
-    if (peak > 0) out_.channel_scale[k] = std::exp2(std::floor(std::log2(peak)));
+    if (peak > 0) out_.channel_scale[k] = std::exp2(std::floor(std::log2(peak * channel.width_nm())));
   }
 }
 

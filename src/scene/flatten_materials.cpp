@@ -170,7 +170,7 @@ void Flattener::set_opacity(KbSurface& record, const MaskBsdf& mask, const Spect
   if (const auto* spectrum = std::get_if<Spectrum>(&mask.opacity)) {
     record.opacity = static_cast<float>(spectra_.guide_mean(*spectrum));
   } else if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&mask.opacity)) {
-    record.opacity_ref = KB_REF_BITMAP | bitmap(*image, false);
+    record.opacity_ref = KB_REF_BITMAP | bitmap(*image, BitmapUse::kOpacity);
   } else {
     throw InputError(use.position, use.name + ": a checkerboard is not supported here");
   }

@@ -47,15 +47,16 @@ uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use)
   if (const auto* spectrum = std::get_if<Spectrum>(&texture))
     return KB_REF_SPECTRUM | spectra_.row(*spectrum, use);
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
-    return KB_REF_BITMAP | bitmap(*image, use.emission);
+    return KB_REF_BITMAP | bitmap(*image, use.emission ? BitmapUse::kEmission : BitmapUse::kReflectance);
   }
   return KB_REF_CHECKERBOARD |
          checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
 }
 
-uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, bool emission) {
+uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use) {
+  const bool emission = use == BitmapUse::kEmission;
   const auto [place, is_new] =
-      bitmaps_.try_emplace({texture.get(), emission}, static_cast<uint32_t>(out_.textures.size()));
+      bitmaps_.try_emplace({texture.get(), use}, static_cast<uint32_t>(out_.textures.size()));
   if (!is_new) return place->second;
   out_.features.bitmap = true;
   const Image& image = *texture->image;
@@ -70,21 +71,43 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
 
   static const SigmoidTable kTable;
   const std::size_t count = std::size_t{image.width} * image.height;
-  const bool flat = texture->raw || (image.channels == 1 && !emission);
+  const bool flat = texture->raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emission);
   double sum = 0;
   double largest = 0;
+  double peak = 0;
   for (std::size_t texel = 0; texel < count; ++texel) {
     const float value = value_of(image, texel);
     const float grey[3] = {value, value, value};
     const float* rgb = image.channels == 1 ? grey : &image.pixels[3 * texel];
     out_.texels.push_back(flat ? flat_texel(value) : upsampled_texel(kTable, rgb, emission));
     sum += value;
-    largest = std::max(largest, double{out_.texels.back().w});
+    out_.texel_bounds.push_back(texel_bound(out_.texels.back()));
+    largest = std::max(largest, double{out_.texel_bounds.back()});
+    peak = std::max(peak, double{out_.texels.back().w});
   }
+  if (emission)
+    (texture->raw ? raw_emission_peak_ : rgb_emission_peak_) =
+        std::max(peak, texture->raw ? raw_emission_peak_ : rgb_emission_peak_);
   texture_means_.push_back(sum / static_cast<double>(count));
   texture_bounds_.push_back(largest);
   out_.textures.push_back(record);
   return place->second;
+}
+
+/// The sigmoid is monotonic in a parabola: its extremes are at the ends of the range or at the vertex.
+float Flattener::texel_bound(const KbFloat4& texel) const {
+  if (texel.x == 0 && texel.y == 0) return texel.w;
+  const Channel channels = hull(out_.channels), guide = hull(out_.guide);
+  const double low = std::clamp(std::min(channels.min_nm, guide.min_nm), kCieMinNm, kCieMaxNm);
+  const double high = std::clamp(std::max(channels.max_nm, guide.max_nm), kCieMinNm, kCieMaxNm);
+  const auto value = [&](double x) {
+    const double v = (texel.x * x + texel.y) * x + texel.z;
+    return 0.5 + 0.5 * v / std::sqrt(1 + v * v);
+  };
+  double largest = std::max(value(low), value(high));
+  const double vertex = -0.5 * texel.y / texel.x;
+  if (texel.x != 0 && vertex > low && vertex < high) largest = std::max(largest, value(vertex));
+  return static_cast<float>(texel.w * largest);
 }
 
 uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture,
@@ -104,7 +127,7 @@ uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture
 double Flattener::texture_mean(const Texture& texture) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.guide_mean(*spectrum);
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
-    return texture_means_[bitmap(*image, false)];
+    return texture_means_[bitmap(*image, BitmapUse::kReflectance)];
   }
   const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
   return 0.5 * (spectra_.guide_mean(board.color0) + spectra_.guide_mean(board.color1));
@@ -113,7 +136,7 @@ double Flattener::texture_mean(const Texture& texture) {
 double Flattener::texture_bound(const Texture& texture) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.bound(*spectrum);
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
-    return texture_bounds_[bitmap(*image, false)];
+    return texture_bounds_[bitmap(*image, BitmapUse::kReflectance)];
   }
   const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
   return std::max(spectra_.bound(board.color0), spectra_.bound(board.color1));

@@ -18,7 +18,10 @@ class Flattener {
  private:
   // flatten_textures.cpp
   uint32_t reference(const Texture& texture, const SpectrumSource& use);
-  uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, bool emission);
+  /// What a bitmap's values stand for; one image used in two ways is flattened twice.
+  enum class BitmapUse { kReflectance, kEmission, kOpacity };
+  uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use);
+  float texel_bound(const KbFloat4& texel) const;
   uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use);
   double texture_mean(const Texture& texture);   // over the guide bands; a bitmap's by its texels' values
   double texture_bound(const Texture& texture);  // over guide bands and channels
@@ -55,7 +58,7 @@ class Flattener {
   FlatScene out_;
   SpectrumTableBuilder spectra_;
   std::map<const void*, uint32_t> surfaces_, materials_, checkerboards_;
-  std::map<std::pair<const void*, bool>, uint32_t> bitmaps_;
+  std::map<std::pair<const void*, BitmapUse>, uint32_t> bitmaps_;
   uint32_t d65_row_ = KB_NONE;
   /// Per emitter: the spectrum that stands for its colour and the factor that makes it a power (W/nm).
   struct EmitterPower {
@@ -63,7 +66,8 @@ class Flattener {
     double factor;
   };
   std::vector<EmitterPower> powers_;
-  std::vector<double> texture_means_, texture_bounds_;  // per bitmap
+  std::vector<double> texture_means_, texture_bounds_;    // per bitmap: mean value, largest texel bound
+  double raw_emission_peak_ = 0, rgb_emission_peak_ = 0;  // largest texel scale of emitting bitmaps
 };
 
 /// Row-major 3x4 of an affine transform.

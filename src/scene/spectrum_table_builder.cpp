@@ -33,6 +33,7 @@ uint32_t SpectrumTableBuilder::row(const Spectrum& spectrum, const SpectrumSourc
   }
   check_range(spectrum, use);
   scene_.spectra.push_back(make_row(spectrum, use));
+  scene_.spectra.back().bound = static_cast<float>(bound(spectrum));
   const auto index = static_cast<uint32_t>(scene_.spectra.size() - 1);
   if (spectrum.is_constant()) constants_[key] = index;
   return index;

@@ -53,9 +53,7 @@ struct Bench {
             : read_scene_text(kConferenceScene, name, data_directory());
     flat = flatten(scene, {parse_channels("400:700:" + std::to_string(channels)), {}, {}});
     embree = std::make_unique<EmbreeScene>(flat, "avx512", 1);
-    tracer.flat = &flat;
-    tracer.embree = embree.get();
-    tracer.rough.resize(flat.materials.size());
+    tracer = TracerScene(flat, *embree);
     blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
   }
 };

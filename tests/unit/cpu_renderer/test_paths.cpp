@@ -26,10 +26,8 @@ std::vector<double> reference_means(const RenderSpec& spec, const RenderResult& 
     derived.responses.push_back(resample(response, range.min_nm, range.max_nm));
   }
   const EmbreeScene embree(scene, "sse4.2", 1);
-  TracerScene tracer_scene;
-  tracer_scene.flat = &scene;
-  tracer_scene.embree = &embree;
-  tracer_scene.rough.resize(scene.materials.size());
+  FlatScene own = scene;
+  const TracerScene tracer_scene(own, embree);
   SamplingSettings settings = spec.sampling;
   settings.replicates = result.replicates;
   PathTracer tracer(tracer_scene, settings);

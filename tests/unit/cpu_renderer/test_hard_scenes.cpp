@@ -1,0 +1,115 @@
+// Scenes in which paths could live for ever or values leave the range of floats: none may produce an invalid
+// sample.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "tests/support/render_harness.hpp"
+
+namespace kiloband::test {
+namespace {
+
+/// A folder with a 2x2 picture of dark blue, red, green and one white texel.
+class HardScenes : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("kiloband_hard_" + std::to_string(getpid()) + "_" +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+    const char texels[] = "P6\n2 2\n255\n\x20\x20\x60\x60\x20\x20\x20\x60\x20\xff\xff\xff";
+    std::ofstream(folder_ / "picture.ppm", std::ios::binary).write(texels, sizeof texels - 1);
+    spec_.directory = folder_;
+    spec_.spp = 32;
+    spec_.bands = "450:650:4";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// A closed cube around the camera with a small lamp in it, unlimited depth.
+  RenderResult render_cavity(const std::string& bsdf) {
+    spec_.xml =
+        "<scene version=\"3.0.0\">" + perspective_sensor("0, 0, 0.5", "0, 0, -1", 60, 16) +
+        "<shape type=\"cube\"><boolean name=\"flip_normals\" value=\"true\"/>" + bsdf +
+        "</shape><shape type=\"sphere\"><float name=\"radius\" value=\"0.2\"/><point name=\"center\" "
+        "x=\"0.3\" "
+        "y=\"0.6\" z=\"0\"/><bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"0\"/></bsdf>"
+        "<emitter type=\"area\"><spectrum name=\"radiance\" value=\"1\"/></emitter></shape></scene>";
+    return render(spec_);
+  }
+
+  std::filesystem::path folder_;
+  RenderSpec spec_;
+};
+
+void expect_sound(const RenderResult& result, double longest_mean_path) {
+  EXPECT_EQ(result.invalid_samples, 0u);
+  EXPECT_LT(static_cast<double>(result.vertices) / static_cast<double>(result.paths), longest_mean_path);
+  for (const double value : result.mean) ASSERT_TRUE(std::isfinite(value));
+  for (const double value : result.variance) ASSERT_TRUE(std::isfinite(value));
+}
+
+// Roulette must see the texel that is hit: with the bound of the whole picture, 1 for its white texel, no
+// path would end.
+TEST_F(HardScenes, PathsEndBetweenTexturedWallsWithOneWhiteTexel) {
+  expect_sound(
+      render_cavity(
+          "<bsdf type=\"diffuse\"><texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" "
+          "value=\"picture.ppm\"/><string name=\"filter_type\" value=\"nearest\"/></texture></bsdf>"),
+      100);  // a quarter of the walls is white: paths are long, but far from the limit of 100000
+}
+
+TEST_F(HardScenes, PathsEndBetweenCheckerboards) {
+  expect_sound(render_cavity(
+                   "<bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\"><spectrum "
+                   "name=\"color0\" value=\"1\"/><spectrum name=\"color1\" value=\"0.1\"/></texture></bsdf>"),
+               40);
+}
+
+// F is about 0.9 for n = 0.25, k = 3: roulette's bound must know it, and long chains of cosines are no
+// overflow.
+TEST_F(HardScenes, PathsEndInMetalCavities) {
+  const std::string metal =
+      "<spectrum name=\"eta\" value=\"0.25\"/><spectrum name=\"k\" value=\"3\"/></bsdf>";
+  expect_sound(render_cavity("<bsdf type=\"conductor\">" + metal), 200);
+  expect_sound(render_cavity("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.3\"/>" + metal),
+               200);
+}
+
+// A line 0.2 nm wide in a channel where everything else is 1e-96: channel scales follow the line.
+TEST_F(HardScenes, NarrowLineOverPlanckAt200KStaysFinite) {
+  spec_.bands = "300-400";
+  spec_.spp = 8192;  // one wavelength in 500 meets the line
+  spec_.xml =
+      "<scene version=\"3.0.0\">" + perspective_sensor("0, 0, 3", "0, 0, 0", 60, 8) +
+      "<shape type=\"sphere\"/><emitter type=\"constant\"><spectrum name=\"radiance\" type=\"planck\"><float "
+      "name=\"temperature\" value=\"200\"/></spectrum></emitter><emitter type=\"point\"><point "
+      "name=\"position\" "
+      "x=\"0\" y=\"0\" z=\"3\"/><spectrum name=\"intensity\" value=\"331:0, 331.1:1, "
+      "331.2:0\"/></emitter></scene>";
+  const RenderResult result = render(spec_);
+  expect_sound(result, 10);
+  EXPECT_GT(result.image_mean[0], 0);
+  EXPECT_LT(result.image_mean[0], 1);
+}
+
+// A coloured opacity picture counts by the mean of its colour, not by the scale of its upsampled spectrum.
+TEST_F(HardScenes, ColouredOpacityIsItsMean) {
+  const char red[] = "P6\n1 1\n255\n\xff\x00\x00";
+  std::ofstream(folder_ / "red.ppm", std::ios::binary).write(red, sizeof red - 1);
+  spec_.spp = 256;
+  spec_.xml =
+      "<scene version=\"3.0.0\">" + perspective_sensor("0, 0, 3", "0, 0, 0", 10, 16) +
+      "<shape type=\"rectangle\"><bsdf type=\"mask\"><texture type=\"bitmap\" name=\"opacity\"><string "
+      "name=\"filename\" value=\"red.ppm\"/></texture><bsdf type=\"diffuse\"><spectrum name=\"reflectance\" "
+      "value=\"0\"/></bsdf></bsdf></shape><emitter type=\"constant\"><spectrum name=\"radiance\" "
+      "value=\"1\"/>"
+      "</emitter></scene>";
+  const RenderResult result = render(spec_);
+  // One number per pixel sample decides: 65536 of them with probability 2/3; 5 standard errors are 0.009.
+  EXPECT_NEAR(result.image_mean[0] / 50, 2.0 / 3.0, 0.01);  // channels are 50 nm wide
+}
+
+}  // namespace
+}  // namespace kiloband::test
