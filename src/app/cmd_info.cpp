@@ -7,6 +7,7 @@
 #include "app/commands.hpp"
 #include "app/render_options.hpp"
 #include "film/spectral_film.hpp"
+#include "render/session.hpp"
 #include "scene/flat_scene.hpp"
 
 namespace kiloband {
@@ -54,12 +55,13 @@ double mebibytes(double bytes) {
   return bytes / (1024.0 * 1024.0);
 }
 
-void print_memory(const FlatScene& scene, std::size_t derived) {
+void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples) {
   const double pixels = static_cast<double>(scene.film.crop_width) * scene.film.crop_height;
   const std::size_t channels = scene.channels.size() + derived;
   const auto film = [&](bool variance) {
-    return mebibytes(pixels *
-                     static_cast<double>(SpectralFilm::bytes_per_pixel({channels, 16, variance, false})));
+    FilmOptions options{channels, 16, variance, false};
+    options.parts = replicates_in_parts(samples, options.replicates);
+    return mebibytes(pixels * static_cast<double>(SpectralFilm::bytes_per_pixel(options)));
   };
   fmt::print("image        {} x {} pixels\n", scene.film.crop_width, scene.film.crop_height);
   fmt::print("film         {:.1f} MiB, with variance {:.1f} MiB (beyond 1024 MiB strips are streamed)\n",
@@ -75,7 +77,8 @@ int info(const SceneOptions& options) {
   fmt::print("scene        {}\n", options.scene);
   print_contents(scene);
   print_channels(loaded);
-  print_memory(scene, loaded.description.sensor.film.responses.size());
+  print_memory(scene, loaded.description.sensor.film.responses.size(),
+               loaded.description.sensor.sample_count);
   const Integrator& integrator = scene.integrator;
   fmt::print("integrator   max_depth {}, rr_depth {}, {} samples per pixel\n", integrator.max_depth,
              integrator.rr_depth, loaded.description.sensor.sample_count);

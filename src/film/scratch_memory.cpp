@@ -33,11 +33,11 @@ int create_scratch_file(std::size_t bytes) {
 
 }  // namespace
 
-ScratchFloats::ScratchFloats(std::size_t count, std::size_t budget_bytes)
-    : count_(count), in_file_(count * sizeof(float) > budget_bytes) {
+ScratchFloats::ScratchFloats(std::size_t count, std::size_t budget_bytes) : count_(count) {
+  const bool in_file = count * sizeof(float) > budget_bytes;
   const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(float);
-  const int descriptor = in_file_ ? create_scratch_file(bytes) : -1;
-  const int flags = in_file_ ? MAP_SHARED : MAP_PRIVATE | MAP_ANONYMOUS;
+  const int descriptor = in_file ? create_scratch_file(bytes) : -1;
+  const int flags = in_file ? MAP_SHARED : MAP_PRIVATE | MAP_ANONYMOUS;
   void* address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, flags, descriptor, 0);
   const int error = errno;
   if (descriptor >= 0) close(descriptor);

@@ -19,12 +19,10 @@ class ScratchFloats {
 
   std::span<float> values() { return {data_, count_}; }
   std::span<const float> values() const { return {data_, count_}; }
-  bool in_file() const { return in_file_; }
 
  private:
   float* data_ = nullptr;
   std::size_t count_;
-  bool in_file_;
 };
 
 }  // namespace kiloband

@@ -5,12 +5,10 @@
 #include <utility>
 
 #include "film/scratch_memory.hpp"
+#include "film/spectral_film_parts.hpp"
 
 namespace kiloband {
 namespace {
-
-constexpr uint32_t kTilesPerRow = kBlockSize / kTileSize;
-constexpr uint32_t kTilesPerBlock = kTilesPerRow * kTilesPerRow;
 
 std::size_t tile_in_block(const PixelRect& block, std::size_t pixel) {
   const auto x = static_cast<uint32_t>(pixel % block.width);
@@ -54,6 +52,9 @@ SpectralFilm::SpectralFilm(const PixelRect& rect, const FilmOptions& options)
     if (options.variance) {
       tiles_ = std::make_unique<ReplicateMoments>(blocks_.size() * kTilesPerBlock, options.channels, true);
     }
+    if (options.parts) {
+      parts_ = std::make_unique<Parts>(rect.pixels(), blocks_.size(), options.channels, options.variance);
+    }
   }
   block_sums_.resize(blocks_.size());
   block_counts_.assign(blocks_.size(), std::vector<uint64_t>(options.replicates));
@@ -66,7 +67,9 @@ std::size_t SpectralFilm::bytes_per_pixel(const FilmOptions& options) {
   const std::size_t per_channel = options.held       ? sizeof(float) * options.replicates
                                   : options.variance ? 9
                                                      : sizeof(float);
-  return options.channels * per_channel + options.channels * options.replicates * sizeof(double) / 1024 + 32;
+  const std::size_t of_part = options.parts && !options.held ? sizeof(float) : 0;
+  return options.channels * (per_channel + of_part) +
+         options.channels * options.replicates * sizeof(double) / 1024 + 32;
 }
 
 std::size_t SpectralFilm::pixel_index(const PixelRect& block, std::size_t pixel) const {
@@ -81,7 +84,11 @@ void SpectralFilm::add(const BlockSamples& samples) {
       samples.replicate >= options_.replicates) {
     throw std::logic_error("SpectralFilm::add: samples do not have the block's shape");
   }
-  held_ ? add_held(samples, block) : add_folded(samples, block);
+  if (held_) {
+    add_held(samples, block);
+  } else {
+    parts_ ? add_part(samples, block) : add_folded(samples, block);
+  }
   add_coarse(samples, block);
 }
 
@@ -103,9 +110,7 @@ void SpectralFilm::add_held(const BlockSamples& samples, const PixelRect& block)
     const double share = static_cast<double>(samples.counts[p]) / static_cast<double>(counts[pixel]);
     float* mean = &means[pixel * options_.channels];
     const float* added = &samples.means[p * samples.stride];
-    for (std::size_t c = 0; c < options_.channels; ++c) {
-      mean[c] = static_cast<float>(mean[c] + share * (static_cast<double>(added[c]) - mean[c]));
-    }
+    combine(mean, added, share, options_.channels);
   }
 }
 
@@ -133,7 +138,11 @@ void SpectralFilm::add_coarse(const BlockSamples& samples, const PixelRect& bloc
           static_cast<float>(tile_sums[tile * channels + c] / static_cast<double>(tile_counts[tile]));
     }
     block_counts_[samples.block][samples.replicate] += tile_counts[tile];
-    if (tiles_) tiles_->add(samples.block * kTilesPerBlock + tile, tile_counts[tile], tile_mean);
+    if (tiles_ && parts_) {
+      add_tile_part(samples, tile, {&tile_sums[tile * channels], channels}, tile_counts[tile]);
+    } else if (tiles_) {
+      tiles_->add(samples.block * kTilesPerBlock + tile, tile_counts[tile], tile_mean);
+    }
   }
 }
 

@@ -3,7 +3,8 @@
 // The rectangle is cut into blocks of 32x32 pixels (aligned to the FULL film, as the shared wavelength
 // offsets are). A backend delivers, per block and replicate, the means of the replicate's samples. Two ways
 // of keeping them:
-//   folded  each block finishes one replicate after the other: mean and sum of squares per channel (8 bytes)
+//   folded  each block finishes one replicate after the other: mean and sum of squares per channel (8 bytes);
+//           if replicates come in parts, 4 more for the mean of the one that is open
 //   held    the means of every replicate stay (4 R bytes): needed when passes return to replicates (--time,
 //           --target-error), for --keep-replicates and checkpoints
 #pragma once
@@ -47,6 +48,7 @@ struct FilmOptions {
   bool variance = false;
   bool held = false;
   std::size_t memory_bytes = std::size_t{1} << 30;  // held means beyond it go to a scratch file
+  bool parts = false;  // folded: several deliveries of a replicate of a block may come
 };
 
 /// What a held film consists of beside its means: small, and enough to go on with it (checkpoints).
@@ -69,9 +71,12 @@ class SpectralFilm {
   const std::vector<PixelRect>& blocks() const { return blocks_; }
 
   /// Thread-safe for different blocks. Folded films take the replicates of a block in order; several
-  /// deliveries of the same replicate of a block are only for held films (the means are combined by their
-  /// counts).
+  /// deliveries of the same replicate of a block are for held films and for those with FilmOptions::parts
+  /// (the means are combined by their counts).
   void add(const BlockSamples& samples);
+  /// Films with parts: what is open becomes part of the moments. To be called before anything is read; no
+  /// more samples of the replicates so far may follow.
+  void finish_replicates();
 
   /// Mean and variance of the mean of one row of pixels (y relative to the rectangle): [x][channel]. variance
   /// may be empty.
@@ -104,8 +109,13 @@ class SpectralFilm {
 
  private:
   struct Held;
+  struct Parts;
   void require_held() const;
   void add_folded(const BlockSamples& samples, const PixelRect& block);
+  void add_part(const BlockSamples& samples, const PixelRect& block);
+  void add_tile_part(const BlockSamples& samples, std::size_t tile, std::span<const double> sums,
+                     uint64_t count);
+  void fold_block(uint32_t block);
   void add_held(const BlockSamples& samples, const PixelRect& block);
   void add_coarse(const BlockSamples& samples, const PixelRect& block);
   std::size_t pixel_index(const PixelRect& block, std::size_t pixel_in_block) const;
@@ -115,6 +125,7 @@ class SpectralFilm {
   std::vector<PixelRect> blocks_;
   std::unique_ptr<ReplicateMoments> pixels_;  // folded
   std::unique_ptr<Held> held_;
+  std::unique_ptr<Parts> parts_;                 // folded, replicates in parts
   std::unique_ptr<ReplicateMoments> tiles_;      // folded, with variance
   std::vector<std::vector<double>> block_sums_;  // [block][replicate * channels + channel], sum of samples
   std::vector<std::vector<uint64_t>> block_counts_;  // [block][replicate]

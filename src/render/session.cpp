@@ -14,6 +14,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr uint32_t kPartSamples = 16;  // most samples of a replicate that are rendered at a time
+
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -50,6 +52,7 @@ class Session {
         settings_.checkpoint || !settings_.stop.samples_per_pixel;  // passes come back to replicates
     options.held = settings_.keep_replicates || revisits;
     options.memory_bytes = settings_.memory_budget_bytes;
+    options.parts = !options.held && replicates_in_parts(*settings_.stop.samples_per_pixel, replicates_);
     const std::size_t row_bytes =
         image.width * (SpectralFilm::bytes_per_pixel(options) + output_bytes_per_pixel());
     const std::size_t strip = strip_rows(row_bytes, image.height);
@@ -152,10 +155,23 @@ class Session {
     for (uint32_t r = 0; r < plan.replicates && !stop_; ++r) {
       const auto target = static_cast<uint32_t>(plan.size(r));
       if (!film.options().held) {
-        backend_.render(film, {r, 0, target}, all_blocks(film), stop_, on_samples);
+        render_replicate(film, r, target, on_samples);
       } else {
         bring_to(film, r, target, stop_, on_samples);
       }
+    }
+    film.finish_replicates();
+  }
+
+  /// All blocks of a folded film, in parts if the replicate is long. The first replicate begins with single
+  /// samples, so that every pixel soon has some.
+  void render_replicate(SpectralFilm& film, uint32_t replicate, uint32_t target,
+                        const std::function<void(uint64_t)>& on_samples) {
+    uint32_t count = film.options().parts ? kPartSamples : target;
+    for (uint32_t first = 0; first < target && !stop_; first += count) {
+      if (film.options().parts) count = replicate > 0 ? kPartSamples : std::clamp(first, 1u, kPartSamples);
+      count = std::min(count, target - first);
+      backend_.render(film, {replicate, first, count}, all_blocks(film), stop_, on_samples);
     }
   }
 
@@ -295,6 +311,10 @@ class Session {
 uint32_t session_replicates(const SessionSettings& settings) {
   if (!settings.stop.samples_per_pixel) return settings.replicates;
   return ReplicatePlan::deal(*settings.stop.samples_per_pixel, settings.replicates).replicates;
+}
+
+bool replicates_in_parts(uint64_t samples_per_pixel, uint32_t replicates) {
+  return ReplicatePlan::deal(samples_per_pixel, replicates).size(0) > kPartSamples;
 }
 
 BandSelection select_bands(const FlatScene& scene, const std::vector<std::string>& derived_names) {

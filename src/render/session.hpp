@@ -82,4 +82,8 @@ RenderReport run_session(const FlatScene& scene, const std::vector<std::string>&
 /// The replicates that a session will use, to be given to the backend's SamplingSettings.
 uint32_t session_replicates(const SessionSettings& settings);
 
+/// Long replicates are rendered a few samples at a time over the image (or strip), so that an interrupted
+/// render is even: FilmOptions::parts.
+bool replicates_in_parts(uint64_t samples_per_pixel, uint32_t replicates);
+
 }  // namespace kiloband
