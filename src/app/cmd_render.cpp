@@ -96,9 +96,9 @@ SessionSettings session_settings(const RenderOptions& options, const SceneDescri
 
 /// A checkpoint belongs to one render; without one to go on from, the render starts afresh and says so.
 void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const SamplingSettings& sampling,
-                        const Backend& backend, const std::vector<std::string>& derived_names) {
+                        const Backend& backend, const DerivedChannels& derived) {
   if (!settings.checkpoint) return;
-  settings.fingerprint = render_fingerprint(scene, sampling, backend.isa(), derived_names);
+  settings.fingerprint = render_fingerprint(scene, sampling, backend.isa(), derived);
   if (settings.resume && !std::filesystem::exists(*settings.checkpoint)) {
     tell("note: no checkpoint {}: starting afresh\n", settings.checkpoint->string());
   }
@@ -170,7 +170,7 @@ int render(const RenderOptions& options) {
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
   const auto backend = make_cpu_backend(scene, derived, sampling, {parse_isa(options.isa), options.threads});
   describe_render(settings, options, sampling, *backend);
-  prepare_checkpoint(settings, scene, sampling, *backend, derived.names);
+  prepare_checkpoint(settings, scene, sampling, *backend, derived);
   catch_stop_signals();
   if (options.backend == "auto" && !options.quiet) {
     tell("backend cpu ({}, {})\n", backend->device(), backend->isa());
@@ -221,7 +221,7 @@ void add_sampling_options(CLI::App& command, RenderOptions& o) {
       ->check(CLI::Validator(check_seed, ""))
       ->capture_default_str();
   auto* spp = command.add_option("--spp", o.spp, "samples per pixel (default: the scene's)")
-                  ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 32));
+                  ->check(CLI::Range(uint64_t{1}, uint64_t{0xffffffff}));
   auto* time = command.add_option("--time", o.time, "render for this long: 60s, 5min, 2h")->excludes(spp);
   command.add_option("--target-error", o.target_error, "render until the mean relative error is below: 1%")
       ->excludes(spp)

@@ -131,7 +131,7 @@ std::array<uint64_t, 5> header_of(const SpectralFilm& film, uint64_t fingerprint
 }  // namespace
 
 uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& sampling, const std::string& isa,
-                            const std::vector<std::string>& derived_names) {
+                            const DerivedChannels& derived) {
   Hash hash;
   add_channels(hash, scene.channels);
   add_channels(hash, scene.guide);
@@ -160,7 +160,13 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   hash.add_value(static_cast<int>(sampling.sampler));
   hash.add_value(static_cast<int>(sampling.wavelengths));
   hash.add({isa.data(), isa.size()});
-  for (const std::string& name : derived_names) hash.add({name.data(), name.size()});
+  for (const std::string& name : derived.names) hash.add({name.data(), name.size()});
+  for (const RegularTable& response : derived.responses) {
+    hash.add_all(response.values);
+    hash.add_value(response.min_nm);
+    hash.add_value(response.step_nm);
+    hash.add_value(response.extrapolate);
+  }
   return hash.value();
 }
 

@@ -6,6 +6,7 @@
 
 #include "film/spectral_film.hpp"
 #include "render/backend.hpp"
+#include "scene/derived_channels.hpp"
 #include "scene/flat_scene.hpp"
 
 namespace kiloband {
@@ -14,7 +15,7 @@ namespace kiloband {
 /// channels, guide bands, camera, sampling settings, instruction set, size. The number of samples is not part
 /// of it: a render may be extended.
 uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& sampling, const std::string& isa,
-                            const std::vector<std::string>& derived_names);
+                            const DerivedChannels& derived);
 
 /// Writes the film to `file`, whole or not at all, with a checksum. throws DeviceError
 void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint);

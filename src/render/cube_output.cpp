@@ -109,17 +109,20 @@ void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
     const uint64_t samples = film.samples(x, y);
     least_ = std::min(least_, samples);
     most_ = std::max(most_, samples);
-    samples > 0 ? ++pixels_ : ++missing_;
+    missing_ += samples == 0;
+    // An error bar needs two replicates with a valid sample.
+    const bool counts = settings_.variance && samples > 0 && std::isfinite(film_variance_[x * channels]);
+    pixels_ += counts;
     float rgb[3] = {0, 0, 0};
     for (std::size_t b = 0; b < bands_.bands.size(); ++b) {
       const std::size_t c = bands_.film_channels[b];
       const float value = samples > 0 ? scaled(film_mean_[x * channels + c], scale_[c]) : kMissing;
       mean_.push_back(value);
-      if (samples > 0) mean_sum_[b] += double{film_mean_[x * channels + c]} * scale_[c];
+      if (counts) mean_sum_[b] += double{film_mean_[x * channels + c]} * scale_[c];
       if (settings_.variance) {
         const double variance = double{film_variance_[x * channels + c]} * scale_[c] * scale_[c];
         variance_.push_back(static_cast<float>(variance));
-        if (samples > 0) variance_sum_[b] += variance;
+        if (counts) variance_sum_[b] += variance;
       }
       if (settings_.preview && samples > 0) {
         for (int i = 0; i < 3; ++i) rgb[i] += preview_weights_[b][i] * value;

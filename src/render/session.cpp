@@ -233,7 +233,11 @@ class Session {
   bool error_is_small(const SpectralFilm& film) {
     if (!settings_.stop.relative_error) return false;
     error_ = film_error(film);
-    return error_ && *error_ <= *settings_.stop.relative_error;
+    // Without any light there is no relative error: a black image is given up after this many samples per
+    // pixel.
+    constexpr uint64_t kBlackSamples = 1024;
+    if (!error_) return uint64_t{least_attempted(film)} * replicates_ >= kBlackSamples;
+    return *error_ <= *settings_.stop.relative_error;
   }
 
   /// Samples per replicate of the next pass, so that it ends near the time limit: all replicates stay even.
@@ -251,14 +255,19 @@ class Session {
   std::optional<double> film_error(const SpectralFilm& film) const {
     std::vector<double> mean_sum(channels_), variance_sum(channels_);
     std::vector<float> mean(film.rect().width * channels_), variance(mean.size());
+    uint64_t pixels = 0;
     for (uint32_t y = 0; y < film.rect().height; ++y) {
       film.row(y, mean, variance);
-      for (std::size_t i = 0; i < mean.size(); ++i) {
-        mean_sum[i % channels_] += mean[i];
-        variance_sum[i % channels_] += variance[i];
+      for (std::size_t first = 0; first < mean.size(); first += channels_) {
+        if (!std::isfinite(variance[first])) continue;  // fewer than two replicates with a valid sample
+        ++pixels;
+        for (std::size_t c = 0; c < channels_; ++c) {
+          mean_sum[c] += mean[first + c];
+          variance_sum[c] += variance[first + c];
+        }
       }
     }
-    return relative_error(mean_sum, variance_sum, film.rect().pixels());
+    return relative_error(mean_sum, variance_sum, pixels);
   }
 
   void advance(uint64_t pixels) {

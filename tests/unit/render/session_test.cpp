@@ -211,7 +211,11 @@ TEST_F(SessionTest, FingerprintSeesSceneSamplingAndInstructionSet) {
   EXPECT_NE(base, render_fingerprint(scene_, other, "avx2", {}));
   EXPECT_NE(base, render_fingerprint(moved, sampling, "avx2", {}));
   EXPECT_NE(base, render_fingerprint(scene_, sampling, "sse4", {}));
-  EXPECT_NE(base, render_fingerprint(scene_, sampling, "avx2", {"x"}));
+  const DerivedChannels one{{"x"}, {RegularTable{400, 1, {1, 1}}}},
+      other_values{{"x"}, {RegularTable{400, 1, {1, 2}}}};
+  EXPECT_NE(base, render_fingerprint(scene_, sampling, "avx2", one));
+  EXPECT_NE(render_fingerprint(scene_, sampling, "avx2", one),
+            render_fingerprint(scene_, sampling, "avx2", other_values));
 }
 
 TEST_F(SessionTest, TargetErrorIsReached) {
@@ -220,6 +224,18 @@ TEST_F(SessionTest, TargetErrorIsReached) {
   const RenderReport report = run(*backend(), "error.hdr");
   EXPECT_LE(*report.mean_relative_error, 0.02);
   EXPECT_GT(*report.mean_relative_error, 0.002);  // and not by rendering for ever
+}
+
+TEST_F(SessionTest, TargetErrorGivesUpOnABlackImage) {
+  scene_.camera.to_world[11] = 1e6f;  // far behind everything; the constant light goes too
+  for (SpectrumRow& row : scene_.spectra) {
+    for (double& value : row.table.values) value = 0;
+  }
+  settings_.stop = {};
+  settings_.stop.relative_error = 0.02;
+  const RenderReport report = run(*backend(), "black.hdr");
+  EXPECT_FALSE(report.mean_relative_error);
+  EXPECT_LE(report.samples_per_pixel, 2048u);
 }
 
 TEST_F(SessionTest, TimeLimitIsKept) {
