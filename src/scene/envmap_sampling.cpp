@@ -5,11 +5,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "scene/lattice_cdf.hpp"
+
 namespace kiloband {
 namespace {
 
 constexpr double kPi = 3.141592653589793238463;
-constexpr uint32_t kCdfUnits = 1u << 24;  // floats are exact up to here
 
 void check(uint32_t width, uint32_t height, std::span<const float> texel_weights) {
   if (width == 0 || height == 0 || width > 65536 || height > 65536) {
@@ -38,23 +39,6 @@ struct RowIntegrals {
   }
   double sum() const { return upper + lower; }
 };
-
-/// Cumulative distribution of `weights` (sum > 0) as multiples of 2^-24 with at least one unit each.
-void write_cdf(std::span<const double> weights, float* cdf) {
-  const auto count = static_cast<uint32_t>(weights.size());
-  double total = 0;
-  for (const double w : weights) total += w;
-  std::vector<uint32_t> units(count + 1, 0);
-  double sum = 0;
-  for (uint32_t i = 0; i < count; ++i) {
-    sum += weights[i];
-    const auto rounded = static_cast<uint32_t>(std::lround(std::min(sum / total, 1.0) * kCdfUnits));
-    units[i + 1] = std::max(rounded, units[i] + 1);
-  }
-  units[count] = kCdfUnits;
-  for (uint32_t i = count; i-- > 1;) units[i] = std::min(units[i], units[i + 1] - 1);
-  for (uint32_t i = 0; i <= count; ++i) cdf[i] = static_cast<float>(units[i]) / kCdfUnits;
-}
 
 /// Integrals of the interpolated map over the cells of one row, [sr * weight], without the column width.
 void integrate_row(uint32_t width, uint32_t height, std::span<const float> texels, uint32_t row,
@@ -90,10 +74,10 @@ EnvmapSampling build_envmap_sampling(uint32_t width, uint32_t height, std::span<
     const RowIntegrals integrals(i, rows);
     integrate_row(width, height, texel_weights, i, integrals, row);
     for (double& w : row) w = keep * w + uniform * integrals.sum();
-    write_cdf(row, &sampling.row_cdf[static_cast<std::size_t>(i) * (width + 1)]);
+    std::ranges::copy(lattice_cdf(row), &sampling.row_cdf[static_cast<std::size_t>(i) * (width + 1)]);
     row_sums[i] = keep * row_sums[i] + uniform * width * integrals.sum();
   }
-  write_cdf(row_sums, sampling.marginal_cdf.data());
+  sampling.marginal_cdf = lattice_cdf(row_sums);
   return sampling;
 }
 

@@ -54,7 +54,7 @@ struct FlatScene {
   uint32_t unit_row = KB_NONE;  // a reflectance of 1, where the scene needs one (rough dispersive boundaries)
   std::vector<KbTexture> textures;
   std::vector<KbFloat4> texels;
-  std::vector<float> texel_bounds;    // per texel: upper bound of its spectrum over guide bands and channels
+  std::vector<float> texel_bounds;  // per texel: upper bound of its spectrum over guide bands and channels
   std::vector<KbCheckerboard> checkerboards;
 
   std::vector<KbMaterial> materials;
@@ -65,11 +65,12 @@ struct FlatScene {
   std::vector<KbFloat3> normals;    // world, unit; zero where a shape has none; empty if no shape has
   std::vector<KbFloat2> uvs;        // empty if no shape has
   std::vector<uint32_t> triangles;  // 3 absolute vertex indices each
-  std::vector<float> area_cdf;      // see KbShape::first_cdf
+  std::vector<float> area_cdf;      // see KbShape::first_cdf, lattice_cdf.hpp
 
   std::vector<KbEmitter> emitters;
-  std::vector<float> emitter_cdf;  // emitters + 1 entries, 0 to 1
-  uint32_t environment = KB_NONE;  // emitter index of the constant or envmap emitter
+  std::vector<std::string> emitter_names;  // an area light's is its shape's; empty: without id
+  std::vector<float> emitter_cdf;          // emitters + 1 entries, 0 to 1, see lattice_cdf.hpp
+  uint32_t environment = KB_NONE;          // emitter index of the constant or envmap emitter
   EnvmapSampling envmap;
   KbFloat3 scene_centre{0, 0, 0};
   float scene_radius = 0;  // bounding sphere of the geometry, m

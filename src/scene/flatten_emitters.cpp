@@ -7,6 +7,7 @@
 
 #include "scene/envmap_sampling.hpp"
 #include "scene/flattener.hpp"
+#include "scene/lattice_cdf.hpp"
 #include "spectral/colour.hpp"
 #include "spectral/planck.hpp"
 #include "spectral/rgb.hpp"
@@ -59,6 +60,7 @@ void Flattener::add_area_emitter(uint32_t shape_index) {
   set_transforms(record, Transform{1.0});
   out_.shapes[shape_index].emitter = static_cast<uint32_t>(out_.emitters.size());
   out_.emitters.push_back(record);
+  out_.emitter_names.push_back(out_.shape_names[shape_index]);
   out_.features.area_light = true;
 
   Spectrum colour = illuminant_d65();
@@ -119,6 +121,7 @@ void Flattener::add_emitters() {
     if (environment) out_.environment = static_cast<uint32_t>(out_.emitters.size());
     out_.features.delta_light |= !environment;
     out_.emitters.push_back(record);
+    out_.emitter_names.push_back(emitter.id);
   }
 }
 
@@ -128,6 +131,8 @@ void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emit
   set_transforms(record, emitter.to_world);
   auto bitmap_texture = std::make_shared<BitmapTexture>();
   bitmap_texture->image = emitter.image;
+  bitmap_texture->file = emitter.file;
+  bitmap_texture->position = use.position;
   const uint32_t index = bitmap(bitmap_texture, BitmapUse::kEmission);
   record.ref = KB_REF_BITMAP | index;
   KbTexture& texture = out_.textures[index];
@@ -152,11 +157,11 @@ void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emit
   mean /= static_cast<double>(count);
   out_.envmap = build_envmap_sampling(texture.width, texture.height, weights);
   powers_.push_back({illuminant_d65().scaled(mean), 4 * kPi * kPi * out_.scene_radius * out_.scene_radius});
-  (void)use;
 }
 
 void Flattener::select_emitters() {
   const std::size_t count = out_.emitters.size();
+  check_lattice_items(count, {in_.file.string()}, "emitters of the scene");
   std::vector<double> votes(count, 0.0);
   for (const Channel& band : out_.guide) {
     std::vector<double> power(count);
@@ -165,17 +170,18 @@ void Flattener::select_emitters() {
       power[i] = std::max(0.0, powers_[i].factor * powers_[i].spectrum.integral(band.min_nm, band.max_nm));
       total += power[i];
     }
-    for (std::size_t i = 0; i < count && total > 0; ++i) votes[i] += power[i] / total;
+    if (!(total > 0) || !std::isfinite(total)) continue;
+    for (std::size_t i = 0; i < count; ++i) votes[i] += power[i] / total;
   }
   double sum = 0;
   for (const double vote : votes) sum += vote;
-  out_.emitter_cdf.assign(1, 0.0f);
-  double cumulative = 0;
+  const double uniform = 1.0 / static_cast<double>(count);
+  for (double& vote : votes) {
+    vote = sum > 0 ? (1 - kUniformSelection) * vote / sum + kUniformSelection * uniform : uniform;
+  }
+  out_.emitter_cdf = lattice_cdf(votes);
   for (std::size_t i = 0; i < count; ++i) {
-    const double uniform = 1.0 / static_cast<double>(count);
-    cumulative += sum > 0 ? (1 - kUniformSelection) * votes[i] / sum + kUniformSelection * uniform : uniform;
-    out_.emitter_cdf.push_back(i + 1 == count ? 1.0f : static_cast<float>(cumulative));
-    out_.emitters[i].select_pdf = out_.emitter_cdf[i + 1] - out_.emitter_cdf[i];
+    out_.emitters[i].select_pdf = out_.emitter_cdf[i + 1] - out_.emitter_cdf[i];  // exact
   }
 }
 

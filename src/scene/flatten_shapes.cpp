@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "scene/flattener.hpp"
+#include "scene/lattice_cdf.hpp"
 
 namespace kiloband {
 namespace {
@@ -106,28 +107,29 @@ void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) 
   }
   if (!out_.normals.empty()) out_.normals.resize(out_.positions.size(), KbFloat3{0, 0, 0});
   if (!out_.uvs.empty()) out_.uvs.resize(out_.positions.size(), KbFloat2{0, 0});
-  add_area_cdf(record);
-  if (!shape.emitter) {
-    out_.area_cdf.resize(record.first_cdf);
-    record.first_cdf = KB_NONE;
-  }
+  add_areas(record, shape);
 }
 
-/// Appends the cumulative areas of the triangles, 0 to 1; the total goes to the record.
-void Flattener::add_area_cdf(KbShape& record) {
-  record.first_cdf = static_cast<uint32_t>(out_.area_cdf.size());
-  std::vector<double> sums(record.triangle_count + 1, 0.0);
+/// The record's area; an area light also gets the table that its triangles are chosen by.
+void Flattener::add_areas(KbShape& record, const Shape& shape) {
+  std::vector<double> areas(record.triangle_count);
+  double total = 0;
   for (uint32_t i = 0; i < record.triangle_count; ++i) {
     const uint32_t* index = &out_.triangles[3 * (std::size_t{record.first_triangle} + i)];
     const glm::dvec3 p0 = to_glm(out_.positions[index[0]]);
     const glm::dvec3 e1 = to_glm(out_.positions[index[1]]) - p0;
     const glm::dvec3 e2 = to_glm(out_.positions[index[2]]) - p0;
-    sums[i + 1] = sums[i] + 0.5 * glm::length(glm::cross(e1, e2));
+    areas[i] = 0.5 * glm::length(glm::cross(e1, e2));
+    total += areas[i];
   }
-  const double total = sums.back();
-  for (const double sum : sums) out_.area_cdf.push_back(total > 0 ? static_cast<float>(sum / total) : 0.0f);
-  out_.area_cdf.back() = 1;
   record.area = static_cast<float>(total);
+  record.first_cdf = KB_NONE;
+  if (!shape.emitter) return;
+  if (!std::isfinite(total)) throw InputError(shape.position, "area light: its area in m^2 must be finite");
+  check_lattice_items(areas.size(), shape.position, "triangles of an area light");
+  record.first_cdf = static_cast<uint32_t>(out_.area_cdf.size());
+  const std::vector<float> cdf = lattice_cdf(areas);
+  out_.area_cdf.insert(out_.area_cdf.end(), cdf.begin(), cdf.end());
 }
 
 void Flattener::compute_bounds() {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -38,6 +40,18 @@ void store_uv(const glm::dmat3& to_uv, float (&out)[6]) {
 
 }  // namespace
 
+uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePosition& position,
+                           const std::string& name) {
+  constexpr std::size_t kMost = std::size_t{1} << 32;
+  if (before > kMost || count > kMost - before) {
+    throw InputError(position,
+                     fmt::format("texture '{}': {} texels after {} of other textures: all textures of a "
+                                 "scene may have {} texels together",
+                                 name, count, before, kMost));
+  }
+  return static_cast<uint32_t>(before);
+}
+
 uint32_t Flattener::d65_row() {
   if (d65_row_ == KB_NONE) d65_row_ = spectra_.row(illuminant_d65(), {"RGB emission (D65)", {}, true});
   return d65_row_;
@@ -63,14 +77,15 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
   KbTexture record{};
   record.width = image.width;
   record.height = image.height;
-  record.first_texel = static_cast<uint32_t>(out_.texels.size());
+  const std::size_t count = std::size_t{image.width} * image.height;
+  record.first_texel = first_texel_index(out_.texels.size(), count, texture->position,
+                                         texture->id.empty() ? texture->file.string() : texture->id);
   record.wrap = static_cast<uint32_t>(texture->wrap);
   record.flags = texture->nearest ? KB_TEXTURE_NEAREST : 0;
   record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
   store_uv(texture->to_uv, record.to_uv);
 
   static const SigmoidTable kTable;
-  const std::size_t count = std::size_t{image.width} * image.height;
   const bool flat = texture->raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emission);
   double sum = 0;
   double largest = 0;

@@ -39,7 +39,7 @@ class Flattener {
   // flatten_shapes.cpp
   void add_shapes();
   void add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh);
-  void add_area_cdf(KbShape& record);
+  void add_areas(KbShape& record, const Shape& shape);
   void compute_bounds();
 
   // flatten_emitters.cpp
@@ -69,6 +69,11 @@ class Flattener {
   std::vector<double> texture_means_, texture_bounds_;    // per bitmap: mean value, largest texel bound
   double raw_emission_peak_ = 0, rgb_emission_peak_ = 0;  // largest texel scale of emitting bitmaps
 };
+
+/// KbTexture::first_texel of a bitmap of `count` texels after `before` others. name is the bitmap's, for the
+/// message. throws InputError  the last texel's index does not fit into 32 bits
+uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePosition& position,
+                           const std::string& name);
 
 /// Row-major 3x4 of an affine transform.
 void store_transform(const Transform& transform, float (&out)[12]);
