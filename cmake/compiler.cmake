@@ -33,3 +33,16 @@ function(kiloband_test name)
                                              KILOBAND_BINARY_DIR="${PROJECT_BINARY_DIR}")
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
 endfunction()
+
+# kiloband_opencl_test(name SOURCES ... DEPENDS ...): the same for tests that run kernels. Leaks of PoCL itself are not
+# ours to report.
+function(kiloband_opencl_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE kiloband_flags ${ARG_DEPENDS} OpenCL::OpenCL OpenCL::HeadersCpp GTest::gtest
+                                        GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE KILOBAND_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                                             KILOBAND_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT
+                       "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/unit/shared/lsan_suppressions.txt")
+endfunction()

@@ -52,7 +52,7 @@ typedef struct {
   float specular_weight; /* plastic: probability scale of the specular lobe, s / (s + d) of the guide means, mixed with uniform */
   float bound_a;    /* upper bound of ref_a over guide and rendered channels */
   float bound_b;    /* the same of ref_b */
-  kb_u32 reserved;
+  kb_u32 table;     /* OpenCL: where the material's table of scalars begins (rough plastic, conductors), or KB_NONE */
 } KbMaterial;
 KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 

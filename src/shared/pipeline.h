@@ -1,0 +1,162 @@
+// Records of the streaming pipeline: what its kernels keep between launches, and what the host tells them.
+//
+// A ROUND renders S samples of Q pixels: its jobs are numbered sample * padded_pixels + pixel, where
+// padded_pixels is Q rounded up to a multiple of the pool's size P. Slot s of the pool takes the jobs s, s + P,
+// s + 2P ..., so a pixel belongs to one slot: what is added to it is added in the order of its samples, however
+// the device schedules. Vertices of saved paths lie in an arena of 32-byte slots, in chunks of KB_CHUNK_SLOTS
+// that are handed out by a counter and linked by chunk_next[].
+#ifndef KILOBAND_SHARED_PIPELINE_H
+#define KILOBAND_SHARED_PIPELINE_H
+
+#include "shared/lang.h"
+#include "shared/records.h"
+
+#define KB_CHUNK_SLOTS 4u
+
+/* ---- the scene beside its arrays --------------------------------------------------------------------------------- */
+typedef struct {
+  KbCamera camera;
+  kb_u32 channels;       /* K */
+  kb_u32 emitter_count;
+  kb_u32 environment;    /* emitter, or KB_NONE */
+  kb_u32 max_depth;      /* as Mitsuba counts; KB_NONE: unlimited */
+  kb_u32 rr_depth;
+  kb_u32 hide_emitters;
+  kb_u32 unit_row;       /* a reflectance of 1, or KB_NONE */
+  kb_u32 envmap_width;   /* cells of the environment map's distribution */
+  kb_u32 envmap_height;
+  float filter_ratio;    /* gaussian: radius / stddev of the table */
+  kb_u32 reserved[6];
+} KbSceneConstants;
+KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
+
+/* ---- ray tracing ------------------------------------------------------------------------------------------------- */
+/* A primitive of the acceleration structure: a triangle of a mesh (corners), or a whole analytic shape. */
+typedef struct {
+  float corner[9];  /* mesh: three world positions; else not used */
+  kb_u32 shape;
+  kb_u32 primitive; /* triangle within the shape; 0 for analytic shapes */
+  kb_u32 analytic;  /* KbShapeType of the shape: 0 is a mesh's triangle */
+} KbPrimitive;
+KB_STATIC_ASSERT(sizeof(KbPrimitive) == 48, primitive_size);
+
+/* An inner node: the boxes of both children. child >= 0: an inner node; else a leaf of `count` primitives from
+   ~child on. count is 0 for inner nodes. Source of the layout: Aila, Laine, Understanding the Efficiency of
+   Ray Traversal on GPUs, 2009. */
+typedef struct {
+  float low0[3], high0[3];
+  float low1[3], high1[3];
+  kb_i32 child[2];
+  kb_u32 count[2];
+} KbBvhNode;
+KB_STATIC_ASSERT(sizeof(KbBvhNode) == 64, bvh_node_size);
+
+/* A closest-hit query; hits lie in (t_min, t_max). `previous` is what multiple importance sampling needs of the
+   vertex the ray comes from. */
+typedef struct {
+  float origin[3];
+  float t_min;
+  float direction[3];
+  float t_max;
+  float previous_point[3];
+  float previous_pdf; /* solid angle, of the BSDF sample */
+} KbRay;
+KB_STATIC_ASSERT(sizeof(KbRay) == 48, ray_size);
+
+typedef struct {
+  float t;
+  float u, v;       /* barycentric coordinates of a mesh hit: of the second and third corner */
+  kb_u32 primitive; /* index of a KbPrimitive, or KB_NONE: a miss */
+} KbHit;
+KB_STATIC_ASSERT(sizeof(KbHit) == 16, hit_size);
+
+/* An occlusion query over (0, t_max); t_max < 0: there is none. */
+typedef struct {
+  float origin[3];
+  float t_max;
+  float direction[3];
+  kb_u32 vertex; /* arena slot whose KB_VERTEX_NEE goes if something is in between */
+} KbShadowRay;
+KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
+
+/* ---- path state -------------------------------------------------------------------------------------------------- */
+#define KB_PATH_BOUNCE_MASK 0x00ffffffu
+#define KB_PATH_LIVE 0x01000000u           /* has a ray to trace */
+#define KB_PATH_ENDED 0x02000000u          /* complete, not yet handed over to evaluation */
+#define KB_PATH_INVALID 0x04000000u        /* a weight is not finite, or the path is endless */
+#define KB_PATH_PREVIOUS_DELTA 0x08000000u /* the ray was not sampled from a density */
+#define KB_PATH_FINISHED 0x10000000u       /* the slot has no more jobs */
+
+typedef struct {
+  kb_u32 job;
+  kb_u32 flags;    /* bounce | KB_PATH_* */
+  float bound;     /* upper bound of the throughput over all channels, without radiance scaling */
+  float magnitude; /* product of the scatter weights */
+  kb_u32 channel;  /* the one that survived a dispersive refraction, or KB_NONE */
+  kb_u32 chunk;    /* of the arena, being filled */
+  kb_u32 length;   /* arena slots of this path so far */
+  kb_u32 lit;      /* arena slots up to and with the last vertex that has light */
+} KbPathState;
+KB_STATIC_ASSERT(sizeof(KbPathState) == 32, path_state_size);
+
+/* A pixel of the round. */
+typedef struct {
+  kb_u32 x, y;  /* in the full film */
+  kb_u32 block; /* within the round: pixels of a block share mu */
+} KbRoundPixel;
+KB_STATIC_ASSERT(sizeof(KbRoundPixel) == 12, round_pixel_size);
+
+/* A saved path: arena slots from `chunk` on; count 0: nothing that contributes. */
+#define KB_SAVED_INVALID 0xffffffffu
+typedef struct {
+  kb_u32 chunk;
+  kb_u32 count; /* slots, or KB_SAVED_INVALID */
+} KbSavedPath;
+KB_STATIC_ASSERT(sizeof(KbSavedPath) == 8, saved_path_size);
+
+#define KB_WAVELENGTHS_SHARED 0u
+#define KB_WAVELENGTHS_PER_PATH 1u
+
+typedef struct {
+  kb_u64 seed;
+  kb_u32 sampler;       /* KB_SAMPLER_* */
+  kb_u32 wavelengths;   /* KB_WAVELENGTHS_* */
+  kb_u32 replicates;    /* R */
+  kb_u32 replicate;
+  kb_u32 first_index;   /* in the replicate, of the round's first sample */
+  kb_u32 samples;       /* S */
+  kb_u32 pixels;        /* Q */
+  kb_u32 padded_pixels; /* a multiple of pool */
+  kb_u32 pool;          /* P, slots in use */
+  kb_u32 blocks;        /* of the round */
+  kb_u32 arena_chunks;  /* capacity */
+  kb_u32 reserved[3];
+} KbRound;
+KB_STATIC_ASSERT(sizeof(KbRound) == 64, round_size);
+
+/* ---- faults: kernels write, the host reads ------------------------------------------------------------------------ */
+#define KB_FAULT_ARENA_FULL 1u     /* the round is repeated with fewer paths */
+#define KB_FAULT_STACK_OVERFLOW 2u /* a traversal needs more stack than the measured depth: our bug */
+#define KB_FAULT_BAD_INDEX 4u      /* a record refers to what does not exist: our bug */
+
+typedef struct {
+  kb_u32 code;         /* KB_FAULT_* bits */
+  kb_u32 slot;         /* of one that raised it */
+  kb_u32 chunks;       /* arena chunks asked for */
+  kb_u32 active;       /* slots that are not finished, after the last compaction */
+  kb_u32 rays_low, rays_high;         /* rays traced */
+  kb_u32 vertices_low, vertices_high; /* vertices appended */
+} KbFaults;
+KB_STATIC_ASSERT(sizeof(KbFaults) == 32, faults_size);
+
+/* ---- spectra ------------------------------------------------------------------------------------------------------
+   Every row of spectra is tabulated over mu in each channel: node j of channel k is the value at
+   mu = j / cells. Between nodes it is linear; the number of cells follows from an error bound. Values stand at
+   nodes[first + j * stride + k], j = 0 .. cells. */
+typedef struct {
+  kb_u32 first;
+  kb_u32 cells; /* at least 1 */
+} KbChannelTable;
+KB_STATIC_ASSERT(sizeof(KbChannelTable) == 8, channel_table_size);
+
+#endif

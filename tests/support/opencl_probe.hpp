@@ -1,0 +1,70 @@
+// Runs small probe kernels on the first OpenCL device (PoCL in tests), to compare what kernels/*.clh compute with C++.
+#pragma once
+
+#define CL_HPP_ENABLE_EXCEPTIONS
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#include <CL/opencl.hpp>
+#include <cstdlib>
+#include <stdexcept>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace kiloband::test {
+
+/// One device, one program built from source text whose includes are rooted at kernels/, src/ and the project.
+/// throws std::runtime_error with the build log
+class OpenclProbe {
+ public:
+  explicit OpenclProbe(const std::string& source, const std::string& options = "") {
+    setenv("POCL_WORK_GROUP_METHOD", "loops", 0);  // PoCL's default method is 7 to 9 times slower
+    std::vector<cl::Platform> platforms;
+    cl::Platform::get(&platforms);
+    if (platforms.empty()) throw std::runtime_error("no OpenCL platform");
+    std::vector<cl::Device> devices;
+    platforms.front().getDevices(CL_DEVICE_TYPE_ALL, &devices);
+    device = devices.front();
+    context = cl::Context(device);
+    queue = cl::CommandQueue(context, device);
+    program = cl::Program(context, source);
+    const std::string root = KILOBAND_SOURCE_DIR;
+    const std::string flags = "-cl-std=CL1.2 -I" + root + "/kernels -I" + root + "/src -I" + root + " " + options;
+    try {
+      program.build(flags.c_str());
+    } catch (const cl::Error&) {
+      throw std::runtime_error("kernel build:\n" + program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
+    }
+  }
+
+  /// A device copy of `values` (of one byte if there are none).
+  template <class T>
+  cl::Buffer upload(const std::vector<T>& values) {
+    const std::size_t bytes = std::max<std::size_t>(values.size() * sizeof(T), 1);
+    cl::Buffer buffer(context, CL_MEM_READ_WRITE, bytes);
+    if (!values.empty()) queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, values.size() * sizeof(T), values.data());
+    return buffer;
+  }
+  template <class T>
+  std::vector<T> download(const cl::Buffer& buffer, std::size_t count) {
+    std::vector<T> values(count);
+    queue.enqueueReadBuffer(buffer, CL_TRUE, 0, count * sizeof(T), values.data());
+    return values;
+  }
+  /// Runs `name` over `items` work-items with the arguments in order.
+  template <class... Args>
+  void run(const char* name, std::size_t items, const Args&... args) {
+    cl::Kernel kernel(program, name);
+    cl_uint index = 0;
+    (kernel.setArg(index++, args), ...);
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NullRange);
+    queue.finish();
+  }
+
+  cl::Device device;
+  cl::Context context;
+  cl::CommandQueue queue;
+  cl::Program program;
+};
+
+}  // namespace kiloband::test
