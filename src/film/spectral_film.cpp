@@ -16,6 +16,11 @@ std::size_t tile_in_block(const PixelRect& block, std::size_t pixel) {
   return (y / kTileSize) * kTilesPerRow + x / kTileSize;
 }
 
+/// Sample counts of a pixel's replicates.
+std::size_t held_count_bytes(const FilmOptions& options) {
+  return sizeof(uint64_t) * options.replicates;
+}
+
 }  // namespace
 
 std::vector<PixelRect> cut_into_blocks(const PixelRect& rect) {
@@ -42,9 +47,10 @@ struct SpectralFilm::Held {
 SpectralFilm::SpectralFilm(const PixelRect& rect, const FilmOptions& options)
     : rect_(rect), options_(options), blocks_(cut_into_blocks(rect)) {
   if (options.held) {
+    const std::size_t counts = held_count_bytes(options) * rect.pixels();
     held_ = std::unique_ptr<Held>(
         new Held{ScratchFloats(std::size_t{options.replicates} * rect.pixels() * options.channels,
-                               options.memory_bytes),
+                               options.memory_bytes - std::min(options.memory_bytes, counts)),
                  std::vector(options.replicates, std::vector<uint64_t>(rect.pixels())),
                  std::vector(options.replicates, std::vector<uint32_t>(blocks_.size()))});
   } else {
@@ -68,8 +74,9 @@ std::size_t SpectralFilm::bytes_per_pixel(const FilmOptions& options) {
                                   : options.variance ? 9
                                                      : sizeof(float);
   const std::size_t of_part = options.parts && !options.held ? sizeof(float) : 0;
+  const std::size_t counts = options.held ? held_count_bytes(options) : 0;
   return options.channels * (per_channel + of_part) +
-         options.channels * options.replicates * sizeof(double) / 1024 + 32;
+         options.channels * options.replicates * sizeof(double) / 1024 + counts + 32;
 }
 
 std::size_t SpectralFilm::pixel_index(const PixelRect& block, std::size_t pixel) const {
@@ -203,7 +210,7 @@ std::span<const float> SpectralFilm::held_means() const {
   return std::as_const(held_->means).values();
 }
 
-HeldCounts SpectralFilm::held_counts() const {
+HeldCountsView SpectralFilm::held_counts() const {
   require_held();
   return {held_->samples, held_->attempted, block_sums_, block_counts_};
 }

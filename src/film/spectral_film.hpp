@@ -5,7 +5,8 @@
 // of keeping them:
 //   folded  each block finishes one replicate after the other: mean and sum of squares per channel (8 bytes);
 //           if replicates come in parts, 4 more for the mean of the one that is open
-//   held    the means of every replicate stay (4 R bytes): needed when passes return to replicates (--time,
+//   held    the means of every replicate stay (4 R bytes, and 8 R per pixel for their counts): needed when
+//   passes return to replicates (--time,
 //           --target-error), for --keep-replicates and checkpoints
 #pragma once
 
@@ -47,8 +48,9 @@ struct FilmOptions {
   uint32_t replicates = 1;
   bool variance = false;
   bool held = false;
-  std::size_t memory_bytes = std::size_t{1} << 30;  // held means beyond it go to a scratch file
-  bool parts = false;  // folded: several deliveries of a replicate of a block may come
+  std::size_t memory_bytes = std::size_t{1}
+                             << 30;  // held means that with their counts take more go to a scratch file
+  bool parts = false;                // folded: several deliveries of a replicate of a block may come
 };
 
 /// What a held film consists of beside its means: small, and enough to go on with it (checkpoints).
@@ -58,6 +60,16 @@ struct HeldCounts {
   std::vector<std::vector<double>>
       block_sums;  // [block][replicate * channels + channel]; empty: no sample yet
   std::vector<std::vector<uint64_t>> block_samples;  // [block][replicate]
+};
+
+/// The same where it stands: nothing is copied. Valid as long as the film.
+struct HeldCountsView {
+  const std::vector<std::vector<uint64_t>>& samples;
+  const std::vector<std::vector<uint32_t>>& attempted;
+  const std::vector<std::vector<double>>& block_sums;
+  const std::vector<std::vector<uint64_t>>& block_samples;
+
+  HeldCounts copy() const { return {samples, attempted, block_sums, block_samples}; }
 };
 
 class SpectralFilm {
@@ -91,7 +103,7 @@ class SpectralFilm {
   /// held films: all means [replicate][pixel][channel] and the counts beside them, to be saved and restored.
   std::span<float> held_means();
   std::span<const float> held_means() const;
-  HeldCounts held_counts() const;
+  HeldCountsView held_counts() const;
   /// throws std::logic_error if the shapes differ
   void restore(HeldCounts counts);
 

@@ -172,7 +172,7 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
 
 void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint) {
   Writer out(file);
-  const HeldCounts counts = film.held_counts();
+  const HeldCountsView counts = film.held_counts();
   out.put(kMagic);
   out.put_all<uint64_t>(header_of(film, fingerprint));
   out.put_all<float>(film.held_means());
@@ -193,7 +193,7 @@ uint64_t read_checkpoint(const std::filesystem::path& file, SpectralFilm& film, 
     if (in.get() != expected)
       in.fail("belongs to another render: scene, channels, sampling, size or instruction set differ");
   }
-  HeldCounts counts = film.held_counts();
+  HeldCounts counts = film.held_counts().copy();
   in.get_all<float>(film.held_means());
   for (auto& samples : counts.samples) in.get_all<uint64_t>(samples);
   for (auto& attempted : counts.attempted) in.get_all<uint32_t>(attempted);

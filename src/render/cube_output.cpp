@@ -36,17 +36,6 @@ std::vector<std::string> auxiliary_planes(const std::vector<std::string>& images
   return planes;
 }
 
-std::optional<double> relative_error(const std::vector<double>& mean_sum,
-                                     const std::vector<double>& variance_sum, uint64_t pixels) {
-  std::optional<double> largest;
-  for (std::size_t b = 0; b < mean_sum.size() && pixels > 0; ++b) {
-    if (!(mean_sum[b] > 0) || !std::isfinite(variance_sum[b])) continue;
-    const auto n = static_cast<double>(pixels);
-    largest = std::max(largest.value_or(0), std::sqrt(variance_sum[b] / n) / (mean_sum[b] / n));
-  }
-  return largest;
-}
-
 CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
                        const std::vector<double>& film_scale, const SessionSettings& settings,
                        uint32_t replicates, uint64_t samples_per_pixel, uint32_t rows_per_strip)
@@ -56,7 +45,8 @@ CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
       width_(scene.film.crop_width),
       height_(scene.film.crop_height),
       strip_(rows_per_strip),
-      aux_names_(auxiliary_planes(settings.aux)) {
+      aux_names_(auxiliary_planes(settings.aux)),
+      errors_(bands.bands.size()) {
   CubeInfo info;
   info.width = width_;
   info.height = height_;
@@ -90,8 +80,6 @@ CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
     preview_weights_ = preview_weights(bands.bands);
     preview_.reserve(std::size_t{3} * width_ * height_);
   }
-  mean_sum_.assign(bands.bands.size(), 0.0);
-  variance_sum_.assign(bands.bands.size(), 0.0);
 }
 
 float CubeOutput::scaled(float value, double scale) {
@@ -110,19 +98,15 @@ void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
     least_ = std::min(least_, samples);
     most_ = std::max(most_, samples);
     missing_ += samples == 0;
-    // An error bar needs two replicates with a valid sample.
-    const bool counts = settings_.variance && samples > 0 && std::isfinite(film_variance_[x * channels]);
-    pixels_ += counts;
     float rgb[3] = {0, 0, 0};
     for (std::size_t b = 0; b < bands_.bands.size(); ++b) {
       const std::size_t c = bands_.film_channels[b];
       const float value = samples > 0 ? scaled(film_mean_[x * channels + c], scale_[c]) : kMissing;
       mean_.push_back(value);
-      if (counts) mean_sum_[b] += double{film_mean_[x * channels + c]} * scale_[c];
       if (settings_.variance) {
         const double variance = double{film_variance_[x * channels + c]} * scale_[c] * scale_[c];
         variance_.push_back(static_cast<float>(variance));
-        if (counts) variance_sum_[b] += variance;
+        if (samples > 0) errors_.add(b, double{film_mean_[x * channels + c]} * scale_[c], variance);
       }
       if (settings_.preview && samples > 0) {
         for (int i = 0; i < 3; ++i) rgb[i] += preview_weights_[b][i] * value;
@@ -218,7 +202,7 @@ void CubeOutput::finish(RenderReport& report) {
   report.largest_samples_per_pixel = most_;
   report.pixels_without_sample = missing_;
   report.underflowed_values = underflowed_;
-  if (settings_.variance) report.mean_relative_error = relative_error(mean_sum_, variance_sum_, pixels_);
+  if (settings_.variance) report.mean_relative_error = errors_.relative_error();
   report.written = files_;
 }
 

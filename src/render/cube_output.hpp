@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "render/error_sums.hpp"
 #include "render/session.hpp"
 
 namespace kiloband {
@@ -43,16 +44,12 @@ class CubeOutput {
   uint32_t first_row_ = 0, rows_ = 0;
   std::vector<std::array<float, 3>> preview_weights_;
   std::vector<float> preview_;
-  std::vector<double> mean_sum_, variance_sum_;  // per band over pixels with samples
-  uint64_t pixels_ = 0, missing_ = 0, least_ = ~0ull, most_ = 0, underflowed_ = 0;
+  ErrorSums errors_;
+  uint64_t missing_ = 0, least_ = ~0ull, most_ = 0, underflowed_ = 0;
   std::vector<std::filesystem::path> files_;
 };
 
 /// Names of the planes of an auxiliary image: "normal" gives normal.X, normal.Y, normal.Z.
 std::vector<std::string> auxiliary_planes(const std::vector<std::string>& images);
-
-/// RMS standard error over image mean, the largest over bands with a positive mean.
-std::optional<double> relative_error(const std::vector<double>& mean_sum,
-                                     const std::vector<double>& variance_sum, uint64_t pixels);
 
 }  // namespace kiloband

@@ -1,0 +1,58 @@
+// The sampling of a session: which replicate gets how many samples next, until the stop rule is met; progress
+// and checkpoints on the way.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "render/session.hpp"
+
+namespace kiloband {
+
+class Passes {
+ public:
+  /// All references must outlive the object.
+  Passes(Backend& backend, const SessionSettings& settings, uint32_t replicates,
+         const std::atomic<bool>& stop, const std::function<void(const Progress&)>& progress);
+
+  /// Pixel samples of the whole session, and those that a checkpoint brought: for the progress.
+  void expect(uint64_t total, uint64_t resumed);
+  /// Fills a film, to the end of the stop rule or until `stop`. Sessions of strips call it for each.
+  void render(SpectralFilm& film);
+
+  double seconds() const { return seconds_; }             // spent in render()
+  std::optional<double> error() const { return error_; }  // target error: the last one known
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void render_fixed(SpectralFilm& film);
+  void render_replicate(SpectralFilm& film, uint32_t replicate, uint32_t target);
+  void render_passes(SpectralFilm& film);
+  void bring_to(SpectralFilm& film, uint32_t replicate, uint32_t target, const std::atomic<bool>& stop,
+                const std::function<void(uint64_t)>& on_samples);
+  uint32_t next_part(uint32_t replicate, uint32_t first, uint32_t target) const;
+  void save_now_and_then(const SpectralFilm& film, double step_seconds);
+  bool error_is_small(const SpectralFilm& film);
+  uint32_t least_attempted(const SpectralFilm& film) const;
+  uint32_t samples_that_fit(uint32_t done, uint32_t wanted) const;
+  bool out_of_time() const;
+  double fraction() const;
+  void advance(uint64_t pixels);
+  void tell_progress(double fraction) const;
+
+  Backend& backend_;
+  const SessionSettings& settings_;
+  const uint32_t replicates_;
+  const std::atomic<bool>& stop_;
+  const std::function<void(const Progress&)>& progress_;
+  const bool in_parts_;
+  Clock::time_point start_, last_checkpoint_;
+  double seconds_ = 0;
+  uint32_t step_ = 1;  // samples per replicate between looks at the checkpoint clock
+  uint64_t done_ = 0, total_ = 0, resumed_ = 0;  // pixel samples
+  std::optional<double> error_;
+  uint64_t error_done_ = 0;  // done_ when error_ was found
+};
+
+}  // namespace kiloband
