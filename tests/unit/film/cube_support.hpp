@@ -47,6 +47,19 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// What a reader says.
+struct Messages {
+  std::vector<std::string> texts;
+  DiagnosticSink sink() {
+    return [this](const Diagnostic& d) { texts.push_back(d.message); };
+  }
+  bool contain(const std::string& part) const {
+    for (const std::string& text : texts)
+      if (text.find(part) != std::string::npos) return true;
+    return false;
+  }
+};
+
 inline std::string read_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;

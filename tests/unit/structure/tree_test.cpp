@@ -9,7 +9,7 @@
 namespace kiloband::test {
 namespace {
 
-constexpr std::ptrdiff_t kMaxLines = 400;
+constexpr std::ptrdiff_t kMaxLines = 300;
 
 /// Numbers from published sources; their length is not ours to choose.
 bool is_table(const std::string& path) {
