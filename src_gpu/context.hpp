@@ -1,0 +1,61 @@
+// One device in use: context, in-order queue and the programs built for it.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "src_gpu/device.hpp"
+#include "src_gpu/errors.hpp"
+
+namespace kiloband::gpu {
+
+struct ContextOptions {
+  bool profiling = false;  // events of the queue carry times: Kernel::launch_timed
+};
+
+/// Not copied: buffers, programs and kernels refer to it. One thread at a time uses it.
+class DeviceContext {
+ public:
+  /// throws DeviceError
+  explicit DeviceContext(DeviceInfo device, ContextOptions options = {});
+  DeviceContext(const DeviceContext&) = delete;
+  DeviceContext& operator=(const DeviceContext&) = delete;
+
+  /// After DeviceLost: a new context and queue, without programs. Buffers, programs and kernels of the old
+  /// one are useless from now on; destroying them remains valid, before or after.
+  void rebuild();
+
+  /// Waits until everything enqueued is done.
+  /// throws DeviceLost, DeviceOutOfMemory, DeviceError
+  void finish();
+  /// Hands what is enqueued to the device, without waiting.
+  void flush();
+
+  const DeviceInfo& device() const { return device_; }
+  const ContextOptions& options() const { return options_; }
+  const cl::Context& context() const { return context_; }
+  cl::CommandQueue& queue() { return queue_; }
+  cl::Device cl_device() const { return cl::Device(device_.id, true); }
+  /// How often it was rebuilt.
+  uint32_t generation() const { return generation_; }
+
+  /// A site for errors of this device.
+  CallSite site(Phase phase, std::string subject = {}) const {
+    return {phase, device_.name, std::move(subject)};
+  }
+
+  /// Built programs by the hash of source and options; build_program looks here first.
+  std::map<std::string, cl::Program>& programs() { return programs_; }
+
+ private:
+  void create();
+
+  DeviceInfo device_;
+  ContextOptions options_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  std::map<std::string, cl::Program> programs_;
+  uint32_t generation_ = 0;
+};
+
+}  // namespace kiloband::gpu
