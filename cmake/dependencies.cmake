@@ -2,6 +2,7 @@
 find_package(embree 3.13 REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(OpenCL REQUIRED)
+find_package(OpenCLHeaders REQUIRED)
 find_package(OpenCLHeadersCpp REQUIRED)
 find_package(OpenEXR 3 REQUIRED)
 find_package(OpenImageIO 2.4 REQUIRED)
