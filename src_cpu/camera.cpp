@@ -2,95 +2,24 @@
 // s_y down.
 #include "src_cpu/camera.hpp"
 
-#include <array>
 #include <cmath>
+#include <vector>
 
+#include "film/filter_table.hpp"
 #include "src_cpu/shape_geometry_affine.hpp"
 #include "src_cpu/shape_geometry_warp.hpp"
 
 namespace kiloband {
 namespace {
 
-// ---- the truncated Gaussian
-// ---------------------------------------------------------------------------------------- Mitsuba's filter
-// is f(x) = exp(-x^2/2) - exp(-r^2/2) on |x| < r (x and r in standard deviations). With G(x) = integral of f
-// from x to r, the tail probability is w = G(x) / G(0), and x is found from w = 2 min(u, 1-u).
-
-constexpr double kUsualRatio = 4;  // Mitsuba's radius / stddev
-
-double gaussian_tail(double x, double r) {
-  const double root_half_pi = 1.2533141373155003;
-  const double sqrt_half = 0.70710678118654752;
-  return root_half_pi * (std::erfc(x * sqrt_half) - std::erfc(r * sqrt_half)) -
-         (r - x) * std::exp(-0.5 * r * r);
-}
-
-double gaussian_density(double x, double r) {
-  return std::exp(-0.5 * x * x) - std::exp(-0.5 * r * r);
-}
-
-/// x in [0, r] with G(x) = w G(0), by Newton's method kept inside a bracket; |error| < 1e-12 r.
-double invert_gaussian_tail(double w, double r) {
-  const double target = w * gaussian_tail(0, r);
-  double low = 0, high = r;
-  double x = 0.5 * r;
-  for (int i = 0; i < 100 && high - low > 1e-13 * r; ++i) {
-    const double excess = gaussian_tail(x, r) - target;
-    (excess > 0 ? low : high) = x;
-    const double next = x + excess / gaussian_density(x, r);
-    const bool inside = next > low && next < high;  // false for NaN too
-    const double step = inside ? next - x : 0.5 * (low + high) - x;
-    x += step;
-    if (inside && std::fabs(step) < 1e-13 * r) break;
-  }
-  return x;
-}
-
-/// x(q), q = sqrt(w), for the usual ratio: cubic Hermite pieces. In q the inverse is smooth up to the end of
-/// the support, where f falls to 0 linearly and w quadratically. The error is below 1e-7 r (tests measure
-/// it).
-class GaussianTable {
- public:
-  GaussianTable() {
-    const double total = gaussian_tail(0, kUsualRatio);
-    for (int i = 0; i <= kPieces; ++i) {
-      const double q = static_cast<double>(i) / kPieces;
-      const double x = invert_gaussian_tail(q * q, kUsualRatio);
-      // dx/dq = -2 q G(0) / f(x); at the end of the support f = r e^(-r^2/2) (r - x), w G(0) = r e^(-r^2/2)
-      // (r - x)^2 / 2.
-      const double edge = kUsualRatio * std::exp(-0.5 * kUsualRatio * kUsualRatio);
-      const double slope =
-          i == 0 ? -std::sqrt(2 * total / edge) : -2 * q * total / gaussian_density(x, kUsualRatio);
-      nodes_[i] = {static_cast<float>(x), static_cast<float>(slope / kPieces)};
-    }
-  }
-
-  /// Distance from the centre in standard deviations for the tail probability w in [0, 1].
-  float operator()(float w) const {
-    const float position = std::sqrt(w) * kPieces;
-    const int i = std::min(static_cast<int>(position), kPieces - 1);
-    const float t = position - static_cast<float>(i);
-    const Node& a = nodes_[i];
-    const Node& b = nodes_[i + 1];
-    const float rise = b.value - a.value;
-    const float c2 = 3 * rise - 2 * a.slope - b.slope, c3 = a.slope + b.slope - 2 * rise;
-    return a.value + t * (a.slope + t * (c2 + t * c3));
-  }
-
- private:
-  struct Node {
-    float value, slope;  // slope per piece
-  };
-  static constexpr int kPieces = 1024;
-  std::array<Node, kPieces + 1> nodes_;
-};
+constexpr float kUsualRatio = 4;  // Mitsuba's radius / stddev
 
 float sample_gaussian(float u, float radius, float stddev) {
-  static const GaussianTable table;  // built once, on first use
+  static const std::vector<KbFloat2> table = make_gaussian_filter_table(kUsualRatio);  // on first use
   const float w = u < 0.5f ? 2 * u : 2 * (1 - u);
   const float ratio = radius / stddev;
-  const bool usual = std::fabs(ratio - static_cast<float>(kUsualRatio)) < 1e-6f;
-  const float x = usual ? table(w) : static_cast<float>(invert_gaussian_tail(w, ratio));
+  const bool usual = std::fabs(ratio - kUsualRatio) < 1e-6f;
+  const float x = usual ? gaussian_distance(table, w) : static_cast<float>(invert_gaussian_tail(w, ratio));
   return stddev * (u < 0.5f ? -x : x);
 }
 

@@ -16,7 +16,7 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/shared", {}},
     {"src/spectral", {"src/base", "src/shared"}},
     {"src/scene", {"src/base", "src/shared", "src/spectral"}},
-    {"src/film", {"src/base", "src/spectral"}},
+    {"src/film", {"src/base", "src/shared", "src/spectral"}},
     {"src/render", {"src/base", "src/shared", "src/spectral", "src/scene", "src/film"}},
     {"src_cpu", {"src/base", "src/shared", "src/spectral", "src/scene", "src/film", "src/render"}},
     {"src/app", {"src/base", "src/shared", "src/spectral", "src/scene", "src/film", "src/render", "src_cpu"}},
