@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/messages.hpp"
 #include "app/render_options.hpp"
 #include "film/convert.hpp"
 #include "film/cube_io.hpp"
@@ -72,6 +73,7 @@ int convert(const ConvertOptions& options) {
     }
     cube.reset();
     convert_cube(options.in, out, selection, sink);
+    tell("wrote {}\n", out.string());
     return kDone;
   }
   std::vector<PixelRect> places;
@@ -83,6 +85,7 @@ int convert(const ConvertOptions& options) {
   if (places.empty()) throw InputError("CSV output needs --pixel X,Y or --region X,Y,WIDTH,HEIGHT");
   const auto selected = select_from_cube(std::move(cube), selection, sink);
   write_csv(*selected, out, places);
+  tell("wrote {}\n", out.string());
   return kDone;
 }
 

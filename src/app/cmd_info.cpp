@@ -41,8 +41,10 @@ void print_contents(const FlatScene& scene) {
     fmt::print("  {:<16} {}\n", name_of_material(scene.materials[m].type), scene.material_names[m]);
   }
   fmt::print("emitters     {}\n", scene.emitters.size());
-  for (const KbEmitter& emitter : scene.emitters) {
-    fmt::print("  {:<16} selected with probability {:.3g}\n", name_of(emitter.type), emitter.select_pdf);
+  for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
+    const std::string& name = scene.emitter_names[e];
+    fmt::print("  {:<16} {}selected with probability {:.3g}\n", name_of(scene.emitters[e].type),
+               name.empty() ? "" : name + ", ", scene.emitters[e].select_pdf);
   }
   std::size_t entries = 0;
   for (const SpectrumRow& row : scene.spectra) entries += row.table.values.size();
@@ -66,12 +68,13 @@ void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples)
   fmt::print("image        {} x {} pixels\n", scene.film.crop_width, scene.film.crop_height);
   fmt::print("film         {:.1f} MiB, with variance {:.1f} MiB (beyond 1024 MiB strips are streamed)\n",
              film(false), film(true));
-  fmt::print("path vertex  {} bytes, {} more for each two textured values\n", sizeof(KbPathVertex),
-             2 * sizeof(KbTextureSample));
+  fmt::print("path vertex  {} bytes; textured values: {} bytes each, stored two to a {}-byte slot\n",
+             sizeof(KbPathVertex), sizeof(KbTextureSample), 2 * sizeof(KbTextureSample));
 }
 
 int info(const SceneOptions& options) {
   const DiagnosticSink sink = print_diagnostics(false);
+  check_scene_file(options.scene);
   const LoadedScene loaded = load_scene(options, sink);
   const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
   fmt::print("scene        {}\n", options.scene);

@@ -3,14 +3,13 @@
 
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include "app/commands.hpp"
 #include "app/messages.hpp"
+#include "app/option_values.hpp"
 #include "app/output_files.hpp"
 #include "app/progress_bar.hpp"
 #include "app/render_options.hpp"
@@ -31,60 +30,69 @@ struct RenderOptions {
   int threads = 0;
   uint64_t seed = 0;
   std::optional<uint64_t> spp;
-  uint32_t replicates = 16;
+  std::optional<uint32_t> replicates;
   bool variance = false, keep_replicates = false, resume = false, quiet = false;
 };
 
-/// "60", "60s", "5min", "2h" to seconds.
-double parse_duration(const std::string& option, const std::string& text) {
-  static const std::map<std::string, double> kUnits{{"", 1}, {"s", 1}, {"min", 60}, {"h", 3600}};
-  std::size_t end = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
-  }
-  const auto unit = kUnits.find(text.substr(end));
-  if (end == 0 || unit == kUnits.end() || !(value > 0) || value * unit->second > 1e9) {
-    throw InputError(option + " " + text + ": must be a positive time such as 60s, 5min or 2h");
-  }
-  return value * unit->second;
+constexpr uint32_t kReplicates = 16;  // unless --replicates says otherwise
+
+/// The scene is not needed for these; reading it may take long.
+OutputFiles output_files(const RenderOptions& options) {
+  OutputFiles files;
+  files.scene = options.scene.scene;
+  for (const std::string& output : options.outputs) files.cubes.emplace_back(output);
+  if (files.cubes.empty()) files.cubes.push_back(files.scene.stem().string() + ".exr");
+  files.preview = options.preview;
+  files.stats = options.stats;
+  return files;
 }
 
-/// "1%" or "0.01" to a fraction.
-double parse_error(const std::string& text) {
-  std::size_t end = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
+/// Error bars need two replicates: options that contradict this.
+void check_replicates(const RenderOptions& options) {
+  if (options.replicates.value_or(kReplicates) >= 2) return;
+  for (const auto& [name, given] : {std::pair{"--target-error", options.target_error.has_value()},
+                                    std::pair{"--variance", options.variance}}) {
+    if (given)
+      throw InputError(
+          fmt::format("{} needs error bars, --replicates 1 gives none: must be at least 2", name));
   }
-  const std::string unit = text.substr(end);
-  if (end == 0 || (unit != "" && unit != "%") || !(value > 0) || !std::isfinite(value)) {
-    throw InputError("--target-error " + text + ": must be positive, such as 1% or 0.01");
-  }
-  return unit == "%" ? value / 100 : value;
 }
 
-SessionSettings session_settings(const RenderOptions& options, const SceneDescription& scene) {
+/// What becomes of the replicates where the samples do not suffice.
+void report_replicates(const RenderOptions& options, const SessionSettings& settings,
+                       const DiagnosticSink& sink) {
+  const uint32_t replicates = session_replicates(settings);
+  if (replicates >= settings.replicates) return;
+  const uint64_t samples = *settings.stop.samples_per_pixel;  // without it nothing is lowered
+  if (options.variance && replicates < 2) {
+    warn(sink, {},
+         fmt::format("--variance: {} samples per pixel make 1 replicate: no error bars (the variance "
+                     "is NaN); at least 4 are needed",
+                     samples));
+  } else if (options.replicates) {
+    note(sink, {},
+         fmt::format("--replicates {}: {} samples per pixel make {} of at least 2 samples",
+                     settings.replicates, samples, replicates));
+  }
+}
+
+SessionSettings session_settings(const RenderOptions& options, const OutputFiles& files,
+                                 const SceneDescription& scene) {
   SessionSettings settings;
   if (options.time) settings.stop.seconds = parse_duration("--time", *options.time);
-  if (options.target_error) settings.stop.relative_error = parse_error(*options.target_error);
+  if (options.target_error)
+    settings.stop.relative_error = parse_error("--target-error", *options.target_error);
   if (!settings.stop.seconds && !settings.stop.relative_error) {
     settings.stop.samples_per_pixel = options.spp.value_or(scene.sensor.sample_count);
   }
-  settings.replicates = options.replicates;
+  settings.replicates = options.replicates.value_or(kReplicates);
   settings.variance = options.variance;
   settings.keep_replicates = options.keep_replicates;
-  for (const std::string& output : options.outputs) settings.outputs.emplace_back(output);
-  if (settings.outputs.empty()) settings.outputs.push_back(scene.file.stem().string() + ".exr");
+  settings.outputs = files.cubes;
   if (options.quantity == "integral") settings.quantity = Quantity::kIntegral;
   if (options.quantity == "density") settings.quantity = Quantity::kDensity;
-  if (options.preview) settings.preview = *options.preview;
+  settings.preview = files.preview;
   settings.aux = options.aux;
-  if (settings.stop.relative_error && options.replicates < 2) {
-    throw InputError("--target-error needs error bars, --replicates 1 gives none: must be at least 2");
-  }
   if (options.checkpoint) settings.checkpoint = *options.checkpoint;
   if (options.checkpoint_interval) {
     settings.checkpoint_interval_seconds =
@@ -162,10 +170,14 @@ int render(const RenderOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);  // who reads our messages may go away before the render ends
   const auto start = std::chrono::steady_clock::now();
   const DiagnosticSink sink = print_diagnostics(options.quiet);
+  check_scene_file(options.scene.scene);
+  const OutputFiles files = output_files(options);
+  check_output_files(files);
+  check_replicates(options);
   const LoadedScene loaded = load_scene(options.scene, sink);
-  SessionSettings settings = session_settings(options, loaded.description);
+  SessionSettings settings = session_settings(options, files, loaded.description);
+  report_replicates(options, settings, sink);
   const SamplingSettings sampling = sampling_settings(options, settings);
-  check_output_files({options.scene.scene, settings.outputs, settings.preview, options.stats});
   const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
   const auto backend = make_cpu_backend(scene, derived, sampling, {parse_isa(options.isa), options.threads});
@@ -226,9 +238,10 @@ void add_sampling_options(CLI::App& command, RenderOptions& o) {
   command.add_option("--target-error", o.target_error, "render until the mean relative error is below: 1%")
       ->excludes(spp)
       ->excludes(time);
-  command.add_option("--replicates", o.replicates, "independent replicates that error bars come from")
-      ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
+  command
+      .add_option("--replicates", o.replicates,
+                  "independent replicates that error bars come from (default: 16)")
+      ->check(CLI::Range(1, 4096));
 }
 
 void add_output_options(CLI::App& command, RenderOptions& o) {

@@ -4,11 +4,15 @@
 #include <exception>
 #include <map>
 #include <new>
+#include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/messages.hpp"
 #include "base/error.hpp"
+#include "scene/xml_values.hpp"
 
 namespace kiloband {
 
@@ -32,9 +36,25 @@ void check_command(const std::map<std::string, Command>& commands, int argc, cha
       fmt::format("unknown command '{}': must be render, info or convert (see kiloband --help)", argv[1]));
 }
 
+/// "; did you mean '--spp'?" for the first option among what the command could not use that has a neighbour.
+std::string suggest_option(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  for (const std::string& argument : command.remaining(true)) {
+    const auto first = argument.find_first_not_of('-');
+    if (first == 0 || first == std::string::npos) continue;
+    const std::string hint = suggestion("--" + argument.substr(first, argument.find('=') - first), known);
+    if (!hint.empty()) return hint;
+  }
+  return {};
+}
+
 int run(int argc, char** argv) {
   CLI::App program{"kiloband: hyperspectral path tracer", "kiloband"};
-  program.set_version_flag("--version", KILOBAND_VERSION);
+  program.set_version_flag("--version", "kiloband " KILOBAND_VERSION);
   program.require_subcommand(1);
   std::map<std::string, Command> commands;
   commands["render"] = add_render(program);
@@ -48,7 +68,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     const auto chosen = program.get_subcommands();
     const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
-    throw InputError(fmt::format("{} (see kiloband{} --help)", e.what(), command));
+    const std::string hint = chosen.empty() ? suggest_option(program) : suggest_option(*chosen.front());
+    throw InputError(fmt::format("{}{} (see kiloband{} --help)", e.what(), hint, command));
   }
   return commands.at(program.get_subcommands().front()->get_name())();
 }

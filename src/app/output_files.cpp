@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "film/atomic_file.hpp"
+#include "film/cube_io.hpp"
 #include "film/cube_text.hpp"
 
 namespace kiloband {
@@ -50,16 +51,14 @@ void check_output_files(const OutputFiles& files) {
     if (extension_of(cube) == ".hdr")
       claims.claim("-o", std::filesystem::path(cube).replace_extension(".img"));
   }
-  if (files.preview) {
-    claims.claim("--preview", *files.preview);
-    if (extension_of(*files.preview) != ".png") {
-      throw InputError(fmt::format("--preview {}: must end in .png", files.preview->string()));
-    }
-    const AtomicFile trial(*files.preview);  // its temporary file vanishes at once
+  if (files.preview) claims.claim("--preview", *files.preview);
+  if (files.stats) claims.claim("--stats", *files.stats);
+  for (const auto& cube : files.cubes) check_cube_name(cube);
+  if (files.preview && extension_of(*files.preview) != ".png") {
+    throw InputError(fmt::format("--preview {}: must end in .png", files.preview->string()));
   }
-  if (files.stats) {
-    claims.claim("--stats", *files.stats);
-    const AtomicFile trial(*files.stats);
+  for (const auto& file : {files.preview, files.stats}) {
+    if (file) const AtomicFile trial(*file);  // its temporary file vanishes at once
   }
 }
 

@@ -13,9 +13,9 @@ struct OutputFiles {
   std::optional<std::filesystem::path> preview, stats;
 };
 
-/// Hours of rendering must not end at a file name. Cubes are opened by their writers before the render; what
-/// is written after it is tried here. throws InputError   a file would be written twice or replace the scene;
-/// a preview that is no .png
+/// Hours of rendering must not end at a file name: to be called before the scene is read. Cubes are opened by
+/// their writers before the render; what is written after it is tried here.
+/// throws InputError   a file would be written twice or replace the scene; a name whose end is no format's
 ///        DeviceError  the preview or the statistics cannot be written
 void check_output_files(const OutputFiles& files);
 

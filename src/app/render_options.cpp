@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <filesystem>
 #include <set>
 
 #include "app/messages.hpp"
 #include "base/error.hpp"
+#include "film/cube_text.hpp"
 #include "spectral/spectrum_files.hpp"
 
 namespace kiloband {
@@ -77,6 +79,18 @@ void SceneOptions::add_to(CLI::App& command) {
   command.add_option("--size", size, "WxH: image size in pixels");
   command.add_option("--max-depth", max_depth, "longest path (1: emission only, -1: unlimited)")
       ->check(CLI::Range(-1, 1 << 30));
+}
+
+void check_scene_file(const std::filesystem::path& file) {
+  static const std::set<std::string> kImages{".exr", ".hdr",  ".img", ".png",
+                                             ".jpg", ".jpeg", ".tif", ".tiff"};
+  std::error_code ignored;  // a file that is not there is reported as such by the reader
+  if (!kImages.contains(to_lower(file.extension().string()))) return;
+  if (!std::filesystem::is_regular_file(file, ignored)) return;
+  throw InputError(
+      file.string() +
+      ": is a cube or an image, not a scene: must be a Mitsuba 3 scene file (XML); kiloband convert "
+      "reads cubes");
 }
 
 LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ struct LoadedScene {
   SceneDescription description;
   ChannelList channels, guide;
 };
+
+/// To be called first: a cube in place of a scene would be refused for its first strange byte.
+/// throws InputError  the file exists and is named like a cube or an image
+void check_scene_file(const std::filesystem::path& file);
 
 /// throws InputError for options and files
 LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink);

@@ -5,6 +5,19 @@
 #include "film/cube_text.hpp"
 
 namespace kiloband {
+namespace {
+
+[[noreturn]] void refuse_name(const std::filesystem::path& file) {
+  throw InputError("'" + file.string() +
+                   "': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)");
+}
+
+}  // namespace
+
+void check_cube_name(const std::filesystem::path& file) {
+  const std::string extension = to_lower(file.extension().string());
+  if (extension != ".exr" && extension != ".hdr") refuse_name(file);
+}
 
 std::unique_ptr<CubeWriter> create_cube_writer_from(const std::filesystem::path& file, const CubeInfo& info,
                                                     uint32_t rows_per_strip, Quantity given) {
@@ -12,8 +25,7 @@ std::unique_ptr<CubeWriter> create_cube_writer_from(const std::filesystem::path&
   const std::string extension = to_lower(file.extension().string());
   if (extension == ".exr") return create_exr_writer(file, info, rows_per_strip, given);
   if (extension == ".hdr") return create_envi_writer(file, info, rows_per_strip, given);
-  throw InputError("'" + file.string() +
-                   "': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)");
+  refuse_name(file);
 }
 
 std::unique_ptr<CubeWriter> create_cube_writer(const std::filesystem::path& file, const CubeInfo& info,

@@ -52,6 +52,9 @@ class CubeWriter {
   virtual void finish() = 0;
 };
 
+/// throws InputError if create_cube_writer() does not know the extension
+void check_cube_name(const std::filesystem::path& file);
+
 /// By extension: .exr, .hdr (ENVI: X.hdr + X.img, with variance X.var.hdr + X.var.img, aux planes X.aux.hdr + X.aux.img).
 /// rows_per_strip  rows that each write_rows call will have (the last may have fewer); a multiple of 32 or the height
 /// throws InputError (extension), DeviceError (cannot create, disk full ...: names the file and the system's message)

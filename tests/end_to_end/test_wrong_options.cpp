@@ -21,29 +21,51 @@ void write_inputs(const TemporaryFolder& folder) {
   folder.write("word.csv", "wavelength_nm,red\n400,high\n");
   folder.write("twice.csv", "wavelength_nm,red,red\n400,1,1\n700,1,1\n");
   folder.write("a.csv", "wavelength_nm,red\n400,1\n700,1\n");
+  folder.write("cube.hdr", "ENVI\n");
   folder.write("cube.exr", "\x76\x2f\x31\x01");  // what an EXR file begins with
 }
 
 TEST(WrongOption, Command) {
   const TemporaryFolder folder;
   write_inputs(folder);
-  expect_refused(folder,
-                 std::vector<WrongCommand>{
-                     {"no command", {}, "A subcommand is required (see kiloband --help)"},
-                     {"unknown command",
-                      {"rendr", "scene.xml"},
-                      "unknown command 'rendr': must be render, info or convert (see kiloband --help)"},
-                     {"scene missing", {"render"}, "SCENE is required (see kiloband render --help)"},
-                     {"scene not there", {"render", "none.xml"}, "none.xml: error: file not found"},
-                     {"scene is a folder", {"render", "."}, ".: error: not a regular file"},
-                     {"scene is a cube",
-                      {"info", "cube.exr"},
-                      "cube.exr:1:4: error: control character with code 1 is not allowed in XML"},
-                     {"unknown option", quiet_render("scene.xml", {"--spectral"}),
-                      "The following argument was not expected: --spectral (see kiloband render --help)"},
-                     {"second scene", quiet_render("scene.xml", {"other.xml"}),
-                      "The following argument was not expected: other.xml (see kiloband render --help)"},
-                 });
+  expect_refused(
+      folder,
+      std::vector<WrongCommand>{
+          {"no command", {}, "A subcommand is required (see kiloband --help)"},
+          {"unknown command",
+           {"rendr", "scene.xml"},
+           "unknown command 'rendr': must be render, info or convert (see kiloband --help)"},
+          {"scene missing", {"render"}, "SCENE is required (see kiloband render --help)"},
+          {"scene not there", {"render", "none.xml"}, "none.xml: error: file not found"},
+          {"scene is a folder", {"render", "."}, ".: error: not a regular file"},
+          {"scene is a cube",
+           {"info", "cube.exr"},
+           "cube.exr: is a cube or an image, not a scene: must be a Mitsuba 3 scene file (XML); kiloband "
+           "convert reads cubes"},
+          {"cube is rendered",
+           {"render", "cube.exr"},
+           "cube.exr: is a cube or an image, not a scene: must be a Mitsuba 3 scene file (XML); kiloband "
+           "convert reads cubes"},
+          {"scene is an ENVI header",
+           {"info", "cube.hdr"},
+           "cube.hdr: is a cube or an image, not a scene: must be a Mitsuba 3 scene file (XML); kiloband "
+           "convert reads cubes"},
+          {"cube not there", {"info", "none.exr"}, "none.exr: error: file not found"},
+          {"unknown option", quiet_render("scene.xml", {"--spectral"}),
+           "The following argument was not expected: --spectral (see kiloband render --help)"},
+          {"misspelt option", quiet_render("scene.xml", {"--respone=4"}),
+           "The following argument was not expected: --respone=4; did you mean '--response'? (see "
+           "kiloband render --help)"},
+          {"option with one dash", quiet_render("scene.xml", {"-spp"}),
+           "The following argument was not expected: -spp; did you mean '--spp'? (see kiloband render "
+           "--help)"},
+          {"misspelt option of convert",
+           {"convert", "cube.exr", "out.hdr", "--rebind"},
+           "The following argument was not expected: --rebind; did you mean '--rebin'? (see kiloband "
+           "convert --help)"},
+          {"second scene", quiet_render("scene.xml", {"other.xml"}),
+           "The following argument was not expected: other.xml (see kiloband render --help)"},
+      });
 }
 
 TEST(WrongOption, ChannelsSizeAndStopping) {
@@ -122,6 +144,10 @@ TEST(WrongOption, ChannelsSizeAndStopping) {
            "--target-error inf: must be positive, such as 1% or 0.01"},
           {"target error '5x'", quiet_render("scene.xml", {"--target-error", "5x"}),
            "--target-error 5x: must be positive, such as 1% or 0.01"},
+          {"target error '1'", quiet_render("scene.xml", {"--target-error", "1"}),
+           "--target-error 1: must have a % from 1 on, such as 1%; without it, be below 1"},
+          {"target error '5'", quiet_render("scene.xml", {"--target-error", "5"}),
+           "--target-error 5: must have a % from 1 on, such as 1%; without it, be below 1"},
           {"target error ''", quiet_render("scene.xml", {"--target-error", ""}),
            "--target-error : must be positive, such as 1% or 0.01"},
           {"samples and time", quiet_render("scene.xml", {"--spp", "4", "--time", "1s"}),
@@ -133,6 +159,8 @@ TEST(WrongOption, ChannelsSizeAndStopping) {
           {"error without replicates",
            quiet_render("scene.xml", {"--target-error", "1%", "--replicates", "1"}),
            "--target-error needs error bars, --replicates 1 gives none: must be at least 2"},
+          {"variance without replicates", quiet_render("scene.xml", {"--variance", "--replicates", "1"}),
+           "--variance needs error bars, --replicates 1 gives none: must be at least 2"},
           {"definition without value", quiet_render("scene.xml", {"-D", "res"}),
            "-D res: must be name=value"},
           {"definition without name", quiet_render("scene.xml", {"-D", "=3"}), "-D =3: must be name=value"},
@@ -187,6 +215,10 @@ TEST(WrongOption, SamplingAndOutput) {
            "--quantity: flux not in {integral,density} (see kiloband render --help)"},
           {"-o out.jpg", quiet_render("scene.xml", {"-o", "out.jpg"}),
            "'out.jpg': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)"},
+          {"output before the scene", quiet_render("none.xml", {"-o", "out.jpg"}),
+           "'out.jpg': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)"},
+          {"preview before the scene", quiet_render("none.xml", {"--preview", "out.jpg"}),
+           "--preview out.jpg: must end in .png"},
           {"-o ", quiet_render("scene.xml", {"-o", ""}),
            "'': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)"},
           {"--preview out.jpg", quiet_render("scene.xml", {"--preview", "out.jpg"}),
@@ -216,7 +248,7 @@ TEST(WrongOption, SamplingAndOutput) {
            {"render", "glass.xml", "--quiet", "--bands", "400:1000:3"},
            "glass.xml:3:2: error: bsdf 'lens': int_ior: data from 400 to 700 nm do not cover channel 600-800 "
            "nm"},
-          });
+      });
 }
 
 }  // namespace

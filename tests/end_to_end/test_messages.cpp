@@ -1,0 +1,68 @@
+// What the program says when nothing is wrong: version, contents of a scene, what was written, what to mind.
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/support/program.hpp"
+
+namespace kiloband::test {
+namespace {
+
+void expect_text(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
+}
+
+TEST(Messages, Version) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, {"--version"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, "kiloband " KILOBAND_VERSION "\n");
+}
+
+TEST(Messages, InfoNamesEmittersAndTheirProbabilities) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", scene_text(kSensor + R"(<emitter type="constant" id="sky"/><emitter type="point"/>
+<shape type="sphere" id="lamp"><emitter type="area"/></shape>)"));
+  const Outcome outcome = run_program(folder, {"info", "scene.xml"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_text(outcome.out, "emitters     3\n");
+  expect_text(outcome.out, "  area             lamp, selected with probability 0.");
+  expect_text(outcome.out, "  constant         sky, selected with probability 0.");
+  expect_text(outcome.out, "  point            selected with probability 0.");
+  expect_text(outcome.out,
+              "path vertex  32 bytes; textured values: 16 bytes each, stored two to a 32-byte slot\n");
+}
+
+TEST(Messages, ConvertSaysWhatItWrote) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "1", "-o", "a.exr"})).code, 0);
+  EXPECT_EQ(run_program(folder, {"convert", "a.exr", "b.hdr"}).err, "wrote b.hdr\n");
+  EXPECT_EQ(run_program(folder, {"convert", "a.exr", "b.csv", "--pixel", "1,1"}).err, "wrote b.csv\n");
+}
+
+TEST(Messages, FewSamplesLeaveFewerReplicates) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  const auto said = [&](bool quiet, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", "scene.xml", "-o", "a.hdr"};
+    if (quiet) arguments.push_back("--quiet");
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(folder, arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.err;
+  };
+  // No error bars at all: a warning, before the render and even if quiet.
+  const std::string warning =
+      "warning: --variance: 3 samples per pixel make 1 replicate: no error bars (the variance is NaN); at "
+      "least 4 "
+      "are needed\n";
+  EXPECT_EQ(said(true, {"--variance", "--spp", "3"}), warning);
+  EXPECT_EQ(said(true, {"--variance", "--spp", "4"}), "");
+  // Fewer than were asked for: a note; the default is not something that was asked for.
+  const std::string note = "note: --replicates 16: 8 samples per pixel make 4 of at least 2 samples\n";
+  expect_text(said(false, {"--spp", "8", "--replicates", "16"}), note);
+  EXPECT_EQ(said(true, {"--spp", "8", "--replicates", "16"}), "");
+  EXPECT_EQ(said(false, {"--spp", "8"}).find("note:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kiloband::test
