@@ -70,6 +70,7 @@ class Kernel {
   }
   void set_raw(uint32_t index, uint64_t bytes, const void* value);
   void check_count(uint64_t count) const;
+  void enqueue(uint64_t items, uint64_t local, cl::Event* event);
   CallSite site(Phase phase) const;
 
   DeviceContext* context_;
@@ -79,7 +80,7 @@ class Kernel {
   uint64_t max_work_group_size_ = 0, preferred_multiple_ = 0, private_bytes_ = 0, local_bytes_ = 0;
 };
 
-/// Seconds on the device, of a launch that is done.
+/// Seconds on the device, of a launch that is done; 0 for one that had no items.
 /// throws DeviceLost, DeviceError
 double seconds_of(DeviceContext& context, const cl::Event& event);
 
