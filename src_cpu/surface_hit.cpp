@@ -80,7 +80,8 @@ SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape_index, uint32
 ShadingFrame::ShadingFrame(glm::vec3 normal, glm::vec3 tangent) : z(normal) {
   const glm::vec3 along = tangent - normal * glm::dot(normal, tangent);
   const float length2 = glm::dot(along, along);
-  if (length2 > 1e-20f) {
+  // Of a tangent along the normal only rounding is left: no direction to go by.
+  if (length2 > 1e-6f * glm::dot(tangent, tangent)) {
     x = along / std::sqrt(length2);
     y = glm::cross(z, x);
     return;
