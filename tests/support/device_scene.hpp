@@ -8,6 +8,7 @@
 #include "film/filter_table.hpp"
 #include "scene/flat_scene.hpp"
 #include "shared/pipeline.h"
+#include "tests/support/opencl_probe.hpp"
 
 namespace kiloband::test {
 
