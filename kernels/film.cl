@@ -1,0 +1,37 @@
+// Film kernels (build macro KB_FILM_TRANSPOSED, see film.clh).
+//
+//   kernel        arguments                                                      work-items
+//   film_clear    sum, compensation, counts, film_pixels, film_columns           film_pixels * film_columns, at least
+//                                                                                film_pixels
+//   film_finish   layout, sum, compensation, counts, film_pixels, first_pixel,   pixels * (K + D)
+//                 pixels, means
+//
+// means[pixel][K + D]: means over the valid samples of film pixels first_pixel .. first_pixel + pixels - 1, in film
+// units (times channel_scale or derived scale: W m^-2 sr^-1); 0 where there is no sample.
+#define KB_WIDTH 1
+#include "film.clh"
+#include "shared/spectra_layout.h"
+
+__kernel void film_clear(__global float* restrict sum, __global float* restrict compensation,
+                         __global kb_u32* restrict counts, kb_u32 film_pixels, kb_u32 film_columns) {
+  const size_t i = get_global_id(0);
+  if (i < film_pixels) counts[i] = 0u;
+  if (i >= (size_t)film_pixels * film_columns) return;
+  sum[i] = 0.0f;
+  compensation[i] = 0.0f;
+}
+
+__kernel void film_finish(__global const KbSpectraLayout* restrict layout, __global float* restrict sum,
+                          __global float* restrict compensation, __global kb_u32* restrict counts, kb_u32 film_pixels,
+                          kb_u32 first_pixel, kb_u32 pixels, __global float* restrict means) {
+  const size_t i = get_global_id(0);
+  const kb_u32 values = layout->channels + layout->derived;
+  if (i >= (size_t)pixels * values) return;
+  const Film film = {sum, compensation, counts, film_pixels, 0u, layout->film_columns};
+  const kb_u32 value = (kb_u32)(i % values);
+  const size_t pixel = first_pixel + i / values;
+  const kb_u32 column = value < layout->channels ? value : layout->stride + (value - layout->channels);
+  const size_t place = film_place(&film, pixel, column);
+  const kb_u32 count = counts[pixel];
+  means[i] = count > 0u ? (sum[place] + compensation[place]) / (float)count : 0.0f;
+}
