@@ -1,5 +1,6 @@
 #include "src_gpu/program.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "src_gpu/program_cache.hpp"
@@ -18,12 +19,18 @@ std::string build_options(const DeviceContext& context, const std::vector<std::s
   return text;
 }
 
+/// Not Program::build of the bindings: it asks for the log first, and where that fails, its error hides the
+/// real one.
+cl_int build(const cl::Program& program, const cl::Device& device, const std::string& options) {
+  return clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
+}
+
 /// Nothing where the driver refuses the binary.
 std::optional<cl::Program> from_binary(const DeviceContext& context, std::vector<unsigned char> binary,
                                        const std::string& options) {
   try {
     cl::Program program(context.context(), {context.cl_device()}, cl::Program::Binaries{std::move(binary)});
-    program.build(context.cl_device(), options.c_str());
+    if (build(program, context.cl_device(), options) != CL_SUCCESS) return std::nullopt;
     return program;
   } catch (const cl::Error&) {
     return std::nullopt;
@@ -32,7 +39,9 @@ std::optional<cl::Program> from_binary(const DeviceContext& context, std::vector
 
 std::string build_log(const cl::Program& program, const cl::Device& device) {
   try {
-    return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    log.erase(std::min(log.find('\0'), log.find_last_not_of("\n") + 1));  // what drivers end it with
+    return log;
   } catch (const cl::Error&) {
     return "the driver gives no log";
   }
@@ -42,14 +51,12 @@ cl::Program from_source(const DeviceContext& context, const std::string& main, c
                         const std::string& options) {
   const CallSite site = context.site(Phase::kSetup, "'" + main + "'");
   cl::Program program = checked(site, [&] { return cl::Program(context.context(), source); });
-  try {
-    program.build(context.cl_device(), options.c_str());
-  } catch (const cl::Error& e) {
-    const bool refused = e.err() == CL_BUILD_PROGRAM_FAILURE || e.err() == CL_INVALID_BUILD_OPTIONS;
-    if (!refused) throw_device_error(site, "clBuildProgram", e.err());
-    throw ProgramBuildError(error_message(site, "clBuildProgram", e.err()) + " with " + options + "\n" +
+  const cl_int code = build(program, context.cl_device(), options);
+  if (code == CL_BUILD_PROGRAM_FAILURE || code == CL_INVALID_BUILD_OPTIONS) {
+    throw ProgramBuildError(error_message(site, "clBuildProgram", code) + " with " + options + "\n" +
                             build_log(program, context.cl_device()));
   }
+  if (code != CL_SUCCESS) throw_device_error(site, "clBuildProgram", code);
   return program;
 }
 

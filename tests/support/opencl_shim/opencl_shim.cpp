@@ -1,0 +1,213 @@
+// Makes OpenCL fail on purpose. Loaded with LD_PRELOAD before libOpenCL; the environment says what fails:
+//
+//   KILOBAND_SHIM_FUNCTION  name of one of the functions below; the others work
+//   KILOBAND_SHIM_NTH       which of its calls fails, from 1 (default 1)
+//   KILOBAND_SHIM_CODE      the code that it gives, a number (default -5, CL_OUT_OF_RESOURCES)
+//   KILOBAND_SHIM_REPEAT    1: all later calls fail too
+//   KILOBAND_SHIM_REPORT    file to write at exit: a line "NAME CALLS" per function, then "live_buffers N",
+//   the
+//                           references to buffers that were not released, and "failed N", the calls that were
+//                           failed
+//
+// In sanitizer builds run with ASAN_OPTIONS=verify_asan_link_order=0.
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+#include <dlfcn.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+enum Function {
+  kGetPlatformIds,
+  kCreateContext,
+  kCreateCommandQueue,
+  kCreateBuffer,
+  kCreateProgramWithSource,
+  kCreateProgramWithBinary,
+  kBuildProgram,
+  kCreateKernel,
+  kEnqueueNDRangeKernel,
+  kEnqueueReadBuffer,
+  kEnqueueWriteBuffer,
+  kEnqueueFillBuffer,
+  kFinish,
+  kFunctionCount
+};
+
+constexpr const char* kNames[kFunctionCount] = {"clGetPlatformIDs",
+                                                "clCreateContext",
+                                                "clCreateCommandQueue",
+                                                "clCreateBuffer",
+                                                "clCreateProgramWithSource",
+                                                "clCreateProgramWithBinary",
+                                                "clBuildProgram",
+                                                "clCreateKernel",
+                                                "clEnqueueNDRangeKernel",
+                                                "clEnqueueReadBuffer",
+                                                "clEnqueueWriteBuffer",
+                                                "clEnqueueFillBuffer",
+                                                "clFinish"};
+
+long number_of(const char* variable, long otherwise) {
+  const char* text = std::getenv(variable);
+  return text && *text ? std::atol(text) : otherwise;
+}
+
+/// Counts calls and decides which fail. Reports when the process ends, after the program's own destructors.
+struct Plan {
+  const char* function = std::getenv("KILOBAND_SHIM_FUNCTION");
+  const char* report = std::getenv("KILOBAND_SHIM_REPORT");
+  long nth = number_of("KILOBAND_SHIM_NTH", 1);
+  cl_int code = static_cast<cl_int>(number_of("KILOBAND_SHIM_CODE", CL_OUT_OF_RESOURCES));
+  bool repeat = number_of("KILOBAND_SHIM_REPEAT", 0) != 0;
+  std::atomic<long> calls[kFunctionCount] = {}, live_buffers{0}, failed{0};
+
+  /// The code to give; CL_SUCCESS: call the real function.
+  cl_int next(Function called) {
+    const long call = ++calls[called];
+    if (!function || std::strcmp(function, kNames[called]) != 0) return CL_SUCCESS;
+    if (call < nth || (call > nth && !repeat)) return CL_SUCCESS;
+    ++failed;
+    return code;
+  }
+
+  ~Plan() {
+    if (!report || !*report) return;
+    std::FILE* file = std::fopen(report, "w");
+    if (!file) return;
+    for (int i = 0; i < kFunctionCount; ++i) std::fprintf(file, "%s %ld\n", kNames[i], calls[i].load());
+    std::fprintf(file, "live_buffers %ld\nfailed %ld\n", live_buffers.load(), failed.load());
+    std::fclose(file);
+  }
+};
+Plan plan;
+
+/// The function of libOpenCL that `name` hides.
+template <class Pointer>
+Pointer real(Pointer, const char* name) {
+  void* found = dlsym(RTLD_NEXT, name);
+  if (!found) std::abort();
+  return reinterpret_cast<Pointer>(found);
+}
+
+template <class Object>
+Object* refuse(cl_int code, cl_int* error) {
+  if (error) *error = code;
+  return nullptr;
+}
+
+}  // namespace
+
+#define REAL(name) real(&name, #name)
+
+extern "C" {
+
+cl_int clGetPlatformIDs(cl_uint entries, cl_platform_id* platforms, cl_uint* count) {
+  const cl_int code = plan.next(kGetPlatformIds);
+  return code ? code : REAL(clGetPlatformIDs)(entries, platforms, count);
+}
+
+cl_context clCreateContext(const cl_context_properties* properties, cl_uint count,
+                           const cl_device_id* devices,
+                           void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* data,
+                           cl_int* error) {
+  const cl_int code = plan.next(kCreateContext);
+  return code ? refuse<_cl_context>(code, error)
+              : REAL(clCreateContext)(properties, count, devices, notify, data, error);
+}
+
+cl_command_queue clCreateCommandQueue(cl_context context, cl_device_id device,
+                                      cl_command_queue_properties properties, cl_int* error) {
+  const cl_int code = plan.next(kCreateCommandQueue);
+  return code ? refuse<_cl_command_queue>(code, error)
+              : REAL(clCreateCommandQueue)(context, device, properties, error);
+}
+
+cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
+  if (const cl_int code = plan.next(kCreateBuffer)) return refuse<_cl_mem>(code, error);
+  const cl_mem buffer = REAL(clCreateBuffer)(context, flags, size, host, error);
+  if (buffer) ++plan.live_buffers;
+  return buffer;
+}
+
+cl_int clRetainMemObject(cl_mem buffer) {
+  const cl_int code = REAL(clRetainMemObject)(buffer);
+  if (code == CL_SUCCESS) ++plan.live_buffers;
+  return code;
+}
+
+cl_int clReleaseMemObject(cl_mem buffer) {
+  const cl_int code = REAL(clReleaseMemObject)(buffer);
+  if (code == CL_SUCCESS) --plan.live_buffers;
+  return code;
+}
+
+cl_program clCreateProgramWithSource(cl_context context, cl_uint count, const char** strings,
+                                     const size_t* lengths, cl_int* error) {
+  const cl_int code = plan.next(kCreateProgramWithSource);
+  return code ? refuse<_cl_program>(code, error)
+              : REAL(clCreateProgramWithSource)(context, count, strings, lengths, error);
+}
+
+cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, const cl_device_id* devices,
+                                     const size_t* lengths, const unsigned char** binaries, cl_int* status,
+                                     cl_int* error) {
+  const cl_int code = plan.next(kCreateProgramWithBinary);
+  return code ? refuse<_cl_program>(code, error)
+              : REAL(clCreateProgramWithBinary)(context, count, devices, lengths, binaries, status, error);
+}
+
+cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
+                      void(CL_CALLBACK* notify)(cl_program, void*), void* data) {
+  const cl_int code = plan.next(kBuildProgram);
+  return code ? code : REAL(clBuildProgram)(program, count, devices, options, notify, data);
+}
+
+cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* error) {
+  const cl_int code = plan.next(kCreateKernel);
+  return code ? refuse<_cl_kernel>(code, error) : REAL(clCreateKernel)(program, name, error);
+}
+
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                              const size_t* offset, const size_t* global, const size_t* local, cl_uint count,
+                              const cl_event* events, cl_event* event) {
+  const cl_int code = plan.next(kEnqueueNDRangeKernel);
+  return code ? code
+              : REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, count, events,
+                                             event);
+}
+
+cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                           size_t size, void* to, cl_uint count, const cl_event* events, cl_event* event) {
+  const cl_int code = plan.next(kEnqueueReadBuffer);
+  return code ? code
+              : REAL(clEnqueueReadBuffer)(queue, buffer, blocking, offset, size, to, count, events, event);
+}
+
+cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                            size_t size, const void* from, cl_uint count, const cl_event* events,
+                            cl_event* event) {
+  const cl_int code = plan.next(kEnqueueWriteBuffer);
+  return code ? code
+              : REAL(clEnqueueWriteBuffer)(queue, buffer, blocking, offset, size, from, count, events, event);
+}
+
+cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void* pattern, size_t pattern_size,
+                           size_t offset, size_t size, cl_uint count, const cl_event* events,
+                           cl_event* event) {
+  const cl_int code = plan.next(kEnqueueFillBuffer);
+  return code ? code
+              : REAL(clEnqueueFillBuffer)(queue, buffer, pattern, pattern_size, offset, size, count, events,
+                                          event);
+}
+
+cl_int clFinish(cl_command_queue queue) {
+  const cl_int code = plan.next(kFinish);
+  return code ? code : REAL(clFinish)(queue);
+}
+
+}  // extern "C"

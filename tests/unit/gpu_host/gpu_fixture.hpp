@@ -1,0 +1,66 @@
+// A context on the first device, and a cache folder that vanishes with the test.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "src_gpu/program.hpp"
+
+namespace kiloband::gpu::test {
+
+/// XDG_CACHE_HOME is this folder while the object lives.
+class CacheFolder {
+ public:
+  CacheFolder() {
+    static int counter = 0;
+    const char* value = std::getenv("XDG_CACHE_HOME");
+    if (value) before_ = value;
+    path_ = std::filesystem::temp_directory_path() /
+            ("kiloband-gpu-host-" + std::to_string(getpid()) + "-" + std::to_string(counter++));
+    std::filesystem::create_directories(path_);
+    setenv("XDG_CACHE_HOME", path_.c_str(), 1);
+  }
+  ~CacheFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+    before_.empty() ? unsetenv("XDG_CACHE_HOME") : setenv("XDG_CACHE_HOME", before_.c_str(), 1);
+  }
+  CacheFolder(const CacheFolder&) = delete;
+  CacheFolder& operator=(const CacheFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  std::string before_;
+};
+
+class GpuTest : public ::testing::Test {
+ protected:
+  CacheFolder cache_;
+  DeviceContext context_{select_device(std::nullopt), {true}};
+  DeviceMemory memory_{context_};
+
+  /// A program of this one text.
+  Program build(const std::string& text, bool disk_cache = false) {
+    return build_program(context_, {{"kernels/test.cl", text}}, "kernels/test.cl", {{}, disk_cache});
+  }
+};
+
+/// what() of the exception of this type that `call` throws; fails the test where it throws none.
+template <class Error, class Call>
+std::string message_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "no exception";
+  return {};
+}
+
+}  // namespace kiloband::gpu::test
