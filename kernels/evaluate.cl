@@ -1,4 +1,4 @@
-// Deferred evaluation of a round's saved paths (paper, section 5); build macros: evaluate.clh, film.clh.
+// Deferred evaluation of a round's saved paths (paper, section 5); build macros: path_spectra.clh, film.clh.
 //
 //   kernel       arguments                             work-items
 //   dpept_batch  EVALUATION, saved, FILM, partial      groups * local size, any number of groups (a group takes the

@@ -8,6 +8,7 @@
 //
 // means[pixel][K + D]: means over the valid samples of film pixels first_pixel .. first_pixel + pixels - 1, in film
 // units (times channel_scale or derived scale: W m^-2 sr^-1); 0 where there is no sample.
+#undef KB_WIDTH
 #define KB_WIDTH 1
 #include "film.clh"
 #include "shared/spectra_layout.h"

@@ -1,5 +1,5 @@
 // The straightforward method (paper, section 4): throughput tau and radiance L of every channel of every path in
-// flight live in global memory and are updated at each bounce. Build macros: evaluate.clh.
+// flight live in global memory and are updated at each bounce. Build macros: path_spectra.clh.
 //
 //   kernel      arguments                                                       work-items
 //   pt_update   EVALUATION, FILM, states, queue, count, tau, radiance, partial  groups * local size (a group takes the
@@ -14,6 +14,31 @@
 // KB_PATH_INVALID, then the sample does not count).
 #include "evaluate.clh"
 #include "film.clh"
+
+static inline void load_batch(Batch* batch, __global const float* tau, __global const float* radiance) {
+#pragma unroll
+  for (kb_u32 i = 0u; i < KB_VECTORS; ++i) {
+    batch->tau[i] = load_reals(tau + batch->k[i]);
+    batch->radiance[i] = load_reals(radiance + batch->k[i]);
+  }
+}
+
+static inline void store_batch(const Batch* batch, __global float* tau, __global float* radiance, kb_u32 first,
+                               kb_u32 step, kb_u32 vectors) {
+#pragma unroll
+  for (kb_u32 i = 0u; i < KB_VECTORS; ++i) {
+    if (first + i * step >= vectors) continue;
+    store_reals(tau + batch->k[i], batch->tau[i]);
+    store_reals(radiance + batch->k[i], batch->radiance[i]);
+  }
+}
+
+static inline void add_batch_to_film(const Film* film, kb_u32 pixel, const Batch* batch, kb_u32 first, kb_u32 step,
+                                     kb_u32 vectors) {
+#pragma unroll
+  for (kb_u32 i = 0u; i < KB_VECTORS; ++i)
+    if (first + i * step < vectors) add_to_film(film, pixel, batch->k[i], batch->radiance[i]);
+}
 
 /* Bytes per channel: 16 for a bounce in between, 8 for a first one, 8 + 16 for a last one (the film's sums). */
 static inline void update_slot(const Evaluation* e, const Film* film, const KbPathState* state, kb_u32 slot,

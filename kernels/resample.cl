@@ -1,4 +1,4 @@
-// Dense spectra of shared wavelengths (build macros KB_WIDTH, as in evaluate.clh).
+// Dense spectra of shared wavelengths (build macros KB_WIDTH, see path_spectra.clh).
 //
 //   kernel         arguments                                                     work-items
 //   resample_rows  layout, nodes, tables, cover, cover_breaks, shared_mu,        table_count * rows * stride / KB_WIDTH
@@ -6,7 +6,7 @@
 //
 // dense[table][row][stride]: every row of KbSpectraLayout at mu = shared_mu[table]; tables are numbered
 // block * samples + sample of the round, as shared_mu. Derived channels' rows are divided by the cover.
-#include "evaluate.clh"
+#include "path_spectra.clh"
 
 __kernel void resample_rows(__global const KbSpectraLayout* restrict layout, __global const float* restrict nodes,
                             __global const KbChannelTable* restrict tables, __global const KbCover* restrict cover,
