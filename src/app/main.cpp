@@ -32,8 +32,8 @@ int fail(int code, const std::string& message, const char* hint = "") {
 /// CLI11 would call an unknown command a missing one.
 void check_command(const std::map<std::string, Command>& commands, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-' || commands.contains(argv[1])) return;
-  throw InputError(
-      fmt::format("unknown command '{}': must be render, info or convert (see kiloband --help)", argv[1]));
+  throw InputError(fmt::format(
+      "unknown command '{}': must be render, info, convert or devices (see kiloband --help)", argv[1]));
 }
 
 /// "; did you mean '--spp'?" for the first option among what the command could not use that has a neighbour.
@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
   commands["render"] = add_render(program);
   commands["info"] = add_info(program);
   commands["convert"] = add_convert(program);
+  commands["devices"] = add_devices(program);
   check_command(commands, argc, argv);
   try {
     program.parse(argc, argv);

@@ -19,7 +19,10 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/film", {"src/base", "src/shared", "src/spectral"}},
     {"src/render", {"src/base", "src/shared", "src/spectral", "src/scene", "src/film"}},
     {"src_cpu", {"src/base", "src/shared", "src/spectral", "src/scene", "src/film", "src/render"}},
-    {"src/app", {"src/base", "src/shared", "src/spectral", "src/scene", "src/film", "src/render", "src_cpu"}},
+    {"src_gpu", {"src/base", "src/shared", "src/spectral", "src/scene", "src/film", "src/render"}},
+    {"kernels", {"src/shared"}},
+    {"src/app",
+     {"src/base", "src/shared", "src/spectral", "src/scene", "src/film", "src/render", "src_cpu", "src_gpu"}},
 };
 
 /// "src/film" of "src/film/png.cpp", "src_cpu" of "src_cpu/isa.cpp".
@@ -30,7 +33,8 @@ std::string part_of(const std::string& path) {
   return path.substr(0, path.find('/', first + 1));
 }
 
-/// Includes are rooted at src/ or at the project; a plain name stands beside the file.
+/// Includes are rooted at src/ or at the project, those of kernels also at kernels/; a plain name stands beside
+/// the file.
 std::string resolve(const SourceFile& file, const std::string& include) {
   namespace fs = std::filesystem;
   const std::string beside = (fs::path(file.path).parent_path() / include).lexically_normal().string();
@@ -42,7 +46,7 @@ std::string resolve(const SourceFile& file, const std::string& include) {
 
 TEST(Dependencies, IncludesFollowTheTable) {
   std::size_t count = 0;
-  for (const SourceFile& file : read_files({"src", "src_cpu"})) {
+  for (const SourceFile& file : read_files({"src", "src_cpu", "src_gpu", "kernels"})) {
     const std::string part = part_of(file.path);
     ASSERT_TRUE(kAllowed.contains(part)) << file.path << ": a folder that the table does not know";
     for (const auto& [line, include] : own_includes(file.text)) {
@@ -57,11 +61,15 @@ TEST(Dependencies, IncludesFollowTheTable) {
   EXPECT_GT(count, 300u) << "the scan of #include lines has lost its way";
 }
 
-/// Only the CPU backend sees Embree; images stay behind the image loading interface and the cube files.
+/// Only the backends see Embree (the OpenCL one for its builder alone) and OpenCL; images stay behind the image
+/// loading interface and the cube files.
 TEST(Dependencies, LibrariesStayBehindTheirInterfaces) {
-  for (const SourceFile& file : read_files({"src", "src_cpu"})) {
-    if (part_of(file.path) != "src_cpu") {
+  for (const SourceFile& file : read_files({"src", "src_cpu", "src_gpu"})) {
+    if (part_of(file.path) != "src_cpu" && part_of(file.path) != "src_gpu") {
       EXPECT_EQ(file.text.find("<embree"), std::string::npos) << file.path;
+    }
+    if (part_of(file.path) != "src_gpu") {
+      EXPECT_EQ(file.text.find("<CL/"), std::string::npos) << file.path;
     }
     if (file.path.ends_with(".hpp") || file.path.ends_with(".h")) {
       EXPECT_EQ(file.text.find("<OpenImageIO"), std::string::npos) << file.path;
