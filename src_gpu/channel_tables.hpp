@@ -13,8 +13,8 @@
 namespace kiloband::gpu {
 
 struct ChannelTableOptions {
-  double relative_error = 1e-6;              // of the row's largest value in the channel
-  uint32_t max_cells = 4096;                 // per row
+  double relative_error = 1e-6;                  // of the row's largest value in the channel
+  uint32_t max_cells = 4096;                     // per row
   std::size_t max_bytes = std::size_t{1} << 28;  // of all nodes; beyond, rows get fewer cells
 };
 
@@ -25,19 +25,20 @@ struct ChannelTableOptions {
 /// is a ramp over one cell.
 struct ChannelTables {
   KbSpectraLayout layout{};
-  std::vector<KbChannelTable> tables;      // by row
-  std::vector<float> nodes;                // nodes[first + j * stride + k]; `first` is a multiple of 16
-  std::vector<uint32_t> material_rows;     // by material: conductor: row of n - 1, k follows; dispersive: row of
-                                           // interior/exterior - 1; else (perfect mirrors too) KB_NONE
-  std::vector<KbCover> cover;              // K + 1
+  std::vector<KbChannelTable> tables;   // by row
+  std::vector<float> nodes;             // nodes[first + j * stride + k]; `first` is a multiple of 16
+  std::vector<uint32_t> material_rows;  // by material: conductor: row of n - 1, k follows; dispersive: row of
+                                        // interior/exterior - 1; else (perfect mirrors too) KB_NONE
+  std::vector<KbCover> cover;           // K + 1
   std::vector<KbCoverBreak> cover_breaks;  // see KbCover
   std::vector<double> derived_scale;       // by derived channel: film unit, W m^-2 sr^-1
-  std::vector<double> error;               // by row: largest interpolation error beside jumps, relative to the
-                                           // row's largest value in the channel
-  std::vector<bool> has_jump;              // by row: data end inside a channel
+  std::vector<double> error;   // by row: largest interpolation error beside jumps, relative to the
+                               // row's largest value in the channel
+  std::vector<bool> has_jump;  // by row: data end inside a channel
 };
 
-/// throws InputError        channels overlap so much that counting covers needs more memory than options allow
+/// throws InputError        channels overlap so much that counting covers needs more memory than options
+/// allow
 ///        std::logic_error  channel_scale has not K entries, a material refers to no row
 ChannelTables make_channel_tables(const FlatScene& scene, const DerivedChannels& derived,
                                   const ChannelTableOptions& options = {});

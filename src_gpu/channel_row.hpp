@@ -1,0 +1,47 @@
+// One row of channel tables: how many cells a function of wavelength needs, and its nodes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "spectral/channels.hpp"
+#include "spectral/spectrum.hpp"
+
+namespace kiloband::gpu {
+
+/// A function of wavelength that is linear, or at least smooth, between its kinks.
+struct RowFunction {
+  std::function<double(double)> value;  // of lambda_nm
+  std::vector<double> kinks_nm;         // ascending
+  std::vector<double> jumps_nm;         // where the value jumps: ends of data
+  bool curved = false;                  // not linear between kinks
+
+  /// A table times `factor`.
+  static RowFunction of_table(const RegularTable& table);
+  /// Adds the kinks and jumps of another function that this one is made of.
+  void merge(const RowFunction& other);
+};
+
+struct RowCells {
+  uint32_t cells = 1;
+  double error = 0;  // relative to the largest value in the channel, cells with a jump left out
+  bool has_jump = false;
+};
+
+/// Cells of a row: the fewest with at most `wanted` error; where none of up to `most` attain that (kinks off
+/// every grid), the fewest powers of two that attain `accepted`, else `most`. A row with a jump inside a
+/// channel gets as many as fit `most`, so that the ramp in the jump's place is narrow.
+RowCells choose_cells(const RowFunction& row, const ChannelList& channels, double wanted, double accepted,
+                      uint32_t most);
+
+/// The error of a given number of cells.
+double error_of_cells(const RowFunction& row, const ChannelList& channels, uint32_t cells);
+
+/// nodes[j * stride + k] = factor[k] * row(lambda_k(mu = j / cells)), j = 0 .. cells; factor may be empty
+/// (1). At mu = 0 and 1 a jump counts as outside the channel.
+void fill_nodes(const RowFunction& row, const ChannelList& channels, std::span<const double> factor,
+                uint32_t cells, std::size_t stride, float* nodes);
+
+}  // namespace kiloband::gpu
