@@ -46,13 +46,10 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
   return {block_index, range.replicate, counts_, sums_, evaluator_.stride(), done};
 }
 
-void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {
+/// The wavelength offsets of the block's paths: one (shared), or one per pixel.
+void BlockWorker::set_mu(const PixelRect& block, const SampleId& id) {
   if (settings_.wavelengths == WavelengthMode::kShared) {
-    const float mu =
-        kb_shared_mu(settings_.seed, id.replicate, block.x0 / kBlockSize, block.y0 / kBlockSize, id.index);
-    mu_.assign(1, mu);
-    tracer_.trace(block, id, mu_, paths_, invalid_);
-    evaluator_.add_shared(paths_, mu, sums_);
+    mu_.assign(1, kb_shared_mu(settings_.seed, id.replicate, block.x0 / kBlockSize, block.y0 / kBlockSize, id.index));
     return;
   }
   const uint32_t sampler =
@@ -63,10 +60,40 @@ void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {
         (block.y0 + i / block.width) * scene_.flat->camera.film_width + block.x0 + i % block.width;
     mu_[i] = kb_path_mu(sampler, settings_.seed, key, id.sample, id.replicate, id.index);
   }
+}
+
+void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {
+  set_mu(block, id);
   tracer_.trace(block, id, mu_, paths_, invalid_);
+  if (settings_.wavelengths == WavelengthMode::kShared) {
+    evaluator_.add_shared(paths_, mu_.front(), sums_);
+    return;
+  }
   path_mu_.clear();
   for (const SavedPath& path : paths_.paths) path_mu_.push_back(mu_[path.pixel]);
   evaluator_.add_per_path(paths_, path_mu_, sums_);
+}
+
+std::vector<TracedPath> BlockWorker::trace(const PixelRect& block, const SampleId& id) {
+  PathTracer::Recording recording;
+  tracer_.record_into(&recording);
+  set_mu(block, id);
+  tracer_.trace(block, id, mu_, paths_, invalid_);
+  tracer_.record_into(nullptr);
+  std::vector<TracedPath> traced(block.pixels());
+  for (std::size_t i = 0; i < recording.answers.size(); ++i) {
+    const TraceRay& ray = recording.answers[i];
+    const bool hit = ray.shape != KB_NONE;
+    traced[recording.closest_path[i]].hits.push_back(
+        hit ? TracedHit{ray.shape, ray.primitive, ray.t_max, ray.u, ray.v} : TracedHit{});
+  }
+  for (const SavedPath& path : paths_.paths) {
+    const auto first = paths_.slots.begin() + path.first;
+    traced[path.pixel].slots.assign(first, first + path.count);
+  }
+  for (const uint32_t pixel : invalid_) traced[pixel].invalid = true;
+  for (TracedPath& path : traced) normalise(path);
+  return traced;
 }
 
 void BlockWorker::fold_sums() {

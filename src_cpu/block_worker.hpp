@@ -23,10 +23,14 @@ class BlockWorker {
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_sample,
                       const std::function<void(const InvalidSample&)>& on_invalid);
 
+  /// Traces one sample of every pixel of the block, without evaluating it.
+  std::vector<TracedPath> trace(const PixelRect& block, const SampleId& id);
+
   PathTracer& tracer() { return tracer_; }
   const Evaluator& evaluator() const { return evaluator_; }
 
  private:
+  void set_mu(const PixelRect& block, const SampleId& id);
   void add_sample(const PixelRect& block, const SampleId& id);
   void fold_sums();
   void finish_means(std::size_t pixels);

@@ -67,6 +67,12 @@ class CpuBackend final : public Backend {
               const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override;
   std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override;
 
+  std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
+    const DenormalsToZero mode;
+    return workers_.front()->trace(
+        rect, {range.replicate + range.first * settings_.replicates, range.replicate, range.first});
+  }
+
   std::string name() const override { return "cpu"; }
   std::string device() const override { return processor_name(); }
   std::string isa() const override { return to_string(isa_); }

@@ -126,6 +126,7 @@ void PathTracer::trace_closest(bool coherent) {
   rays_ += rays_queue_.size();
   if (recording_) record_closest();
   scene_.embree->closest_hits(rays_queue_, coherent);
+  if (recording_) recording_->answers.insert(recording_->answers.end(), rays_queue_.begin(), rays_queue_.end());
 }
 
 void PathTracer::trace_shadows() {

@@ -67,6 +67,7 @@ class PathTracer {
     std::vector<TraceRay> closest;
     std::vector<ShadowRay> shadow;
     std::vector<uint32_t> closest_path, shadow_path;
+    std::vector<TraceRay> answers;  // of `closest`: what was hit
   };
   void record_into(Recording* recording) { recording_ = recording; }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/backend_options.hpp"
 #include "app/commands.hpp"
 #include "app/messages.hpp"
 #include "app/option_values.hpp"
@@ -17,7 +18,6 @@
 #include "film/atomic_file.hpp"
 #include "render/checkpoint.hpp"
 #include "render/session.hpp"
-#include "src_cpu/cpu_backend.hpp"
 
 namespace kiloband {
 namespace {
@@ -25,9 +25,9 @@ namespace {
 struct RenderOptions {
   SceneOptions scene;
   std::vector<std::string> outputs, responses, aux;
-  std::string backend = "auto", isa = "auto", wavelengths = "shared", sampler = "sobol", quantity;
+  BackendOptions backend;
+  std::string wavelengths = "shared", sampler = "sobol", quantity;
   std::optional<std::string> preview, stats, time, target_error, checkpoint, checkpoint_interval;
-  int threads = 0;
   uint64_t seed = 0;
   std::optional<uint64_t> spp;
   std::optional<uint32_t> replicates;
@@ -112,13 +112,6 @@ void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const
   }
 }
 
-Isa parse_isa(const std::string& text) {
-  if (text == "sse4") return Isa::kSse4;
-  if (text == "avx2") return Isa::kAvx2;
-  if (text == "avx512") return Isa::kAvx512;
-  return Isa::kAuto;
-}
-
 SamplingSettings sampling_settings(const RenderOptions& options, const SessionSettings& session) {
   SamplingSettings sampling;
   sampling.seed = options.seed;
@@ -180,12 +173,12 @@ int render(const RenderOptions& options) {
   const SamplingSettings sampling = sampling_settings(options, settings);
   const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
-  const auto backend = make_cpu_backend(scene, derived, sampling, {parse_isa(options.isa), options.threads});
+  const auto backend = make_backend(options.backend, scene, derived, sampling, sink);
   describe_render(settings, options, sampling, *backend);
   prepare_checkpoint(settings, scene, sampling, *backend, derived);
   catch_stop_signals();
-  if (options.backend == "auto" && !options.quiet) {
-    tell("backend cpu ({}, {})\n", backend->device(), backend->isa());
+  if (options.backend.backend == "auto" && !options.quiet) {
+    tell("backend {} ({}, {})\n", backend->name(), backend->device(), backend->isa());
   }
   const double setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -214,15 +207,7 @@ std::string check_seed(const std::string& text) {
 }
 
 void add_sampling_options(CLI::App& command, RenderOptions& o) {
-  command.add_option("--backend", o.backend, "auto or cpu")
-      ->check(CLI::IsMember({"auto", "cpu"}))
-      ->capture_default_str();
-  command.add_option("--threads", o.threads, "threads (0: all)")
-      ->check(CLI::Range(0, 4096))
-      ->capture_default_str();
-  command.add_option("--isa", o.isa, "instruction set")
-      ->check(CLI::IsMember({"auto", "sse4", "avx2", "avx512"}))
-      ->capture_default_str();
+  o.backend.add_to(command);
   command.add_option("--wavelengths", o.wavelengths, "wavelength sampling")
       ->check(CLI::IsMember({"shared", "per-path"}))
       ->capture_default_str();

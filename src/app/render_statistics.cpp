@@ -26,7 +26,7 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["backend"] = backend.name();
   json["device"] = backend.device();
   json["isa"] = backend.isa();
-  json["method"] = "dpept-batch";
+  json["method"] = backend.method();
   json["wavelengths"] = to_string(context.sampling.wavelengths);
   json["sampler"] = to_string(context.sampling.sampler);
   json["seed"] = context.sampling.seed;
@@ -45,7 +45,7 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["vertices"] = counters.vertices.load();
   json["rays"] = counters.rays.load();
   json["peak_memory_bytes"] = peak_memory_bytes();
-  json["device_memory_bytes"] = 0;
+  json["device_memory_bytes"] = backend.device_memory_bytes();
   json["invalid_samples"] = counters.invalid_samples.load();
   json["resumed_samples"] = report.resumed_samples;
   json["mean_relative_error"] = nullptr;

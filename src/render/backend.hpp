@@ -9,6 +9,7 @@
 
 #include "base/diagnostics.hpp"
 #include "film/spectral_film.hpp"
+#include "render/traced_path.hpp"
 #include "scene/flat_scene.hpp"
 
 namespace kiloband {
@@ -63,9 +64,17 @@ class Backend {
   /// [y][x] of the rectangle.
   virtual std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) = 0;
 
+  /// The paths of one sample of every pixel of `rect`, [y][x], normalised (traced_path.hpp). rect lies in one block
+  /// of 32 x 32 pixels; range.count is 1.
+  virtual std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) = 0;
+
   virtual std::string name() const = 0;    // "cpu"
   virtual std::string device() const = 0;  // processor or device name
   virtual std::string isa() const = 0;
+  /// How paths are evaluated: "dpept-batch", "dpept-path" or "pt".
+  virtual std::string method() const { return "dpept-batch"; }
+  /// Peak bytes of device memory beside the host's.
+  virtual uint64_t device_memory_bytes() const { return 0; }
   virtual const RenderCounters& counters() const = 0;
   /// The first invalid samples, at most 16.
   virtual std::vector<InvalidSample> invalid_samples() const = 0;

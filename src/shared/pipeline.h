@@ -91,6 +91,7 @@ KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 #define KB_PATH_INVALID 0x04000000u        /* a weight is not finite, or the path is endless */
 #define KB_PATH_PREVIOUS_DELTA 0x08000000u /* the ray was not sampled from a density */
 #define KB_PATH_FINISHED 0x10000000u       /* the slot has no more jobs */
+#define KB_PATH_FRESH 0x20000000u          /* what was appended last belongs to the path's first bounce */
 
 typedef struct {
   kb_u32 job;
@@ -139,20 +140,31 @@ typedef struct {
 } KbRound;
 KB_STATIC_ASSERT(sizeof(KbRound) == 64, round_size);
 
+/* What is seen through a pixel's centre. */
+typedef struct {
+  float depth; /* m along the ray; 0: nothing is hit */
+  float normal[3];
+  float object, material; /* indices, -1: nothing */
+} KbAuxiliary;
+KB_STATIC_ASSERT(sizeof(KbAuxiliary) == 24, auxiliary_size);
+
 /* ---- faults: kernels write, the host reads ------------------------------------------------------------------------ */
 #define KB_FAULT_ARENA_FULL 1u     /* the round is repeated with fewer paths */
 #define KB_FAULT_STACK_OVERFLOW 2u /* a traversal needs more stack than the measured depth: our bug */
 #define KB_FAULT_BAD_INDEX 4u      /* a record refers to what does not exist: our bug */
 
+#define KB_LISTED_INVALID 24u
+
 typedef struct {
-  kb_u32 code;         /* KB_FAULT_* bits */
-  kb_u32 slot;         /* of one that raised it */
-  kb_u32 chunks;       /* arena chunks asked for */
-  kb_u32 active;       /* slots that are not finished, after the last compaction */
-  kb_u32 rays_low, rays_high;         /* rays traced */
-  kb_u32 vertices_low, vertices_high; /* vertices appended */
+  kb_u32 code;    /* KB_FAULT_* bits */
+  kb_u32 slot;    /* of one that raised it */
+  kb_u32 chunks;  /* arena chunks asked for */
+  kb_u32 active;  /* slots that are not finished, after the last compaction */
+  kb_u32 invalid; /* paths that leave the mean */
+  kb_u32 reserved[3];
+  kb_u32 invalid_jobs[KB_LISTED_INVALID]; /* the first of them, in no order */
 } KbFaults;
-KB_STATIC_ASSERT(sizeof(KbFaults) == 32, faults_size);
+KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
 
 /* ---- spectra ------------------------------------------------------------------------------------------------------
    Every row of spectra is tabulated over mu in each channel: node j of channel k is the value at

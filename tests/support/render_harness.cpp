@@ -8,17 +8,10 @@
 #include <stdexcept>
 
 #include "scene/reader.hpp"
-#include "src_cpu/cpu_backend.hpp"
+#include "tests/support/test_backend.hpp"
 
 namespace kiloband::test {
 namespace {
-
-Isa isa_of(const std::string& name) {
-  if (name == "sse4") return Isa::kSse4;
-  if (name == "avx2") return Isa::kAvx2;
-  if (name == "avx512") return Isa::kAvx512;
-  return Isa::kAuto;
-}
 
 DerivedChannels derived_of(const RenderSpec& spec, const ChannelList& channels) {
   DerivedChannels derived;
@@ -75,7 +68,7 @@ RenderResult render(const RenderSpec& spec) {
   const ReplicatePlan plan = ReplicatePlan::deal(spec.spp, spec.sampling.replicates);
   SamplingSettings sampling = spec.sampling;
   sampling.replicates = result.replicates = plan.replicates;
-  const auto backend = make_cpu_backend(result.scene, derived, sampling, {isa_of(spec.isa), spec.threads});
+  const auto backend = make_test_backend(result.scene, derived, sampling, spec.isa, spec.threads);
 
   const Film& f = result.scene.film;
   result.width = f.crop_width;

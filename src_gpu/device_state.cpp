@@ -1,0 +1,128 @@
+#include "src_gpu/device_state.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "src_gpu/material_tables.hpp"
+
+namespace kiloband::gpu {
+namespace {
+
+std::vector<std::string> path_defines(const HostScene& host, const DeviceSettings& settings) {
+  std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
+  defines.push_back("KB_BVH_STACK=" + std::to_string(std::max(host.bvh.stack_entries() + 1, 4u)));
+  if (settings.method == Method::kPt) defines.push_back("KB_METHOD_PT=1");
+  return defines;
+}
+
+}  // namespace
+
+HostScene::HostScene(const FlatScene& flat, const DerivedChannels& derived_channels)
+    : scene(flat),
+      derived(derived_channels),
+      material_tables(make_material_tables(scene)),
+      spectra(make_channel_tables(scene, derived)),
+      bvh(build_bvh(scene)) {}
+
+std::vector<double> HostScene::film_scale() const {
+  std::vector<double> scale = scene.channel_scale;
+  scale.insert(scale.end(), spectra.derived_scale.begin(), spectra.derived_scale.end());
+  return scale;
+}
+
+DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
+                         const DeviceSettings& device_settings)
+    : context(device_context),
+      memory(device_context, device_settings.memory_budget),
+      method(device_settings.method),
+      host_(host),
+      settings_(device_settings),
+      shape_(evaluation_shape(device_context.device(), method, settings_.shared_wavelengths,
+                              host.spectra.layout.channels)),
+      paths_(build_program(context, "paths.cl", ProgramOptions{path_defines(host, settings_), settings_.program_cache})),
+      scene_(memory, host.scene, host.material_tables),
+      bvh_(memory, host.bvh),
+      spectra_(memory, host.spectra) {}
+
+uint64_t DeviceState::film_bytes_per_pixel() const {
+  return gpu::film_bytes_per_pixel(host_.spectra.layout, shape_);
+}
+uint64_t DeviceState::table_bytes() const {
+  return gpu::table_bytes(host_.spectra.layout, shape_);
+}
+uint64_t DeviceState::slot_bytes() const {
+  return gpu::slot_bytes(host_.spectra.layout, shape_);
+}
+
+void DeviceState::release_pool() {
+  evaluation_.reset();
+  pool_.reset();
+}
+
+void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels) {
+  release_pool();
+  pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size);
+  evaluation_.emplace(context, memory, host_.spectra.layout, shape_,
+                      scene_defines(host_.scene.features, settings_.specialised), settings_.program_cache, size,
+                      film_pixels);
+  evaluation_->bind(scene_, spectra_, *pool_);
+}
+
+void DeviceState::clear_film(uint64_t pixels) {
+  evaluation_->clear(pixels);
+}
+
+RoundOutcome DeviceState::generate(const KbRound& round, std::span<const KbRoundPixel> pixels,
+                                   std::span<const float> mu, uint64_t film_pixel) {
+  pool_->begin(round, pixels, mu);
+  evaluation_->resample(round);
+  if (method != Method::kPt) return pool_->run(round);
+  return pool_->run(round, [&](const DeviceBuffer<uint32_t>& queue, uint32_t count) {
+    evaluation_->update(queue, count, film_pixel);
+  });
+}
+
+double DeviceState::evaluate(const KbRound& round, uint64_t film_pixel) {
+  return method == Method::kPt ? 0 : evaluation_->evaluate(round, film_pixel);
+}
+
+void DeviceState::finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {
+  evaluation_->finish(pixels, means, counts);
+}
+
+std::vector<AuxiliaryPixel> DeviceState::auxiliary(const PixelRect& rect) {
+  static_assert(sizeof(AuxiliaryPixel) == sizeof(KbAuxiliary));
+  const auto count = static_cast<uint32_t>(rect.pixels());
+  release_pool();  // its memory may be all there is
+  DeviceBuffer<KbAuxiliary> out = memory.allocate<KbAuxiliary>("auxiliary images", count);
+  DeviceBuffer<KbFaults> faults = memory.upload("faults", std::vector<KbFaults>(1));
+  Kernel kernel = paths_.kernel("auxiliary");
+  scene_.bind(kernel, 0);
+  kernel.set_from(DeviceScene::kArguments, bvh_.nodes, bvh_.primitives, out, faults, rect.x0, rect.y0, rect.width,
+                  count);
+  kernel.launch(count, 64);
+  const std::vector<KbAuxiliary> values = out.download();
+  throw_for_bugs(faults.read(0));
+  std::vector<AuxiliaryPixel> pixels;
+  for (const KbAuxiliary& v : values)
+    pixels.push_back({v.depth, {v.normal[0], v.normal[1], v.normal[2]}, v.object, v.material});
+  return pixels;
+}
+
+Method preferred_method(std::size_t channels) {
+  (void)channels;
+  return Method::kDpeptBatch;
+}
+
+const char* to_string(Method method) {
+  switch (method) {
+    case Method::kPt:
+      return "pt";
+    case Method::kDpeptPath:
+      return "dpept-path";
+    default:
+      return "dpept-batch";
+  }
+}
+
+}  // namespace kiloband::gpu

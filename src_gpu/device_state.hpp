@@ -1,0 +1,95 @@
+// Everything of a render that lives on one device; made anew after the device was lost.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/backend.hpp"
+#include "scene/derived_channels.hpp"
+#include "src_gpu/device_scene.hpp"
+#include "src_gpu/evaluation.hpp"
+#include "src_gpu/path_pool.hpp"
+#include "src_gpu/round_plan.hpp"
+
+namespace kiloband::gpu {
+
+/// What is prepared on the host, once per render.
+struct HostScene {
+  HostScene(const FlatScene& flat, const DerivedChannels& derived_channels);
+
+  /// Film unit in W m^-2 sr^-1, channels then derived ones.
+  std::vector<double> film_scale() const;
+
+  FlatScene scene;
+  DerivedChannels derived;
+  std::vector<float> material_tables;  // completes scene.materials: before the members below
+  ChannelTables spectra;
+  Bvh bvh;
+};
+
+struct DeviceSettings {
+  Method method = Method::kDpeptBatch;
+  bool shared_wavelengths = true;
+  bool specialised = true;
+  bool program_cache = true;
+  std::optional<uint64_t> memory_budget;
+  double launch_seconds = 0.5;
+};
+
+class DeviceState {
+ public:
+  /// throws DeviceOutOfMemory  the scene alone does not fit; DeviceLost, DeviceError
+  DeviceState(DeviceContext& device_context, const HostScene& host, const DeviceSettings& device_settings);
+
+  /// Memory of a round and the film of `film_pixels` pixels.
+  /// throws DeviceOutOfMemory
+  void make_pool(const PoolSize& size, uint64_t film_pixels);
+  void release_pool();
+  bool has_pool() const { return pool_.has_value(); }
+
+  /// Bytes that a film pixel, a dense table of spectra, a slot (beside the pool's own) take.
+  uint64_t film_bytes_per_pixel() const;
+  uint64_t table_bytes() const;
+  uint64_t slot_bytes() const;
+
+  void clear_film(uint64_t pixels);
+  /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's pixels
+  /// begin in the film.
+  RoundOutcome generate(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu,
+                        uint64_t film_pixel);
+  /// Evaluates what generate() saved. returns the longest launch, seconds
+  double evaluate(const KbRound& round, uint64_t film_pixel);
+  /// Means [pixel][channels + derived] and valid samples.
+  void finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
+
+  /// What the rays of a round find and the vertices that are saved, by job.
+  std::vector<TracedPath> trace(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu);
+
+  std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect);
+
+  DeviceContext& context;
+  DeviceMemory memory;
+  const Method method;
+
+ private:
+  std::vector<KbPathVertex> saved_slots(const KbSavedPath& saved, const std::vector<KbPathVertex>& arena,
+                                        const std::vector<uint32_t>& chunk_next) const;
+  const HostScene& host_;
+  DeviceSettings settings_;
+  EvaluationShape shape_;
+  Program paths_;
+  DeviceScene scene_;
+  DeviceBvh bvh_;
+  DeviceSpectra spectra_;
+  std::optional<PathPool> pool_;
+  std::optional<Evaluation> evaluation_;
+};
+
+/// The method that is fastest for this many channels (measured: validation/README.md).
+Method preferred_method(std::size_t channels);
+
+const char* to_string(Method method);
+
+}  // namespace kiloband::gpu

@@ -1,0 +1,95 @@
+// Renders the samples of one replicate for a list of pixels: groups whose film fits the device, rounds of
+// paths that are generated and evaluated.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/diagnostics.hpp"
+#include "render/backend.hpp"
+#include "src_gpu/device_state.hpp"
+#include "src_gpu/round_plan.hpp"
+
+namespace kiloband::gpu {
+
+/// What a run of rounds did.
+struct RunTally {
+  uint64_t rays = 0, vertices = 0, paths = 0;
+  uint64_t invalid = 0;
+  std::vector<InvalidSample> invalid_samples;  // the first of them
+  double longest_launch_seconds = 0;
+  double generate_seconds = 0, evaluate_seconds = 0;  // wall time until the device was done
+};
+
+/// A pixel in full-film coordinates.
+struct ImagePixel {
+  uint32_t x, y;
+};
+
+/// Do they share wavelength offsets?
+inline bool same_block(const ImagePixel& a, const ImagePixel& b) {
+  return a.x / kBlockSize == b.x / kBlockSize && a.y / kBlockSize == b.y / kBlockSize;
+}
+
+/// Means and numbers of valid samples of a group of pixels.
+struct GroupResult {
+  std::vector<float> means;      // [pixel][channels + derived]
+  std::vector<uint32_t> counts;  // valid samples
+  uint32_t attempted = 0;        // samples per pixel
+};
+
+class GroupRenderer {
+ public:
+  /// note  receives a line where a pool is made smaller
+  GroupRenderer(DeviceState& device, const SamplingSettings& settings, double launch_seconds,
+                std::optional<uint32_t> pool_slots, DiagnosticSink note);
+
+  /// Pixels whose film is resident at once, for an image part of this many pixels and samples.
+  uint64_t group_pixels(uint64_t pixels, uint32_t samples);
+
+  /// Renders range.count samples of every pixel (fewer if stop becomes true). At most group_pixels() of them.
+  /// The pixels of a block stand together. on_samples gets the pixel samples done.
+  /// throws DeviceLost (everything of the device is to be made anew), DeviceOutOfMemory, DeviceError
+  GroupResult render(std::span<const ImagePixel> pixels, const SampleRange& range,
+                     const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples,
+                     RunTally& tally);
+
+  /// The paths of one sample of each pixel (methods dpept: with pt vertices are not kept).
+  std::vector<TracedPath> trace(std::span<const ImagePixel> pixels, const SampleRange& range);
+
+ private:
+  void prepare(uint64_t pixels, uint32_t samples);
+  bool make_pool(const PlanRequest& request);
+  void make_pool_or_throw(const PlanRequest& request);
+  PlanRequest request(uint64_t pixels, uint32_t samples) const;
+  /// Renders samples [first, first + count) of pixels [at, at + number) of the group; splits where the arena
+  /// is too small.
+  void render_part(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
+                   const SampleRange& samples, RunTally& tally);
+  KbRound make_round(const SampleRange& samples, uint64_t number) const;
+  void fill_pixels(std::span<const ImagePixel> pixels, KbRound& round);
+  void fill_mu(const KbRound& round);
+  void split(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number, const SampleRange& samples,
+             RunTally& tally);
+  void note_invalid(const RoundOutcome& outcome, const KbRound& round, RunTally& tally) const;
+  void adapt(const RoundOutcome& outcome, const KbRound& round);
+
+  DeviceState& device_;
+  SamplingSettings settings_;
+  double launch_seconds_;
+  std::optional<uint32_t> pool_slots_;
+  DiagnosticSink note_;
+  std::optional<RoundPlan> plan_;
+  uint64_t planned_pixels_ = 0;
+  uint32_t planned_samples_ = 0;
+  uint32_t slots_limit_ = 0;    // after launches that took too long
+  double chunks_per_path_ = 3;  // measured
+  std::vector<KbRoundPixel> round_pixels_;
+  std::vector<float> mu_;
+};
+
+}  // namespace kiloband::gpu

@@ -1,0 +1,238 @@
+#include "src_gpu/opencl_backend.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "src_gpu/device.hpp"
+#include "src_gpu/group_renderer.hpp"
+
+namespace kiloband {
+namespace {
+
+using gpu::DeviceContext;
+using gpu::DeviceLost;
+using gpu::DeviceState;
+using gpu::GroupRenderer;
+using gpu::GroupResult;
+using gpu::HostScene;
+using gpu::ImagePixel;
+using gpu::RunTally;
+
+constexpr std::size_t kReportedInvalid = 16;
+/// A device that is lost again and again is not worth more attempts.
+constexpr uint32_t kMostLosses = 3;
+
+std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
+  std::vector<ImagePixel> pixels;
+  for (uint32_t i = 0; i < rect.pixels(); ++i)
+    pixels.push_back({rect.x0 + i % rect.width, rect.y0 + i / rect.width});
+  return pixels;
+}
+
+class Renderer final : public OpenclBackend {
+ public:
+  Renderer(const FlatScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
+           const OpenclOptions& options)
+      : options_(options),
+        settings_(settings),
+        host_(scene, derived),
+        method_(options.method.value_or(gpu::preferred_method(scene.channels.size()))),
+        context_(gpu::select_device(options.device), {.profiling = true}) {
+    make_device();
+  }
+
+  void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
+              const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override;
+  std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override;
+
+  std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
+    const std::vector<ImagePixel> pixels = pixels_of(rect);
+    groups_->group_pixels(pixels.size(), range.count);
+    return groups_->trace(pixels, range);
+  }
+
+  std::string name() const override { return "opencl"; }
+  std::string device() const override { return context_.device().name; }
+  std::string isa() const override { return "opencl " + context_.device().driver_version; }
+  const RenderCounters& counters() const override { return counters_; }
+  std::vector<InvalidSample> invalid_samples() const override { return invalid_; }
+  std::vector<double> film_scale() const override { return host_.film_scale(); }
+
+  std::string method() const override { return gpu::to_string(method_); }
+  uint64_t device_memory_bytes() const override { return std::max(peak_, state_ ? state_->memory.peak() : 0); }
+  double longest_launch_seconds() const override { return longest_launch_; }
+  uint32_t device_losses() const override { return losses_; }
+
+ private:
+  struct Delivery;
+
+  void make_device();
+  void recover(const DeviceLost& loss);
+  GroupResult render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
+                           const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress);
+  uint64_t group_size(uint64_t pixels, uint32_t samples);
+  void count(const RunTally& tally);
+
+  OpenclOptions options_;
+  SamplingSettings settings_;
+  HostScene host_;
+  gpu::Method method_;
+  DeviceContext context_;
+  std::unique_ptr<DeviceState> state_;
+  std::unique_ptr<GroupRenderer> groups_;
+  RenderCounters counters_;
+  std::vector<InvalidSample> invalid_;
+  double longest_launch_ = 0;
+  uint64_t peak_ = 0;
+  uint32_t losses_ = 0;
+};
+
+void Renderer::make_device() {
+  state_ = std::make_unique<DeviceState>(
+      context_, host_,
+      gpu::DeviceSettings{method_, settings_.wavelengths == WavelengthMode::kShared, options_.specialised,
+                          options_.program_cache, options_.device_memory, options_.launch_seconds});
+  groups_ = std::make_unique<GroupRenderer>(*state_, settings_, options_.launch_seconds, options_.pool_slots,
+                                            options_.sink);
+}
+
+/// After a lost device: everything on it is made anew, and the group's work is repeated.
+void Renderer::recover(const DeviceLost& loss) {
+  if (++losses_ > kMostLosses) throw loss;
+  note(options_.sink, {}, fmt::format("{}: device lost, context rebuilt, work repeated", loss.what()));
+  groups_.reset();
+  if (state_) peak_ = std::max(peak_, state_->memory.peak());
+  state_.reset();
+  context_.rebuild();
+  make_device();
+}
+
+void Renderer::count(const RunTally& tally) {
+  counters_.rays += tally.rays;
+  counters_.vertices += tally.vertices;
+  counters_.paths += tally.paths;
+  counters_.invalid_samples += tally.invalid;
+  longest_launch_ = std::max(longest_launch_, tally.longest_launch_seconds);
+  for (const InvalidSample& sample : tally.invalid_samples) {
+    if (invalid_.size() < kReportedInvalid) invalid_.push_back(sample);
+  }
+}
+
+uint64_t Renderer::group_size(uint64_t pixels, uint32_t samples) {
+  for (;;) {
+    try {
+      return groups_->group_pixels(pixels, samples);
+    } catch (const DeviceLost& loss) {
+      recover(loss);
+    }
+  }
+}
+
+GroupResult Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
+                                   const std::atomic<bool>& stop,
+                                   const std::function<void(uint64_t)>& progress) {
+  uint64_t reported = 0;  // by an attempt that was lost: not to be reported again
+  for (;;) {
+    RunTally tally;
+    uint64_t done = 0;
+    const auto on_samples = [&](uint64_t samples) {
+      done += samples;
+      if (done <= reported || !progress) return;
+      progress(done - reported);
+      reported = done;
+    };
+    try {
+      GroupResult result = groups_->render(pixels, range, stop, on_samples, tally);
+      count(tally);
+      return result;
+    } catch (const DeviceLost& loss) {
+      recover(loss);
+    }
+  }
+}
+
+/// Pixels from `at` on that a group takes: whole blocks where at least one fits, else a part of one.
+std::size_t whole_blocks(const std::vector<ImagePixel>& pixels, std::size_t at, std::size_t room) {
+  const std::size_t end = std::min(pixels.size(), at + room);
+  if (end == pixels.size()) return end - at;
+  std::size_t boundary = end;
+  while (boundary > at && gpu::same_block(pixels[boundary - 1], pixels[boundary])) --boundary;
+  return (boundary > at ? boundary : end) - at;
+}
+
+/// Collects the results of groups and hands complete blocks to the film.
+struct Renderer::Delivery {
+  SpectralFilm& film;
+  const SampleRange& range;
+  const std::vector<uint32_t>& blocks;
+  std::size_t channels;
+  std::size_t next_block = 0;  // in blocks
+  std::vector<float> means;
+  std::vector<uint32_t> counts;
+  std::vector<uint32_t> attempted;  // by pixel, as counts
+
+  /// Pixels that the open block still lacks.
+  std::size_t missing() const { return film.blocks()[blocks[next_block]].pixels() - counts.size(); }
+
+  void add(const GroupResult& result) {
+    means.insert(means.end(), result.means.begin(), result.means.end());
+    counts.insert(counts.end(), result.counts.begin(), result.counts.end());
+    attempted.insert(attempted.end(), result.counts.size(), result.attempted);
+    std::size_t first = 0;
+    while (next_block < blocks.size()) {
+      const std::size_t pixels = film.blocks()[blocks[next_block]].pixels();
+      if (first + pixels > counts.size()) break;
+      film.add({blocks[next_block], range.replicate, std::span(counts).subspan(first, pixels),
+                std::span(means).subspan(first * channels, pixels * channels), channels, attempted[first]});
+      first += pixels;
+      ++next_block;
+    }
+    means.erase(means.begin(), means.begin() + static_cast<std::ptrdiff_t>(first * channels));
+    counts.erase(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(first));
+    attempted.erase(attempted.begin(), attempted.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+};
+
+void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
+                      const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) {
+  std::vector<ImagePixel> pixels;
+  for (const uint32_t block : blocks) {
+    const std::vector<ImagePixel> some = pixels_of(film.blocks()[block]);
+    pixels.insert(pixels.end(), some.begin(), some.end());
+  }
+  Delivery delivery{film, range, blocks, film_scale().size(), 0, {}, {}, {}};
+  const std::atomic<bool> never{false};
+  for (std::size_t at = 0; at < pixels.size();) {
+    const std::size_t room = group_size(pixels.size(), range.count);
+    const bool in_block = !delivery.counts.empty();
+    const std::size_t number = in_block ? std::min(room, delivery.missing()) : whole_blocks(pixels, at, room);
+    // The parts of a block that is larger than a group get the same samples, stopped or not.
+    SampleRange part = range;
+    if (in_block) part.count = delivery.attempted.front();
+    delivery.add(
+        render_group(std::span(pixels).subspan(at, number), part, in_block ? never : stop, progress));
+    at += number;
+  }
+}
+
+std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
+  for (;;) {
+    try {
+      return state_->auxiliary(rect);
+    } catch (const DeviceLost& loss) {
+      recover(loss);
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<OpenclBackend> make_opencl_backend(const FlatScene& scene, const DerivedChannels& derived,
+                                                   const SamplingSettings& settings,
+                                                   const OpenclOptions& options) {
+  return std::make_unique<Renderer>(scene, derived, settings, options);
+}
+
+}  // namespace kiloband

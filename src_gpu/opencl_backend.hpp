@@ -1,0 +1,39 @@
+// The OpenCL backend: streaming path generation and PT, DPEPT-path or DPEPT-batch evaluation on a device.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/diagnostics.hpp"
+#include "render/backend.hpp"
+#include "scene/derived_channels.hpp"
+#include "src_gpu/round_plan.hpp"
+
+namespace kiloband {
+
+struct OpenclOptions {
+  std::optional<std::string> device;  // index or part of the name; nothing: the first GPU, else what there is
+  std::optional<uint64_t> device_memory;  // bytes; nothing: gpu::default_memory_budget
+  std::optional<gpu::Method> method;      // nothing: by the number of channels (preferred_method)
+  bool specialised = true;                // kernels compiled for the scene's features only
+  bool program_cache = true;              // binaries on disk
+  double launch_seconds = 0.5;            // longest launch aimed at: display drivers kill long ones
+  std::optional<uint32_t> pool_slots;     // paths in flight; nothing: what the device gains from
+  DiagnosticSink sink;                    // notes on smaller pools and repeated work; may be empty
+};
+
+/// A backend that can say what it did beyond the common counters.
+class OpenclBackend : public Backend {
+ public:
+  virtual double longest_launch_seconds() const = 0;  // measured on the device
+  virtual uint32_t device_losses() const = 0;         // contexts that had to be rebuilt
+};
+
+/// throws DeviceError (no device, kernels do not build, out of memory), InputError (no such device)
+std::unique_ptr<OpenclBackend> make_opencl_backend(const FlatScene& scene, const DerivedChannels& derived,
+                                                   const SamplingSettings& settings,
+                                                   const OpenclOptions& options);
+
+}  // namespace kiloband

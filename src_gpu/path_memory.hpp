@@ -1,0 +1,16 @@
+// Bytes that a path takes on the device, by method: what `kiloband info` prints (the paper's figures 4 and 7).
+#pragma once
+
+#include <cstdint>
+
+#include "src_gpu/round_plan.hpp"
+
+namespace kiloband::gpu {
+
+/// Bytes per path in flight.
+/// channels    K; only the method pt keeps anything per channel
+/// vertices    of a path: the depth; only the dpept methods keep the vertices of the whole path
+/// slots_each  arena slots of a vertex: 1, and 1 or 2 more where values are textured
+uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uint64_t slots_each);
+
+}  // namespace kiloband::gpu

@@ -1,0 +1,41 @@
+// How an image is cut so that it fits the device: groups of pixels whose film is resident, rounds of paths
+// that are generated and then evaluated, and the sizes of pool and arena. Pure arithmetic.
+#pragma once
+
+#include <cstdint>
+
+#include "src_gpu/path_pool.hpp"
+
+namespace kiloband::gpu {
+
+/// The three evaluations of one pipeline (paper, sections 4 and 5).
+enum class Method { kDpeptBatch, kDpeptPath, kPt };
+
+struct PlanRequest {
+  uint64_t budget = 0;   // bytes that may be used
+  uint64_t largest = 0;  // bytes of the largest buffer
+  uint64_t pixels = 0;   // of the image part
+  uint32_t samples = 1;  // per pixel that are asked for together
+  Method method = Method::kDpeptBatch;
+  uint64_t film_bytes = 0;     // per pixel: sums, compensation, counts, what finishing needs
+  uint64_t table_bytes = 0;    // per block and sample: dense spectra; 0 with per-path wavelengths
+  uint64_t slot_bytes = 0;     // per slot beside the pool's own: pt's state of every channel
+  uint32_t most_slots = 1;     // paths in flight that the device gains from
+  uint64_t most_jobs = 1;      // paths per round that it gains from
+  double chunks_per_path = 3;  // expected
+};
+
+struct RoundPlan {
+  uint64_t group_pixels = 0;   // film on the device
+  uint32_t round_pixels = 0;   // of them in a round, at most
+  uint32_t round_samples = 0;  // S, at most
+  PoolSize pool;
+};
+
+/// Samples of a round are summed in float before they are added to the film.
+inline constexpr uint32_t kMostRoundSamples = 64;
+
+/// throws DeviceOutOfMemory  not even a pixel fits: says what would be needed
+RoundPlan plan_rounds(const PlanRequest& request);
+
+}  // namespace kiloband::gpu

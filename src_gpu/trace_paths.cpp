@@ -1,0 +1,79 @@
+// Paths one by one, for `kiloband trace` and parity tests.
+#include <stdexcept>
+
+#include "src_gpu/device_state.hpp"
+#include "src_gpu/group_renderer.hpp"
+
+namespace kiloband::gpu {
+namespace {
+
+/// Appends what the live slots' rays have found to their jobs.
+class HitObserver {
+ public:
+  HitObserver(const PathPool& pool, const Bvh& bvh, std::vector<TracedPath>& traced)
+      : pool_(pool), bvh_(bvh), traced_(traced) {}
+
+  void operator()(const DeviceBuffer<uint32_t>& queue, uint32_t count) const {
+    const std::vector<KbPathState> states = pool_.states().download();
+    const std::vector<KbHit> hits = pool_.hits().download();
+    std::vector<uint32_t> slots(count);
+    queue.download(std::span<uint32_t>(slots));
+    for (const uint32_t slot : slots) {
+      if (states[slot].flags & KB_PATH_LIVE) traced_.at(states[slot].job).hits.push_back(to_hit(hits[slot]));
+    }
+  }
+
+ private:
+  TracedHit to_hit(const KbHit& hit) const {
+    if (hit.primitive == KB_NONE) return {};
+    const KbPrimitive& primitive = bvh_.primitives.at(hit.primitive);
+    return {primitive.shape, primitive.primitive, hit.t, hit.u, hit.v};
+  }
+
+  const PathPool& pool_;
+  const Bvh& bvh_;
+  std::vector<TracedPath>& traced_;
+};
+
+}  // namespace
+
+std::vector<KbPathVertex> DeviceState::saved_slots(const KbSavedPath& saved, const std::vector<KbPathVertex>& arena,
+                                                   const std::vector<uint32_t>& chunk_next) const {
+  std::vector<KbPathVertex> slots;
+  uint32_t chunk = saved.chunk;
+  for (uint32_t i = 0; i < saved.count; ++i) {
+    slots.push_back(arena.at(std::size_t{chunk} * KB_CHUNK_SLOTS + i % KB_CHUNK_SLOTS));
+    if (i % KB_CHUNK_SLOTS == KB_CHUNK_SLOTS - 1 && i + 1 < saved.count) chunk = chunk_next.at(chunk);
+  }
+  return slots;
+}
+
+std::vector<TracedPath> DeviceState::trace(const KbRound& round, std::span<const KbRoundPixel> pixels,
+                                           std::span<const float> mu) {
+  if (method == Method::kPt) throw std::logic_error("trace: the method pt does not keep vertices");
+  std::vector<TracedPath> traced(std::size_t{round.samples} * round.padded_pixels);
+  pool_->observe_hits(HitObserver(*pool_, host_.bvh, traced));
+  pool_->begin(round, pixels, mu);
+  const RoundOutcome outcome = pool_->run(round);
+  pool_->observe_hits({});
+  if (outcome.arena_full) throw DeviceOutOfMemory("trace: the vertices of these paths do not fit the arena");
+  const std::vector<KbSavedPath> saved = pool_->saved().download();
+  const std::vector<KbPathVertex> arena = pool_->arena().download();
+  const std::vector<uint32_t> chunk_next = pool_->chunk_next().download();
+  for (std::size_t job = 0; job < traced.size(); ++job) {
+    traced[job].invalid = saved[job].count == KB_SAVED_INVALID;
+    if (!traced[job].invalid) traced[job].slots = saved_slots(saved[job], arena, chunk_next);
+    normalise(traced[job]);
+  }
+  return traced;
+}
+
+std::vector<TracedPath> GroupRenderer::trace(std::span<const ImagePixel> pixels, const SampleRange& range) {
+  prepare(pixels.size(), range.count);
+  KbRound round = make_round(range, pixels.size());
+  fill_pixels(pixels, round);
+  fill_mu(round);
+  return device_.trace(round, round_pixels_, mu_);
+}
+
+}  // namespace kiloband::gpu

@@ -1,0 +1,23 @@
+// The backend that a test runs on: test programs are registered once per backend and name none themselves.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/backend.hpp"
+#include "scene/derived_channels.hpp"
+#include "scene/flat_scene.hpp"
+
+namespace kiloband::test {
+
+/// What KILOBAND_TEST_BACKEND says: "cpu" (also when it is not set), "opencl" (the method that the backend chooses),
+/// "opencl:pt", "opencl:dpept-path" or "opencl:dpept-batch".
+/// throws std::runtime_error for anything else
+std::string test_backend_name();
+
+/// isa, threads: of the CPU backend; OpenCL ignores them.
+std::unique_ptr<Backend> make_test_backend(const FlatScene& scene, const DerivedChannels& derived,
+                                           const SamplingSettings& settings, const std::string& isa = "auto",
+                                           int threads = 0);
+
+}  // namespace kiloband::test

@@ -1,0 +1,83 @@
+// The kernels are OpenCL C 1.2 for any device: compiled for spir64 with all warnings as errors, general and with
+// each feature left out.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kKernels = fs::path(KILOBAND_SOURCE_DIR) / "kernels";
+
+/// Compiles a kernel file; returns the compiler's messages, empty if there are none.
+std::string compile(const fs::path& file, const std::string& options) {
+  const fs::path log = fs::temp_directory_path() / ("kiloband_kernel_" + std::to_string(getpid()) + ".log");
+  const std::string command =
+      std::string(KILOBAND_CLANG) +
+      " -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -Wall -Wextra -Werror"
+      " -Wno-unused-function -fsyntax-only '-I" KILOBAND_SOURCE_DIR "/kernels' '-I" KILOBAND_SOURCE_DIR "/src' " +
+      options + " '" + file.string() + "' 2> '" + log.string() + "'";
+  const int status = std::system(command.c_str());
+  std::ostringstream text;
+  text << std::ifstream(log).rdbuf();
+  fs::remove(log);
+  return status == 0 ? "" : text.str() + "(status " + std::to_string(status) + ")";
+}
+
+std::vector<fs::path> kernel_files(const std::string& extension) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(kKernels)) {
+    if (entry.path().extension() == extension) files.push_back(entry.path());
+  }
+  return files;
+}
+
+TEST(KernelSyntax, EveryFileCompilesAlone) {
+  std::size_t count = 0;
+  for (const std::string extension : {".cl", ".clh"}) {
+    for (const fs::path& file : kernel_files(extension)) {
+      EXPECT_EQ(compile(file, ""), "") << file;
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 15u);
+}
+
+TEST(KernelSyntax, EveryFeatureCanBeAbsent) {
+  const std::vector<std::string> features{
+      "DIFFUSE",       "CONDUCTOR",  "ROUGH_CONDUCTOR", "DIELECTRIC", "ROUGH_DIELECTRIC", "PLASTIC",
+      "ROUGH_PLASTIC", "TWO_SIDED",  "MASK",            "DISPERSION", "BITMAP",           "CHECKERBOARD",
+      "AREA_LIGHT",    "CONSTANT_LIGHT", "ENVMAP_LIGHT", "DELTA_LIGHT", "ANALYTIC_SHAPES"};
+  const auto defines = [&](const std::string& present, const std::string& value, const std::string& others) {
+    std::string text = "-DKB_SPECIALISED";
+    for (const std::string& f : features) text += " -DKB_HAS_" + f + "=" + (f == present ? value : others);
+    return text;
+  };
+  for (const fs::path& file : kernel_files(".cl")) {
+    for (const std::string& feature : features) {
+      EXPECT_EQ(compile(file, defines(feature, "1", "0")), "") << file << " with " << feature << " alone";
+      EXPECT_EQ(compile(file, defines(feature, "0", "1")), "") << file << " without " << feature;
+    }
+  }
+}
+
+TEST(KernelSyntax, TheMethodPtCompiles) {
+  EXPECT_EQ(compile(kKernels / "paths.cl", "-DKB_METHOD_PT=1"), "");
+}
+
+/// The check itself can fail.
+TEST(KernelSyntax, MistakesAreFound) {
+  const fs::path file = fs::temp_directory_path() / ("kiloband_mistake_" + std::to_string(getpid()) + ".cl");
+  std::ofstream(file) << "__kernel void f(__global float* x) { x[0] = undeclared; }\n";
+  EXPECT_NE(compile(file, "").find("undeclared"), std::string::npos);
+  fs::remove(file);
+}
+
+}  // namespace
