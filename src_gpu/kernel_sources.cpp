@@ -1,21 +1,45 @@
 #include "src_gpu/kernel_sources.hpp"
 
-#include <regex>
+#include <algorithm>
+#include <cctype>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 namespace kiloband::gpu {
 namespace {
 
+std::string_view without_blanks(std::string_view text) {
+  text.remove_prefix(std::min(text.size(), text.find_first_not_of(" \t")));
+  return text;
+}
+
+/// A line of the preprocessor: "#  include "a.h" // b" has the word "include" and the rest behind it.
+struct Directive {
+  std::string_view word, rest;  // empty: the line is none
+};
+
+Directive directive_of(std::string_view line) {
+  line = without_blanks(line);
+  if (line.empty() || line.front() != '#') return {};
+  line = without_blanks(line.substr(1));
+  const auto end = std::find_if(line.begin(), line.end(), [](unsigned char c) { return !std::isalpha(c); });
+  const auto length = static_cast<std::size_t>(end - line.begin());
+  return {line.substr(0, length), without_blanks(line.substr(length))};
+}
+
+/// The name between quotes of an #include line; empty for any other.
+std::string include_of(const Directive& directive) {
+  if (directive.word != "include" || directive.rest.empty() || directive.rest.front() != '"') return {};
+  return std::string(directive.rest.substr(1, directive.rest.find('"', 1) - 1));
+}
+
 /// Follows a file's conditionals, to know whether a line stands in one (the include guard apart).
 class Conditionals {
  public:
-  void see(const std::string& line) {
-    static const std::regex kDirective(R"(^\s*#\s*(\w+).*)");
-    std::smatch match;
-    if (!std::regex_match(line, match, kDirective)) return;
-    const std::string word = match[1];
+  void see(std::string_view word) {
+    if (word.empty()) return;
     if (word.rfind("if", 0) == 0) {
       if (directives_ == 0 && word == "ifndef") guard_ = 1;
       ++depth_;
@@ -44,8 +68,9 @@ class Assembler {
     int number = 0;
     for (std::string line; std::getline(lines, line);) {
       ++number;
-      conditionals.see(line);
-      place_line(path, number, line, certain && !conditionals.inside());
+      const Directive directive = directive_of(line);
+      conditionals.see(directive.word);
+      place_line(path, number, line, include_of(directive), certain && !conditionals.inside());
     }
     open_.erase(path);
   }
@@ -53,14 +78,13 @@ class Assembler {
   std::string take() { return std::move(output_); }
 
  private:
-  void place_line(const std::string& path, int number, const std::string& line, bool certain) {
-    static const std::regex kInclude(R"re(^\s*#\s*include\s*"([^"]+)".*)re");
-    std::smatch match;
-    if (!std::regex_match(line, match, kInclude)) {
+  void place_line(const std::string& path, int number, const std::string& line, const std::string& include,
+                  bool certain) {
+    if (include.empty()) {
       output_ += line + "\n";
       return;
     }
-    const std::string target = find(path, number, match[1]);
+    const std::string target = find(path, number, include);
     // Include guards: what stands above already, or is just being placed, would give nothing.
     if (placed_.contains(target) || open_.contains(target)) {
       output_ += "\n";

@@ -14,7 +14,7 @@ namespace {
 
 struct Finished {
   int code = -1;    // exit code; 128 + signal where the program crashed
-  std::string out;  // standard output and error
+  std::string out;  // standard output
   std::map<std::string, long> report;
 };
 
@@ -28,7 +28,7 @@ class Shim : public ::testing::Test {
     std::filesystem::remove(report);
     const std::string command = "env KILOBAND_SHIM_REPORT=" + report +
                                 " ASAN_OPTIONS=verify_asan_link_order=0 " + environment +
-                                " LD_PRELOAD=" SHIM_LIBRARY " " SHIM_PROGRAM " " + argument + " 2>&1";
+                                " LD_PRELOAD=" SHIM_LIBRARY " " SHIM_PROGRAM " " + argument;
     Finished result;
     std::FILE* pipe = popen(command.c_str(), "r");
     if (!pipe) throw std::runtime_error("popen");
