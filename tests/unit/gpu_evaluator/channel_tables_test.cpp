@@ -1,0 +1,173 @@
+// Channel tables: node values, the error that they state, jumps, and the counts of covering channels.
+#include <cmath>
+
+#include "base/error.hpp"
+#include "device_scene.hpp"
+#include "src_gpu/channel_cover.hpp"
+#include "src_gpu/channel_row.hpp"
+
+namespace kiloband::test {
+namespace {
+
+double interpolated(const gpu::ChannelTables& t, uint32_t row, std::size_t k, double mu) {
+  const KbChannelTable table = t.tables[row];
+  const double position = mu * table.cells;
+  const auto cell = std::min<uint32_t>(static_cast<uint32_t>(position), table.cells - 1);
+  const float* node = &t.nodes[table.first + std::size_t{cell} * t.layout.stride + k];
+  return node[0] + (position - cell) * (static_cast<double>(node[t.layout.stride]) - node[0]);
+}
+
+/// Largest error of a row over random mu, relative to its largest value in the channel. float rounding
+/// included.
+double observed_error(const FlatScene& scene, const gpu::ChannelTables& t, uint32_t s, std::mt19937& random) {
+  double worst = 0;
+  for (std::size_t k = 0; k < scene.channels.size(); ++k) {
+    const Channel& c = scene.channels[k];
+    double largest = 0, error = 0;
+    for (int i = 0; i < 300; ++i) {
+      const double mu = std::uniform_real_distribution<double>(0, 1)(random);
+      const double exact = scene.spectra[s].table((1 - mu) * c.min_nm + mu * c.max_nm);
+      const double unit = scene.spectra[s].is_emission ? c.width_nm() / scene.channel_scale[k] : 1;
+      largest = std::max(largest, std::abs(exact * unit));
+      error = std::max(error, std::abs(exact * unit - interpolated(t, s, k, mu)));
+    }
+    if (largest > 0) worst = std::max(worst, error / largest);
+  }
+  return worst;
+}
+
+TEST(ChannelTables, AreExactWhereNodesMeetKinks) {
+  std::mt19937 random(1);
+  const FlatScene scene = make_device_scene(40, Layout::kRegular, random);
+  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  EXPECT_EQ(t.layout.stride, 48u);
+  for (uint32_t s = 0; s < scene.spectra.size(); ++s) {
+    EXPECT_LE(t.error[s], 1e-6) << s;
+    EXPECT_EQ(t.tables[s].first % 16, 0u);
+    if (scene.spectra[s].is_planck || t.has_jump[s]) continue;
+    EXPECT_LE(t.tables[s].cells, 20u) << s;
+    EXPECT_LT(observed_error(scene, t, s, random), 3e-7) << s;
+  }
+}
+
+TEST(ChannelTables, StateTheirErrorWhereKinksAreAnywhere) {
+  std::mt19937 random(2);
+  const FlatScene scene = make_scene(make_channels(30, Layout::kOverlapping, random), random);
+  gpu::ChannelTableOptions options;
+  options.max_cells = 64;
+  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {}, options);
+  int stated = 0;
+  for (uint32_t s = 0; s < scene.spectra.size(); ++s) {
+    EXPECT_LE(t.tables[s].cells, 64u);
+    if (scene.spectra[s].is_planck || t.has_jump[s]) continue;
+    // A random sample of a channel may miss its largest value by a little.
+    EXPECT_LE(observed_error(scene, t, s, random), 1.05 * t.error[s] + 3e-7) << s;
+    stated += t.error[s] > 1e-6;
+  }
+  EXPECT_GT(stated, 0);
+}
+
+TEST(ChannelTables, PlanckRowsKeepTheBound) {
+  FlatScene scene;
+  for (int k = 0; k < 20; ++k) scene.channels.push_back({8000 + 200.0 * k, 8200 + 200.0 * k, {}});
+  scene.channel_scale.assign(20, 1.0);
+  SpectrumRow thermal;
+  thermal.is_planck = thermal.is_emission = true;
+  thermal.temperature_k = 300;
+  scene.spectra.push_back(thermal);
+  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  EXPECT_LE(t.error[0], 1e-6);
+  EXPECT_LE(t.tables[0].cells, 256u);
+}
+
+TEST(ChannelTables, DataThatEndAtAnEdgeDoNotReachAcrossIt) {
+  FlatScene scene;
+  scene.channels = {{390, 400, {}}, {400, 410, {}}, {410, 420, {}}, {420, 430, {}}};
+  scene.channel_scale.assign(4, 1.0);
+  scene.spectra.push_back(row(table(400, 10, {0.5, 0.7, 0.9})));
+  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  EXPECT_FALSE(t.has_jump[0]);
+  for (double mu : {0.0, 0.3, 1.0}) {
+    EXPECT_EQ(interpolated(t, 0, 0, mu), 0) << mu;
+    EXPECT_NEAR(interpolated(t, 0, 1, mu), 0.5 + 0.2 * mu, 1e-7) << mu;
+    EXPECT_NEAR(interpolated(t, 0, 2, mu), 0.7 + 0.2 * mu, 1e-7) << mu;
+    EXPECT_EQ(interpolated(t, 0, 3, mu), 0) << mu;
+  }
+}
+
+TEST(ChannelTables, AJumpInsideAChannelIsANarrowRamp) {
+  FlatScene scene;
+  scene.channels = {{400, 410, {}}};
+  scene.channel_scale.assign(1, 1.0);
+  scene.spectra.push_back(row(table(400, 2.5, {0.5, 0.5, 0.5})));
+  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  EXPECT_TRUE(t.has_jump[0]);
+  EXPECT_GE(t.tables[0].cells, 4000u);
+  EXPECT_EQ(interpolated(t, 0, 0, 0.4999), 0.5);
+  EXPECT_EQ(interpolated(t, 0, 0, 0.5005), 0);
+}
+
+TEST(ChannelTables, FitTheirBudget) {
+  std::mt19937 random(3);
+  const FlatScene scene = make_scene(make_channels(30, Layout::kOverlapping, random), random);
+  gpu::ChannelTableOptions options;
+  options.max_bytes = 1u << 20;
+  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {}, options);
+  EXPECT_LE(t.nodes.size() * sizeof(float), options.max_bytes);
+  EXPECT_GT(t.nodes.size() * sizeof(float), options.max_bytes / 4);
+}
+
+TEST(ChannelTables, RowsOfMaterials) {
+  std::mt19937 random(4);
+  const FlatScene scene = make_device_scene(16, Layout::kRegular, random);
+  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  EXPECT_EQ(t.material_rows[5], KB_NONE);
+  EXPECT_EQ(t.material_rows[6], KB_NONE);
+  const double lambda = scene.channels[3].min_nm;
+  const auto value = [&](uint32_t s) { return scene.spectra[s].table(lambda); };
+  const KbMaterial& metal = scene.materials[1];
+  EXPECT_NEAR(interpolated(t, t.material_rows[1], 3, 0), value(metal.eta_row) - 1, 1e-5);
+  EXPECT_NEAR(interpolated(t, t.material_rows[1] + 1, 3, 0), value(metal.k_row), 1e-5);
+  const KbMaterial& glass = scene.materials[3];
+  EXPECT_NEAR(interpolated(t, t.material_rows[3], 3, 0), value(glass.eta_row) / value(glass.k_row) - 1, 1e-6);
+  EXPECT_NEAR(interpolated(t, t.layout.wavelength_row, 3, 0), lambda - 595, 1e-4);
+}
+
+TEST(ChannelCover, IsExactForEveryOffset) {
+  std::mt19937 random(5);
+  const ChannelList channels = make_channels(60, Layout::kOverlapping, random);
+  const gpu::ChannelCover cover = gpu::make_channel_cover(channels, 1 << 20);
+  ASSERT_TRUE(cover.overlapping);
+  const auto counted = [&](std::size_t k, float mu) {
+    const double lambda = (1 - static_cast<double>(mu)) * channels[k].min_nm + mu * channels[k].max_nm;
+    return std::max<long>(1, std::ranges::count_if(channels, [&](const Channel& c) {
+                            return c.min_nm <= lambda && lambda < c.max_nm;
+                          }));
+  };
+  const auto looked_up = [&](std::size_t k, float mu) {
+    long value = cover.cover[k].cover;
+    for (kb_u32 i = cover.cover[k].first; i < cover.cover[k + 1].first; ++i)
+      if (cover.breaks[i].mu <= mu) value = cover.breaks[i].cover;
+    return value;
+  };
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    EXPECT_EQ(looked_up(k, 0), counted(k, 0));
+    for (int i = 0; i < 50; ++i) {
+      const float mu = static_cast<float>(random() >> 8) * 0x1p-24f;
+      EXPECT_EQ(looked_up(k, mu), counted(k, mu)) << k << " " << mu;
+    }
+    for (kb_u32 i = cover.cover[k].first; i < cover.cover[k + 1].first; ++i) {
+      const float mu = cover.breaks[i].mu;
+      for (float near : {mu, std::nextafter(mu, 0.0f), std::nextafter(mu, 1.0f)}) {
+        if (near < 1) {
+          EXPECT_EQ(looked_up(k, near), counted(k, near)) << k << " " << near;
+        }
+      }
+    }
+  }
+  EXPECT_FALSE(gpu::make_channel_cover(make_channels(60, Layout::kRegular, random), 0).overlapping);
+  EXPECT_THROW(gpu::make_channel_cover(channels, 64), InputError);
+}
+
+}  // namespace
+}  // namespace kiloband::test

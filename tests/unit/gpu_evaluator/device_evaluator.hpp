@@ -1,0 +1,96 @@
+// Runs the evaluation kernels on saved paths, with buffers of its own: what the renderer does, without
+// tracing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/flat_scene.hpp"
+#include "src_cpu/path_buffer.hpp"
+#include "src_gpu/channel_tables.hpp"
+#include "tests/support/opencl_probe.hpp"
+
+namespace kiloband::test {
+
+/// Slots of a vertex with its texture samples.
+uint32_t slots_of(const KbPathVertex& vertex);
+
+/// The macros of a build.
+struct EvaluatorBuild {
+  uint32_t width = 16;
+  uint32_t vectors = 1;
+  bool per_path = false;
+  uint32_t derived = 0;
+  bool transposed = false;
+  std::string features;  // "-DKB_SPECIALISED -DKB_HAS_..."; empty: everything
+
+  std::string options() const;
+};
+
+/// Compiled kernels; scenes share them.
+struct EvaluatorProgram {
+  explicit EvaluatorProgram(const EvaluatorBuild& build);
+  EvaluatorBuild build;
+  OpenclProbe probe;
+};
+
+/// What a round evaluates: for every job (sample * pixels + pixel) a path of the buffer.
+struct RoundOfPaths {
+  static constexpr uint32_t kEmpty = 0xfffffffeu, kInvalid = 0xffffffffu;
+  uint32_t pixels = 1, samples = 1;
+  std::vector<uint32_t> path;   // of the job: an index, kEmpty or kInvalid
+  std::vector<float> mu;        // [block][sample], shared wavelengths
+  std::vector<uint32_t> block;  // of a pixel
+  uint32_t blocks = 1;
+  uint32_t first_index = 0;
+};
+
+/// mu of a job where every path has its own.
+float per_path_mu(const RoundOfPaths& round, uint32_t pixel, uint32_t sample);
+
+/// A film, and evaluations that add to it.
+class DeviceEvaluator {
+ public:
+  DeviceEvaluator(EvaluatorProgram& program, const FlatScene& scene, const gpu::ChannelTables& tables,
+                  uint32_t film_pixels);
+
+  /// Uploads the paths, scattered over the arena's chunks in a random order, and resamples the spectra.
+  void load(const PathBuffer& paths, const RoundOfPaths& round);
+
+  void batch(uint32_t local_size, uint32_t groups);
+  void path(uint32_t local_size = 1);
+  /// Bounce by bounce with `slots` slots, as the streaming pipeline does.
+  void pt(const PathBuffer& paths, uint32_t slots, uint32_t local_size);
+
+  void clear();
+  /// Means [pixel][K + D], in film units.
+  std::vector<float> means();
+  std::vector<uint32_t> counts();
+
+  cl::Kernel batch_kernel();
+  cl::Kernel path_kernel();
+  EvaluatorProgram& program() { return program_; }
+  const KbSpectraLayout& layout() const { return layout_; }
+
+ private:
+  cl::Kernel kernel(const char* name);
+  cl_uint set_evaluation(cl::Kernel& kernel, cl_uint index);
+  cl_uint set_film(cl::Kernel& kernel, cl_uint index);
+  void run(cl::Kernel& kernel, std::size_t items, std::size_t local);
+  void add_parts(uint32_t parts);
+  void resample();
+
+  EvaluatorProgram& program_;
+  KbSpectraLayout layout_;
+  uint32_t film_pixels_;
+  RoundOfPaths round_;
+  KbRound record_{};
+  uint32_t tables_ = 0;
+  cl::Buffer layout_buffer_, nodes_, table_buffer_, material_rows_, cover_, breaks_, materials_, textures_,
+      texels_;
+  cl::Buffer dense_, mu_, record_buffer_, pixels_, arena_, chunk_next_, saved_;
+  cl::Buffer sum_, compensation_, counts_, partial_;
+};
+
+}  // namespace kiloband::test
