@@ -27,8 +27,14 @@ void DeviceContext::create() {
   });
 }
 
+/// Of a lost device an error is expected, and no news.
+void DeviceContext::settle() noexcept {
+  if (queue_()) clFinish(queue_());
+}
+
 void DeviceContext::rebuild() {
   ++generation_;
+  settle();
   programs_.clear();
   drop(queue_);
   drop(context_);

@@ -18,6 +18,9 @@ class DeviceContext {
  public:
   /// throws DeviceError
   explicit DeviceContext(DeviceInfo device, ContextOptions options = {});
+  /// Waits for what is enqueued: drivers that still work when the process ends may crash it (PoCL compiles
+  /// kernels in threads of its own).
+  ~DeviceContext() { settle(); }
   DeviceContext(const DeviceContext&) = delete;
   DeviceContext& operator=(const DeviceContext&) = delete;
 
@@ -49,6 +52,7 @@ class DeviceContext {
 
  private:
   void create();
+  void settle() noexcept;
 
   DeviceInfo device_;
   ContextOptions options_;

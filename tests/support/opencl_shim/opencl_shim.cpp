@@ -207,7 +207,9 @@ cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void* pa
 
 cl_int clFinish(cl_command_queue queue) {
   const cl_int code = plan.next(kFinish);
-  return code ? code : REAL(clFinish)(queue);
+  const cl_int result =
+      REAL(clFinish)(queue);  // also of a failed one: nothing is to run on when the process ends
+  return code ? code : result;
 }
 
 }  // extern "C"

@@ -16,6 +16,7 @@ namespace kiloband::gpu::test {
 class CacheFolder {
  public:
   CacheFolder() {
+    list_devices();  // PoCL chooses the folder of its own cache now: one that stays
     static int counter = 0;
     const char* value = std::getenv("XDG_CACHE_HOME");
     if (value) before_ = value;

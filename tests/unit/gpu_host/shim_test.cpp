@@ -84,7 +84,10 @@ TEST_F(Shim, EveryCallInTurn) {
     for (long nth = 1; nth <= calls; ++nth) {
       const Finished result = fail(function, nth, outcome.first);
       const std::string where = function + " " + std::to_string(nth) + ": " + result.out;
-      EXPECT_TRUE(outcome.second.contains(result.code)) << where << " code " << result.code;
+      // The last wait is the one that closes the queue: the work is done, its failure is no news.
+      const bool closing = function == "clFinish" && nth == calls;
+      EXPECT_TRUE(closing ? result.code == 0 : outcome.second.contains(result.code))
+          << where << " code " << result.code;
       EXPECT_EQ(result.report.at("failed"), 1) << where;
       EXPECT_EQ(result.report.at("live_buffers"), 0) << where;
       if (result.code == 0) {
