@@ -1,0 +1,317 @@
+#include "tests/support/scene_zoo.hpp"
+
+#include <stdexcept>
+
+namespace kiloband::test {
+namespace {
+
+using Text = std::string;
+
+// ---- building blocks ----
+
+Text number(const Text& type, const Text& name, const Text& value) {
+  return "<" + type + " name='" + name + "' value='" + value + "'/>";
+}
+Text real(const Text& name, const Text& value) {
+  return number("float", name, value);
+}
+Text integer(const Text& name, int value) {
+  return number("integer", name, std::to_string(value));
+}
+Text text(const Text& name, const Text& value) {
+  return number("string", name, value);
+}
+Text yes(const Text& name) {
+  return number("boolean", name, "true");
+}
+Text spectrum(const Text& name, const Text& value) {
+  return number("spectrum", name, value);
+}
+
+Text bsdf(const Text& type, const Text& contents = "") {
+  return "<bsdf type='" + type + "'>" + contents + "</bsdf>";
+}
+Text diffuse(const Text& reflectance) {
+  return bsdf("diffuse", spectrum("reflectance", reflectance));
+}
+/// A metal with n and k that depend on wavelength.
+Text metal(const Text& type, const Text& more = "") {
+  return bsdf(type, spectrum("eta", "450:1.4, 550:0.4, 650:0.2") + spectrum("k", "450:1.9, 650:3.4") + more);
+}
+Text roughness(const Text& distribution, const Text& alpha, const Text& alpha_v = "") {
+  return text("distribution", distribution) +
+         (alpha_v.empty() ? real("alpha", alpha) : real("alpha_u", alpha) + real("alpha_v", alpha_v));
+}
+Text bitmap(const Text& name, const Text& file, const Text& wrap, const Text& filter, const Text& to_uv) {
+  return "<texture type='bitmap' name='" + name + "'>" + text("filename", file) + text("wrap_mode", wrap) +
+         text("filter_type", filter) + "<transform name='to_uv'>" + to_uv + "</transform></texture>";
+}
+Text checkerboard(const Text& name, const Text& to_uv) {
+  return "<texture type='checkerboard' name='" + name + "'>" + spectrum("color0", "450:0.8, 650:0.3") +
+         spectrum("color1", "450:0.1, 650:0.5") + "<transform name='to_uv'>" + to_uv +
+         "</transform></texture>";
+}
+Text lamp(const Text& radiance) {
+  return "<emitter type='area'>" + spectrum("radiance", radiance) + "</emitter>";
+}
+
+Text shape(const Text& type, const Text& steps, const Text& contents) {
+  return "<shape type='" + type + "'><transform name='to_world'>" + steps + "</transform>" + contents +
+         "</shape>";
+}
+/// A step with the attributes as written: step("translate", "y='1'").
+Text step(const Text& name, const Text& attributes) {
+  return "<" + name + " " + attributes + "/>";
+}
+Text scale(const Text& value) {
+  return step("scale", "value='" + value + "'");
+}
+Text move(const Text& xyz) {
+  return step("translate", "value='" + xyz + "'");
+}
+Text turn(const Text& axis, const Text& angle) {
+  return step("rotate", axis + "='1' angle='" + angle + "'");
+}
+Text ball(const Text& centre, const Text& radius, const Text& contents) {
+  return shape("sphere", scale(radius) + move(centre), contents);
+}
+Text rectangle(const Text& steps, const Text& contents) {
+  return shape("rectangle", steps, contents);
+}
+Text mesh(const Text& file, const Text& steps, const Text& contents) {
+  return shape("obj", steps, text("filename", file) + contents);
+}
+
+// ---- rooms, lights, cameras ----
+
+Text floor(const Text& material) {
+  return rectangle(turn("x", "-90") + move("0 -1 0"), material);
+}
+Text back(const Text& material) {
+  return rectangle(move("0 0 -1"), material);
+}
+Text left(const Text& material) {
+  return rectangle(turn("y", "90") + move("-1 0 0"), material);
+}
+Text right(const Text& material) {
+  return rectangle(turn("y", "-90") + move("1 0 0"), material);
+}
+Text ceiling(const Text& material) {
+  return rectangle(turn("x", "90") + move("0 1 0"), material);
+}
+/// A box of two metres, open in front, with a lamp under its ceiling.
+Text room() {
+  return floor(diffuse("0.6")) + back(diffuse("450:0.7, 650:0.5")) + left(diffuse("450:0.1, 650:0.7")) +
+         right(diffuse("450:0.2, 550:0.7, 650:0.1")) + ceiling(diffuse("0.7"));
+}
+Text ceiling_lamp() {
+  return rectangle(scale("0.4") + turn("x", "90") + move("0 0.98 0"),
+                   diffuse("0") + lamp("450:4, 550:9, 650:6"));
+}
+Text sky(const Text& radiance) {
+  return "<emitter type='constant'>" + spectrum("radiance", radiance) + "</emitter>";
+}
+
+Text film(const Text& filter, const Text& size = integer("width", 32) + integer("height", 32)) {
+  return "<film type='hdrfilm'>" + size + "<rfilter type='" + filter + "'/></film>";
+}
+Text view(const Text& steps = "") {
+  return "<transform name='to_world'>" + steps +
+         step("lookat", "origin='0, 0, 4' target='0, 0, 0' up='0, 1, 0'") + "</transform>";
+}
+Text perspective(const Text& a_film) {
+  return "<sensor type='perspective'>" + real("fov", "34") + view() + a_film + "</sensor>";
+}
+Text thinlens(const Text& a_film) {
+  return "<sensor type='thinlens'>" + real("fov", "34") + real("aperture_radius", "0.1") +
+         real("focus_distance", "3.8") + view() + a_film + "</sensor>";
+}
+Text orthographic(const Text& a_film) {
+  return "<sensor type='orthographic'>" + view(scale("1.1")) + a_film + "</sensor>";
+}
+
+Text scene(int max_depth, const Text& sensor, const Text& parts, const Text& more = "") {
+  return "<scene version='3.0.0'><integrator type='path'>" + integer("max_depth", max_depth) + more +
+         "</integrator>" + sensor + parts + "</scene>";
+}
+
+// ---- the scenes' parts ----
+
+Text boxes() {
+  return shape("cube", step("scale", "x='0.3' y='0.55' z='0.3'") + turn("y", "20") + move("-0.35 -0.45 -0.3"),
+               diffuse("0.6")) +
+         mesh("gem.obj", scale("0.45") + move("0.4 -0.5 0.3"), diffuse("450:0.7, 650:0.3"));
+}
+
+Text metals() {
+  return ball("-0.6 0.4 -0.2", "0.3", metal("conductor")) +
+         ball("0 0.4 -0.2", "0.3", metal("roughconductor", roughness("ggx", "0.25"))) +
+         ball("0.6 0.4 -0.2", "0.3", metal("roughconductor", roughness("beckmann", "0.25"))) +
+         ball("-0.6 -0.5 0.1", "0.3", metal("roughconductor", roughness("ggx", "0.1", "0.4"))) +
+         ball("0 -0.5 0.1", "0.3", metal("roughconductor", roughness("beckmann", "0.4", "0.15"))) +
+         mesh(
+             "gem.obj", scale("0.3") + move("0.6 -0.5 0.1"),
+             metal("roughconductor", roughness("ggx", "0.3") + number("boolean", "sample_visible", "false")));
+}
+
+Text glasses() {
+  return ball("-0.55 0.4 -0.2", "0.35",
+              bsdf("dielectric", spectrum("specular_transmittance", "450:0.9, 650:0.6"))) +
+         ball("0.4 0.4 -0.2", "0.35", bsdf("roughdielectric", roughness("ggx", "0.3"))) +
+         ball("-0.5 -0.5 0.1", "0.35",
+              bsdf("roughdielectric", roughness("beckmann", "0.2") + real("int_ior", "1.8"))) +
+         shape("cube", scale("0.3") + turn("y", "30") + move("0.4 -0.65 0.1"),
+               bsdf("roughdielectric", roughness("ggx", "0.2", "0.5")));
+}
+
+Text plastics() {
+  const Text colour = "<rgb name='diffuse_reflectance' value='0.6, 0.3, 0.2'/>";
+  return ball("-0.5 0.4 -0.2", "0.4", bsdf("plastic", colour)) +
+         ball("0.5 0.4 -0.2", "0.4", bsdf("plastic", colour + yes("nonlinear"))) +
+         ball("-0.5 -0.5 0.1", "0.4", bsdf("roughplastic", colour + roughness("beckmann", "0.2"))) +
+         ball("0.5 -0.5 0.1", "0.4",
+              bsdf("roughplastic",
+                   roughness("ggx", "0.3") + yes("nonlinear") +
+                       bitmap("diffuse_reflectance", "colours.ppm", "repeat", "bilinear", scale("3"))));
+}
+
+Text sheets() {
+  const Text two = bsdf("twosided", diffuse("450:0.8, 650:0.2") + bsdf("plastic"));
+  const Text holes = bitmap("opacity", "grey.pgm", "repeat", "nearest", scale("2"));
+  return rectangle(scale("0.4") + turn("y", "150") + move("-0.5 0.4 0"), two) +
+         rectangle(scale("0.4") + turn("x", "-30") + move("0.5 0.4 0"), bsdf("mask", holes + two)) +
+         shape("disk", scale("0.4") + move("-0.5 -0.5 0.2"),
+               bsdf("mask", real("opacity", "0.6") + diffuse("0.7"))) +
+         ball("0.5 -0.5 0", "0.4", bsdf("mask", real("opacity", "0.7") + bsdf("dielectric"))) +
+         shape("rectangle", scale("0.3") + move("0 0 0.3"), yes("flip_normals") + diffuse("0.8")) +
+         mesh("gem.obj", scale("0.3") + move("0 -0.2 -0.5"),
+              yes("flip_normals") + bsdf("twosided", metal("conductor")));
+}
+
+Text pictures() {
+  const auto paper = [](const Text& wrap, const Text& filter, const Text& to_uv) {
+    return bsdf("diffuse", bitmap("reflectance", "colours.ppm", wrap, filter, to_uv));
+  };
+  return floor(paper("repeat", "bilinear", scale("2.7") + turn("z", "25"))) +
+         back(paper("mirror", "bilinear", scale("3.1") + step("translate", "x='-0.7' y='0.3'"))) +
+         left(paper("clamp", "bilinear", scale("1.9") + step("translate", "x='-0.4' y='-0.4'"))) +
+         right(bsdf("diffuse", checkerboard("reflectance", scale("3") + turn("z", "20")))) +
+         ceiling(paper("mirror", "nearest", scale("2.3"))) +
+         ball("-0.4 -0.4 0", "0.4",
+              bsdf("twosided", paper("repeat", "nearest", step("scale", "x='4' y='2'")))) +
+         ball("0.4 -0.4 0", "0.4",
+              bsdf("roughconductor", roughness("ggx", "0.3") + bitmap("specular_reflectance", "colours.ppm",
+                                                                      "clamp", "nearest", scale("2"))));
+}
+
+Text glowing_shapes() {
+  const Text black = diffuse("0.1");
+  return ball("-0.6 0.5 0", "0.2", black + lamp("450:2, 650:5")) +
+         shape("disk", scale("0.25") + turn("x", "40") + move("0 0.6 0"), black + lamp("450:6, 650:3")) +
+         shape("cylinder", step("scale", "x='0.1' y='0.1' z='0.8'") + turn("y", "90") + move("0.1 -0.2 0.2"),
+               black + lamp("4")) +
+         mesh("gem.obj", scale("0.25") + move("0.6 0.3 0"), black + lamp("450:5, 550:1, 650:5")) +
+         rectangle(scale("0.4") + turn("x", "-60") + move("-0.4 -0.6 0.3"),
+                   black + "<emitter type='area'>" +
+                       bitmap("radiance", "colours.ppm", "repeat", "bilinear", scale("1.5")) + "</emitter>");
+}
+
+Text delta_lights() {
+  return "<emitter type='point'><point name='position' x='-0.5' y='0.6' z='0.3'/>" +
+         spectrum("intensity", "450:0.4, 650:0.9") + "</emitter><emitter type='spot'>" +
+         real("cutoff_angle", "35") + real("beam_width", "20") + spectrum("intensity", "450:3, 650:1") +
+         "<transform name='to_world'>" +
+         step("lookat", "origin='0.6, 0.8, 0.8' target='0.2, -0.6, -0.2' up='0, 1, 0'") +
+         "</transform></emitter><emitter type='directional'><vector name='direction' x='0.3' y='-1' "
+         "z='-0.6'/>" +
+         spectrum("irradiance", "450:0.5, 650:0.8") + "</emitter>";
+}
+
+Text analytic_shapes() {
+  return shape("cylinder", step("scale", "x='0.3' y='0.3' z='0.9'") + turn("x", "-70") + move("-0.5 -0.5 0"),
+               bsdf("twosided", bsdf("plastic"))) +
+         shape("disk", scale("0.5") + turn("y", "-30") + move("0.5 0.4 -0.3"), metal("roughconductor")) +
+         ball("0.4 -0.5 0.2", "0.35", bsdf("dielectric")) +
+         shape("sphere", scale("0.3") + move("-0.4 0.5 0"),
+               yes("flip_normals") + bsdf("twosided", diffuse("0.8")));
+}
+
+Text dispersive(const Text& type, const Text& more = "") {
+  return bsdf(type, text("int_material", "glass.txt") + more);
+}
+
+/// Spheres one behind the other and a shell: chains of refractions.
+Text lenses() {
+  const Text glass = bsdf("dielectric");
+  return ball("-0.5 -0.3 0.3", "0.45", glass) + ball("0.45 0 0.4", "0.5", glass) +
+         ball("0.45 0 0.4", "0.35", bsdf("dielectric", text("int_ior", "air") + text("ext_ior", "bk7"))) +
+         ball("-0.2 0.5 -0.4", "0.4", glass);
+}
+
+/// Walls of mirrors, a mirroring ball between them.
+Text mirrors() {
+  const Text mirror = bsdf("conductor", spectrum("specular_reflectance", "450:0.95, 650:0.9"));
+  return floor(diffuse("0.5")) + back(mirror) + left(mirror) + right(mirror) + ceiling(mirror) +
+         rectangle(turn("y", "180") + move("0 0 4.5"), mirror) +
+         ball("0.3 -0.5 0", "0.45", metal("conductor")) +
+         ball("-0.5 0.3 0.2", "0.15", diffuse("0") + lamp("450:8, 650:5"));
+}
+
+const Text kEnvmap = "<emitter type='envmap'>" + text("filename", "sky.pfm") + real("scale", "0.8") +
+                     "<transform name='to_world'>" + turn("y", "70") + turn("x", "15") +
+                     "</transform></emitter>";
+
+Text crop_window() {
+  return integer("width", 70) + integer("height", 56) + integer("crop_offset_x", 18) +
+         integer("crop_offset_y", 11) + integer("crop_width", 32) + integer("crop_height", 32);
+}
+
+std::vector<ZooScene> make_scenes() {
+  const Text lit_room = room() + ceiling_lamp();
+  const Text objects = floor(diffuse("0.6")) + analytic_shapes();
+  constexpr Chains kLong = Chains::kSpecular;
+  return {
+      {"diffuse_room", scene(8, perspective(film("gaussian")), lit_room + boxes())},
+      {"metals", scene(6, perspective(film("tent")), lit_room + metals())},
+      {"glasses", scene(10, perspective(film("box")), lit_room + glasses() + sky("0.5"))},
+      {"plastics", scene(6, perspective(film("gaussian")), lit_room + plastics())},
+      {"sheets", scene(8, perspective(film("tent")), lit_room + sheets())},
+      {"pictures", scene(6, perspective(film("gaussian")), pictures() + ceiling_lamp())},
+      {"glowing_shapes", scene(5, perspective(film("box")), room() + glowing_shapes())},
+      {"constant_sky", scene(6, thinlens(film("tent")), objects + sky("450:0.8, 650:1.2"))},
+      {"envmap", scene(6, thinlens(film("gaussian")), objects + kEnvmap)},
+      {"delta_lights", scene(5, orthographic(film("box")), room() + boxes() + delta_lights())},
+      {"analytic_shapes", scene(8, orthographic(film("tent")), lit_room + analytic_shapes())},
+      {"prism", scene(10, perspective(film("gaussian")),
+                      lit_room + mesh("prism.obj", scale("0.7"), dispersive("dielectric")), "")},
+      {"rough_dispersion",
+       scene(10, perspective(film("gaussian")),
+             lit_room + ball("0 -0.2 0", "0.6", dispersive("roughdielectric", roughness("ggx", "0.2"))))},
+      {"mirror_box", scene(50, perspective(film("box")), mirrors()), kLong},
+      {"lenses", scene(50, perspective(film("gaussian")), lit_room + lenses()), kLong},
+      {"unlimited_depth",
+       scene(-1, perspective(film("gaussian")),
+             floor(diffuse("0.95")) + back(diffuse("0.95")) + left(diffuse("0.9")) + right(diffuse("0.95")) +
+                 ceiling(diffuse("0.95")) + boxes() + sky("0.7"))},
+      {"crop_window",
+       scene(6, perspective(film("gaussian", crop_window())), lit_room + metals() + glasses())},
+      {"hidden_emitters",
+       scene(6, thinlens(film("box")), objects + glowing_shapes() + kEnvmap, yes("hide_emitters"))},
+  };
+}
+
+}  // namespace
+
+const std::vector<ZooScene>& scene_zoo() {
+  static const std::vector<ZooScene> scenes = make_scenes();
+  return scenes;
+}
+
+const ZooScene& zoo_scene(const std::string& name) {
+  for (const ZooScene& scene : scene_zoo()) {
+    if (scene.name == name) return scene;
+  }
+  throw std::out_of_range("no scene '" + name + "' in the zoo");
+}
+
+}  // namespace kiloband::test

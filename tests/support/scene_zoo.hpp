@@ -1,0 +1,53 @@
+// A table of small scenes that together use everything a scene file can say: what tests of backends loop
+// over.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/derived_channels.hpp"
+#include "scene/flat_scene.hpp"
+
+namespace kiloband::test {
+
+/// How paths may part between two backends that round differently.
+enum class Chains {
+  kRough,    // diffuse and rough surfaces, a few specular bounces: rounding does not grow
+  kSpecular  // long specular chains: curved mirrors and lenses multiply an error at every bounce
+};
+
+struct ZooScene {
+  std::string name;
+  std::string xml;  // 32 x 32 pixels are rendered; file names are relative to a ZooFolder
+  Chains chains = Chains::kRough;
+};
+
+/// All scenes. Bands of them all: kZooBands.
+const std::vector<ZooScene>& scene_zoo();
+/// throws std::out_of_range for an unknown name
+const ZooScene& zoo_scene(const std::string& name);
+
+inline const char* const kZooBands = "450:650:4";
+
+/// A folder with the pictures, meshes and indices that the scenes name, unique to this object; removed with
+/// it.
+class ZooFolder {
+ public:
+  ZooFolder();
+  ~ZooFolder();
+  ZooFolder(const ZooFolder&) = delete;
+  ZooFolder& operator=(const ZooFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// The scene read and flattened for the bands (guide bands are the same).
+  FlatScene flatten(const ZooScene& scene, const std::string& bands = kZooBands) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Two responses over the zoo's bands: a triangle and a constant.
+DerivedChannels zoo_responses(const ChannelList& channels);
+
+}  // namespace kiloband::test

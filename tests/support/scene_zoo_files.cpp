@@ -1,0 +1,95 @@
+// The files that the zoo's scenes name.
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <fstream>
+
+#include "scene/reader.hpp"
+#include "tests/support/scene_zoo.hpp"
+
+namespace kiloband::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An 8-bit picture, binary PPM (3 values per pixel) or PGM (1).
+void write_picture(const fs::path& file, int width, int height, int values, const std::string& bytes) {
+  std::ofstream out(file, std::ios::binary);
+  out << (values == 3 ? "P6" : "P5") << '\n' << width << ' ' << height << "\n255\n" << bytes;
+}
+
+/// Colours from 40 to 230 without a pattern that a shifted or mirrored lookup could miss.
+std::string colours(int width, int height, int values) {
+  std::string bytes;
+  uint32_t state = 12345;
+  for (int i = 0; i < width * height * values; ++i) {
+    state = state * 1664525u + 1013904223u;
+    bytes.push_back(static_cast<char>(40 + (state >> 24) % 191));
+  }
+  return bytes;
+}
+
+/// A sky with a small sun, 16 x 8, as PFM (rows from the bottom).
+void write_sky(const fs::path& file) {
+  std::ofstream out(file, std::ios::binary);
+  out << "PF\n16 8\n-1.0\n";
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      const bool sun = y == 6 && x == 5;
+      const float rgb[3] = {sun ? 30.0f : 0.2f + 0.02f * static_cast<float>(x), sun ? 28.0f : 0.3f,
+                            sun ? 20.0f : 0.25f + 0.05f * static_cast<float>(y)};
+      out.write(reinterpret_cast<const char*>(rgb), sizeof rgb);
+    }
+  }
+}
+
+/// An octahedron: without normals in the file it is smoothed.
+const char* const kGem =
+    "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+    "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+/// An equilateral prism, edges along y.
+const char* const kPrism =
+    "v -0.5 -1 0\nv 0.5 -1 0\nv 0 -1 0.866\nv -0.5 1 0\nv 0.5 1 0\nv 0 1 0.866\n"
+    "f 1 2 3\nf 6 5 4\nf 1 4 5 2\nf 2 5 6 3\nf 3 6 4 1\n";
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+}  // namespace
+
+ZooFolder::ZooFolder() {
+  static std::atomic<int> count{0};
+  path_ = fs::temp_directory_path() /
+          ("kiloband_zoo_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+  fs::create_directories(path_);
+  write_picture(path_ / "colours.ppm", 7, 5, 3, colours(7, 5, 3));
+  write_picture(path_ / "grey.pgm", 6, 6, 1, colours(6, 6, 1));
+  write_sky(path_ / "sky.pfm");
+  write_text(path_ / "gem.obj", kGem);
+  write_text(path_ / "prism.obj", kPrism);
+  write_text(path_ / "glass.txt", "380 1.60\n500 1.545\n600 1.525\n720 1.51\n");
+}
+
+ZooFolder::~ZooFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+FlatScene ZooFolder::flatten(const ZooScene& scene, const std::string& bands) const {
+  const SceneDescription description = read_scene_text(scene.xml, scene.name + ".xml", path_, {});
+  return kiloband::flatten(description, {parse_channels(bands), parse_channels(kZooBands), {}});
+}
+
+DerivedChannels zoo_responses(const ChannelList& channels) {
+  const Channel range = hull(channels);
+  DerivedChannels derived;
+  derived.names = {"triangle", "all"};
+  derived.responses = {
+      resample(Spectrum::tabulated({450, 540, 650}, {0, 1, 0.1}), range.min_nm, range.max_nm),
+      resample(Spectrum::constant(1), range.min_nm, range.max_nm)};
+  return derived;
+}
+
+}  // namespace kiloband::test
