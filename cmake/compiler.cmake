@@ -34,8 +34,12 @@ function(kiloband_test name)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
 endfunction()
 
-# kiloband_opencl_test(name SOURCES ... DEPENDS ...): the same for tests that run kernels. Leaks of PoCL itself are not
-# ours to report.
+# What tests that run kernels need: leaks of PoCL itself are not ours to report, caches stay in the build folder.
+set(KILOBAND_OPENCL_ENVIRONMENT
+    "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/unit/shared/lsan_suppressions.txt"
+    "XDG_CACHE_HOME=${PROJECT_BINARY_DIR}/cache" "POCL_CACHE_DIR=${PROJECT_BINARY_DIR}/cache/pocl")
+
+# kiloband_opencl_test(name SOURCES ... DEPENDS ...): the same for tests that run kernels.
 function(kiloband_opencl_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -43,6 +47,11 @@ function(kiloband_opencl_test name)
                                         GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE KILOBAND_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KILOBAND_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT
-                       "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/unit/shared/lsan_suppressions.txt")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT "${KILOBAND_OPENCL_ENVIRONMENT}")
+endfunction()
+
+# kiloband_test_on(name backend): the tests of a program once more, on another backend (tests/support/test_backend.hpp).
+function(kiloband_test_on name backend)
+  gtest_discover_tests(${name} TEST_PREFIX "${backend}." TEST_LIST ${name}_${backend} DISCOVERY_TIMEOUT 60 PROPERTIES
+                       TIMEOUT 900 ENVIRONMENT "${KILOBAND_OPENCL_ENVIRONMENT};KILOBAND_TEST_BACKEND=${backend}")
 endfunction()

@@ -98,7 +98,9 @@ static inline void advance(Bounce* b, __global const KbPrimitive* primitives, co
   b->draft = empty_draft();
   b->has_shadow = false;
   bool goes_on = false;
-  if (hit.primitive == KB_NONE) {
+  if (b->scene->constants->max_depth == 0u) {
+    /* nothing is seen, not even lights */
+  } else if (hit.primitive == KB_NONE) {
     add_escaped(b, ray);
   } else {
     b->hit = make_surface_hit(b->scene, &primitives[hit.primitive], hit, vload3(0, ray->origin), b->direction);
