@@ -63,7 +63,7 @@ uint64_t parse_bytes(const std::string& option, const std::string& text) {
   return static_cast<uint64_t>(value * unit->second);
 }
 
-void BackendOptions::add_to(CLI::App& command) {
+void BackendOptions::add_to(CLI::App& command, bool with_method) {
   command.add_option("--backend", backend, "auto (a GPU if there is one, else the CPU), cpu or opencl")
       ->check(CLI::IsMember({"auto", "cpu", "opencl"}))
       ->capture_default_str();
@@ -72,6 +72,7 @@ void BackendOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"auto", "sse4", "avx2", "avx512"}));
   command.add_option("--device", device, "opencl: index or part of the name, as `kiloband devices` lists them");
   command.add_option("--device-memory", device_memory, "opencl: memory to use at most, such as 4GiB");
+  if (!with_method) return;
   command
       .add_option("--method", method,
                   "opencl: evaluation of paths (default: by the number of channels, see ARCHITECTURE.md)")

@@ -22,7 +22,8 @@ struct BackendOptions {
   std::optional<std::string> isa, device, device_memory, method;
   std::optional<int> threads;
 
-  void add_to(CLI::App& command);
+  /// with_method: --method too, for commands that evaluate paths
+  void add_to(CLI::App& command, bool with_method = true);
   /// "cpu" or "opencl". throws InputError for options that do not apply
   std::string resolve() const;
 };

@@ -1,0 +1,145 @@
+// kiloband trace SCENE.xml --pixel X,Y --sample N: one path, vertex by vertex.
+#include <fmt/core.h>
+
+#include <bit>
+#include <charconv>
+#include <memory>
+
+#include "app/backend_options.hpp"
+#include "app/commands.hpp"
+#include "app/messages.hpp"
+#include "app/render_options.hpp"
+#include "app/render_statistics.hpp"
+#include "render/traced_path.hpp"
+
+namespace kiloband {
+namespace {
+
+struct TraceOptions {
+  SceneOptions scene;
+  BackendOptions backend;
+  std::string pixel;
+  uint32_t sample = 0, replicates = 16;
+  uint64_t seed = 0;
+  std::string wavelengths = "shared", sampler = "sobol";
+};
+
+struct Pixel {
+  uint32_t x = 0, y = 0;
+};
+
+Pixel parse_pixel(const std::string& text) {
+  Pixel pixel;
+  const char* end = text.data() + text.size();
+  const auto [comma, error] = std::from_chars(text.data(), end, pixel.x);
+  if (error == std::errc{} && comma != end && *comma == ',') {
+    const auto [rest, second] = std::from_chars(comma + 1, end, pixel.y);
+    if (second == std::errc{} && rest == end) return pixel;
+  }
+  throw InputError("--pixel " + text + ": must be X,Y with whole numbers from 0");
+}
+
+const char* name_of_kind(uint32_t kind) {
+  static constexpr const char* kNames[] = {"scaled", "two-term", "nonlinear", "conductor", "dispersive"};
+  return kind < 5 ? kNames[kind] : "?";
+}
+
+std::string spectrum_name(const FlatScene& scene, uint32_t row, bool textured) {
+  if (textured) return "texture";
+  return row < scene.spectra.size() ? scene.spectra[row].name : "?";
+}
+
+void print_hit(const FlatScene& scene, std::size_t bounce, const TracedHit& hit) {
+  if (hit.shape == KB_NONE) {
+    fmt::print("bounce {:<3} leaves the scene\n", bounce);
+    return;
+  }
+  fmt::print("bounce {:<3} shape {} ({}) triangle {}  t {:.9g}  u {:.9g}  v {:.9g}\n", bounce, hit.shape,
+             scene.shape_names[hit.shape], hit.primitive, hit.t, hit.u, hit.v);
+}
+
+void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
+  const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
+  const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
+  fmt::print("vertex     {}", name_of_kind(kind));
+  const uint32_t material = v.head >> KB_VERTEX_MATERIAL_SHIFT;
+  const bool reflects = v.head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
+  if (reflects && material < scene.material_names.size()) fmt::print(" '{}'", scene.material_names[material]);
+  fmt::print("\n");
+  if (v.head & KB_VERTEX_EMIT) {
+    fmt::print("  emission weight {:.9g} of {}\n", v.emit_weight,
+               spectrum_name(scene, v.emit_row, v.head & KB_VERTEX_TEX_EMIT));
+  }
+  if (reflects) {
+    fmt::print("  factors  {}{}\n", spectrum_name(scene, v.row_a, v.head & KB_VERTEX_TEX_A),
+               two ? ", " + spectrum_name(scene, v.row_b, v.head & KB_VERTEX_TEX_B) : "");
+  }
+  if (v.head & KB_VERTEX_NEE) {
+    fmt::print("  light    weights {:.9g} {:.9g} of {}\n", v.nee0, v.nee1,
+               spectrum_name(scene, v.nee_row, v.head & KB_VERTEX_TEX_NEE));
+  }
+  if (v.head & KB_VERTEX_DEGRADE) {
+    fmt::print("  scatter  weight {:.9g}, only channel {} goes on\n", v.scatter0, kb_as_u32(v.scatter1));
+  } else if (v.head & KB_VERTEX_SCATTER) {
+    fmt::print("  scatter  weights {:.9g} {:.9g}\n", v.scatter0, v.scatter1);
+  }
+}
+
+void print_path(const FlatScene& scene, const TracedPath& path) {
+  for (std::size_t b = 0; b < path.hits.size(); ++b) print_hit(scene, b, path.hits[b]);
+  if (path.invalid) fmt::print("invalid: a weight is not finite, or the path is endless; it leaves the mean\n");
+  if (path.slots.empty() && !path.invalid) fmt::print("no vertex contributes\n");
+  for (std::size_t i = 0; i < path.slots.size();) {
+    print_vertex(scene, path.slots[i]);
+    i += 1 + (static_cast<std::size_t>(std::popcount(path.slots[i].head & KB_VERTEX_TEX_MASK)) + 1) / 2;
+  }
+}
+
+int trace(const TraceOptions& options) {
+  const Pixel pixel = parse_pixel(options.pixel);
+  const DiagnosticSink sink = print_diagnostics(false);
+  check_scene_file(options.scene.scene);
+  const LoadedScene loaded = load_scene(options.scene, sink);
+  const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
+  const KbCamera& camera = scene.camera;
+  if (pixel.x >= camera.film_width || pixel.y >= camera.film_height) {
+    throw InputError(fmt::format("--pixel {}: the film has {} x {} pixels", options.pixel, camera.film_width,
+                                 camera.film_height));
+  }
+  SamplingSettings sampling;
+  sampling.seed = options.seed;
+  sampling.replicates = options.replicates;
+  sampling.wavelengths =
+      options.wavelengths == "shared" ? WavelengthMode::kShared : WavelengthMode::kPerPath;
+  sampling.sampler = options.sampler == "sobol" ? SamplerType::kSobol : SamplerType::kIndependent;
+  const auto backend = make_backend(options.backend, scene, {}, sampling, sink);
+  const SampleRange range{options.sample % options.replicates, options.sample / options.replicates, 1};
+  fmt::print("pixel {},{} sample {} (replicate {}, index {}) on {} ({})\n", pixel.x, pixel.y, options.sample,
+             range.replicate, range.first, backend->name(), backend->isa());
+  print_path(scene, backend->trace({pixel.x, pixel.y, 1, 1}, range).front());
+  return kDone;
+}
+
+}  // namespace
+
+Command add_trace(CLI::App& program) {
+  auto o = std::make_shared<TraceOptions>();
+  CLI::App* command = program.add_subcommand("trace", "Show one path of a render, vertex by vertex");
+  o->scene.add_to(*command);
+  o->backend.add_to(*command, false);
+  command->add_option("--pixel", o->pixel, "X,Y in the full film")->required();
+  command->add_option("--sample", o->sample, "number among the pixel's samples")->capture_default_str();
+  command->add_option("--replicates", o->replicates, "of the render that the sample belongs to")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  command->add_option("--seed", o->seed, "seed of all random numbers")->capture_default_str();
+  command->add_option("--wavelengths", o->wavelengths, "wavelength sampling")
+      ->check(CLI::IsMember({"shared", "per-path"}))
+      ->capture_default_str();
+  command->add_option("--sampler", o->sampler, "random numbers")
+      ->check(CLI::IsMember({"sobol", "independent"}))
+      ->capture_default_str();
+  return [o] { return trace(*o); };
+}
+
+}  // namespace kiloband
