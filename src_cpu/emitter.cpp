@@ -29,7 +29,7 @@ LightSample sample_area(const FlatScene& scene, const KbEmitter& emitter, glm::v
   sample.direction = on_light.direction;
   sample.target = offset_ray_origin(on_light.position, on_light.normal);
   sample.pdf = on_light.pdf * emitter.select_pdf;
-  sample.factor = 1;
+  sample.factor = on_light.factor;
   sample.radiance = radiance_of(scene, emitter.ref, on_light.uv);
   return sample;
 }

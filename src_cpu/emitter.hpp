@@ -22,7 +22,7 @@ struct LightSample {
   bool infinite = false;   // environment and directional lights: no target
   bool delta = false;      // cannot be hit by BSDF sampling
   float pdf = 0;           // solid angle times selection probability [1/sr]; delta lights: selection probability; 0: no sample
-  float factor = 0;        // incident radiance (or, for delta lights, irradiance) = factor * spectrum; 1 for area lights
+  float factor = 0;        // incident radiance (or, for delta lights, irradiance) = factor * spectrum; about 1 for area lights
   EmittedRadiance radiance;
 };
 

@@ -52,8 +52,8 @@ float triangle_area(glm::vec3 p0, glm::vec3 p1, glm::vec3 p2) {
 }
 
 /// Triangles are chosen with the steps that lattice_cdf() gave them, which is their part of the area only up
-/// to 2^-24: the density over a triangle is that exact probability / its area. Hits, whose triangle is
-/// unknown, use 1 / area of the mesh in their MIS weight; the two agree but for triangles of a few steps.
+/// to 2^-24. The density is 1 / area of the mesh, as for hits, whose triangle is unknown, so that MIS weights
+/// sum to 1; `factor` is that density over the real one, probability of the triangle / its area.
 AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::vec3 point, float u_triangle,
                             glm::vec2 u, bool need_uv) {
   const float* const cdf = &scene.area_cdf[shape.first_cdf];
@@ -67,7 +67,8 @@ AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::v
   sample.position = p0 + b.x * e1 + b.y * e2;
   sample.normal = glm::normalize(glm::cross(e1, e2));
   if (shape.flags & KB_SHAPE_FLIP_NORMALS) sample.normal = -sample.normal;
-  finish_by_area(sample, point, triangle_area(p0, p1, p2) / (cdf[triangle + 1] - cdf[triangle]));
+  finish_by_area(sample, point, shape.area);
+  sample.factor = triangle_area(p0, p1, p2) / shape.area / (cdf[triangle + 1] - cdf[triangle]);
   if (need_uv && sample.pdf > 0) sample.uv = triangle_uv(scene, shape, indices, b);
   return sample;
 }

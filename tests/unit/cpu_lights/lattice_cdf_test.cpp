@@ -101,7 +101,9 @@ TEST(LatticeCdf, MoreItemsThanStepsAllowAreRefused) {
   }
 }
 
-TEST(MeshLight, ChosenProbabilityOverAreaIsTheDensity) {
+/// The density is that of the whole mesh, so that MIS weights sum to 1; over `factor` it is the real one, the
+/// probability of the triangle over its area.
+TEST(MeshLight, DensityOverFactorIsTheRealOne) {
   // Triangles of areas 1 and 1e-9: the small one has one step, 60 times its part of the area.
   FlatScene scene = scene_with_mesh(
       {{0, 0, 2}, {1, 0, 2}, {0, 2, 2}, {5, 0, 2}, {5.00001f, 0, 2}, {5, 2e-4f, 2}}, {0, 2, 1, 3, 5, 4});
@@ -111,12 +113,13 @@ TEST(MeshLight, ChosenProbabilityOverAreaIsTheDensity) {
   const glm::vec3 below(5, 0, 0);
   const AreaLightSample small =
       sample_area_light(scene, scene.shapes[0], below, 1 - 0x1p-24f, {0.5f, 0.5f}, false);
-  EXPECT_NEAR(small.pdf * small_area / 0x1p-24 / 4, 1, 1e-6);  // distance 2, cosine 1
+  EXPECT_NEAR(small.pdf / small.factor * small_area / 0x1p-24 / 4, 1, 1e-6);  // distance 2, cosine 1
+  EXPECT_NEAR(small.pdf * scene.shapes[0].area / 4, 1, 1e-6);
   const AreaLightSample large =
       sample_area_light(scene, scene.shapes[0], {0, 0, 0}, 0.5f, {0.5f, 0.5f}, false);
   const double distance2 = glm::dot(large.position, large.position);
   const double cosine = 2 / std::sqrt(distance2);
-  EXPECT_NEAR(large.pdf * cosine / distance2 / (1 - 0x1p-24), 1, 1e-6);
+  EXPECT_NEAR(large.pdf / large.factor * cosine / distance2 / (1 - 0x1p-24), 1, 1e-6);
 }
 
 TEST(Texels, IndicesBeyond32BitsAreRefused) {
