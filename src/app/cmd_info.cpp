@@ -9,6 +9,7 @@
 #include "film/spectral_film.hpp"
 #include "render/session.hpp"
 #include "scene/flat_scene.hpp"
+#include "src_gpu/path_memory.hpp"
 
 namespace kiloband {
 namespace {
@@ -72,6 +73,30 @@ void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples)
              sizeof(KbPathVertex), sizeof(KbTextureSample), 2 * sizeof(KbTextureSample));
 }
 
+/// Vertices of the longest path: the last of max_depth segments ends on a light. Unlimited depth: as an example 32.
+uint64_t longest_path(const Integrator& integrator) {
+  return integrator.max_depth < 0 ? 32 : static_cast<uint64_t>(std::max(integrator.max_depth, 1));
+}
+
+/// What a pool of paths takes on an OpenCL device: pt keeps two floats per channel of every path in flight, dpept the
+/// vertices of whole paths, whatever the number of channels (the paper's figures 4 and 7).
+void print_path_memory(const FlatScene& scene) {
+  using gpu::Method;
+  const uint64_t vertices = longest_path(scene.integrator);
+  const bool textured = scene.features.bitmap || scene.features.envmap_light;
+  const uint64_t slots = textured ? 2 : 1;
+  const uint64_t pt = gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots);
+  const uint64_t dpept = gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots);
+  fmt::print("opencl path  pt {} bytes with {} channels; dpept-path, dpept-batch {} bytes with {} vertices of {} bytes\n",
+             pt, scene.channels.size(), dpept, vertices, slots * sizeof(KbPathVertex));
+  fmt::print("opencl pool  paths      pt MiB   dpept MiB\n");
+  for (const uint64_t edge : {256, 512, 1024, 2048}) {
+    const double paths = static_cast<double>(edge) * static_cast<double>(edge);
+    fmt::print("             {:>4}^2 {:>10.1f} {:>11.1f}\n", edge, mebibytes(paths * static_cast<double>(pt)),
+               mebibytes(paths * static_cast<double>(dpept)));
+  }
+}
+
 int info(const SceneOptions& options) {
   const DiagnosticSink sink = print_diagnostics(false);
   check_scene_file(options.scene);
@@ -82,6 +107,7 @@ int info(const SceneOptions& options) {
   print_channels(loaded);
   print_memory(scene, loaded.description.sensor.film.responses.size(),
                loaded.description.sensor.sample_count);
+  print_path_memory(scene);
   const Integrator& integrator = scene.integrator;
   fmt::print("integrator   max_depth {}, rr_depth {}, {} samples per pixel\n", integrator.max_depth,
              integrator.rr_depth, loaded.description.sensor.sample_count);

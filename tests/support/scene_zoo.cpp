@@ -85,27 +85,28 @@ Text mesh(const Text& file, const Text& steps, const Text& contents) {
 // ---- rooms, lights, cameras ----
 
 Text floor(const Text& material) {
-  return rectangle(turn("x", "-90") + move("0 -1 0"), material);
+  return rectangle(scale("1.1") + turn("x", "-90") + move("0 -1.1 0"), material);
 }
 Text back(const Text& material) {
-  return rectangle(move("0 0 -1"), material);
+  return rectangle(scale("1.1") + move("0 0 -1.1"), material);
 }
 Text left(const Text& material) {
-  return rectangle(turn("y", "90") + move("-1 0 0"), material);
+  return rectangle(scale("1.1") + turn("y", "90") + move("-1.1 0 0"), material);
 }
 Text right(const Text& material) {
-  return rectangle(turn("y", "-90") + move("1 0 0"), material);
+  return rectangle(scale("1.1") + turn("y", "-90") + move("1.1 0 0"), material);
 }
 Text ceiling(const Text& material) {
-  return rectangle(turn("x", "90") + move("0 1 0"), material);
+  return rectangle(scale("1.1") + turn("x", "90") + move("0 1.1 0"), material);
 }
-/// A box of two metres, open in front, with a lamp under its ceiling.
+/// A box, open in front. Its walls do not stand at powers of two: there, rays would leave a surface from one of two
+/// points 256 units in the last place apart, as the last bit of the hit has it.
 Text room() {
   return floor(diffuse("0.6")) + back(diffuse("450:0.7, 650:0.5")) + left(diffuse("450:0.1, 650:0.7")) +
          right(diffuse("450:0.2, 550:0.7, 650:0.1")) + ceiling(diffuse("0.7"));
 }
 Text ceiling_lamp() {
-  return rectangle(scale("0.4") + turn("x", "90") + move("0 0.98 0"),
+  return rectangle(scale("0.4") + turn("x", "90") + move("0 1.08 0"),
                    diffuse("0") + lamp("450:4, 550:9, 650:6"));
 }
 Text sky(const Text& radiance) {
@@ -117,7 +118,7 @@ Text film(const Text& filter, const Text& size = integer("width", 32) + integer(
 }
 Text view(const Text& steps = "") {
   return "<transform name='to_world'>" + steps +
-         step("lookat", "origin='0, 0, 4' target='0, 0, 0' up='0, 1, 0'") + "</transform>";
+         step("lookat", "origin='0, 0, 4.3' target='0, 0, 0' up='0, 1, 0'") + "</transform>";
 }
 Text perspective(const Text& a_film) {
   return "<sensor type='perspective'>" + real("fov", "34") + view() + a_film + "</sensor>";
@@ -252,7 +253,7 @@ Text lenses() {
 Text mirrors() {
   const Text mirror = bsdf("conductor", spectrum("specular_reflectance", "450:0.95, 650:0.9"));
   return floor(diffuse("0.5")) + back(mirror) + left(mirror) + right(mirror) + ceiling(mirror) +
-         rectangle(turn("y", "180") + move("0 0 4.5"), mirror) +
+         rectangle(scale("1.1") + turn("y", "180") + move("0 0 4.5"), mirror) +
          ball("0.3 -0.5 0", "0.45", metal("conductor")) +
          ball("-0.5 0.3 0.2", "0.15", diffuse("0") + lamp("450:8, 650:5"));
 }

@@ -1,7 +1,7 @@
 // Two records of the same path, from two backends: do they agree, and if not, what are they worth?
 #pragma once
 
-#include <string>
+#include <vector>
 
 #include "render/backend.hpp"
 #include "scene/flat_scene.hpp"
@@ -9,17 +9,18 @@
 namespace kiloband::test {
 
 /// Where two records of a path part first.
-enum class Parting { kNone, kHits, kDecisions, kWeights };
+enum class Parting { kNone, kHits, kDecisions, kValues };
 
-/// Compares hits (shape, triangle), vertices (kind, flags, material, rows, textures and texels, channel of a
-/// degradation) and then weights.
-/// Weights agree if they differ by at most 1e-4 of the larger one, or of 1e-3 of the path's largest where
-/// both are smaller: the factor 1e-7 of the path's largest weight is one rounding of a float, and what is
-/// beneath it does not show in the path's value. Cosines and the fractions of bilinear lookups agree within
-/// 1e-4.
-Parting compare_paths(const TracedPath& a, const TracedPath& b);
+/// Compares hits (shape, triangle) and vertices (kind, flags, material, rows, textures and texels, channel of a
+/// degradation): kHits, kDecisions or kNone.
+Parting compare_decisions(const TracedPath& a, const TracedPath& b);
 
-/// The path's value: its channels' mean, W m^-2 sr^-1, from its vertices by the double-precision evaluator.
-double path_value(const FlatScene& scene, const TracedPath& path, double mu);
+/// The path's value in every channel, W m^-2 sr^-1, from its vertices by the double-precision evaluator.
+std::vector<double> path_values(const FlatScene& scene, const TracedPath& path, double mu);
+
+/// Values agree if no channel differs by more than 1e-4 of the path's largest channel, or of `least` where the path is
+/// worth less (a thousandth of the mean path: what is missing then does not show in a pixel's float). Weights of single
+/// vertices are not compared: those of a vertex that adds little may be differences of larger numbers.
+bool values_agree(const std::vector<double>& a, const std::vector<double>& b, double least);
 
 }  // namespace kiloband::test
