@@ -1,5 +1,6 @@
 #include "tests/unit/gpu_bvh/ray_tester.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
