@@ -11,6 +11,10 @@
 namespace kiloband {
 namespace {
 
+/// Light that a BSDF scales by less is none. Far tails of normal distributions would otherwise be light or not by whether
+/// a device flushes denormals; both backends use this limit. [1/sr]
+constexpr float kLeastBsdfValue = 1e-30f;
+
 /// The point from which a ray towards `direction` leaves the surface: off it, on the side that the ray goes
 /// to.
 glm::vec3 leave_surface(const SurfaceHit& hit, glm::vec3 direction) {
@@ -138,7 +142,7 @@ bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hi
   const LightSample light = sample_light(flat_, hit.point, {u.x, u.y}, {u.z, u.w});
   if (!(light.pdf > 0) || !(light.factor > 0)) return false;
   const BsdfValue value = eval_bsdf(material, wi, frame.to_local(light.direction));
-  if (value.w0 == 0 && value.w1 == 0) return false;
+  if (value.w0 < kLeastBsdfValue && value.w1 < kLeastBsdfValue) return false;
   const bool conductor = (draft.vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_CONDUCTOR;
   const float mis = light.delta ? 1 : power_heuristic(light.pdf, value.pdf * opacity);
   const float weight = mis * opacity * light.factor / light.pdf;
