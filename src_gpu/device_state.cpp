@@ -10,7 +10,8 @@ namespace {
 
 std::vector<std::string> path_defines(const HostScene& host, const DeviceSettings& settings) {
   std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
-  defines.push_back("KB_BVH_STACK=" + std::to_string(std::max(host.bvh.stack_entries() + 1, 4u)));
+  // In steps of 8: scenes whose trees differ a little share a program.
+  defines.push_back("KB_BVH_STACK=" + std::to_string(host.bvh.stack_entries() / 8 * 8 + 8));
   if (settings.method == Method::kPt) defines.push_back("KB_METHOD_PT=1");
   return defines;
 }
