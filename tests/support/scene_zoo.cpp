@@ -99,8 +99,8 @@ Text right(const Text& material) {
 Text ceiling(const Text& material) {
   return rectangle(scale("1.1") + turn("x", "90") + move("0 1.1 0"), material);
 }
-/// A box, open in front. Its walls do not stand at powers of two: there, rays would leave a surface from one of two
-/// points 256 units in the last place apart, as the last bit of the hit has it.
+/// A box, open in front. Its walls do not stand at powers of two: there, rays would leave a surface from one
+/// of two points 256 units in the last place apart, as the last bit of the hit has it.
 Text room() {
   return floor(diffuse("0.6")) + back(diffuse("450:0.7, 650:0.5")) + left(diffuse("450:0.1, 650:0.7")) +
          right(diffuse("450:0.2, 550:0.7, 650:0.1")) + ceiling(diffuse("0.7"));
@@ -270,32 +270,35 @@ Text crop_window() {
 std::vector<ZooScene> make_scenes() {
   const Text lit_room = room() + ceiling_lamp();
   const Text objects = floor(diffuse("0.6")) + analytic_shapes();
-  constexpr Chains kLong = Chains::kSpecular;
+  constexpr Chains kLong = Chains::kSpecular, kCurved = Chains::kCurved;
   return {
       {"diffuse_room", scene(8, perspective(film("gaussian")), lit_room + boxes())},
-      {"metals", scene(6, perspective(film("tent")), lit_room + metals())},
-      {"glasses", scene(10, perspective(film("box")), lit_room + glasses() + sky("0.5"))},
-      {"plastics", scene(6, perspective(film("gaussian")), lit_room + plastics())},
-      {"sheets", scene(8, perspective(film("tent")), lit_room + sheets())},
+      {"metals", scene(6, perspective(film("tent")), lit_room + metals()), kCurved},
+      {"glasses", scene(10, perspective(film("box")), lit_room + glasses() + sky("0.5")), kCurved},
+      {"plastics", scene(6, perspective(film("gaussian")), lit_room + plastics()), kCurved},
+      {"sheets", scene(8, perspective(film("tent")), lit_room + sheets()), kCurved},
       {"pictures", scene(6, perspective(film("gaussian")), pictures() + ceiling_lamp())},
       {"glowing_shapes", scene(5, perspective(film("box")), room() + glowing_shapes())},
       {"constant_sky", scene(6, thinlens(film("tent")), objects + sky("450:0.8, 650:1.2"))},
       {"envmap", scene(6, thinlens(film("gaussian")), objects + kEnvmap)},
       {"delta_lights", scene(5, orthographic(film("box")), room() + boxes() + delta_lights())},
-      {"analytic_shapes", scene(8, orthographic(film("tent")), lit_room + analytic_shapes())},
-      {"prism", scene(10, perspective(film("gaussian")),
-                      lit_room + mesh("prism.obj", scale("0.7"), dispersive("dielectric")), "")},
+      {"analytic_shapes", scene(8, orthographic(film("tent")), lit_room + analytic_shapes()), kCurved},
+      {"prism",
+       scene(10, perspective(film("gaussian")),
+             lit_room + mesh("prism.obj", scale("0.7"), dispersive("dielectric")), ""),
+       kCurved},
       {"rough_dispersion",
        scene(10, perspective(film("gaussian")),
-             lit_room + ball("0 -0.2 0", "0.6", dispersive("roughdielectric", roughness("ggx", "0.2"))))},
+             lit_room + ball("0 -0.2 0", "0.6", dispersive("roughdielectric", roughness("ggx", "0.2")))),
+       kCurved},
       {"mirror_box", scene(50, perspective(film("box")), mirrors()), kLong},
       {"lenses", scene(50, perspective(film("gaussian")), lit_room + lenses()), kLong},
       {"unlimited_depth",
        scene(-1, perspective(film("gaussian")),
              floor(diffuse("0.95")) + back(diffuse("0.95")) + left(diffuse("0.9")) + right(diffuse("0.95")) +
                  ceiling(diffuse("0.95")) + boxes() + sky("0.7"))},
-      {"crop_window",
-       scene(6, perspective(film("gaussian", crop_window())), lit_room + metals() + glasses())},
+      {"crop_window", scene(6, perspective(film("gaussian", crop_window())), lit_room + metals() + glasses()),
+       kCurved},
       {"hidden_emitters",
        scene(6, thinlens(film("box")), objects + glowing_shapes() + kEnvmap, yes("hide_emitters"))},
   };

@@ -11,10 +11,11 @@
 
 namespace kiloband::test {
 
-/// How paths may part between two backends that round differently.
+/// How much of a rounding error is left at a path's end: what parity can ask for.
 enum class Chains {
-  kRough,    // diffuse and rough surfaces, a few specular bounces: rounding does not grow
-  kSpecular  // long specular chains: curved mirrors and lenses multiply an error at every bounce
+  kRough,    // diffuse and rough surfaces: errors stay small
+  kCurved,   // some balls or prisms that reflect or refract sharply: each multiplies an error by ten and more
+  kSpecular  // long specular chains
 };
 
 struct ZooScene {

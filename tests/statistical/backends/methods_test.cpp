@@ -1,1 +1,155 @@
-// placeholder
+// The three methods, general and specialised kernels, any pool and any device memory: one image.
+//
+// Same seed, same paths: the methods add the same numbers in the same order. Between methods a value may differ by
+// rounding, 1e-5 relative; runs of one method are equal bit by bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "backend_images.hpp"
+
+namespace kiloband::test {
+namespace {
+
+constexpr uint32_t kReplicates = 2, kSamples = 2;
+
+SamplingSettings settings_of(WavelengthMode wavelengths, uint64_t seed = 5) {
+  return {wavelengths, SamplerType::kSobol, seed, kReplicates};
+}
+
+OpenclOptions general() {
+  OpenclOptions options;
+  options.specialised = false;
+  return options;
+}
+
+/// What a pair of images comes to.
+struct Difference {
+  std::size_t bits = 0;  // values with different bits
+  double relative = 0;   // largest, of the pixel's largest channel
+};
+
+Difference difference(const Image& a, const Image& b) {
+  EXPECT_EQ(a.means.size(), b.means.size());
+  EXPECT_EQ(a.samples, b.samples);
+  Difference d;
+  for (std::size_t first = 0; first < a.means.size(); first += a.channels) {
+    const double largest = *std::max_element(&a.means[first], &a.means[first] + a.channels);
+    for (std::size_t i = first; i < first + a.channels; ++i) {
+      if (std::memcmp(&a.means[i], &b.means[i], sizeof(float)) == 0) continue;
+      ++d.bits;
+      d.relative = std::max(d.relative, std::abs(double{a.means[i]} - b.means[i]) / largest);
+    }
+  }
+  return d;
+}
+
+void expect_same_bits(const Image& a, const Image& b, const std::string& what) {
+  const Difference d = difference(a, b);
+  EXPECT_EQ(d.bits, 0u) << what << ": " << d.relative << " relative";
+}
+
+void expect_rounding(const Image& a, const Image& b, const std::string& what) {
+  const Difference d = difference(a, b);
+  EXPECT_LE(d.relative, 1e-5) << what << ": " << d.bits << " of " << a.means.size() << " values differ";
+}
+
+class Methods : public testing::Test {
+ protected:
+  Image image(const std::string& method, const FlatScene& scene, const DerivedChannels& derived,
+              WavelengthMode mode, const OpenclOptions& options = general()) {
+    return render_image(*make_zoo_backend(method, scene, derived, settings_of(mode), options), scene,
+                        kReplicates, kSamples);
+  }
+
+  void compare_methods(const FlatScene& scene, const DerivedChannels& derived, WavelengthMode mode,
+                       const std::string& what) {
+    const Image batch = image("opencl:dpept-batch", scene, derived, mode);
+    EXPECT_GT(*std::ranges::max_element(batch.means), 0) << what;
+    expect_rounding(batch, image("opencl:dpept-path", scene, derived, mode), what + ", dpept-path");
+    expect_rounding(batch, image("opencl:pt", scene, derived, mode), what + ", pt");
+  }
+
+  ZooFolder folder_;
+};
+
+TEST_F(Methods, AgreeOnEveryScene) {
+  bool shared = true;
+  for (const ZooScene& zoo : scene_zoo()) {
+    compare_methods(folder_.flatten(zoo), {}, shared ? WavelengthMode::kShared : WavelengthMode::kPerPath,
+                    zoo.name);
+    shared = !shared;
+  }
+}
+
+TEST_F(Methods, AgreeForAnyNumberOfChannelsWithResponses) {
+  const struct {
+    const char* scene;
+    const char* bands;
+    WavelengthMode mode;
+  } cases[] = {{"metals", "450:650:1", WavelengthMode::kShared},
+               {"pictures", "450:650:7", WavelengthMode::kPerPath},
+               {"prism", "450:650:33", WavelengthMode::kShared},
+               {"plastics", "450:650:100", WavelengthMode::kShared}};
+  for (const auto& c : cases) {
+    const FlatScene scene = folder_.flatten(zoo_scene(c.scene), c.bands);
+    compare_methods(scene, zoo_responses(scene.channels), c.mode, std::string(c.scene) + " " + c.bands);
+  }
+}
+
+/// Scenes that together need every feature. The kernels are the same text with parts left out, without
+/// contraction: the same bits.
+TEST_F(Methods, SpecialisedKernelsGiveTheSameBits) {
+  for (const char* name : {"diffuse_room", "crop_window", "hidden_emitters"}) {
+    const FlatScene scene = folder_.flatten(zoo_scene(name));
+    const OpenclOptions specialised;
+    for (const std::string& method : {std::string("opencl:dpept-batch")}) {
+      expect_same_bits(image(method, scene, {}, WavelengthMode::kShared),
+                       image(method, scene, {}, WavelengthMode::kShared, specialised),
+                       std::string(name) + ", " + method);
+    }
+  }
+}
+
+TEST_F(Methods, SameSeedSameBitsWhateverThePool) {
+  for (const std::string& method : kOpenclMethods) {
+    const FlatScene scene = folder_.flatten(zoo_scene("crop_window"));
+    const Image first = image(method, scene, {}, WavelengthMode::kShared);
+    expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared), method + ", again");
+    for (const uint32_t slots : {64u, 100u, 4096u}) {
+      OpenclOptions options = general();
+      options.pool_slots = slots;
+      expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared, options),
+                       method + ", " + std::to_string(slots) + " slots");
+    }
+  }
+}
+
+TEST_F(Methods, ImageInPartsIsTheWhole) {
+  const FlatScene scene = folder_.flatten(zoo_scene("crop_window"));
+  const PixelRect whole = film_rect(scene);
+  for (const std::string& method : kOpenclMethods) {
+    const auto backend = make_zoo_backend(method, scene, {}, settings_of(WavelengthMode::kShared), general());
+    const Image all = render_part(*backend, whole, kReplicates, kSamples);
+    const uint32_t left = 13, top = 9;
+    const PixelRect parts[] = {
+        {whole.x0, whole.y0, left, whole.height},
+        {whole.x0 + left, whole.y0, whole.width - left, top},
+        {whole.x0 + left, whole.y0 + top, whole.width - left, whole.height - top}};
+    for (const PixelRect& rect : parts) {
+      const Image part = render_part(*backend, rect, kReplicates, kSamples);
+      for (uint32_t r = 0; r < kReplicates; ++r) {
+        for (std::size_t p = 0; p < part.pixels(); ++p) {
+          const std::size_t x = rect.x0 - whole.x0 + p % rect.width, y = rect.y0 - whole.y0 + p / rect.width;
+          for (std::size_t k = 0; k < all.channels; ++k)
+            ASSERT_EQ(part.at(r, p, k), all.at(r, y * whole.width + x, k)) << method;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace kiloband::test

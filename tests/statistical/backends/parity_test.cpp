@@ -1,14 +1,21 @@
 // With equal seeds both backends follow the same paths.
 //
 // Every scene of the zoo, both samplers with both wavelength modes, several replicates and samples: 24576
-// paths a scene. A path has parted if its triangles, lobes, lights, rows or texels differ anywhere, or if a
-// weight differs by more than 1e-4 (path_comparison.hpp). At most 0.1 % of a scene's paths may have parted, 2
-// % where specular chains multiply rounding errors; the budgets are limits on counts, not estimates.
+// paths a scene. A path has parted if its triangles, lobes, lights, rows or texels differ anywhere, or if its
+// value in a channel differs by more than 1e-4 of its largest channel (values_agree() says what is asked of
+// paths near 0).
+//   decisions     at most 0.1 % of a scene's paths may differ, 2 % with long specular chains
+//   with values   0.1 % on rough scenes, 2 % with long specular chains, and 0.5 % with curved reflectors: a
+//   ball of
+//                 radius r that is hit from d metres under cos multiplies an error of the hit point by
+//                 2 d / (r cos). With 5e-7 m, a unit in the last place at the camera's 4 m, two balls are
+//                 enough for 1e-4; neither backend is nearer to the truth.
+// These are limits on counts, not estimates.
 //
 // Paths that part do so because rays graze edges or numbers fall on a threshold; that must not favour a
 // value. The mean of OpenCL's value minus the CPU's over the parted paths is held against 0 by a paired
-// t-test, alone by scene and, relative to the scenes' means, over all of them. Error rate 1e-4 over all
-// scenes together (Sidak). The detectable bias of a scene's mean is printed with its counts.
+// t-test. Error rate 1e-4 over all scenes together (Sidak); the detectable bias of a scene's mean is printed
+// with its counts.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -50,6 +57,7 @@ struct Tally {
   std::vector<double> differences;      // of parted paths
 
   std::size_t all_parted() const { return paths - parted[0]; }
+  double fraction(std::size_t n) const { return static_cast<double>(n) / static_cast<double>(paths); }
   double mean() const { return paths > 0 ? sum / static_cast<double>(paths) : 0; }
 };
 
@@ -86,21 +94,23 @@ class Parity : public testing::TestWithParam<std::string> {
   void add(const FlatScene& scene, const TracedPath& a, const TracedPath& b, double mu) {
     const std::vector<double> values = path_values(scene, a, mu), others = path_values(scene, b, mu);
     Parting parting = compare_decisions(a, b);
-    if (parting == Parting::kNone && !values_agree(values, others, 1e-3 * tally_.mean())) parting = Parting::kValues;
+    if (parting == Parting::kNone && !values_agree(values, others, 1e-3 * tally_.mean()))
+      parting = Parting::kValues;
     ++tally_.paths;
     ++tally_.parted[static_cast<std::size_t>(parting)];
     tally_.sum += mean_of(values);
-    if (parting != Parting::kNone && getenv("DBG")) { const double value=mean_of(values), vb=mean_of(others);
-      printf("DBG parting %d value %.8g %.8g rel %.2g hits %zu %zu slots %zu %zu\n",(int)parting,value,vb,(vb-value)/std::max(1e-30,std::max(value,vb)),a.hits.size(),b.hits.size(),a.slots.size(),b.slots.size());
-      for(size_t i=0;i<std::min(a.hits.size(),b.hits.size());++i) printf("   hit %d/%d %d/%d t %.8g %.8g u %.8g %.8g v %.8g %.8g\n",a.hits[i].shape,a.hits[i].primitive,b.hits[i].shape,b.hits[i].primitive,a.hits[i].t,b.hits[i].t,a.hits[i].u,b.hits[i].u,a.hits[i].v,b.hits[i].v);
-      for(size_t i=0;i<std::max(a.slots.size(),b.slots.size());++i) { for(int w=0;w<2;++w){ const auto&P=w?b:a; if(i<P.slots.size()){ const auto&v=P.slots[i]; printf("   %s head %08x rows %d %d %d %d  e %.8g n %.8g %.8g s %.8g %.8g mat %d type %u\n",w?"b":"a",v.head,v.row_a,v.row_b,v.emit_row,v.nee_row,v.emit_weight,v.nee0,v.nee1,v.scatter0,v.scatter1,v.head>>12, v.head>>12<scene.materials.size()?scene.materials[v.head>>12].type:99);}}}
-    }
     if (parting != Parting::kNone) tally_.differences.push_back(mean_of(others) - mean_of(values));
   }
 
   Tally tally_;
   ZooFolder folder_;
 };
+
+/// The part of a scene's paths that may part.
+double budget_of(Chains chains) {
+  if (chains == Chains::kSpecular) return 0.02;
+  return chains == Chains::kCurved ? 0.005 : 0.001;
+}
 
 /// Mean and its standard error.
 struct Estimate {
@@ -118,12 +128,14 @@ TEST_P(Parity, PathsTakeTheSameDecisionsAndWeights) {
   const ZooScene& zoo = zoo_scene(GetParam());
   const FlatScene scene = folder_.flatten(zoo);
   for (const Configuration& c : kConfigurations) compare(scene, c);
-  const double budget = zoo.chains == Chains::kSpecular ? 0.02 : 0.001;
-  const double fraction = static_cast<double>(tally_.all_parted()) / static_cast<double>(tally_.paths);
+  const double budget = budget_of(zoo.chains);
+  const double fraction = tally_.fraction(tally_.all_parted());
+  const double decisions = tally_.fraction(tally_.parted[1] + tally_.parted[2]);
   std::printf("%-18s %zu paths, parted %.4f %%: %zu by hits, %zu by decisions, %zu by values\n",
               zoo.name.c_str(), tally_.paths, 100 * fraction, tally_.parted[1], tally_.parted[2],
               tally_.parted[3]);
   EXPECT_GT(tally_.mean(), 0);
+  EXPECT_LE(decisions, zoo.chains == Chains::kSpecular ? 0.02 : 0.001);
   EXPECT_LE(fraction, budget);
   if (tally_.differences.size() < 2) return;  // nothing to take a mean of
   const Estimate d = estimate(tally_.differences);
