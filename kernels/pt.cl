@@ -2,8 +2,8 @@
 // flight live in global memory and are updated at each bounce. Build macros: path_spectra.clh.
 //
 //   kernel      arguments                                                       work-items
-//   pt_update   EVALUATION, FILM, states, queue, count, tau, radiance, partial  groups * local size (a group takes the
-//                                                                               queue's places group, group + groups, ...)
+//   pt_update   EVALUATION, FILM, states, queue, count, tau, radiance, partial  groups * local size, any number of groups, which share
+//                                                                               the queue evenly; count > 0
 //   pt_derived  layout, round, FILM, states, partial, queue, count, parts       count * D, after pt_update; only if there
 //                                                                               are derived channels
 //
@@ -23,21 +23,19 @@ static inline void load_batch(Batch* batch, __global const float* tau, __global 
   }
 }
 
-static inline void store_batch(const Batch* batch, __global float* tau, __global float* radiance, kb_u32 first,
-                               kb_u32 step, kb_u32 vectors) {
+static inline void store_batch(const Batch* batch, __global float* tau, __global float* radiance) {
 #pragma unroll
   for (kb_u32 i = 0u; i < KB_VECTORS; ++i) {
-    if (first + i * step >= vectors) continue;
+    if (!is_kept(batch, i)) continue;
     store_reals(tau + batch->k[i], batch->tau[i]);
     store_reals(radiance + batch->k[i], batch->radiance[i]);
   }
 }
 
-static inline void add_batch_to_film(const Film* film, kb_u32 pixel, const Batch* batch, kb_u32 first, kb_u32 step,
-                                     kb_u32 vectors) {
+static inline void add_batch_to_film(const Film* film, kb_u32 pixel, const Batch* batch) {
 #pragma unroll
   for (kb_u32 i = 0u; i < KB_VECTORS; ++i)
-    if (first + i * step < vectors) add_to_film(film, pixel, batch->k[i], batch->radiance[i]);
+    if (is_kept(batch, i)) add_to_film(film, pixel, batch->k[i], batch->radiance[i]);
 }
 
 /* Bytes per channel: 16 for a bounce in between, 8 for a first one, 8 + 16 for a last one (the film's sums). */
@@ -55,11 +53,10 @@ static inline void update_slot(const Evaluation* e, const Film* film, const KbPa
     if (!fresh) load_batch(&batch, tau + (size_t)slot * spectra.stride, radiance + (size_t)slot * spectra.stride);
     run_vertices(&spectra, slot * KB_CHUNK_SLOTS, state->length, &batch);
     if (!ended) {
-      store_batch(&batch, tau + (size_t)slot * spectra.stride, radiance + (size_t)slot * spectra.stride, first, items,
-                  vectors);
+      store_batch(&batch, tau + (size_t)slot * spectra.stride, radiance + (size_t)slot * spectra.stride);
     } else if (!(state->flags & KB_PATH_INVALID)) {
-      add_batch_to_film(film, pixel, &batch, first, items, vectors);
-      derived_of_path(&spectra, &batch, first, items, vectors, derived);
+      add_batch_to_film(film, pixel, &batch);
+      derived_of_path(&spectra, &batch, derived);
     }
   }
 }
@@ -70,7 +67,8 @@ __kernel void pt_update(KB_EVALUATION_PARAMS, KB_FILM_PARAMS, __global const KbP
   KB_EVALUATION_INIT(evaluation);
   KB_FILM_INIT(film, arg_layout->film_columns);
   const kb_u32 items = (kb_u32)get_local_size(0), item = (kb_u32)get_local_id(0);
-  for (kb_u32 place = (kb_u32)get_group_id(0); place < count; place += (kb_u32)get_num_groups(0)) {
+  const kb_u32 share = (count - 1u) / (kb_u32)get_num_groups(0) + 1u, begin = share * (kb_u32)get_group_id(0);
+  for (kb_u32 place = begin; place < min(begin + share, count); ++place) {
     const kb_u32 slot = queue[place];
     const KbPathState state = states[slot];
     if (state.flags & KB_PATH_FINISHED) continue;

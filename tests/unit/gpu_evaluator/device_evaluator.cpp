@@ -1,8 +1,10 @@
 #include "device_evaluator.hpp"
 
 #include <bit>
+#include <ctime>
 #include <numeric>
 #include <random>
+#include <thread>
 
 #include "shared/sampler.h"
 
@@ -12,28 +14,47 @@ namespace {
 constexpr uint32_t kFilmWidth = 1000;
 constexpr uint64_t kSeed = 77;
 
-/// Paths in chunks that follow each other in no order.
+/// Paths in chunks: of slots that fill their paths side by side, as the pool does, or in no order.
 struct Arena {
+  static constexpr uint32_t kPool = 8192;
+
   std::vector<KbPathVertex> slots;
   std::vector<uint32_t> next, first;
+  std::vector<std::vector<uint32_t>> chunks;  // of a path
 
-  explicit Arena(const PathBuffer& paths) {
-    uint32_t chunks = 0;
-    for (const SavedPath& path : paths.paths) chunks += (path.count + KB_CHUNK_SLOTS - 1) / KB_CHUNK_SLOTS;
-    std::vector<uint32_t> order(chunks);
+  Arena(const PathBuffer& paths, bool scattered) : chunks(paths.paths.size()) {
+    uint32_t count = 0;
+    for (std::size_t begin = 0; begin < paths.paths.size(); begin += kPool) {
+      const std::size_t end = std::min<std::size_t>(begin + kPool, paths.paths.size());
+      bool more = true;
+      for (uint32_t level = 0; more; ++level) {
+        more = false;
+        for (std::size_t p = begin; p < end; ++p) {
+          if (level * KB_CHUNK_SLOTS >= paths.paths[p].count) continue;
+          chunks[p].push_back(count++);
+          more = true;
+        }
+      }
+    }
+    if (scattered) scatter(count);
+    slots.resize(std::size_t{count} * KB_CHUNK_SLOTS);
+    next.assign(count, 0xfffffff0u);
+    for (std::size_t p = 0; p < chunks.size(); ++p) place(paths, paths.paths[p], chunks[p]);
+  }
+
+ private:
+  void scatter(uint32_t count) {
+    std::vector<uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     std::shuffle(order.begin(), order.end(), std::mt19937(5));
-    slots.resize(std::size_t{chunks} * KB_CHUNK_SLOTS);
-    next.assign(chunks, 0xfffffff0u);
-    std::size_t used = 0;
-    for (const SavedPath& path : paths.paths) {
-      first.push_back(path.count > 0 ? order[used] : 0);
-      for (uint32_t i = 0; i < path.count; ++i) {
-        if (i > 0 && i % KB_CHUNK_SLOTS == 0) next[order[used]] = order[used + 1], ++used;
-        slots[order[used] * KB_CHUNK_SLOTS + i % KB_CHUNK_SLOTS] = paths.slots[path.first + i];
-      }
-      if (path.count > 0) ++used;
-    }
+    for (std::vector<uint32_t>& path : chunks)
+      for (uint32_t& chunk : path) chunk = order[chunk];
+  }
+  void place(const PathBuffer& paths, const SavedPath& path, const std::vector<uint32_t>& own) {
+    first.push_back(own.empty() ? 0xfffffff0u : own.front());
+    for (std::size_t i = 1; i < own.size(); ++i) next[own[i - 1]] = own[i];
+    for (uint32_t i = 0; i < path.count; ++i)
+      slots[own[i / KB_CHUNK_SLOTS] * KB_CHUNK_SLOTS + i % KB_CHUNK_SLOTS] = paths.slots[path.first + i];
   }
 };
 
@@ -83,7 +104,7 @@ DeviceEvaluator::DeviceEvaluator(EvaluatorProgram& program, const FlatScene& sce
   clear();
 }
 
-void DeviceEvaluator::load(const PathBuffer& paths, const RoundOfPaths& round) {
+void DeviceEvaluator::load(const PathBuffer& paths, const RoundOfPaths& round, bool scattered) {
   OpenclProbe& probe = program_.probe;
   round_ = round;
   record_ = {};
@@ -100,7 +121,7 @@ void DeviceEvaluator::load(const PathBuffer& paths, const RoundOfPaths& round) {
   std::vector<KbRoundPixel> pixels;
   for (uint32_t p = 0; p < round.pixels; ++p) pixels.push_back({p % 7, p / 7, round.block[p]});
   pixels_ = probe.upload(pixels);
-  const Arena arena(paths);
+  const Arena arena(paths, scattered);
   arena_ = probe.upload(arena.slots);
   chunk_next_ = probe.upload(arena.next);
   std::vector<KbSavedPath> saved;
@@ -267,6 +288,65 @@ void DeviceEvaluator::pt(const PathBuffer& paths, uint32_t slots, uint32_t local
     add.setArg(next++, local_size);
     run(add, std::size_t{slots} * layout_.derived, 1);
   }
+}
+
+double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec)) /
+         std::max(1u, std::thread::hardware_concurrency());
+}
+
+PtTiming DeviceEvaluator::time_pt(uint32_t slots, uint32_t groups, uint32_t bounces, uint32_t repetitions) {
+  OpenclProbe& probe = program_.probe;
+  const std::size_t floats = std::size_t{slots} * layout_.stride;
+  const cl::Buffer tau = probe.upload(std::vector<float>(floats, 1.0f));
+  const cl::Buffer radiance = probe.upload(std::vector<float>(floats, 0.0f));
+  const cl::Buffer parts =
+      probe.upload(std::vector<float>(std::max<std::size_t>(1, floats * layout_.derived), 0.0f));
+  KbPathVertex vertex{};
+  vertex.head = KB_KIND_SCALED | KB_VERTEX_NEE | KB_VERTEX_SCATTER;
+  vertex.nee_row = 5;
+  vertex.nee0 = vertex.scatter0 = 1;
+  std::vector<KbPathVertex> chunks(std::size_t{slots} * KB_CHUNK_SLOTS, vertex);
+  for (uint32_t i = 0; i < chunks.size(); ++i)
+    chunks[i].row_a = static_cast<uint16_t>(i / KB_CHUNK_SLOTS % 5);
+  arena_ = probe.upload(chunks);
+  std::vector<uint32_t> order(slots);
+  std::iota(order.begin(), order.end(), 0u);
+  const cl::Buffer queue = probe.upload(order);
+  std::vector<cl::Buffer> states;
+  for (uint32_t b = 0; b < bounces; ++b) {
+    std::vector<KbPathState> bounce(slots);
+    for (uint32_t s = 0; s < slots; ++s) {
+      bounce[s].job = s;
+      bounce[s].length = 1;
+      bounce[s].flags = (b == 0 ? KB_PATH_FRESH : 0u) | (b + 1 == bounces ? KB_PATH_ENDED : KB_PATH_LIVE);
+    }
+    states.push_back(probe.upload(bounce));
+  }
+  cl::Kernel k = kernel("pt_update");
+  const cl_uint state_argument = set_film(k, set_evaluation(k, 0));
+  k.setArg(state_argument + 1, queue);
+  k.setArg(state_argument + 2, slots);
+  k.setArg(state_argument + 3, tau);
+  k.setArg(state_argument + 4, radiance);
+  k.setArg(state_argument + 5, parts);
+  PtTiming timing;
+  timing.seconds = 1e30;
+  for (uint32_t r = 0; r <= repetitions; ++r) {
+    const double start = processor_seconds();
+    for (uint32_t b = 0; b < bounces; ++b) {
+      k.setArg(state_argument, states[b]);
+      run(k, groups, 1);
+    }
+    if (r > 0) timing.seconds = std::min(timing.seconds, processor_seconds() - start);
+  }
+  timing.state_bytes = 2 * floats * sizeof(float);
+  // A first bounce writes tau and L, others read and write them, the last reads them and updates sum and
+  // compensation.
+  timing.bytes = static_cast<double>(slots) * layout_.channels * (8.0 + 16.0 * (bounces - 2) + 8.0 + 16.0);
+  return timing;
 }
 
 void DeviceEvaluator::clear() {

@@ -49,19 +49,37 @@ struct RoundOfPaths {
 /// mu of a job where every path has its own.
 float per_path_mu(const RoundOfPaths& round, uint32_t pixel, uint32_t sample);
 
+/// Processor seconds of this program, of all threads, as if all cores had shared them: other programs disturb
+/// them less than wall time.
+double processor_seconds();
+
+/// What bounces of the method pt take.
+struct PtTiming {
+  double seconds = 0;           // of all bounces, the best of the repetitions
+  double bytes = 0;             // states and film that they move
+  std::size_t state_bytes = 0;  // of throughputs and radiances
+};
+
 /// A film, and evaluations that add to it.
 class DeviceEvaluator {
  public:
   DeviceEvaluator(EvaluatorProgram& program, const FlatScene& scene, const gpu::ChannelTables& tables,
                   uint32_t film_pixels);
 
-  /// Uploads the paths, scattered over the arena's chunks in a random order, and resamples the spectra.
-  void load(const PathBuffer& paths, const RoundOfPaths& round);
+  /// Uploads the paths and resamples the spectra. scattered: over the arena's chunks in a random order, else
+  /// as the pool would leave them.
+  void load(const PathBuffer& paths, const RoundOfPaths& round, bool scattered = true);
 
   void batch(uint32_t local_size, uint32_t groups);
   void path(uint32_t local_size = 1);
   /// Bounce by bounce with `slots` slots, as the streaming pipeline does.
   void pt(const PathBuffer& paths, uint32_t slots, uint32_t local_size);
+
+  /// Times whole paths of pt: `slots` paths of `bounces` diffuse vertices with a light sample each, begun,
+  /// continued and added to the film together. The film needs a pixel per slot or divides them.
+  PtTiming time_pt(uint32_t slots, uint32_t groups, uint32_t bounces, uint32_t repetitions);
+  /// Fills the dense rows anew.
+  void resample();
 
   void clear();
   /// Means [pixel][K + D], in film units.
@@ -78,8 +96,6 @@ class DeviceEvaluator {
   cl_uint set_evaluation(cl::Kernel& kernel, cl_uint index);
   cl_uint set_film(cl::Kernel& kernel, cl_uint index);
   void run(cl::Kernel& kernel, std::size_t items, std::size_t local);
-  void add_parts(uint32_t parts);
-  void resample();
 
   EvaluatorProgram& program_;
   KbSpectraLayout layout_;
