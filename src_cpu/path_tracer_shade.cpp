@@ -11,8 +11,8 @@
 namespace kiloband {
 namespace {
 
-/// Light that a BSDF scales by less is none. Far tails of normal distributions would otherwise be light or not by whether
-/// a device flushes denormals; both backends use this limit. [1/sr]
+/// Light that a BSDF scales by less is none. Far tails of normal distributions would otherwise be light or
+/// not by whether a device flushes denormals; both backends use this limit. [1/sr]
 constexpr float kLeastBsdfValue = 1e-30f;
 
 /// The point from which a ray towards `direction` leaves the surface: off it, on the side that the ray goes
