@@ -50,8 +50,13 @@ function(kiloband_opencl_test name)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT "${KILOBAND_OPENCL_ENVIRONMENT}")
 endfunction()
 
-# kiloband_test_on(name backend): the tests of a program once more, on another backend (tests/support/test_backend.hpp).
+# kiloband_test_on(name backend [filter]): the tests of a program once more, on another backend
+# (tests/support/test_backend.hpp). filter: of GoogleTest, for those that are about one backend.
 function(kiloband_test_on name backend)
-  gtest_discover_tests(${name} TEST_PREFIX "${backend}." TEST_LIST ${name}_${backend} DISCOVERY_TIMEOUT 60 PROPERTIES
+  set(filter "*")
+  if(ARGC GREATER 2)
+    set(filter ${ARGV2})
+  endif()
+  gtest_discover_tests(${name} TEST_FILTER "${filter}" TEST_PREFIX "${backend}." TEST_LIST ${name}_${backend} DISCOVERY_TIMEOUT 60 PROPERTIES
                        TIMEOUT 900 ENVIRONMENT "${KILOBAND_OPENCL_ENVIRONMENT};KILOBAND_TEST_BACKEND=${backend}")
 endfunction()
