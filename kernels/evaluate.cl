@@ -1,10 +1,10 @@
-// Deferred evaluation of a round's saved paths (paper, section 5); build macros: path_spectra.clh, film.clh.
+// Deferred evaluation of a round's saved paths (paper, section 5); build macros: path_spectra.clh, film.clh, and
+// KB_PIXELS (evaluate_tile.clh; 1 for dpept_path).
 //
 //   kernel       arguments                             work-items
-//   dpept_batch  EVALUATION, saved, FILM, partial      groups * local size, any number of groups, which share the round's pixels
-//                                                      evenly (GPUs: a group per pixel; CPU devices: 32 to 64 pixels
-//                                                      each); local size: any, worth while up to
-//                                                      ceil(K / (KB_WIDTH KB_VECTORS)), CPU devices: 1
+//   dpept_batch  EVALUATION, saved, FILM, partial      groups * local size; groups: ceil(round pixels / KB_PIXELS), or
+//                                                      fewer; local size: any, worth while up to
+//                                                      ceil(K / (KB_WIDTH KB_VECTORS)); on CPU devices 1
 //   dpept_path   EVALUATION, saved, FILM               round pixels; a work-item evaluates the paths of one pixel
 //   derived_add  layout, FILM, partial, pixels, parts  pixels * D, after dpept_batch; only if there are derived channels
 //
@@ -19,38 +19,40 @@
 // time. A sample counts for its pixel unless it is KB_SAVED_INVALID.
 #include "evaluate.clh"
 #include "film.clh"
-#include "evaluate_pixel.clh"
+#include "evaluate_tile.clh"
 
-/* Adds a batch's part of the derived channels to the work-item's part of the pixel. */
-static inline void keep_derived(__global float* partial, const float* derived, bool begins) {
+/* Notes the work-item's part of the derived channels of a tile; `more` adds to what is there. */
+static inline void keep_derived(__global float* partial, const TileSums* sums, kb_u32 first_pixel, kb_u32 end_pixel,
+                                bool more) {
 #if KB_DERIVED
-  for (kb_u32 d = 0u; d < KB_DERIVED; ++d) partial[d] = begins ? derived[d] : partial[d] + derived[d];
+  const kb_u32 items = (kb_u32)get_local_size(0), item = (kb_u32)get_local_id(0);
+  for (kb_u32 pixel = first_pixel; pixel < end_pixel; ++pixel) {
+    __global float* part = partial + ((size_t)pixel * items + item) * KB_DERIVED;
+    const float* sum = sums->derived + (pixel - first_pixel) % KB_PIXELS * KB_DERIVED;
+    for (kb_u32 d = 0u; d < KB_DERIVED; ++d) part[d] = more ? part[d] + sum[d] : sum[d];
+  }
 #else
-  (void)partial, (void)derived, (void)begins;
+  (void)partial, (void)sums, (void)first_pixel, (void)end_pixel, (void)more;
 #endif
 }
 
-/* A group's pixels are the inner loop: the spectra of a batch, for all samples of the round, stay in the first cache. */
 __kernel void dpept_batch(KB_EVALUATION_PARAMS, __global const KbSavedPath* restrict saved, KB_FILM_PARAMS,
                           __global float* restrict partial) {
   KB_EVALUATION_INIT(evaluation);
   KB_FILM_INIT(film, arg_layout->film_columns);
   const kb_u32 items = (kb_u32)get_local_size(0), item = (kb_u32)get_local_id(0), pixels = arg_round->pixels;
-  const kb_u32 share = (pixels - 1u) / (kb_u32)get_num_groups(0) + 1u;
-  const kb_u32 begin = min(share * (kb_u32)get_group_id(0), pixels), end = min(begin + share, pixels);
-  float derived[KB_DERIVED + 1];
-  derived_clear(derived);
-  for (kb_u32 first = item; first < vector_count(&evaluation); first += items * KB_VECTORS) {
-    for (kb_u32 pixel = begin; pixel < end; ++pixel) {
-      evaluate_batch(&evaluation, saved, &film, pixel, first, items, derived);
-      keep_derived(partial + ((size_t)pixel * items + item) * KB_DERIVED, derived, first == item);
+  const kb_u32 vectors = vector_count(&evaluation);
+  TileSums sums;
+  for (kb_u32 d = 0u; d < KB_PIXELS * KB_DERIVED; ++d) sums.derived[d] = 0.0f;
+  for (kb_u32 pixel = (kb_u32)get_group_id(0) * KB_PIXELS; pixel < pixels; pixel += (kb_u32)get_num_groups(0) * KB_PIXELS) {
+    const kb_u32 end = min(pixel + KB_PIXELS, pixels);
+    if (item >= vectors) keep_derived(partial, &sums, pixel, end, false); /* a work-item without channels */
+    for (kb_u32 first = item; first < vectors; first += items * KB_VECTORS) {
+      evaluate_tile(&evaluation, saved, &film, pixel, end, first, items, &sums);
+      keep_derived(partial, &sums, pixel, end, first != item);
     }
-  }
-  for (kb_u32 pixel = begin; pixel < end; ++pixel) {
-    /* Work-items that have no channels. */
-    if (item >= vector_count(&evaluation))
-      keep_derived(partial + ((size_t)pixel * items + item) * KB_DERIVED, derived, true);
-    if (item == 0u) arg_film_counts[film_first + pixel] += valid_samples(&evaluation, saved, pixel);
+    for (kb_u32 p = pixel; p < end && item == 0u; ++p)
+      arg_film_counts[film_first + p] += valid_samples(&evaluation, saved, p);
   }
 }
 
@@ -59,11 +61,11 @@ __kernel void dpept_path(KB_EVALUATION_PARAMS, __global const KbSavedPath* restr
   KB_FILM_INIT(film, arg_layout->film_columns);
   const kb_u32 pixel = (kb_u32)get_global_id(0);
   if (pixel >= arg_round->pixels) return;
-  float derived[KB_DERIVED + 1];
+  TileSums sums;
   for (kb_u32 first = 0u; first < vector_count(&evaluation); first += KB_VECTORS) {
-    evaluate_batch(&evaluation, saved, &film, pixel, first, 1u, derived);
+    evaluate_tile(&evaluation, saved, &film, pixel, pixel + 1u, first, 1u, &sums);
 #if KB_DERIVED
-    for (kb_u32 d = 0u; d < KB_DERIVED; ++d) add_to_column(&film, pixel, arg_layout->stride + d, derived[d]);
+    for (kb_u32 d = 0u; d < KB_DERIVED; ++d) add_to_column(&film, pixel, arg_layout->stride + d, sums.derived[d]);
 #endif
   }
   arg_film_counts[film_first + pixel] += valid_samples(&evaluation, saved, pixel);

@@ -67,7 +67,8 @@ uint32_t slots_of(const KbPathVertex& vertex) {
 std::string EvaluatorBuild::options() const {
   return "-DKB_WIDTH=" + std::to_string(width) + " -DKB_VECTORS=" + std::to_string(vectors) +
          " -DKB_PER_PATH=" + std::to_string(per_path) + " -DKB_DERIVED=" + std::to_string(derived) +
-         " -DKB_FILM_TRANSPOSED=" + std::to_string(transposed) + " " + features;
+         " -DKB_FILM_TRANSPOSED=" + std::to_string(transposed) + " -DKB_PIXELS=" + std::to_string(tile) +
+         " " + features;
 }
 
 // film.cl sets the width for itself, so it comes last.

@@ -23,6 +23,7 @@ struct EvaluatorBuild {
   bool per_path = false;
   uint32_t derived = 0;
   bool transposed = false;
+  uint32_t tile = 1;     // KB_PIXELS
   std::string features;  // "-DKB_SPECIALISED -DKB_HAS_..."; empty: everything
 
   std::string options() const;

@@ -77,14 +77,23 @@ TEST_P(DeviceEvaluation, RandomPathsAgreeWithTheOracle) {
 }
 
 std::vector<EvaluatorBuild> builds() {
-  return {{16, 1, false, 2}, {16, 4, true, 2}, {16, 2, false, 2}, {8, 2, false, 2}, {8, 1, true, 2},
-          {4, 1, true, 2},   {2, 3, false, 2}, {1, 1, true, 2},   {1, 2, false, 2}, {4, 2, true, 2, true}};
+  return {{16, 1, false, 2},
+          {16, 4, true, 2, false, 5},
+          {16, 2, false, 2, false, 16},
+          {8, 2, false, 2},
+          {8, 1, true, 2},
+          {4, 1, true, 2},
+          {2, 3, false, 2},
+          {1, 1, true, 2},
+          {1, 2, false, 2},
+          {4, 2, true, 2, true}};
 }
 
 std::string build_name(const testing::TestParamInfo<EvaluatorBuild>& info) {
   const EvaluatorBuild& b = info.param;
   return "width" + std::to_string(b.width) + "x" + std::to_string(b.vectors) +
-         (b.per_path ? "_per_path" : "_shared") + (b.transposed ? "_transposed" : "");
+         (b.per_path ? "_per_path" : "_shared") + (b.transposed ? "_transposed" : "") +
+         (b.tile > 1 ? "_tile" + std::to_string(b.tile) : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(, DeviceEvaluation, testing::ValuesIn(builds()), build_name);
@@ -247,7 +256,7 @@ TEST(DeviceEvaluator, SpecialisedKernelsComputeTheSameBits) {
     if (macro == "-DKB_HAS_DIFFUSE=1") some = plain_paths(w.scene, random);
     ASSERT_GT(some.paths.size(), 0u) << macro;
     const RoundOfPaths round = make_round(some, 12, 5, random);
-    EvaluatorProgram special({16, 2, false, 0, false, "-DKB_SPECIALISED " + macro});
+    EvaluatorProgram special({16, 2, false, 0, false, 1, "-DKB_SPECIALISED " + macro});
     std::vector<std::vector<float>> means;
     for (EvaluatorProgram* program : {&general, &special}) {
       DeviceEvaluator device(*program, w.scene, w.tables, round.pixels);
