@@ -1,5 +1,6 @@
 #include "src_gpu/context.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace kiloband::gpu {
@@ -35,6 +36,7 @@ void DeviceContext::settle() noexcept {
 void DeviceContext::rebuild() {
   ++generation_;
   settle();
+  launches_.clear();
   programs_.clear();
   drop(queue_);
   drop(context_);
@@ -43,6 +45,24 @@ void DeviceContext::rebuild() {
 
 void DeviceContext::finish() {
   checked(site(Phase::kRun), [&] { queue_.finish(); });
+}
+
+double DeviceContext::take_longest(LaunchScale scale) {
+  double longest = 0;
+  for (const auto& [of, event] : launches_) {
+    if (of == scale) longest = std::max(longest, seconds_of(*this, event));
+  }
+  std::erase_if(launches_, [&](const auto& launch) { return launch.first == scale; });
+  return longest;
+}
+
+double seconds_of(const DeviceContext& context, const cl::Event& event) {
+  if (event() == nullptr) return 0;
+  return checked(context.site(Phase::kRun), [&] {
+    const cl_ulong start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+    const cl_ulong end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+    return static_cast<double>(end - start) * 1e-9;
+  });
 }
 
 void DeviceContext::flush() {

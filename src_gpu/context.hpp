@@ -3,6 +3,8 @@
 
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "src_gpu/device.hpp"
 #include "src_gpu/errors.hpp"
@@ -12,6 +14,9 @@ namespace kiloband::gpu {
 struct ContextOptions {
   bool profiling = false;  // events of the queue carry times: Kernel::launch_timed
 };
+
+/// What the time of a kernel's launches grows with: slots of the pool, paths of a round, or neither.
+enum class LaunchScale { kOther, kSlots, kPaths };
 
 /// Not copied: buffers, programs and kernels refer to it. One thread at a time uses it.
 class DeviceContext {
@@ -47,6 +52,12 @@ class DeviceContext {
     return {phase, device_.name, std::move(subject)};
   }
 
+  /// Notes a launch for take_longest(); only with profiling.
+  void record(LaunchScale scale, cl::Event event) { launches_.emplace_back(scale, std::move(event)); }
+  /// Longest of the launches of this scale since the last look, seconds on the device; 0 without any. The
+  /// queue must have been waited for. throws DeviceLost, DeviceError
+  double take_longest(LaunchScale scale);
+
   /// Built programs by the hash of source and options; build_program looks here first.
   std::map<std::string, cl::Program>& programs() { return programs_; }
 
@@ -59,7 +70,12 @@ class DeviceContext {
   cl::Context context_;
   cl::CommandQueue queue_;
   std::map<std::string, cl::Program> programs_;
+  std::vector<std::pair<LaunchScale, cl::Event>> launches_;
   uint32_t generation_ = 0;
 };
+
+/// Seconds on the device, of a launch that is done; 0 for one that had no items.
+/// throws DeviceLost, DeviceError
+double seconds_of(const DeviceContext& context, const cl::Event& event);
 
 }  // namespace kiloband::gpu

@@ -8,6 +8,9 @@
 namespace kiloband::gpu {
 namespace {
 
+/// Rays of a launch that cannot be measured beforehand: short on any device.
+constexpr uint32_t kAuxiliaryPixels = 1u << 15;
+
 std::vector<std::string> path_defines(const HostScene& host, const DeviceSettings& settings) {
   std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
   // In steps of 8: scenes whose trees differ a little share a program.
@@ -40,7 +43,8 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       settings_(device_settings),
       shape_(evaluation_shape(device_context.device(), method, settings_.shared_wavelengths,
                               host.spectra.layout.channels)),
-      paths_(build_program(context, "paths.cl", ProgramOptions{path_defines(host, settings_), settings_.program_cache})),
+      paths_(build_program(context, "paths.cl",
+                           ProgramOptions{path_defines(host, settings_), settings_.program_cache})),
       scene_(memory, host.scene, host.material_tables),
       bvh_(memory, host.bvh),
       spectra_(memory, host.spectra) {}
@@ -64,8 +68,8 @@ void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels) {
   release_pool();
   pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size);
   evaluation_.emplace(context, memory, host_.spectra.layout, shape_,
-                      scene_defines(host_.scene.features, settings_.specialised), settings_.program_cache, size,
-                      film_pixels);
+                      scene_defines(host_.scene.features, settings_.specialised), settings_.program_cache,
+                      size, film_pixels);
   evaluation_->bind(scene_, spectra_, *pool_);
 }
 
@@ -84,7 +88,9 @@ RoundOutcome DeviceState::generate(const KbRound& round, std::span<const KbRound
 }
 
 double DeviceState::evaluate(const KbRound& round, uint64_t film_pixel) {
-  return method == Method::kPt ? 0 : evaluation_->evaluate(round, film_pixel);
+  if (method != Method::kPt) evaluation_->evaluate(round, film_pixel);
+  context.finish();
+  return context.take_longest(LaunchScale::kPaths);
 }
 
 void DeviceState::finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {
@@ -92,21 +98,26 @@ void DeviceState::finish_film(uint64_t pixels, std::vector<float>& means, std::v
 }
 
 std::vector<AuxiliaryPixel> DeviceState::auxiliary(const PixelRect& rect) {
-  static_assert(sizeof(AuxiliaryPixel) == sizeof(KbAuxiliary));
-  const auto count = static_cast<uint32_t>(rect.pixels());
   release_pool();  // its memory may be all there is
-  DeviceBuffer<KbAuxiliary> out = memory.allocate<KbAuxiliary>("auxiliary images", count);
-  DeviceBuffer<KbFaults> faults = memory.upload("faults", std::vector<KbFaults>(1));
   Kernel kernel = paths_.kernel("auxiliary");
   scene_.bind(kernel, 0);
-  kernel.set_from(DeviceScene::kArguments, bvh_.nodes, bvh_.primitives, out, faults, rect.x0, rect.y0, rect.width,
-                  count);
-  kernel.launch(count, 64);
-  const std::vector<KbAuxiliary> values = out.download();
-  throw_for_bugs(faults.read(0));
+  DeviceBuffer<KbFaults> faults = memory.upload("faults", std::vector<KbFaults>(1));
+  const uint32_t rows_at_once = std::max(kAuxiliaryPixels / rect.width, 1u);
+  DeviceBuffer<KbAuxiliary> out = memory.allocate<KbAuxiliary>(
+      "auxiliary images", uint64_t{std::min(rows_at_once, rect.height)} * rect.width);
   std::vector<AuxiliaryPixel> pixels;
-  for (const KbAuxiliary& v : values)
-    pixels.push_back({v.depth, {v.normal[0], v.normal[1], v.normal[2]}, v.object, v.material});
+  for (uint32_t y = 0; y < rect.height; y += rows_at_once) {
+    const uint32_t count = std::min(rows_at_once, rect.height - y) * rect.width;
+    kernel.set_from(DeviceScene::kArguments, bvh_.nodes, bvh_.primitives, out, faults, rect.x0, rect.y0 + y,
+                    rect.width, count);
+    kernel.launch(count, 64);
+    std::vector<KbAuxiliary> values(count);
+    const DeviceBuffer<KbAuxiliary>& device_values = out;
+    device_values.download(std::span<KbAuxiliary>(values));
+    for (const KbAuxiliary& v : values)
+      pixels.push_back({v.depth, {v.normal[0], v.normal[1], v.normal[2]}, v.object, v.material});
+  }
+  throw_for_bugs(faults.read(0));
   return pixels;
 }
 

@@ -35,7 +35,6 @@ struct DeviceSettings {
   bool specialised = true;
   bool program_cache = true;
   std::optional<uint64_t> memory_budget;
-  double launch_seconds = 0.5;
 };
 
 class DeviceState {
@@ -55,17 +54,18 @@ class DeviceState {
   uint64_t slot_bytes() const;
 
   void clear_film(uint64_t pixels);
-  /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's pixels
-  /// begin in the film.
+  /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's
+  /// pixels begin in the film.
   RoundOutcome generate(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu,
                         uint64_t film_pixel);
-  /// Evaluates what generate() saved. returns the longest launch, seconds
+  /// Evaluates what generate() saved. returns the longest launch over the round's paths, seconds
   double evaluate(const KbRound& round, uint64_t film_pixel);
   /// Means [pixel][channels + derived] and valid samples.
   void finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 
   /// What the rays of a round find and the vertices that are saved, by job.
-  std::vector<TracedPath> trace(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu);
+  std::vector<TracedPath> trace(const KbRound& round, std::span<const KbRoundPixel> pixels,
+                                std::span<const float> mu);
 
   std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect);
 

@@ -7,8 +7,9 @@ namespace {
 
 constexpr uint64_t kLocalSize = 64;
 constexpr uint32_t kEvaluationArguments = 13, kFilmArguments = 5;
-/// Means are downloaded in pieces of about this many bytes.
-constexpr uint64_t kMeansBytes = 16u << 20;
+/// Means are downloaded in pieces of at most this many bytes and at most this part of the film, unless that
+/// is little.
+constexpr uint64_t kMeansBytes = 16u << 20, kMeansPart = 16, kLittle = 16u << 10;
 
 uint64_t ceil_div(uint64_t n, uint64_t d) {
   return (n + d - 1) / d;
@@ -43,7 +44,9 @@ uint64_t partial_floats(const KbSpectraLayout& layout, const EvaluationShape& sh
 }
 
 uint64_t pixels_of_means(const KbSpectraLayout& layout, uint64_t film_pixels) {
-  return std::clamp<uint64_t>(kMeansBytes / (sizeof(float) * columns(layout)), 1, film_pixels);
+  const uint64_t bytes = sizeof(float) * columns(layout);
+  const uint64_t pixels = std::clamp(film_pixels / kMeansPart, kLittle / bytes, kMeansBytes / bytes);
+  return std::clamp<uint64_t>(pixels, 1, film_pixels);
 }
 
 }  // namespace
@@ -62,7 +65,8 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
   shape.method = method;
   shape.shared_wavelengths = shared_wavelengths;
   if (device.type == DeviceType::kCpu) {
-    // SIMD comes from the vectors, not from the group: 64 channels in registers, one work-item for all of them.
+    // SIMD comes from the vectors, not from the group: 64 channels in registers, one work-item for all of
+    // them.
     shape.width = 16;
     shape.vectors = channels > 32 ? 4 : channels > 16 ? 2 : 1;
     shape.local_size = 1;
@@ -104,22 +108,28 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
       means_pixels_(pixels_of_means(layout, film_pixels)),
       sum_(memory.allocate<float>("film", film_pixels * layout.film_columns)),
       compensation_(memory.allocate<float>("film's rounding errors", film_pixels * layout.film_columns)),
-      dense_(memory.allocate<float>("dense spectra", pool.tables * table_bytes(layout, shape) / sizeof(float))),
+      dense_(
+          memory.allocate<float>("dense spectra", pool.tables * table_bytes(layout, shape) / sizeof(float))),
       partial_(memory.allocate<float>("derived channels", partial_floats(layout, shape, pool))),
-      tau_(memory.allocate<float>("throughputs", shape.method == Method::kPt ? uint64_t{pool.slots} * layout.stride : 0)),
+      tau_(memory.allocate<float>("throughputs",
+                                  shape.method == Method::kPt ? uint64_t{pool.slots} * layout.stride : 0)),
       radiance_(memory.allocate<float>("radiances", tau_.size())),
       means_(memory.allocate<float>("means", means_pixels_ * columns(layout))),
       counts_(memory.allocate<uint32_t>("sample counts", film_pixels)),
-      film_program_(build(context, "film.cl", shape.film_transposed ? std::vector<std::string>{"KB_FILM_TRANSPOSED=1"}
-                                                                    : std::vector<std::string>{}, program_cache)),
-      program_(build(context, main_file(shape.method), joined(defines, shape.defines(layout.derived)), program_cache)),
+      film_program_(build(context, "film.cl",
+                          shape.film_transposed ? std::vector<std::string>{"KB_FILM_TRANSPOSED=1"}
+                                                : std::vector<std::string>{},
+                          program_cache)),
+      program_(build(context, main_file(shape.method), joined(defines, shape.defines(layout.derived)),
+                     program_cache)),
       clear_(film_program_.kernel("film_clear")),
       finish_(film_program_.kernel("film_finish")),
       main_(program_.kernel(main_kernel(shape.method))) {
   if (layout.derived > 0 && shape.method != Method::kDpeptPath)
     derived_ = program_.kernel(shape.method == Method::kPt ? "pt_derived" : "derived_add");
   if (!shape.shared_wavelengths) return;
-  resample_program_ = build(context, "resample.cl", joined(defines, shape.defines(layout.derived)), program_cache);
+  resample_program_ =
+      build(context, "resample.cl", joined(defines, shape.defines(layout.derived)), program_cache);
   resample_ = resample_program_->kernel("resample_rows");
 }
 
@@ -155,22 +165,20 @@ void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, co
     if (derived_) derived_->set_from(1 + kFilmArguments, partial_);
   }
   finish_.set_from(0, spectra.layout);
+  const LaunchScale scale = shape_.method == Method::kPt ? LaunchScale::kSlots : LaunchScale::kPaths;
+  main_.set_scale(scale);
+  if (derived_) derived_->set_scale(scale);
   if (resample_) {
+    resample_->set_scale(LaunchScale::kPaths);
     resample_->set_from(0, spectra.layout, spectra.nodes, spectra.tables, spectra.cover, spectra.cover_breaks,
                         pool.mu());
     resample_->set_from(7, dense_);
   }
 }
 
-double Evaluation::run(Kernel& kernel, uint64_t items, uint64_t local) {
-  if (context_.options().profiling) return kernel.launch_timed(items, local);
-  kernel.launch(items, local);
-  return 0;
-}
-
 void Evaluation::clear(uint64_t pixels) {
-  clear_.set(sum_, compensation_, counts_, static_cast<uint32_t>(shape_.film_transposed ? film_pixels_ : pixels),
-             layout_.film_columns);
+  clear_.set(sum_, compensation_, counts_,
+             static_cast<uint32_t>(shape_.film_transposed ? film_pixels_ : pixels), layout_.film_columns);
   clear_.launch((shape_.film_transposed ? film_pixels_ : pixels) * layout_.film_columns, kLocalSize);
 }
 
@@ -181,15 +189,18 @@ void Evaluation::resample(const KbRound& round) {
   resample_->launch(uint64_t{tables} * layout_.rows * layout_.stride / shape_.width, kLocalSize);
 }
 
-double Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
+void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
   bind_film(main_, film_argument_, film_pixel);
-  if (shape_.method == Method::kDpeptPath) return run(main_, round.pixels, shape_.local_size > 1 ? shape_.local_size : 1);
+  if (shape_.method == Method::kDpeptPath) {
+    main_.launch(round.pixels, shape_.local_size);
+    return;
+  }
   const uint64_t groups = std::min<uint64_t>(round.pixels, shape_.groups);
-  double longest = run(main_, groups * shape_.local_size, shape_.local_size);
-  if (!derived_) return longest;
+  main_.launch(groups * shape_.local_size, shape_.local_size);
+  if (!derived_) return;
   bind_film(*derived_, 1, film_pixel);
   derived_->set_from(2 + kFilmArguments, round.pixels, shape_.local_size);
-  return std::max(longest, run(*derived_, uint64_t{round.pixels} * layout_.derived, kLocalSize));
+  derived_->launch(uint64_t{round.pixels} * layout_.derived, kLocalSize);
 }
 
 void Evaluation::update(const DeviceBuffer<uint32_t>& queue, uint32_t count, uint64_t film_pixel) {

@@ -1,4 +1,5 @@
-// Evaluation of paths into the film on the device: the kernels of evaluate.cl, pt.cl, resample.cl and film.cl.
+// Evaluation of paths into the film on the device: the kernels of evaluate.cl, pt.cl, resample.cl and
+// film.cl.
 #pragma once
 
 #include <cstdint>
@@ -47,8 +48,8 @@ class Evaluation {
   void clear(uint64_t pixels);
   /// Dense spectra of the round (shared wavelengths): before its paths are evaluated.
   void resample(const KbRound& round);
-  /// dpept: the round's saved paths. returns the longest launch, seconds (0 without profiling)
-  double evaluate(const KbRound& round, uint64_t film_pixel);
+  /// dpept: the round's saved paths. Enqueued, not waited for.
+  void evaluate(const KbRound& round, uint64_t film_pixel);
   /// pt: one bounce of the slots in the queue.
   void update(const DeviceBuffer<uint32_t>& queue, uint32_t count, uint64_t film_pixel);
   /// Means [pixel][K + D] and valid samples.
@@ -58,7 +59,6 @@ class Evaluation {
   uint32_t bind_evaluation(Kernel& kernel, const DeviceScene& scene, const DeviceSpectra& spectra,
                            const PathPool& pool) const;
   uint32_t bind_film(Kernel& kernel, uint32_t first, uint64_t film_pixel) const;
-  double run(Kernel& kernel, uint64_t items, uint64_t local);
 
   DeviceContext& context_;
   KbSpectraLayout layout_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 
 #include "shared/sampler.h"
 
@@ -15,8 +16,22 @@ namespace {
 constexpr uint32_t kGpuSlots = 1u << 20, kCpuSlots = 1u << 13;
 constexpr uint64_t kGpuJobs = 1u << 22, kCpuJobs = 1u << 16;
 constexpr uint32_t kFewestSlots = 64;
+/// What the first launches have of it: their times say how many the next ones may have.
+constexpr uint64_t kFirstPart = 16;
 /// Halvings of a pool before the failure is given up on.
 constexpr int kMostRetries = 12;
+
+bool is_cpu(const DeviceState& device) {
+  return device.context.device().type == DeviceType::kCpu;
+}
+
+uint32_t most_slots(const DeviceState& device, std::optional<uint32_t> wanted) {
+  return wanted.value_or(is_cpu(device) ? kCpuSlots : kGpuSlots);
+}
+
+uint64_t most_jobs(const DeviceState& device, uint32_t slots) {
+  return std::max<uint64_t>(is_cpu(device) ? kCpuJobs : kGpuJobs, slots);
+}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -32,70 +47,63 @@ GroupRenderer::GroupRenderer(DeviceState& device, const SamplingSettings& settin
                              std::optional<uint32_t> pool_slots, DiagnosticSink note)
     : device_(device),
       settings_(settings),
-      launch_seconds_(launch_seconds),
-      pool_slots_(pool_slots),
-      note_(std::move(note)) {
-  const bool cpu = device.context.device().type == DeviceType::kCpu;
-  slots_limit_ = pool_slots_.value_or(cpu ? kCpuSlots : kGpuSlots);
-}
+      note_(std::move(note)),
+      round_samples_(samples_of_round(is_cpu(device), device.table_bytes())),
+      most_slots_(most_slots(device, pool_slots)),
+      slots_pace_(launch_seconds, most_slots_ / kFirstPart, kFewestSlots, most_slots_),
+      paths_pace_(launch_seconds, most_jobs(device, most_slots_) / kFirstPart, 1,
+                  most_jobs(device, most_slots_)) {}
 
-PlanRequest GroupRenderer::request(uint64_t pixels, uint32_t samples) const {
-  const bool cpu = device_.context.device().type == DeviceType::kCpu;
+PlanRequest GroupRenderer::request(uint64_t pixels) const {
   PlanRequest r;
   r.budget = device_.memory.available();
   r.largest = device_.memory.largest();
   r.pixels = pixels;
-  r.samples = samples;
+  r.samples = round_samples_;
   r.method = device_.method;
   r.film_bytes = device_.film_bytes_per_pixel();
   r.table_bytes = device_.table_bytes();
   r.slot_bytes = device_.slot_bytes();
-  r.most_slots = slots_limit_;
-  r.most_jobs = std::max<uint64_t>(cpu ? kCpuJobs : kGpuJobs, slots_limit_);
+  r.most_slots = most_slots_;
+  r.most_jobs = most_jobs(device_, most_slots_);
   r.chunks_per_path = chunks_per_path_;
   return r;
 }
 
-/// Allocates what the plan says. Returns false where the device has less than the budget promises.
-bool GroupRenderer::make_pool(const PlanRequest& r) {
+void GroupRenderer::make_pool(const PlanRequest& r) {
   device_.release_pool();
   plan_ = plan_rounds(r);
-  try {
-    device_.make_pool(plan_->pool, plan_->group_pixels);
-    return true;
-  } catch (const DeviceOutOfMemory&) {
-    device_.release_pool();
-    return false;
-  }
+  device_.make_pool(plan_->pool, plan_->group_pixels);
 }
 
-void GroupRenderer::prepare(uint64_t pixels, uint32_t samples) {
-  if (plan_ && device_.has_pool() && planned_pixels_ >= pixels && planned_samples_ >= samples) return;
+/// Allocates what the plan says, and less where the device has less than the budget promises.
+void GroupRenderer::prepare(uint64_t pixels) {
+  if (plan_ && device_.has_pool() && planned_pixels_ >= pixels) return;
   device_.release_pool();
-  PlanRequest r = request(pixels, samples);
-  const uint64_t wanted = r.budget;
-  for (int attempt = 0; !make_pool(r); ++attempt) {
-    if (attempt == kMostRetries) make_pool_or_throw(r);
+  PlanRequest r = request(pixels);
+  std::exception_ptr refusal;  // the first one: it says what the matter is
+  for (int attempt = 0;; ++attempt) {
+    try {
+      make_pool(r);
+      break;
+    } catch (const DeviceOutOfMemory&) {
+      device_.release_pool();
+      if (!refusal) refusal = std::current_exception();
+      if (attempt == kMostRetries || r.budget / 2 < r.film_bytes) std::rethrow_exception(refusal);
+    }
     r.budget /= 2;
     r.largest /= 2;
   }
-  if (r.budget < wanted || plan_->group_pixels < pixels) {
+  if (refusal || plan_->group_pixels < pixels) {
     note(note_, {},
          fmt::format("device memory: {} of {} pixels at a time, {} paths in flight, {} MiB in use",
                      plan_->group_pixels, pixels, plan_->pool.slots, device_.memory.used() >> 20));
   }
   planned_pixels_ = pixels;
-  planned_samples_ = samples;
 }
 
-/// The last attempt: its failure is the caller's.
-void GroupRenderer::make_pool_or_throw(const PlanRequest& r) {
-  plan_ = plan_rounds(r);
-  device_.make_pool(plan_->pool, plan_->group_pixels);
-}
-
-uint64_t GroupRenderer::group_pixels(uint64_t pixels, uint32_t samples) {
-  prepare(pixels, samples);
+uint64_t GroupRenderer::group_pixels(uint64_t pixels) {
+  prepare(pixels);
   return plan_->group_pixels;
 }
 
@@ -112,8 +120,8 @@ KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) c
   round.pixels = static_cast<uint32_t>(number);
   const uint64_t jobs = number * samples.count;
   const bool pt = device_.method == Method::kPt;
-  const uint64_t slots =
-      std::min<uint64_t>({plan_->pool.slots, slots_limit_, pt ? number : std::max<uint64_t>(jobs / 2, 1)});
+  const uint64_t slots = std::min<uint64_t>(
+      {plan_->pool.slots, slots_pace_.limit(), pt ? number : std::max<uint64_t>(jobs / 2, 1)});
   round.pool = static_cast<uint32_t>(slots);
   round.padded_pixels = static_cast<uint32_t>(pt ? round_up(number, slots) : number);
   round.arena_chunks = plan_->pool.arena_chunks;
@@ -145,27 +153,28 @@ void GroupRenderer::fill_mu(const KbRound& round) {
   }
 }
 
-/// Learns from a round: how much arena a path takes, whether launches are too long.
-void GroupRenderer::adapt(const RoundOutcome& outcome, const KbRound& round) {
+/// Learns from a round how much arena a path takes and how long launches over slots are.
+void GroupRenderer::learn(const RoundOutcome& outcome, const KbRound& round) {
+  slots_pace_.learn(round.pool, outcome.longest_launch_seconds);
   const double paths = static_cast<double>(round.pixels) * round.samples;
   if (!outcome.arena_full && device_.method != Method::kPt)
     chunks_per_path_ = std::max(1.0, outcome.chunks / paths);
-  if (outcome.longest_launch_seconds > launch_seconds_ && slots_limit_ > kFewestSlots) slots_limit_ /= 2;
 }
 
-/// A round that is too large in two; the demand of a round does not depend on scheduling, so neither does the
-/// split.
+/// A round that is too large in two: by pixels, which changes no bit of the image. A pixel alone whose
+/// samples do not fit together is split by samples; only its last bits may differ from those of a larger
+/// arena.
 void GroupRenderer::split(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
                           const SampleRange& samples, RunTally& tally) {
-  if (samples.count > 1) {
-    const uint32_t half = samples.count / 2;
-    render_part(pixels, at, number, {samples.replicate, samples.first, half}, tally);
-    render_part(pixels, at, number, {samples.replicate, samples.first + half, samples.count - half}, tally);
+  if (number > 1) {
+    render_part(pixels, at, number / 2, samples, tally);
+    render_part(pixels, at + number / 2, number - number / 2, samples, tally);
     return;
   }
-  if (number == 1) throw DeviceOutOfMemory("one path with all its vertices does not fit the device memory");
-  render_part(pixels, at, number / 2, samples, tally);
-  render_part(pixels, at + number / 2, number - number / 2, samples, tally);
+  if (samples.count == 1) throw DeviceError("one path with all its vertices does not fit the device memory");
+  const uint32_t half = samples.count / 2;
+  render_part(pixels, at, number, {samples.replicate, samples.first, half}, tally);
+  render_part(pixels, at, number, {samples.replicate, samples.first + half, samples.count - half}, tally);
 }
 
 void GroupRenderer::note_invalid(const RoundOutcome& outcome, const KbRound& round, RunTally& tally) const {
@@ -186,7 +195,7 @@ void GroupRenderer::render_part(std::span<const ImagePixel> pixels, uint64_t at,
   fill_mu(round);
   const auto start = std::chrono::steady_clock::now();
   const RoundOutcome outcome = device_.generate(round, round_pixels_, mu_, at);
-  adapt(outcome, round);
+  learn(outcome, round);
   tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, outcome.longest_launch_seconds);
   if (outcome.arena_full) return split(pixels, at, number, samples, tally);
   note_invalid(outcome, round, tally);
@@ -194,28 +203,41 @@ void GroupRenderer::render_part(std::span<const ImagePixel> pixels, uint64_t at,
   tally.vertices += outcome.vertices;
   tally.generate_seconds += seconds_since(start);
   const auto middle = std::chrono::steady_clock::now();
-  tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, device_.evaluate(round, at));
+  const double longest = device_.evaluate(round, at);
+  paths_pace_.learn(number * samples.count, longest);
+  tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, longest);
   tally.evaluate_seconds += seconds_since(middle);
   tally.paths += number * samples.count;
+}
+
+/// Pixels of the next round: what the pool holds and launches have time for. The method pt has no launch over
+/// all paths; its slots want many pixels.
+uint64_t GroupRenderer::round_pixels(uint32_t samples) const {
+  const bool pt = device_.method == Method::kPt;
+  const uint64_t paths = pt ? plan_->round_jobs : std::min(plan_->round_jobs, paths_pace_.limit());
+  return std::clamp<uint64_t>(paths / samples, 1, plan_->round_pixels);
 }
 
 GroupResult GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
                                   const std::atomic<bool>& stop,
                                   const std::function<void(uint64_t)>& on_samples, RunTally& tally) {
-  prepare(pixels.size(), range.count);
+  prepare(pixels.size());
   device_.clear_film(pixels.size());
   GroupResult result;
   // All pixels of the group get the same samples, so that a stopped render is even.
   while (result.attempted < range.count && !stop) {
-    const uint32_t count = std::min(plan_->round_samples, range.count - result.attempted);
-    for (uint64_t at = 0; at < pixels.size(); at += plan_->round_pixels) {
-      const uint64_t number = std::min<uint64_t>(plan_->round_pixels, pixels.size() - at);
-      render_part(pixels, at, number, {range.replicate, range.first + result.attempted, count}, tally);
+    const uint32_t count = std::min(round_samples_, range.count - result.attempted);
+    const SampleRange samples{range.replicate, range.first + result.attempted, count};
+    for (uint64_t at = 0, number = 0; at < pixels.size(); at += number) {
+      number = std::min(round_pixels(count), pixels.size() - at);
+      render_part(pixels, at, number, samples, tally);
       on_samples(number * count);
     }
     result.attempted += count;
   }
   device_.finish_film(pixels.size(), result.means, result.counts);
+  tally.longest_launch_seconds =
+      std::max(tally.longest_launch_seconds, device_.context.take_longest(LaunchScale::kOther));
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "base/diagnostics.hpp"
 #include "render/backend.hpp"
 #include "src_gpu/device_state.hpp"
+#include "src_gpu/launch_pace.hpp"
 #include "src_gpu/round_plan.hpp"
 
 namespace kiloband::gpu {
@@ -20,8 +21,8 @@ namespace kiloband::gpu {
 struct RunTally {
   uint64_t rays = 0, vertices = 0, paths = 0;
   uint64_t invalid = 0;
-  std::vector<InvalidSample> invalid_samples;  // the first of them
-  double longest_launch_seconds = 0;
+  std::vector<InvalidSample> invalid_samples;         // the first of them
+  double longest_launch_seconds = 0;                  // of all kernels
   double generate_seconds = 0, evaluate_seconds = 0;  // wall time until the device was done
 };
 
@@ -48,8 +49,8 @@ class GroupRenderer {
   GroupRenderer(DeviceState& device, const SamplingSettings& settings, double launch_seconds,
                 std::optional<uint32_t> pool_slots, DiagnosticSink note);
 
-  /// Pixels whose film is resident at once, for an image part of this many pixels and samples.
-  uint64_t group_pixels(uint64_t pixels, uint32_t samples);
+  /// Pixels whose film is resident at once, for an image part of this many pixels.
+  uint64_t group_pixels(uint64_t pixels);
 
   /// Renders range.count samples of every pixel (fewer if stop becomes true). At most group_pixels() of them.
   /// The pixels of a block stand together. on_samples gets the pixel samples done.
@@ -62,31 +63,30 @@ class GroupRenderer {
   std::vector<TracedPath> trace(std::span<const ImagePixel> pixels, const SampleRange& range);
 
  private:
-  void prepare(uint64_t pixels, uint32_t samples);
-  bool make_pool(const PlanRequest& request);
-  void make_pool_or_throw(const PlanRequest& request);
-  PlanRequest request(uint64_t pixels, uint32_t samples) const;
+  void prepare(uint64_t pixels);
+  void make_pool(const PlanRequest& request);
+  PlanRequest request(uint64_t pixels) const;
   /// Renders samples [first, first + count) of pixels [at, at + number) of the group; splits where the arena
   /// is too small.
   void render_part(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
                    const SampleRange& samples, RunTally& tally);
+  uint64_t round_pixels(uint32_t samples) const;
   KbRound make_round(const SampleRange& samples, uint64_t number) const;
   void fill_pixels(std::span<const ImagePixel> pixels, KbRound& round);
   void fill_mu(const KbRound& round);
   void split(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number, const SampleRange& samples,
              RunTally& tally);
   void note_invalid(const RoundOutcome& outcome, const KbRound& round, RunTally& tally) const;
-  void adapt(const RoundOutcome& outcome, const KbRound& round);
+  void learn(const RoundOutcome& outcome, const KbRound& round);
 
   DeviceState& device_;
   SamplingSettings settings_;
-  double launch_seconds_;
-  std::optional<uint32_t> pool_slots_;
   DiagnosticSink note_;
   std::optional<RoundPlan> plan_;
   uint64_t planned_pixels_ = 0;
-  uint32_t planned_samples_ = 0;
-  uint32_t slots_limit_ = 0;    // after launches that took too long
+  uint32_t round_samples_;
+  uint32_t most_slots_;
+  LaunchPace slots_pace_, paths_pace_;
   double chunks_per_path_ = 3;  // measured
   std::vector<KbRoundPixel> round_pixels_;
   std::vector<float> mu_;

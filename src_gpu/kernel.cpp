@@ -67,18 +67,12 @@ void Kernel::enqueue(uint64_t items, uint64_t local, cl::Event* event) {
   if (items == 0) return;
   const cl::NDRange global(local == 0 ? items : round_up(items, local));
   const cl::NDRange group = local == 0 ? cl::NullRange : cl::NDRange(local);
+  cl::Event own;
+  if (!event && context_->options().profiling) event = &own;
   checked(site(Phase::kRun), [&] {
     context_->queue().enqueueNDRangeKernel(kernel_, cl::NullRange, global, group, nullptr, event);
   });
-}
-
-double seconds_of(DeviceContext& context, const cl::Event& event) {
-  if (event() == nullptr) return 0;
-  return checked(context.site(Phase::kRun), [&] {
-    const cl_ulong start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-    const cl_ulong end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-    return static_cast<double>(end - start) * 1e-9;
-  });
+  if (context_->options().profiling) context_->record(scale_, *event);
 }
 
 }  // namespace kiloband::gpu

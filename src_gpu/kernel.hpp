@@ -46,6 +46,9 @@ class Kernel {
   /// The same without waiting, for seconds_of() after a finish().
   cl::Event launch_event(uint64_t items, uint64_t local = 0);
 
+  /// Under which scale its launches are recorded (DeviceContext::take_longest).
+  void set_scale(LaunchScale scale) { scale_ = scale; }
+
   uint64_t max_work_group_size() const { return max_work_group_size_; }
   /// Work-items that the device runs together (a warp), or the width of its vectors.
   uint64_t preferred_multiple() const { return preferred_multiple_; }
@@ -76,12 +79,9 @@ class Kernel {
   DeviceContext* context_;
   cl::Kernel kernel_;
   std::string name_;
+  LaunchScale scale_ = LaunchScale::kOther;
   uint32_t argument_count_ = 0;
   uint64_t max_work_group_size_ = 0, preferred_multiple_ = 0, private_bytes_ = 0, local_bytes_ = 0;
 };
-
-/// Seconds on the device, of a launch that is done; 0 for one that had no items.
-/// throws DeviceLost, DeviceError
-double seconds_of(DeviceContext& context, const cl::Event& event);
 
 }  // namespace kiloband::gpu

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <mutex>
+#include <type_traits>
 
 #include "src_gpu/device.hpp"
 #include "src_gpu/group_renderer.hpp"
@@ -23,6 +23,8 @@ using gpu::RunTally;
 constexpr std::size_t kReportedInvalid = 16;
 /// A device that is lost again and again is not worth more attempts.
 constexpr uint32_t kMostLosses = 3;
+/// Halvings of the memory in use after a device refused what it had promised.
+constexpr uint32_t kMostRetreats = 6;
 
 std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
   std::vector<ImagePixel> pixels;
@@ -31,7 +33,7 @@ std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
   return pixels;
 }
 
-class Renderer final : public OpenclBackend {
+class Renderer final : public Backend {
  public:
   Renderer(const FlatScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
            const OpenclOptions& options)
@@ -40,7 +42,8 @@ class Renderer final : public OpenclBackend {
         host_(scene, derived),
         method_(options.method.value_or(gpu::preferred_method(scene.channels.size()))),
         context_(gpu::select_device(options.device), {.profiling = true}) {
-    make_device();
+    limit_memory();
+    repeated([] {});
   }
 
   void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
@@ -48,9 +51,7 @@ class Renderer final : public OpenclBackend {
   std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override;
 
   std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
-    const std::vector<ImagePixel> pixels = pixels_of(rect);
-    groups_->group_pixels(pixels.size(), range.count);
-    return groups_->trace(pixels, range);
+    return repeated([&] { return groups_->trace(pixels_of(rect), range); });
   }
 
   std::string name() const override { return "opencl"; }
@@ -61,18 +62,24 @@ class Renderer final : public OpenclBackend {
   std::vector<double> film_scale() const override { return host_.film_scale(); }
 
   std::string method() const override { return gpu::to_string(method_); }
-  uint64_t device_memory_bytes() const override { return std::max(peak_, state_ ? state_->memory.peak() : 0); }
+  uint64_t device_memory_bytes() const override {
+    return std::max(peak_, state_ ? state_->memory.peak() : 0);
+  }
   double longest_launch_seconds() const override { return longest_launch_; }
   uint32_t device_losses() const override { return losses_; }
 
  private:
   struct Delivery;
 
+  void limit_memory();
   void make_device();
   void recover(const DeviceLost& loss);
+  void retreat(const gpu::DeviceOutOfMemory& refusal);
+  /// Calls `work` until it gets through without losing the device, which is set up where need be.
+  template <class Work>
+  std::invoke_result_t<Work> repeated(const Work& work);
   GroupResult render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
                            const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress);
-  uint64_t group_size(uint64_t pixels, uint32_t samples);
   void count(const RunTally& tally);
 
   OpenclOptions options_;
@@ -86,19 +93,31 @@ class Renderer final : public OpenclBackend {
   std::vector<InvalidSample> invalid_;
   double longest_launch_ = 0;
   uint64_t peak_ = 0;
-  uint32_t losses_ = 0;
+  uint32_t losses_ = 0, retreats_ = 0;
 };
 
+/// A budget beyond the device's memory would let allocations through that fail when they are used.
+void Renderer::limit_memory() {
+  const uint64_t most = context_.device().global_memory;
+  if (!options_.device_memory || *options_.device_memory <= most) return;
+  note(options_.sink, {},
+       fmt::format("device memory: device '{}' has {} MiB, not {} MiB: these are used",
+                   context_.device().name, most >> 20, *options_.device_memory >> 20));
+  options_.device_memory = most;
+}
+
 void Renderer::make_device() {
+  groups_.reset();
+  state_.reset();
   state_ = std::make_unique<DeviceState>(
       context_, host_,
       gpu::DeviceSettings{method_, settings_.wavelengths == WavelengthMode::kShared, options_.specialised,
-                          options_.program_cache, options_.device_memory, options_.launch_seconds});
+                          options_.program_cache, options_.device_memory});
   groups_ = std::make_unique<GroupRenderer>(*state_, settings_, options_.launch_seconds, options_.pool_slots,
                                             options_.sink);
 }
 
-/// After a lost device: everything on it is made anew, and the group's work is repeated.
+/// After a lost device: everything on it is made anew, and the work is repeated.
 void Renderer::recover(const DeviceLost& loss) {
   if (++losses_ > kMostLosses) throw loss;
   note(options_.sink, {}, fmt::format("{}: device lost, context rebuilt, work repeated", loss.what()));
@@ -106,7 +125,30 @@ void Renderer::recover(const DeviceLost& loss) {
   if (state_) peak_ = std::max(peak_, state_->memory.peak());
   state_.reset();
   context_.rebuild();
-  make_device();
+}
+
+template <class Work>
+std::invoke_result_t<Work> Renderer::repeated(const Work& work) {
+  for (;;) {
+    try {
+      if (!groups_) make_device();
+      return work();
+    } catch (const DeviceLost& loss) {
+      recover(loss);
+    }
+  }
+}
+
+/// The device refused memory in the middle of work: everything is made anew within half of what was in use.
+void Renderer::retreat(const gpu::DeviceOutOfMemory& refusal) {
+  if (++retreats_ > kMostRetreats) throw refusal;
+  options_.device_memory = state_->memory.peak() / 2;
+  note(options_.sink, {},
+       fmt::format("{}: at most {} MiB of device memory from now on", refusal.what(),
+                   *options_.device_memory >> 20));
+  peak_ = std::max(peak_, state_->memory.peak());
+  groups_.reset();
+  repeated([] {});
 }
 
 void Renderer::count(const RunTally& tally) {
@@ -120,21 +162,11 @@ void Renderer::count(const RunTally& tally) {
   }
 }
 
-uint64_t Renderer::group_size(uint64_t pixels, uint32_t samples) {
-  for (;;) {
-    try {
-      return groups_->group_pixels(pixels, samples);
-    } catch (const DeviceLost& loss) {
-      recover(loss);
-    }
-  }
-}
-
 GroupResult Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
                                    const std::atomic<bool>& stop,
                                    const std::function<void(uint64_t)>& progress) {
   uint64_t reported = 0;  // by an attempt that was lost: not to be reported again
-  for (;;) {
+  return repeated([&] {
     RunTally tally;
     uint64_t done = 0;
     const auto on_samples = [&](uint64_t samples) {
@@ -143,14 +175,10 @@ GroupResult Renderer::render_group(std::span<const ImagePixel> pixels, const Sam
       progress(done - reported);
       reported = done;
     };
-    try {
-      GroupResult result = groups_->render(pixels, range, stop, on_samples, tally);
-      count(tally);
-      return result;
-    } catch (const DeviceLost& loss) {
-      recover(loss);
-    }
-  }
+    GroupResult result = groups_->render(pixels, range, stop, on_samples, tally);
+    count(tally);
+    return result;
+  });
 }
 
 /// Pixels from `at` on that a group takes: whole blocks where at least one fits, else a part of one.
@@ -205,33 +233,30 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
   Delivery delivery{film, range, blocks, film_scale().size(), 0, {}, {}, {}};
   const std::atomic<bool> never{false};
   for (std::size_t at = 0; at < pixels.size();) {
-    const std::size_t room = group_size(pixels.size(), range.count);
+    const std::size_t room = repeated([&] { return groups_->group_pixels(pixels.size()); });
     const bool in_block = !delivery.counts.empty();
     const std::size_t number = in_block ? std::min(room, delivery.missing()) : whole_blocks(pixels, at, room);
     // The parts of a block that is larger than a group get the same samples, stopped or not.
     SampleRange part = range;
     if (in_block) part.count = delivery.attempted.front();
-    delivery.add(
-        render_group(std::span(pixels).subspan(at, number), part, in_block ? never : stop, progress));
-    at += number;
-  }
-}
-
-std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
-  for (;;) {
     try {
-      return state_->auxiliary(rect);
-    } catch (const DeviceLost& loss) {
-      recover(loss);
+      delivery.add(
+          render_group(std::span(pixels).subspan(at, number), part, in_block ? never : stop, progress));
+      at += number;
+    } catch (const gpu::DeviceOutOfMemory& refusal) {
+      retreat(refusal);  // and the same pixels again, fewer at a time
     }
   }
 }
 
+std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
+  return repeated([&] { return state_->auxiliary(rect); });
+}
+
 }  // namespace
 
-std::unique_ptr<OpenclBackend> make_opencl_backend(const FlatScene& scene, const DerivedChannels& derived,
-                                                   const SamplingSettings& settings,
-                                                   const OpenclOptions& options) {
+std::unique_ptr<Backend> make_opencl_backend(const FlatScene& scene, const DerivedChannels& derived,
+                                             const SamplingSettings& settings, const OpenclOptions& options) {
   return std::make_unique<Renderer>(scene, derived, settings, options);
 }
 

@@ -24,16 +24,8 @@ struct OpenclOptions {
   DiagnosticSink sink;                    // notes on smaller pools and repeated work; may be empty
 };
 
-/// A backend that can say what it did beyond the common counters.
-class OpenclBackend : public Backend {
- public:
-  virtual double longest_launch_seconds() const = 0;  // measured on the device
-  virtual uint32_t device_losses() const = 0;         // contexts that had to be rebuilt
-};
-
 /// throws DeviceError (no device, kernels do not build, out of memory), InputError (no such device)
-std::unique_ptr<OpenclBackend> make_opencl_backend(const FlatScene& scene, const DerivedChannels& derived,
-                                                   const SamplingSettings& settings,
-                                                   const OpenclOptions& options);
+std::unique_ptr<Backend> make_opencl_backend(const FlatScene& scene, const DerivedChannels& derived,
+                                             const SamplingSettings& settings, const OpenclOptions& options);
 
 }  // namespace kiloband

@@ -59,6 +59,8 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
       shade_(program.kernel("shade")),
       any_(program.kernel("any_hits")),
       compact_(program.kernel("compact")) {
+  for (Kernel* kernel : {&reset_, &generate_, &closest_, &shade_, &any_, &compact_})
+    kernel->set_scale(LaunchScale::kSlots);
   bind(scene, bvh, spectra);
 }
 
@@ -80,7 +82,7 @@ void PathPool::bind(const DeviceScene& scene, const DeviceBvh& bvh, const Device
 
 void PathPool::launch(Kernel& kernel, uint32_t queue_argument) {
   kernel.set_from(queue_argument, queue_, count_);
-  events_.push_back(kernel.launch_event(count_, kLocalSize));
+  kernel.launch(count_, kLocalSize);
 }
 
 void PathPool::iterate(const AfterBounce& after_bounce) {
@@ -95,7 +97,7 @@ void PathPool::iterate(const AfterBounce& after_bounce) {
 /// Drops the finished slots from the queue and waits. Returns false when the round is over or has failed.
 bool PathPool::compact() {
   compact_.set(states_, queue_, packed_, faults_, count_);
-  events_.push_back(compact_.launch_event(count_, kLocalSize));
+  compact_.launch(count_, kLocalSize);
   KbFaults faults = faults_.read(0);
   throw_for_bugs(faults);
   std::swap(queue_, packed_);
@@ -104,14 +106,6 @@ bool PathPool::compact() {
   faults.active = 0;
   faults_.upload(std::span<const KbFaults>(&faults, 1));
   return count_ > 0;
-}
-
-void PathPool::note_launches(RoundOutcome& outcome) {
-  if (context_.options().profiling) {
-    for (const cl::Event& event : events_)
-      outcome.longest_launch_seconds = std::max(outcome.longest_launch_seconds, seconds_of(context_, event));
-  }
-  events_.clear();
 }
 
 void PathPool::add_tallies(uint32_t slots, RoundOutcome& outcome) const {
@@ -146,7 +140,8 @@ RoundOutcome PathPool::run(const KbRound& round, const AfterBounce& after_bounce
     for (uint32_t i = 0; i < kIterationsPerLook; ++i) iterate(after_bounce);
     outcome.iterations += kIterationsPerLook;
     more = compact();
-    note_launches(outcome);
+    outcome.longest_launch_seconds =
+        std::max(outcome.longest_launch_seconds, context_.take_longest(LaunchScale::kSlots));
   }
   const KbFaults faults = faults_.read(0);
   outcome.arena_full = faults.code & KB_FAULT_ARENA_FULL;

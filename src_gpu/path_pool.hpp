@@ -31,7 +31,7 @@ struct RoundOutcome {
   uint32_t iterations = 0;
   uint64_t invalid = 0;                // paths that leave the mean
   std::vector<uint32_t> invalid_jobs;  // the first of them, ascending
-  double longest_launch_seconds = 0;   // of any kernel, measured on the device
+  double longest_launch_seconds = 0;   // of the kernels that run over slots
 };
 
 /// throws std::logic_error for what only a bug of ours can raise
@@ -45,11 +45,11 @@ class PathPool {
 
   const PoolSize& size() const { return size_; }
 
-  /// Uploads the round. pixels: [padded_pixels], those past round.pixels are not read. mu: by block and sample
-  /// (shared wavelengths).
+  /// Uploads the round. pixels: [padded_pixels], those past round.pixels are not read. mu: by block and
+  /// sample (shared wavelengths).
   void begin(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu);
-  /// Runs it to its end. after_bounce (pt): called with queue and count once per iteration, when shadow rays are
-  /// done. throws std::logic_error for faults that are bugs of ours; DeviceLost ...
+  /// Runs it to its end. after_bounce (pt): called with queue and count once per iteration, when shadow rays
+  /// are done. throws std::logic_error for faults that are bugs of ours; DeviceLost ...
   using AfterBounce = std::function<void(const DeviceBuffer<uint32_t>& queue, uint32_t count)>;
   RoundOutcome run(const KbRound& round, const AfterBounce& after_bounce = {});
   /// Called between tracing and shading of every iteration (debugging, parity tests).
@@ -70,7 +70,6 @@ class PathPool {
   void iterate(const AfterBounce& after_bounce);
   void launch(Kernel& kernel, uint32_t queue_argument);
   bool compact();
-  void note_launches(RoundOutcome& outcome);
   void add_tallies(uint32_t slots, RoundOutcome& outcome) const;
 
   DeviceContext& context_;
@@ -90,8 +89,7 @@ class PathPool {
   DeviceBuffer<uint32_t> queue_, packed_;
   Kernel reset_, generate_, closest_, shade_, any_, compact_;
   AfterBounce on_hits_;
-  std::vector<cl::Event> events_;  // of the launches since the last wait
-  uint32_t count_ = 0;             // slots in the queue
+  uint32_t count_ = 0;  // slots in the queue
 };
 
 }  // namespace kiloband::gpu

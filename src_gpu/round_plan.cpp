@@ -16,6 +16,9 @@ constexpr double kChunkReserve = 1.25;
 /// single path fits whatever its length, so unlimited depth is unlimited.
 constexpr uint64_t kLongestPath = 100000 * 3 / KB_CHUNK_SLOTS + 1;
 
+/// Dense spectra of a block that a round may need.
+constexpr uint64_t kTablesOfBlock = 4u << 20;
+
 uint64_t share(uint64_t bytes, double part) {
   return static_cast<uint64_t>(static_cast<double>(bytes) * part);
 }
@@ -41,13 +44,24 @@ uint64_t bytes_of_jobs(const PlanRequest& r, uint64_t jobs, uint64_t slots) {
   return path_pool_bytes(size) + slots * r.slot_bytes + expected_chunks(r, jobs) * chunk_bytes();
 }
 
-/// The most paths of a round that the share for paths holds.
-uint64_t fitting_jobs(const PlanRequest& r, uint64_t wanted) {
-  const uint64_t limit = share(r.budget, kPathShare);
-  while (wanted > 1 && bytes_of_jobs(r, wanted, std::min<uint64_t>(wanted, r.most_slots)) > limit) {
-    wanted = wanted / 2;
-  }
-  return std::max<uint64_t>(wanted, 1);
+/// Paths of a round, at least all samples of one pixel. pt keeps none: its rounds have pixels for all slots.
+uint64_t fitting_jobs(const PlanRequest& r, uint64_t group) {
+  const uint64_t limit = share(r.budget, kPathShare), most = group * r.samples;
+  if (r.method == Method::kPt)
+    return std::min(std::max<uint64_t>(r.most_jobs, uint64_t{r.most_slots} * r.samples), most);
+  uint64_t jobs = std::min(r.most_jobs, most);
+  while (jobs > r.samples && bytes_of_jobs(r, jobs, std::min<uint64_t>(jobs, r.most_slots)) > limit)
+    jobs /= 2;
+  return std::max<uint64_t>(jobs, r.samples);
+}
+
+/// A round of pixels may touch this many blocks of 32 x 32: whole ones, or parts at its two ends. Clipped
+/// blocks may have a pixel each. One block is needed.
+uint64_t fitting_tables(const PlanRequest& r, uint64_t jobs) {
+  const uint64_t pixels = std::max<uint64_t>(jobs / r.samples, 1);
+  const uint64_t tables = std::min<uint64_t>(pixels, pixels / 256 + 4) * r.samples;
+  if (r.table_bytes == 0) return tables;
+  return std::min(tables, std::max<uint64_t>(share(r.budget, kTableShare) / r.table_bytes, r.samples));
 }
 
 uint64_t fitting_pixels(const PlanRequest& r) {
@@ -61,37 +75,35 @@ uint64_t fitting_pixels(const PlanRequest& r) {
   return std::min(pixels, r.pixels);
 }
 
+/// Chunks for `jobs` paths, and for the longest one if the share for paths has room for it.
+uint64_t arena_chunks(const PlanRequest& r, const PoolSize& others, uint64_t jobs) {
+  const uint64_t limit = share(r.budget, kPathShare), taken = std::min(path_pool_bytes(others), limit);
+  const uint64_t most = std::min(limit - taken, r.largest) / chunk_bytes();
+  return std::min(std::max(expected_chunks(r, jobs), kLongestPath), std::max<uint64_t>(most, 1));
+}
+
 }  // namespace
+
+uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {
+  const uint64_t most = cpu_device ? 16 : 64;
+  return static_cast<uint32_t>(table_bytes > 0 ? std::clamp<uint64_t>(kTablesOfBlock / table_bytes, 1, most)
+                                               : most);
+}
 
 RoundPlan plan_rounds(const PlanRequest& r) {
   RoundPlan plan;
-  plan.group_pixels = fitting_pixels(r);
-  const uint64_t samples = std::clamp<uint32_t>(r.samples, 1, kMostRoundSamples);
-  // Rounds of jobs: as many pixels of the group as fit, then as many of their samples.
-  const uint64_t jobs = fitting_jobs(r, std::min(r.most_jobs, plan.group_pixels * samples));
-  plan.round_pixels = to_u32(std::min(plan.group_pixels, jobs));
-  plan.round_samples = to_u32(std::clamp<uint64_t>(jobs / plan.round_pixels, 1, samples));
-
-  // A round of pixels may touch this many blocks of 32 x 32: whole ones, or parts at its two ends.
-  const uint64_t blocks = plan.round_pixels;  // clipped blocks may have one pixel each
-  uint64_t tables = std::min<uint64_t>(blocks, plan.round_pixels / 256 + 4) * plan.round_samples;
-  if (r.table_bytes > 0) {
-    const uint64_t most = std::max<uint64_t>(share(r.budget, kTableShare) / r.table_bytes, 1);
-    tables = std::min(tables, most);
-  }
-  plan.pool.tables = to_u32(tables);
   const bool pt = r.method == Method::kPt;
-  const uint64_t all = uint64_t{plan.round_pixels} * plan.round_samples;
-  plan.pool.slots =
-      to_u32(std::min<uint64_t>(pt ? plan.round_pixels : std::max<uint64_t>(all / 2, 1), r.most_slots));
+  plan.group_pixels = fitting_pixels(r);
+  plan.round_jobs = fitting_jobs(r, plan.group_pixels);
+  plan.round_pixels = to_u32(std::min(plan.group_pixels, plan.round_jobs));
+  plan.pool.tables = to_u32(fitting_tables(r, plan.round_jobs));
+  plan.pool.slots = to_u32(
+      std::min<uint64_t>(pt ? plan.round_pixels : std::max<uint64_t>(plan.round_jobs / 2, 1), r.most_slots));
   while (pt && plan.pool.slots > 1 && plan.pool.slots * r.slot_bytes > share(r.budget, kPathShare))
     plan.pool.slots /= 2;
   plan.pool.pixels = plan.round_pixels + (pt ? plan.pool.slots : 0);
-  plan.pool.jobs = pt ? 1 : to_u32(all);
-  const uint64_t most_chunks = std::min(share(r.budget, kPathShare), r.largest) / chunk_bytes();
-  const uint64_t chunks =
-      std::min(std::max(expected_chunks(r, all), kLongestPath), std::max<uint64_t>(most_chunks, 1));
-  plan.pool.arena_chunks = pt ? plan.pool.slots : to_u32(chunks);
+  plan.pool.jobs = pt ? 1 : to_u32(plan.round_jobs);
+  plan.pool.arena_chunks = pt ? plan.pool.slots : to_u32(arena_chunks(r, plan.pool, plan.round_jobs));
   return plan;
 }
 

@@ -15,7 +15,7 @@ struct PlanRequest {
   uint64_t budget = 0;   // bytes that may be used
   uint64_t largest = 0;  // bytes of the largest buffer
   uint64_t pixels = 0;   // of the image part
-  uint32_t samples = 1;  // per pixel that are asked for together
+  uint32_t samples = 1;  // per pixel and round
   Method method = Method::kDpeptBatch;
   uint64_t film_bytes = 0;     // per pixel: sums, compensation, counts, what finishing needs
   uint64_t table_bytes = 0;    // per block and sample: dense spectra; 0 with per-path wavelengths
@@ -26,14 +26,17 @@ struct PlanRequest {
 };
 
 struct RoundPlan {
-  uint64_t group_pixels = 0;   // film on the device
-  uint32_t round_pixels = 0;   // of them in a round, at most
-  uint32_t round_samples = 0;  // S, at most
+  uint64_t group_pixels = 0;  // film on the device
+  uint32_t round_pixels = 0;  // of them in a round, at most
+  uint64_t round_jobs = 0;    // pixels * samples of a round, at most
   PoolSize pool;
 };
 
-/// Samples of a round are summed in float before they are added to the film.
-inline constexpr uint32_t kMostRoundSamples = 64;
+/// Samples of a pixel that a round renders, as far as there are that many. Evaluation sums them before it
+/// adds them to the film, so this number must not follow from memory or time: it depends on the scene and the
+/// kind of device alone, and images are the same bit by bit whatever the budget. table_bytes  of a block and
+/// sample: dense spectra
+uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes);
 
 /// throws DeviceOutOfMemory  not even a pixel fits: says what would be needed
 RoundPlan plan_rounds(const PlanRequest& request);

@@ -69,7 +69,7 @@ std::vector<TracedPath> DeviceState::trace(const KbRound& round, std::span<const
 }
 
 std::vector<TracedPath> GroupRenderer::trace(std::span<const ImagePixel> pixels, const SampleRange& range) {
-  prepare(pixels.size(), range.count);
+  prepare(pixels.size());
   KbRound round = make_round(range, pixels.size());
   fill_pixels(pixels, round);
   fill_mu(round);

@@ -75,6 +75,10 @@ class Backend {
   virtual std::string method() const { return "dpept-batch"; }
   /// Peak bytes of device memory beside the host's.
   virtual uint64_t device_memory_bytes() const { return 0; }
+  /// The longest kernel launch, measured on the device; 0 without a device. Display drivers kill long ones.
+  virtual double longest_launch_seconds() const { return 0; }
+  /// How often the device was lost and set up again.
+  virtual uint32_t device_losses() const { return 0; }
   virtual const RenderCounters& counters() const = 0;
   /// The first invalid samples, at most 16.
   virtual std::vector<InvalidSample> invalid_samples() const = 0;
