@@ -175,13 +175,17 @@ void bench(std::size_t channels) {
              pt.bytes / pt.seconds * 1e-9 / triad);
 }
 
-}  // namespace
-}  // namespace kiloband::test
-
-int main() {
+void run() {
   fmt::print("ns per channel and vertex; pt: {} slots, 5 bounces, GB/s of its traffic beside a triad's\n",
              kSlots);
   fmt::print("{:>5} {:>8} {:>8} {:>8} {:>9} {:>8} {:>9} {:>9} {:>7}\n", "K", "cpu", "batch", "path",
              "resample", "pt", "pt GB/s", "triad", "ratio");
-  for (std::size_t channels : {8u, 16u, 32u, 64u, 128u, 256u, 512u, 1024u}) kiloband::test::bench(channels);
+  for (std::size_t channels : {8u, 16u, 32u, 64u, 128u, 256u, 512u, 1024u}) bench(channels);
+}
+
+}  // namespace
+}  // namespace kiloband::test
+
+int main() {
+  kiloband::test::run();
 }
