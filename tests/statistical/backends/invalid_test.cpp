@@ -10,8 +10,8 @@
 namespace kiloband::test {
 namespace {
 
-/// A lamp 1e-18 m before a wall: a sample that selects it is beyond floats. Others meet the directional light, which
-/// is far brighter and so is selected nearly always.
+/// A lamp 1e-18 m before a wall: a sample that selects it is beyond floats. Others meet the directional
+/// light, which is far brighter and so is selected nearly always.
 const char* const kScene = R"(<scene version='3.0.0'>
 <integrator type='path'><integer name='max_depth' value='2'/></integrator>
 <sensor type='orthographic'>
@@ -33,9 +33,12 @@ std::vector<Sample> sorted(const std::vector<InvalidSample>& invalid) {
 }
 
 struct InvalidSamples : testing::Test {
-  FlatScene scene = flatten(read_scene_text(kScene, "invalid.xml", ".", {}), {parse_channels("500:600:4"), {}, {}});
+  FlatScene scene =
+      flatten(read_scene_text(kScene, "invalid.xml", ".", {}), {parse_channels("500:600:4"), {}, {}});
   SamplingSettings settings{WavelengthMode::kShared, SamplerType::kIndependent, 3, 2};
-  std::unique_ptr<Backend> backend(const std::string& name) { return make_zoo_backend(name, scene, {}, settings); }
+  std::unique_ptr<Backend> backend(const std::string& name) {
+    return make_zoo_backend(name, scene, {}, settings);
+  }
 };
 
 /// Few samples, so that the lists (of 16 at most) hold them all.

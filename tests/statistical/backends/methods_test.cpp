@@ -1,7 +1,7 @@
 // The three methods, general and specialised kernels, any pool and any device memory: one image.
 //
-// Same seed, same paths: the methods add the same numbers in the same order. Between methods a value may differ by
-// rounding, 1e-5 relative; runs of one method are equal bit by bit.
+// Same seed, same paths: the methods add the same numbers in the same order. Between methods a value may
+// differ by rounding, 1e-5 relative; runs of one method are equal bit by bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,6 +127,23 @@ TEST_F(Methods, SameSeedSameBitsWhateverThePool) {
   }
 }
 
+/// Several groups of pixels, rounds that do not fit the arena and are split, down to pools of a few paths.
+TEST_F(Methods, SmallDeviceMemoryGivesTheSameBits) {
+  const FlatScene scene = folder_.flatten(zoo_scene("crop_window"), "450:650:100");
+  for (const std::string& method : kOpenclMethods) {
+    const Image first = image(method, scene, {}, WavelengthMode::kShared);
+    for (const uint64_t kibibytes : {6000u, 1500u, 600u}) {
+      std::vector<std::string> notes;
+      OpenclOptions options = general();
+      options.device_memory = kibibytes << 10;
+      options.sink = [&](const Diagnostic& d) { notes.push_back(d.to_string()); };
+      expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared, options),
+                       method + ", " + std::to_string(kibibytes) + " KiB");
+      for (const std::string& note : notes) std::printf("%s: %s\n", method.c_str(), note.c_str());
+    }
+  }
+}
+
 TEST_F(Methods, ImageInPartsIsTheWhole) {
   const FlatScene scene = folder_.flatten(zoo_scene("crop_window"));
   const PixelRect whole = film_rect(scene);
@@ -134,10 +151,9 @@ TEST_F(Methods, ImageInPartsIsTheWhole) {
     const auto backend = make_zoo_backend(method, scene, {}, settings_of(WavelengthMode::kShared), general());
     const Image all = render_part(*backend, whole, kReplicates, kSamples);
     const uint32_t left = 13, top = 9;
-    const PixelRect parts[] = {
-        {whole.x0, whole.y0, left, whole.height},
-        {whole.x0 + left, whole.y0, whole.width - left, top},
-        {whole.x0 + left, whole.y0 + top, whole.width - left, whole.height - top}};
+    const PixelRect parts[] = {{whole.x0, whole.y0, left, whole.height},
+                               {whole.x0 + left, whole.y0, whole.width - left, top},
+                               {whole.x0 + left, whole.y0 + top, whole.width - left, whole.height - top}};
     for (const PixelRect& rect : parts) {
       const Image part = render_part(*backend, rect, kReplicates, kSamples);
       for (uint32_t r = 0; r < kReplicates; ++r) {
