@@ -18,6 +18,7 @@
 static inline void load_batch(Batch* batch, __global const float* tau, __global const float* radiance) {
 #pragma unroll
   for (kb_u32 i = 0u; i < KB_VECTORS; ++i) {
+    if (!is_kept(batch, i)) continue; /* another work-item may be writing it */
     batch->tau[i] = load_reals(tau + batch->k[i]);
     batch->radiance[i] = load_reals(radiance + batch->k[i]);
   }
