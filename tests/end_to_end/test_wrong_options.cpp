@@ -34,7 +34,7 @@ TEST(WrongOption, Command) {
           {"no command", {}, "A subcommand is required (see kiloband --help)"},
           {"unknown command",
            {"rendr", "scene.xml"},
-           "unknown command 'rendr': must be render, info, convert or devices (see kiloband --help)"},
+           "unknown command 'rendr': must be render, info, convert, devices or trace (see kiloband --help)"},
           {"scene missing", {"render"}, "SCENE is required (see kiloband render --help)"},
           {"scene not there", {"render", "none.xml"}, "none.xml: error: file not found"},
           {"scene is a folder", {"render", "."}, ".: error: not a regular file"},
@@ -197,8 +197,8 @@ TEST(WrongOption, SamplingAndOutput) {
            "--threads: Value -1 not in range 0 to 4096 (see kiloband render --help)"},
           {"--isa mmx", quiet_render("scene.xml", {"--isa", "mmx"}),
            "--isa: mmx not in {auto,sse4,avx2,avx512} (see kiloband render --help)"},
-          {"--backend opencl", quiet_render("scene.xml", {"--backend", "opencl"}),
-           "--backend: opencl not in {auto,cpu} (see kiloband render --help)"},
+          {"--backend vulkan", quiet_render("scene.xml", {"--backend", "vulkan"}),
+           "--backend: vulkan not in {auto,cpu,opencl} (see kiloband render --help)"},
           {"--sampler halton", quiet_render("scene.xml", {"--sampler", "halton"}),
            "--sampler: halton not in {sobol,independent} (see kiloband render --help)"},
           {"--wavelengths hero", quiet_render("scene.xml", {"--wavelengths", "hero"}),
@@ -249,6 +249,36 @@ TEST(WrongOption, SamplingAndOutput) {
            "glass.xml:3:2: error: bsdf 'lens': int_ior: data from 400 to 700 nm do not cover channel 600-800 "
            "nm"},
       });
+}
+
+TEST(WrongOption, Backends) {
+  const TemporaryFolder folder;
+  write_inputs(folder);
+  std::vector<WrongCommand> cases{
+      {"--method bdpt", quiet_render("scene.xml", {"--method", "bdpt"}),
+       "--method: bdpt not in {dpept-batch,dpept-path,pt} (see kiloband render --help)"},
+      {"--method on the CPU", quiet_render("scene.xml", {"--backend", "cpu", "--method", "pt"}),
+       "--method does not apply to --backend cpu"},
+      {"--device on the CPU", quiet_render("scene.xml", {"--backend", "cpu", "--device", "0"}),
+       "--device does not apply to --backend cpu"},
+      {"--device-memory on the CPU", quiet_render("scene.xml", {"--backend", "cpu", "--device-memory", "1GiB"}),
+       "--device-memory does not apply to --backend cpu"},
+      {"--isa on a device", quiet_render("scene.xml", {"--backend", "opencl", "--isa", "avx2"}),
+       "--isa does not apply to --backend opencl"},
+      {"--threads on a device", quiet_render("scene.xml", {"--backend", "opencl", "--threads", "2"}),
+       "--threads does not apply to --backend opencl"},
+      {"options of both", quiet_render("scene.xml", {"--threads", "2", "--method", "pt"}),
+       "--threads is for the CPU backend, --method for the OpenCL one: choose with --backend"},
+      {"trace has no methods", {"trace", "scene.xml", "--pixel", "0,0", "--method", "pt"},
+       "The following arguments were not expected: pt --method (see kiloband trace --help)"},
+  };
+  cases.push_back({"--device-memory", quiet_render("scene.xml", {"--device-memory="}),
+                   "--device-memory: 1 required TEXT missing (see kiloband render --help)"});
+  for (const std::string amount : {"four", "0", "-1GiB", "4XiB", "4 gib", "nan", "inf", "1e30", "GiB", "0.1"}) {
+    cases.push_back({"--device-memory " + amount, quiet_render("scene.xml", {"--device-memory=" + amount}),
+                     "--device-memory " + amount + ": must be an amount of memory such as 4GiB, 512MiB or 2e9"});
+  }
+  expect_refused(folder, cases);
 }
 
 }  // namespace

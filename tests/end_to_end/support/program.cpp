@@ -34,6 +34,7 @@ struct Pipe {
   argv.push_back(nullptr);
   for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ})
     signal(number, SIG_DFL);  // whatever runs the tests
+  for (const auto& [name, value] : treatment.environment) setenv(name.c_str(), value.c_str(), 1);
   bool ready = chdir(folder.path().c_str()) == 0 && dup2(out.ends[1], STDOUT_FILENO) >= 0 &&
                dup2(err.ends[1], STDERR_FILENO) >= 0;
   if (treatment.file_size_limit) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "film/cube_io.hpp"
@@ -37,6 +38,7 @@ struct Treatment {
   std::string after_text;
   double after_seconds = 0;
   std::optional<uint64_t> file_size_limit;  // bytes, as `ulimit -f`: what a full disk is tried with
+  std::vector<std::pair<std::string, std::string>> environment;  // added to that of the tests
   bool unprivileged = false;                // as user 65534 if we are root, to whom no folder is read-only
 };
 

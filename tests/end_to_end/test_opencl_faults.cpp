@@ -1,0 +1,183 @@
+// OpenCL calls that fail, one after the other: the program ends with the image that it would have made, or with
+// exit code 3, one message and no file. Every call of a small render is made to fail in turn.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+
+#include "tests/end_to_end/support/program.hpp"
+
+namespace kiloband::test {
+namespace {
+
+using Names = std::vector<std::string>;
+using Environment = std::vector<std::pair<std::string, std::string>>;
+
+struct Finished {
+  Outcome outcome;
+  std::map<std::string, long> report;  // of the shim: calls by name, "live_buffers", "failed"
+  std::string image;                   // bytes, empty if there is none
+  Names files;
+
+  bool says(const std::string& text) const { return outcome.err.find(text) != std::string::npos; }
+};
+
+/// 8 x 8 pixels in 8 channels, 2 samples.
+Names small_render(const Names& more = {}) {
+  Names arguments{"render", cornell_box(), "--size",    "8x8",    "--bands", "400:700:8",
+                  "--spp",  "2",           "--backend", "opencl", "-o",      "a.hdr"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+Finished run(Environment environment, const Names& arguments) {
+  const TemporaryFolder folder;
+  environment.emplace_back("LD_PRELOAD", SHIM_LIBRARY);
+  environment.emplace_back("ASAN_OPTIONS", "verify_asan_link_order=0");
+  environment.emplace_back("KILOBAND_SHIM_REPORT", (folder / "report").string());
+  Finished result;
+  result.outcome = run_program(folder, arguments, {.environment = environment});
+  std::ifstream stream(folder / "report");
+  std::string name;
+  for (long value = 0; stream >> name >> value;) result.report[name] = value;
+  std::filesystem::remove(folder / "report");
+  result.files = folder.list();
+  if (std::filesystem::exists(folder / "a.img")) result.image = folder.read("a.img");
+  return result;
+}
+
+struct Fault {
+  std::string function;
+  int code = 0;
+  long nth = 1;
+  bool repeat = false;
+};
+
+Finished run_with(const Fault& fault, const Names& arguments = small_render()) {
+  return run({{"KILOBAND_SHIM_FUNCTION", fault.function},
+              {"KILOBAND_SHIM_CODE", std::to_string(fault.code)},
+              {"KILOBAND_SHIM_NTH", std::to_string(fault.nth)},
+              {"KILOBAND_SHIM_REPEAT", fault.repeat ? "1" : "0"}},
+             arguments);
+}
+
+/// Exit code 0 and the image, or 3, one message that names the call, and no file. Nothing leaks either way.
+void expect_clean_end(const Finished& result, const Finished& good, const Fault& fault) {
+  const std::string where =
+      fault.function + " " + std::to_string(fault.nth) + ": " + std::to_string(fault.code) + "\n" + result.outcome.err;
+  EXPECT_EQ(result.outcome.signal, 0) << where;
+  EXPECT_EQ(result.report.at("live_buffers"), 0) << where;
+  EXPECT_GE(result.report.at("failed"), 1) << where;
+  if (result.outcome.code == 0) {
+    EXPECT_TRUE(result.image == good.image) << where;
+    EXPECT_EQ(result.files, good.files) << where;
+    return;
+  }
+  EXPECT_EQ(result.outcome.code, 3) << where;
+  EXPECT_TRUE(result.says("kiloband: device '")) << where;
+  EXPECT_TRUE(result.says(fault.function)) << where;
+  EXPECT_TRUE(result.says("(" + std::to_string(fault.code) + ")")) << where;
+  EXPECT_EQ(result.files, Names{}) << where;
+}
+
+constexpr const char* kRebuilt = "device lost, context rebuilt, work repeated\n";
+
+class OpenclFault : public ::testing::Test {
+ protected:
+  /// Also fills the cache of programs: every test is a process of its own.
+  void SetUp() override {
+    ASSERT_EQ(run({}, small_render()).outcome.code, 0);
+    good_ = run({}, small_render());
+    ASSERT_EQ(good_.outcome.code, 0) << good_.outcome.err;
+    ASSERT_EQ(good_.report.at("live_buffers"), 0);
+    ASSERT_FALSE(good_.image.empty());
+  }
+
+  /// Fails call 1, 2, 3 ... of the good run in turn, each once. Returns how many runs recovered.
+  long fail_each(const std::string& function, int code, const std::string& note) const {
+    long recovered = 0;
+    for (long nth = 1; nth <= good_.report.at(function); ++nth) {
+      const Fault fault{function, code, nth};
+      const Finished result = run_with(fault);
+      expect_clean_end(result, good_, fault);
+      if (result.outcome.code != 0 || !result.says(note)) continue;
+      ++recovered;
+    }
+    return recovered;
+  }
+
+  Finished good_;
+};
+
+/// A lost device at any launch, transfer: set up again, the same image, one line.
+TEST_F(OpenclFault, EveryLaunch) {
+  EXPECT_EQ(fail_each("clEnqueueNDRangeKernel", -5, kRebuilt), good_.report.at("clEnqueueNDRangeKernel"));
+}
+TEST_F(OpenclFault, EveryRead) {
+  for (const int code : {-5, -36, -9999})
+    EXPECT_EQ(fail_each("clEnqueueReadBuffer", code, kRebuilt), good_.report.at("clEnqueueReadBuffer"));
+}
+TEST_F(OpenclFault, EveryWrite) {
+  EXPECT_EQ(fail_each("clEnqueueWriteBuffer", -36, kRebuilt), good_.report.at("clEnqueueWriteBuffer"));
+}
+
+/// Refused memory: the scene's own buffers are needed, the pool can be smaller.
+TEST_F(OpenclFault, EveryAllocation) {
+  const long smaller = fail_each("clCreateBuffer", -4, "device memory: 64 of 64 pixels at a time");
+  EXPECT_GT(smaller, 15);
+  EXPECT_LT(smaller, good_.report.at("clCreateBuffer"));
+}
+
+/// Waits follow allocations (their failure is refused memory there), evaluation, and the end of the queue.
+TEST_F(OpenclFault, EveryWait) {
+  fail_each("clFinish", -36, kRebuilt);
+}
+
+TEST_F(OpenclFault, SetUp) {
+  for (const char* function : {"clCreateContext", "clCreateCommandQueue", "clCreateKernel"})
+    EXPECT_EQ(fail_each(function, -6, ""), 0) << function;
+}
+
+TEST_F(OpenclFault, LostForEver) {
+  for (const char* function : {"clEnqueueNDRangeKernel", "clEnqueueReadBuffer", "clEnqueueWriteBuffer"}) {
+    const Fault fault{function, -36, 2, true};
+    const Finished result = run_with(fault);
+    expect_clean_end(result, good_, fault);
+    EXPECT_EQ(result.outcome.code, 3);
+  }
+}
+
+TEST_F(OpenclFault, MemoryRefusedForEver) {
+  for (const long nth : {1L, good_.report.at("clCreateBuffer")}) {
+    const Fault fault{"clCreateBuffer", -4, nth, true};
+    const Finished result = run_with(fault);
+    expect_clean_end(result, good_, fault);
+    EXPECT_EQ(result.outcome.code, 3);
+  }
+}
+
+/// Drivers that allocate lazily refuse memory at a launch: the rest is done with half of it.
+TEST_F(OpenclFault, MemoryRefusedAtALaunch) {
+  const Fault fault{"clEnqueueNDRangeKernel", -4, 20};
+  const Finished result = run_with(fault);
+  expect_clean_end(result, good_, fault);
+  EXPECT_EQ(result.outcome.code, 0);
+  EXPECT_TRUE(result.says("MiB of device memory from now on\n")) << result.outcome.err;
+}
+
+/// --quiet keeps warnings and errors only; statistics tell of the loss.
+TEST_F(OpenclFault, LossIsInTheStatistics) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, small_render({"--quiet", "--stats", "s.json"}),
+                                      {.environment = {{"LD_PRELOAD", SHIM_LIBRARY},
+                                                       {"ASAN_OPTIONS", "verify_asan_link_order=0"},
+                                                       {"KILOBAND_SHIM_FUNCTION", "clEnqueueReadBuffer"},
+                                                       {"KILOBAND_SHIM_CODE", "-36"}}});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json stats = read_json(folder, "s.json");
+  EXPECT_EQ(stats["device_losses"], 1);
+  EXPECT_GT(stats["longest_launch_seconds"], 0.0);
+}
+
+}  // namespace
+}  // namespace kiloband::test

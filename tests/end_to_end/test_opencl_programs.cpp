@@ -1,0 +1,127 @@
+// Drivers, devices and program binaries that are missing, damaged or refused.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/end_to_end/support/program.hpp"
+
+namespace kiloband::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+using Environment = std::vector<std::pair<std::string, std::string>>;
+
+const Names kRender{"render",    cornell_box(), "--size", "8x8",   "--bands", "400:700:8", "--spp", "2",
+                    "--backend", "opencl",      "-o",     "a.hdr", "--quiet"};
+
+Environment with_shim(const std::string& function, int code, bool repeat) {
+  return {{"LD_PRELOAD", SHIM_LIBRARY},
+          {"ASAN_OPTIONS", "verify_asan_link_order=0"},
+          {"KILOBAND_SHIM_FUNCTION", function},
+          {"KILOBAND_SHIM_CODE", std::to_string(code)},
+          {"KILOBAND_SHIM_REPEAT", repeat ? "1" : "0"}};
+}
+
+void expect_failure(const Environment& environment, const std::string& message) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, kRender, {.environment = environment});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_EQ(outcome.err.substr(0, message.size()), message);
+  EXPECT_EQ(folder.list(), Names{});
+}
+
+TEST(OpenclProgram, NoPlatform) {
+  const TemporaryFolder folder;
+  const std::string message =
+      "kiloband: no OpenCL platform: no OpenCL driver is installed (for processors: pocl-opencl-icd)\n";
+  expect_failure({{"OCL_ICD_VENDORS", folder.path().string()}}, message);
+  expect_failure(with_shim("clGetPlatformIDs", -1001, true), message);
+}
+
+TEST(OpenclProgram, NoDevice) {
+  expect_failure({{"POCL_DEVICES", "none"}}, "kiloband: no OpenCL ");
+}
+
+TEST(OpenclProgram, AutoFallsBackToTheCpu) {
+  const TemporaryFolder folder, empty;
+  Names arguments = kRender;
+  arguments[9] = "auto";
+  arguments.insert(arguments.end(), {"--stats", "s.json"});
+  const Outcome outcome =
+      run_program(folder, arguments, {.environment = {{"OCL_ICD_VENDORS", empty.path().string()}}});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(read_json(folder, "s.json")["backend"], "cpu");
+}
+
+/// A cache folder of its own, so that every program is built from source.
+TEST(OpenclProgram, BuildError) {
+  const TemporaryFolder cache;
+  Environment environment = with_shim("clBuildProgram", -11, true);
+  environment.emplace_back("XDG_CACHE_HOME", cache.path().string());
+  expect_failure(environment, "kiloband: device '");
+}
+
+fs::path file_of_cache(const TemporaryFolder& cache, std::size_t index) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(cache / "kiloband/programs")) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files.at(index);
+}
+
+std::string read_all(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class CachedPrograms : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    image_ = render({});
+    ASSERT_FALSE(image_.empty());
+    ASSERT_EQ(render({}), image_);
+  }
+  /// Bytes of the image; empty after a failure.
+  std::string render(Environment environment) const {
+    const TemporaryFolder folder;
+    environment.emplace_back("XDG_CACHE_HOME", cache_.path().string());
+    const Outcome outcome = run_program(folder, kRender, {.environment = environment});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    return outcome.code == 0 ? folder.read("a.img") : "";
+  }
+  void write(const fs::path& file, const std::string& bytes) const {
+    std::ofstream(file, std::ios::binary) << bytes;
+  }
+
+  TemporaryFolder cache_;
+  std::string image_;
+};
+
+/// Built from source instead, and mended: the file is what it was before.
+TEST_F(CachedPrograms, DamagedFilesAreReplaced) {
+  const fs::path file = file_of_cache(cache_, 0), other = file_of_cache(cache_, 1);
+  const std::string whole = read_all(file);
+  std::string flipped = whole;
+  flipped[whole.size() / 2] ^= 1;
+  for (const std::string& bytes : {std::string(), std::string("x"), whole.substr(0, whole.size() / 2), flipped,
+                                   whole + "x", read_all(other)}) {
+    write(file, bytes);
+    EXPECT_EQ(render({}), image_) << bytes.size();
+    EXPECT_EQ(read_all(file).size(), whole.size());
+  }
+}
+
+TEST_F(CachedPrograms, RefusedByTheDriver) {
+  EXPECT_EQ(render(with_shim("clCreateProgramWithBinary", -42, true)), image_);  // CL_INVALID_BINARY
+  EXPECT_EQ(render(with_shim("clBuildProgram", -11, false)), image_);            // the first build only
+}
+
+TEST_F(CachedPrograms, FolderThatIsNone) {
+  fs::remove_all(cache_ / "kiloband");
+  cache_.write("kiloband", "a file");
+  EXPECT_EQ(render({}), image_);
+}
+
+}  // namespace
+}  // namespace kiloband::test
