@@ -49,10 +49,13 @@ void DeviceContext::finish() {
 
 double DeviceContext::take_longest(LaunchScale scale) {
   double longest = 0;
-  for (const auto& [of, event] : launches_) {
-    if (of == scale) longest = std::max(longest, seconds_of(*this, event));
+  for (const Launch& launch : launches_) {
+    if (launch.scale != scale) continue;
+    const double seconds = seconds_of(*this, launch.event);
+    longest = std::max(longest, seconds);
+    kernel_seconds_[launch.kernel] += seconds;
   }
-  std::erase_if(launches_, [&](const auto& launch) { return launch.first == scale; });
+  std::erase_if(launches_, [&](const Launch& launch) { return launch.scale == scale; });
   return longest;
 }
 

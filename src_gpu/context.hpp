@@ -53,10 +53,14 @@ class DeviceContext {
   }
 
   /// Notes a launch for take_longest(); only with profiling.
-  void record(LaunchScale scale, cl::Event event) { launches_.emplace_back(scale, std::move(event)); }
+  void record(LaunchScale scale, const std::string& kernel, cl::Event event) {
+    launches_.push_back({scale, kernel, std::move(event)});
+  }
   /// Longest of the launches of this scale since the last look, seconds on the device; 0 without any. The
   /// queue must have been waited for. throws DeviceLost, DeviceError
   double take_longest(LaunchScale scale);
+  /// Seconds on the device by kernel, of all launches that take_longest() has seen.
+  const std::map<std::string, double>& kernel_seconds() const { return kernel_seconds_; }
 
   /// Built programs by the hash of source and options; build_program looks here first.
   std::map<std::string, cl::Program>& programs() { return programs_; }
@@ -70,7 +74,13 @@ class DeviceContext {
   cl::Context context_;
   cl::CommandQueue queue_;
   std::map<std::string, cl::Program> programs_;
-  std::vector<std::pair<LaunchScale, cl::Event>> launches_;
+  struct Launch {
+    LaunchScale scale;
+    std::string kernel;
+    cl::Event event;
+  };
+  std::vector<Launch> launches_;
+  std::map<std::string, double> kernel_seconds_;
   uint32_t generation_ = 0;
 };
 

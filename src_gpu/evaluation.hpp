@@ -21,7 +21,7 @@ struct EvaluationShape {
   uint32_t width = 1;       // channels of a vector
   uint32_t vectors = 1;     // of a work-item at a time
   uint32_t local_size = 1;  // work-items that share a path
-  uint32_t groups = 1;      // most groups of a launch
+  uint32_t units_per_group = 1;  // pixels (dpept_batch) or slots (pt) that a work-group takes
   bool film_transposed = false;
 
   std::vector<std::string> defines(uint32_t derived) const;

@@ -72,7 +72,7 @@ void Kernel::enqueue(uint64_t items, uint64_t local, cl::Event* event) {
   checked(site(Phase::kRun), [&] {
     context_->queue().enqueueNDRangeKernel(kernel_, cl::NullRange, global, group, nullptr, event);
   });
-  if (context_->options().profiling) context_->record(scale_, *event);
+  if (context_->options().profiling) context_->record(scale_, name_, *event);
 }
 
 }  // namespace kiloband::gpu

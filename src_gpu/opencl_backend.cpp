@@ -66,6 +66,7 @@ class Renderer final : public Backend {
     return std::max(peak_, state_ ? state_->memory.peak() : 0);
   }
   double longest_launch_seconds() const override { return longest_launch_; }
+  std::map<std::string, double> kernel_seconds() const override { return context_.kernel_seconds(); }
   uint32_t device_losses() const override { return losses_; }
 
  private:

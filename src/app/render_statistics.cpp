@@ -47,6 +47,7 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["device_memory_bytes"] = backend.device_memory_bytes();
   json["longest_launch_seconds"] = backend.longest_launch_seconds();
+  json["kernel_seconds"] = backend.kernel_seconds();
   json["device_losses"] = backend.device_losses();
   json["invalid_samples"] = counters.invalid_samples.load();
   json["resumed_samples"] = report.resumed_samples;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,8 @@ class Backend {
   virtual std::string isa() const = 0;
   /// How paths are evaluated: "dpept-batch", "dpept-path" or "pt".
   virtual std::string method() const { return "dpept-batch"; }
+  /// Seconds on the device by kernel; empty for backends without.
+  virtual std::map<std::string, double> kernel_seconds() const { return {}; }
   /// Peak bytes of device memory beside the host's.
   virtual uint64_t device_memory_bytes() const { return 0; }
   /// The longest kernel launch, measured on the device; 0 without a device. Display drivers kill long ones.
