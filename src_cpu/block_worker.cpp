@@ -49,7 +49,8 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
 /// The wavelength offsets of the block's paths: one (shared), or one per pixel.
 void BlockWorker::set_mu(const PixelRect& block, const SampleId& id) {
   if (settings_.wavelengths == WavelengthMode::kShared) {
-    mu_.assign(1, kb_shared_mu(settings_.seed, id.replicate, block.x0 / kBlockSize, block.y0 / kBlockSize, id.index));
+    mu_.assign(1, kb_shared_mu(settings_.seed, id.replicate, block.x0 / kBlockSize, block.y0 / kBlockSize,
+                               id.index));
     return;
   }
   const uint32_t sampler =

@@ -52,10 +52,11 @@ uint64_t pixels_of_means(const KbSpectraLayout& layout, uint64_t film_pixels) {
 }  // namespace
 
 std::vector<std::string> EvaluationShape::defines(uint32_t derived) const {
-  std::vector<std::string> d{"KB_WIDTH=" + std::to_string(width), "KB_VECTORS=" + std::to_string(vectors),
-                             "KB_DERIVED=" + std::to_string(derived),
-                             "KB_PIXELS=" + std::to_string(method == Method::kDpeptBatch ? units_per_group : 1),
-                             std::string("KB_PER_PATH=") + (shared_wavelengths ? "0" : "1")};
+  std::vector<std::string> d{
+      "KB_WIDTH=" + std::to_string(width), "KB_VECTORS=" + std::to_string(vectors),
+      "KB_DERIVED=" + std::to_string(derived),
+      "KB_PIXELS=" + std::to_string(method == Method::kDpeptBatch ? units_per_group : 1),
+      std::string("KB_PER_PATH=") + (shared_wavelengths ? "0" : "1")};
   if (film_transposed) d.push_back("KB_FILM_TRANSPOSED=1");
   return d;
 }

@@ -18,9 +18,9 @@ namespace kiloband::gpu {
 struct EvaluationShape {
   Method method = Method::kDpeptBatch;
   bool shared_wavelengths = true;
-  uint32_t width = 1;       // channels of a vector
-  uint32_t vectors = 1;     // of a work-item at a time
-  uint32_t local_size = 1;  // work-items that share a path
+  uint32_t width = 1;            // channels of a vector
+  uint32_t vectors = 1;          // of a work-item at a time
+  uint32_t local_size = 1;       // work-items that share a path
   uint32_t units_per_group = 1;  // pixels (dpept_batch) or slots (pt) that a work-group takes
   bool film_transposed = false;
 

@@ -1,4 +1,5 @@
-// Bytes that a path takes on the device, by method: what `kiloband info` prints (the paper's figures 4 and 7).
+// Bytes that a path takes on the device, by method: what `kiloband info` prints (the paper's figures 4 and
+// 7).
 #pragma once
 
 #include <cstdint>

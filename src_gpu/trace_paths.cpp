@@ -37,7 +37,8 @@ class HitObserver {
 
 }  // namespace
 
-std::vector<KbPathVertex> DeviceState::saved_slots(const KbSavedPath& saved, const std::vector<KbPathVertex>& arena,
+std::vector<KbPathVertex> DeviceState::saved_slots(const KbSavedPath& saved,
+                                                   const std::vector<KbPathVertex>& arena,
                                                    const std::vector<uint32_t>& chunk_next) const {
   std::vector<KbPathVertex> slots;
   uint32_t chunk = saved.chunk;

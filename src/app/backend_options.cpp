@@ -48,9 +48,9 @@ const char* opencl_option(const BackendOptions& o) {
 }  // namespace
 
 uint64_t parse_bytes(const std::string& option, const std::string& text) {
-  static const std::map<std::string, double> kUnits{{"", 1},       {"B", 1},           {"kB", 1e3},
-                                                    {"MB", 1e6},   {"GB", 1e9},        {"KiB", 1024.0},
-                                                    {"MiB", 1048576.0}, {"GiB", 1073741824.0}};
+  static const std::map<std::string, double> kUnits{
+      {"", 1},     {"B", 1},        {"kB", 1e3},        {"MB", 1e6},
+      {"GB", 1e9}, {"KiB", 1024.0}, {"MiB", 1048576.0}, {"GiB", 1073741824.0}};
   std::size_t end = 0;
   double value = 0;
   try {
@@ -70,7 +70,8 @@ void BackendOptions::add_to(CLI::App& command, bool with_method) {
   command.add_option("--threads", threads, "cpu: threads (0: all)")->check(CLI::Range(0, 4096));
   command.add_option("--isa", isa, "cpu: instruction set (default auto)")
       ->check(CLI::IsMember({"auto", "sse4", "avx2", "avx512"}));
-  command.add_option("--device", device, "opencl: index or part of the name, as `kiloband devices` lists them");
+  command.add_option("--device", device,
+                     "opencl: index or part of the name, as `kiloband devices` lists them");
   command.add_option("--device-memory", device_memory, "opencl: memory to use at most, such as 4GiB");
   if (!with_method) return;
   command
@@ -86,7 +87,8 @@ std::string BackendOptions::resolve() const {
   if (backend == "opencl" && cpu) throw InputError(fmt::format("{} does not apply to --backend opencl", cpu));
   if (backend != "auto") return backend;
   if (cpu && opencl)
-    throw InputError(fmt::format("{} is for the CPU backend, {} for the OpenCL one: choose with --backend", cpu, opencl));
+    throw InputError(
+        fmt::format("{} is for the CPU backend, {} for the OpenCL one: choose with --backend", cpu, opencl));
   if (opencl) return "opencl";
   return !cpu && has_gpu() ? "opencl" : "cpu";
 }
@@ -98,7 +100,8 @@ std::unique_ptr<Backend> make_backend(const BackendOptions& options, const FlatS
   std::optional<uint64_t> memory;
   if (options.device_memory) memory = parse_bytes("--device-memory", *options.device_memory);
   if (backend == "cpu")
-    return make_cpu_backend(scene, derived, sampling, {parse_isa(options.isa.value_or("auto")), options.threads.value_or(0)});
+    return make_cpu_backend(scene, derived, sampling,
+                            {parse_isa(options.isa.value_or("auto")), options.threads.value_or(0)});
   OpenclOptions opencl;
   opencl.device = options.device;
   opencl.device_memory = memory;

@@ -73,13 +73,14 @@ void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples)
              sizeof(KbPathVertex), sizeof(KbTextureSample), 2 * sizeof(KbTextureSample));
 }
 
-/// Vertices of the longest path: the last of max_depth segments ends on a light. Unlimited depth: as an example 32.
+/// Vertices of the longest path: the last of max_depth segments ends on a light. Unlimited depth: as an
+/// example 32.
 uint64_t longest_path(const Integrator& integrator) {
   return integrator.max_depth < 0 ? 32 : static_cast<uint64_t>(std::max(integrator.max_depth, 1));
 }
 
-/// What a pool of paths takes on an OpenCL device: pt keeps two floats per channel of every path in flight, dpept the
-/// vertices of whole paths, whatever the number of channels (the paper's figures 4 and 7).
+/// What a pool of paths takes on an OpenCL device: pt keeps two floats per channel of every path in flight,
+/// dpept the vertices of whole paths, whatever the number of channels (the paper's figures 4 and 7).
 void print_path_memory(const FlatScene& scene) {
   using gpu::Method;
   const uint64_t vertices = longest_path(scene.integrator);
@@ -87,8 +88,10 @@ void print_path_memory(const FlatScene& scene) {
   const uint64_t slots = textured ? 2 : 1;
   const uint64_t pt = gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots);
   const uint64_t dpept = gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots);
-  fmt::print("opencl path  pt {} bytes with {} channels; dpept-path, dpept-batch {} bytes with {} vertices of {} bytes\n",
-             pt, scene.channels.size(), dpept, vertices, slots * sizeof(KbPathVertex));
+  fmt::print(
+      "opencl path  pt {} bytes with {} channels; dpept-path, dpept-batch {} bytes with {} vertices of {} "
+      "bytes\n",
+      pt, scene.channels.size(), dpept, vertices, slots * sizeof(KbPathVertex));
   fmt::print("opencl pool  paths      pt MiB   dpept MiB\n");
   for (const uint64_t edge : {256, 512, 1024, 2048}) {
     const double paths = static_cast<double>(edge) * static_cast<double>(edge);

@@ -87,7 +87,8 @@ void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
 
 void print_path(const FlatScene& scene, const TracedPath& path) {
   for (std::size_t b = 0; b < path.hits.size(); ++b) print_hit(scene, b, path.hits[b]);
-  if (path.invalid) fmt::print("invalid: a weight is not finite, or the path is endless; it leaves the mean\n");
+  if (path.invalid)
+    fmt::print("invalid: a weight is not finite, or the path is endless; it leaves the mean\n");
   if (path.slots.empty() && !path.invalid) fmt::print("no vertex contributes\n");
   for (std::size_t i = 0; i < path.slots.size();) {
     print_vertex(scene, path.slots[i]);
@@ -109,8 +110,7 @@ int trace(const TraceOptions& options) {
   SamplingSettings sampling;
   sampling.seed = options.seed;
   sampling.replicates = options.replicates;
-  sampling.wavelengths =
-      options.wavelengths == "shared" ? WavelengthMode::kShared : WavelengthMode::kPerPath;
+  sampling.wavelengths = options.wavelengths == "shared" ? WavelengthMode::kShared : WavelengthMode::kPerPath;
   sampling.sampler = options.sampler == "sobol" ? SamplerType::kSobol : SamplerType::kIndependent;
   const auto backend = make_backend(options.backend, scene, {}, sampling, sink);
   const SampleRange range{options.sample % options.replicates, options.sample / options.replicates, 1};

@@ -16,13 +16,14 @@ struct TracedHit {
 };
 
 struct TracedPath {
-  std::vector<TracedHit> hits;       // by bounce
-  std::vector<KbPathVertex> slots;   // as saved for evaluation, up to the last vertex with light; see records.h
-  bool invalid = false;              // the sample leaves the mean
+  std::vector<TracedHit> hits;  // by bounce
+  std::vector<KbPathVertex>
+      slots;             // as saved for evaluation, up to the last vertex with light; see records.h
+  bool invalid = false;  // the sample leaves the mean
 };
 
-/// Drops what does not contribute and what only one backend writes: vertices behind the last one with light, the
-/// scattering of that vertex, texture samples of light that is hidden.
+/// Drops what does not contribute and what only one backend writes: vertices behind the last one with light,
+/// the scattering of that vertex, texture samples of light that is hidden.
 void normalise(TracedPath& path);
 
 }  // namespace kiloband

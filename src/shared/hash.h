@@ -49,7 +49,7 @@ KB_FN kb_u32x4 kb_mix32x4(kb_u32x4 x, kb_u32 y) {
 }
 
 /* Reverses the order of the 32 bits. */
-KB_FN kb_u32 kb_reverse_bits(kb_u32 x) {
+KB_REVERSAL_FN kb_u32 kb_reverse_bits(kb_u32 x) {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
   x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
@@ -57,7 +57,7 @@ KB_FN kb_u32 kb_reverse_bits(kb_u32 x) {
   return (x >> 16) | (x << 16);
 }
 
-KB_FN kb_u32x4 kb_reverse_bits4(kb_u32x4 x) {
+KB_REVERSAL_FN kb_u32x4 kb_reverse_bits4(kb_u32x4 x) {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
   x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);

@@ -13,6 +13,11 @@ typedef ulong kb_u64;
 typedef int kb_i32;
 typedef ushort kb_u16;
 #define KB_FN static inline
+#ifdef KB_UNDER_OCLGRIND /* which lacks the instruction that LLVM makes of a reversal of bits */
+#define KB_REVERSAL_FN static __attribute__((noinline, optnone))
+#else
+#define KB_REVERSAL_FN KB_FN
+#endif
 #define KB_GLOBAL __global
 #define KB_CONSTANT __constant
 #define KB_TABLE __constant /* an array of constants at file scope */
@@ -53,6 +58,7 @@ typedef uint64_t kb_u64;
 typedef int32_t kb_i32;
 typedef uint16_t kb_u16;
 #define KB_FN static inline
+#define KB_REVERSAL_FN KB_FN
 #define KB_GLOBAL
 #define KB_CONSTANT
 #define KB_TABLE alignas(64) inline constexpr

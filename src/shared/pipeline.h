@@ -1,10 +1,10 @@
 // Records of the streaming pipeline: what its kernels keep between launches, and what the host tells them.
 //
 // A ROUND renders S samples of Q pixels: its jobs are numbered sample * padded_pixels + pixel, where
-// padded_pixels is Q rounded up to a multiple of the pool's size P. Slot s of the pool takes the jobs s, s + P,
-// s + 2P ..., so a pixel belongs to one slot: what is added to it is added in the order of its samples, however
-// the device schedules. Vertices of saved paths lie in an arena of 32-byte slots, in chunks of KB_CHUNK_SLOTS
-// that are handed out by a counter and linked by chunk_next[].
+// padded_pixels is Q rounded up to a multiple of the pool's size P. Slot s of the pool takes the jobs s, s +
+// P, s + 2P ..., so a pixel belongs to one slot: what is added to it is added in the order of its samples,
+// however the device schedules. Vertices of saved paths lie in an arena of 32-byte slots, in chunks of
+// KB_CHUNK_SLOTS that are handed out by a counter and linked by chunk_next[].
 #ifndef KILOBAND_SHARED_PIPELINE_H
 #define KILOBAND_SHARED_PIPELINE_H
 
@@ -13,51 +13,54 @@
 
 #define KB_CHUNK_SLOTS 4u
 
-/* ---- the scene beside its arrays --------------------------------------------------------------------------------- */
+/* ---- the scene beside its arrays
+ * --------------------------------------------------------------------------------- */
 typedef struct {
   KbCamera camera;
-  kb_u32 channels;       /* K */
+  kb_u32 channels; /* K */
   kb_u32 emitter_count;
-  kb_u32 environment;    /* emitter, or KB_NONE */
-  kb_u32 max_depth;      /* as Mitsuba counts; KB_NONE: unlimited */
+  kb_u32 environment; /* emitter, or KB_NONE */
+  kb_u32 max_depth;   /* as Mitsuba counts; KB_NONE: unlimited */
   kb_u32 rr_depth;
   kb_u32 hide_emitters;
-  kb_u32 unit_row;       /* a reflectance of 1, or KB_NONE */
-  kb_u32 envmap_width;   /* cells of the environment map's distribution */
+  kb_u32 unit_row;     /* a reflectance of 1, or KB_NONE */
+  kb_u32 envmap_width; /* cells of the environment map's distribution */
   kb_u32 envmap_height;
-  float filter_ratio;    /* gaussian: radius / stddev of the table */
+  float filter_ratio; /* gaussian: radius / stddev of the table */
   kb_u32 reserved[6];
 } KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
 
-/* ---- ray tracing ------------------------------------------------------------------------------------------------- */
+/* ---- ray tracing
+ * ------------------------------------------------------------------------------------------------- */
 /* A primitive of the acceleration structure: a triangle of a mesh (corners), or a whole analytic shape. */
 typedef struct {
-  float corner[9];  /* mesh: three world positions; else not used */
+  float corner[9]; /* mesh: three world positions; else not used */
   kb_u32 shape;
   kb_u32 primitive; /* triangle within the shape; 0 for analytic shapes */
   kb_u32 analytic;  /* KbShapeType of the shape: 0 is a mesh's triangle */
 } KbPrimitive;
 KB_STATIC_ASSERT(sizeof(KbPrimitive) == 48, primitive_size);
 
-/* An inner node: the boxes of its children, grown by one unit in the last place, plane by plane for SIMD. Children that
-   are not there have empty boxes. Four children: on PoCL 1.2 to 1.4 times the ray rate of two (bench_traversal). */
+/* An inner node: the boxes of its children, grown by one unit in the last place, plane by plane for SIMD.
+   Children that are not there have empty boxes. Four children: on PoCL 1.2 to 1.4 times the ray rate of two
+   (bench_traversal). */
 #define KB_BVH_WIDTH 4
-#define KB_BVH_LEAF 8                      /* primitives at most */
-#define KB_BVH_MAX_PRIMITIVES 0x0fffffffu  /* what an index of 28 bits reaches */
+#define KB_BVH_LEAF 8                     /* primitives at most */
+#define KB_BVH_MAX_PRIMITIVES 0x0fffffffu /* what an index of 28 bits reaches */
 typedef struct {
   float plane[6][KB_BVH_WIDTH]; /* low x, y, z, high x, y, z */
   kb_u32 child[KB_BVH_WIDTH];   /* an inner node's index, or KB_BVH_LEAF_OF(first primitive, count) */
 } KbBvhNode;
 #define KB_BVH_IS_LEAF 0x80000000u
 #define KB_BVH_NO_CHILD 0xffffffffu /* reads as a leaf, but has no primitives */
-#define KB_BVH_LEAF_OF(first, count) (KB_BVH_IS_LEAF | ((count) - 1u) << 28 | (first))
-#define KB_BVH_LEAF_FIRST(leaf) ((leaf) & 0x0fffffffu)
+#define KB_BVH_LEAF_OF(first, count) (KB_BVH_IS_LEAF | ((count)-1u) << 28 | (first))
+#define KB_BVH_LEAF_FIRST(leaf) ((leaf)&0x0fffffffu)
 #define KB_BVH_LEAF_COUNT(leaf) ((leaf) == KB_BVH_NO_CHILD ? 0u : (((leaf) >> 28) & 7u) + 1u)
 KB_STATIC_ASSERT(sizeof(KbBvhNode) == 28 * KB_BVH_WIDTH, bvh_node_size);
 
-/* A closest-hit query; hits lie in (t_min, t_max). `previous` is what multiple importance sampling needs of the
-   vertex the ray comes from. */
+/* A closest-hit query; hits lie in (t_min, t_max). `previous` is what multiple importance sampling needs of
+   the vertex the ray comes from. */
 typedef struct {
   float origin[3];
   float t_min;
@@ -84,7 +87,8 @@ typedef struct {
 } KbShadowRay;
 KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 
-/* ---- path state -------------------------------------------------------------------------------------------------- */
+/* ---- path state
+ * -------------------------------------------------------------------------------------------------- */
 #define KB_PATH_BOUNCE_MASK 0x00ffffffu
 #define KB_PATH_LIVE 0x01000000u           /* has a ray to trace */
 #define KB_PATH_ENDED 0x02000000u          /* complete, not yet handed over to evaluation */
@@ -125,9 +129,9 @@ KB_STATIC_ASSERT(sizeof(KbSavedPath) == 8, saved_path_size);
 
 typedef struct {
   kb_u64 seed;
-  kb_u32 sampler;       /* KB_SAMPLER_* */
-  kb_u32 wavelengths;   /* KB_WAVELENGTHS_* */
-  kb_u32 replicates;    /* R */
+  kb_u32 sampler;     /* KB_SAMPLER_* */
+  kb_u32 wavelengths; /* KB_WAVELENGTHS_* */
+  kb_u32 replicates;  /* R */
   kb_u32 replicate;
   kb_u32 first_index;   /* in the replicate, of the round's first sample */
   kb_u32 samples;       /* S */
@@ -148,7 +152,8 @@ typedef struct {
 } KbAuxiliary;
 KB_STATIC_ASSERT(sizeof(KbAuxiliary) == 24, auxiliary_size);
 
-/* ---- faults: kernels write, the host reads ------------------------------------------------------------------------ */
+/* ---- faults: kernels write, the host reads
+ * ------------------------------------------------------------------------ */
 #define KB_FAULT_ARENA_FULL 1u     /* the round is repeated with fewer paths */
 #define KB_FAULT_STACK_OVERFLOW 2u /* a traversal needs more stack than the measured depth: our bug */
 #define KB_FAULT_BAD_INDEX 4u      /* a record refers to what does not exist: our bug */
@@ -166,10 +171,11 @@ typedef struct {
 } KbFaults;
 KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
 
-/* ---- spectra ------------------------------------------------------------------------------------------------------
+/* ---- spectra
+   ------------------------------------------------------------------------------------------------------
    Every row of spectra is tabulated over mu in each channel: node j of channel k is the value at
-   mu = j / cells. Between nodes it is linear; the number of cells follows from an error bound. Values stand at
-   nodes[first + j * stride + k], j = 0 .. cells. */
+   mu = j / cells. Between nodes it is linear; the number of cells follows from an error bound. Values stand
+   at nodes[first + j * stride + k], j = 0 .. cells. */
 typedef struct {
   kb_u32 first;
   kb_u32 cells; /* at least 1 */

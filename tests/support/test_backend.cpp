@@ -35,10 +35,12 @@ std::unique_ptr<Backend> make_test_backend(const FlatScene& scene, const Derived
       {"opencl:dpept-path", gpu::Method::kDpeptPath},
       {"opencl:dpept-batch", gpu::Method::kDpeptBatch}};
   const auto method = kMethods.find(name);
-  if (method == kMethods.end()) throw std::runtime_error("KILOBAND_TEST_BACKEND=" + name + ": no such backend");
+  if (method == kMethods.end())
+    throw std::runtime_error("KILOBAND_TEST_BACKEND=" + name + ": no such backend");
   OpenclOptions options;
   options.method = method->second;
-  options.specialised = false;  // one program for all tests; tests/statistical/backends compares it with the others
+  options.specialised =
+      false;  // one program for all tests; tests/statistical/backends compares it with the others
   return make_opencl_backend(scene, derived, settings, options);
 }
 

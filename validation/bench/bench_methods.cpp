@@ -1,14 +1,16 @@
-// The three methods of the OpenCL backend against the number of channels, at a fixed pool, in one run, with a model
-// of bytes and operations beside the measurement.
+// The three methods of the OpenCL backend against the number of channels, at a fixed pool, in one run, with a
+// model of bytes and operations beside the measurement.
 //
-//   bench_methods [--device N|NAME] [--pool 8192] [--size 128] [--spp 16] [--rounds 3] [--json FILE] [SCENE.xml]
+//   bench_methods [--device N|NAME] [--pool 8192] [--size 128] [--spp 16] [--rounds 3] [--json FILE]
+//   [SCENE.xml]
 //
-// Paths per second are wall time of whole renders (compiled kernels; median of the rounds). Evaluation is device time
-// of the kernels that evaluate (pt_update; dpept_path; dpept_batch) per channel and vertex.
+// Paths per second are wall time of whole renders (compiled kernels; median of the rounds). Evaluation is
+// device time of the kernels that evaluate (pt_update; dpept_path; dpept_batch) per channel and vertex.
 //
-// Model. pt reads and writes throughput and radiance of every channel at every bounce: 16 bytes per channel and vertex
-// from memory, so 16 / B(state), B(n) being a triad's bandwidth over arrays of n bytes in all. dpept keeps both in
-// registers and loads three rows (reflectance, light, and its share of film sums) from the cache: 12 / B(cache).
+// Model. pt reads and writes throughput and radiance of every channel at every bounce: 16 bytes per channel
+// and vertex from memory, so 16 / B(state), B(n) being a triad's bandwidth over arrays of n bytes in all.
+// dpept keeps both in registers and loads three rows (reflectance, light, and its share of film sums) from
+// the cache: 12 / B(cache).
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -52,19 +54,22 @@ double median(std::vector<double> values) {
 
 /// Bytes per second of a = b + s c over three arrays of `bytes` in all.
 double triad_bandwidth(gpu::DeviceContext& context, uint64_t bytes) {
-  const gpu::SourceMap source{{"kernels/triad.cl",
-                               "__kernel void triad(__global float16* restrict a, __global const float16* restrict b,\n"
-                               "  __global const float16* restrict c, uint repeats, uint items) {\n"
-                               "  for (uint r = 0; r < repeats; ++r)\n"
-                               "    for (uint i = get_global_id(0); i < items; i += get_global_size(0))\n"
-                               "      a[i] = b[i] + 3.0f * c[i];\n}\n"}};
+  const gpu::SourceMap source{
+      {"kernels/triad.cl",
+       "__kernel void triad(__global float16* restrict a, __global const float16* restrict b,\n"
+       "  __global const float16* restrict c, uint repeats, uint items) {\n"
+       "  for (uint r = 0; r < repeats; ++r)\n"
+       "    for (uint i = get_global_id(0); i < items; i += get_global_size(0))\n"
+       "      a[i] = b[i] + 3.0f * c[i];\n}\n"}};
   gpu::Kernel kernel = gpu::build_program(context, source, "kernels/triad.cl", {}).kernel("triad");
   gpu::DeviceMemory memory(context, uint64_t{1} << 33);
   const uint64_t items = std::max<uint64_t>(bytes / 3 / 64, 64);
   const auto floats = items * 16;
   const std::vector<float> ones(floats, 1.0f);
-  gpu::DeviceBuffer<float> a = memory.upload("a", ones), b = memory.upload("b", ones), c = memory.upload("c", ones);
-  const uint64_t threads = std::min<uint64_t>(items, context.device().type == gpu::DeviceType::kCpu ? 64 : 1u << 18);
+  gpu::DeviceBuffer<float> a = memory.upload("a", ones), b = memory.upload("b", ones),
+                           c = memory.upload("c", ones);
+  const uint64_t threads =
+      std::min<uint64_t>(items, context.device().type == gpu::DeviceType::kCpu ? 64 : 1u << 18);
   const auto repeats = static_cast<uint32_t>(std::max<uint64_t>((uint64_t{1} << 29) / (items * 192), 1));
   kernel.set(a, b, c, repeats, static_cast<uint32_t>(items));
   double best = 0;
@@ -85,7 +90,8 @@ double kernel_sum(const std::map<std::string, double>& seconds, std::initializer
 }
 
 Timing render_once(Backend& backend, const FlatScene& scene, uint32_t spp) {
-  SpectralFilm film({0, 0, scene.film.crop_width, scene.film.crop_height}, {scene.channels.size(), 1, false, false});
+  SpectralFilm film({0, 0, scene.film.crop_width, scene.film.crop_height},
+                    {scene.channels.size(), 1, false, false});
   std::vector<uint32_t> blocks(film.blocks().size());
   std::iota(blocks.begin(), blocks.end(), 0u);
   const auto kernels_before = backend.kernel_seconds();
@@ -158,10 +164,13 @@ nlohmann::json row(gpu::DeviceContext& context, const Settings& settings, uint32
   r["evaluation_ratio"] = pt.evaluation / batch.evaluation;
   r["evaluation_ratio_model"] = (16 / triad) / (12 / cache);
   r["end_to_end_ratio"] = pt.seconds / batch.seconds;
-  fmt::print("{:>5} {:>8.3f} {:>8.3f} {:>8.3f}   {:>7.4f} {:>7.4f} {:>7.4f}   {:>6.1f} {:>6.1f} {:>5.2f}   {:>6.1f} {:>6.1f} {:>6.2f}\n",
-             channels, pt.paths / pt.seconds * 1e-6, path.paths / path.seconds * 1e-6, batch.paths / batch.seconds * 1e-6,
-             ns(pt), ns(path), ns(batch), bandwidth * 1e-9, triad * 1e-9, bandwidth / triad,
-             pt.evaluation / batch.evaluation, (16 / triad) / (12 / cache), pt.seconds / batch.seconds);
+  fmt::print(
+      "{:>5} {:>8.3f} {:>8.3f} {:>8.3f}   {:>7.4f} {:>7.4f} {:>7.4f}   {:>6.1f} {:>6.1f} {:>5.2f}   {:>6.1f} "
+      "{:>6.1f} {:>6.2f}\n",
+      channels, pt.paths / pt.seconds * 1e-6, path.paths / path.seconds * 1e-6,
+      batch.paths / batch.seconds * 1e-6, ns(pt), ns(path), ns(batch), bandwidth * 1e-9, triad * 1e-9,
+      bandwidth / triad, pt.evaluation / batch.evaluation, (16 / triad) / (12 / cache),
+      pt.seconds / batch.seconds);
   std::fflush(stdout);
   return r;
 }
@@ -188,10 +197,12 @@ int run(int argc, char** argv) {
   json["pool"] = settings.pool;
   json["image"] = fmt::format("{0} x {0} pixels, {1} samples", settings.size, settings.spp);
   json["triad_in_cache"] = cache;
-  fmt::print("{}, pool of {} paths; a triad in the cache: {:.0f} GB/s\n", context.device().name, settings.pool, cache * 1e-9);
-  fmt::print("{:>5} {:^26}   {:^23}   {:^19}   {:^20}\n", "", "Mpaths/s", "evaluation, ns", "GB/s", "batch over pt");
-  fmt::print("{:>5} {:>8} {:>8} {:>8}   {:>7} {:>7} {:>7}   {:>6} {:>6} {:>5}   {:>6} {:>6} {:>6}\n", "K", "pt", "path", "batch",
-             "pt", "path", "batch", "pt", "triad", "ratio", "eval", "model", "all");
+  fmt::print("{}, pool of {} paths; a triad in the cache: {:.0f} GB/s\n", context.device().name,
+             settings.pool, cache * 1e-9);
+  fmt::print("{:>5} {:^26}   {:^23}   {:^19}   {:^20}\n", "", "Mpaths/s", "evaluation, ns", "GB/s",
+             "batch over pt");
+  fmt::print("{:>5} {:>8} {:>8} {:>8}   {:>7} {:>7} {:>7}   {:>6} {:>6} {:>5}   {:>6} {:>6} {:>6}\n", "K",
+             "pt", "path", "batch", "pt", "path", "batch", "pt", "triad", "ratio", "eval", "model", "all");
   for (const uint32_t k : channels) json["rows"].push_back(row(context, settings, k, cache));
   if (settings.json) std::ofstream(*settings.json) << json.dump(2) << "\n";
   return 0;

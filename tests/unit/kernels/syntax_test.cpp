@@ -1,5 +1,5 @@
-// The kernels are OpenCL C 1.2 for any device: compiled for spir64 with all warnings as errors, general and with
-// each feature left out.
+// The kernels are OpenCL C 1.2 for any device: compiled for spir64 with all warnings as errors, general and
+// with each feature left out.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -22,7 +22,8 @@ std::string compile(const fs::path& file, const std::string& options) {
   const std::string command =
       std::string(KILOBAND_CLANG) +
       " -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -Wall -Wextra -Werror"
-      " -Wno-unused-function -fsyntax-only '-I" KILOBAND_SOURCE_DIR "/kernels' '-I" KILOBAND_SOURCE_DIR "/src' " +
+      " -Wno-unused-function -fsyntax-only '-I" KILOBAND_SOURCE_DIR "/kernels' '-I" KILOBAND_SOURCE_DIR
+      "/src' " +
       options + " '" + file.string() + "' 2> '" + log.string() + "'";
   const int status = std::system(command.c_str());
   std::ostringstream text;
@@ -52,9 +53,10 @@ TEST(KernelSyntax, EveryFileCompilesAlone) {
 
 TEST(KernelSyntax, EveryFeatureCanBeAbsent) {
   const std::vector<std::string> features{
-      "DIFFUSE",       "CONDUCTOR",  "ROUGH_CONDUCTOR", "DIELECTRIC", "ROUGH_DIELECTRIC", "PLASTIC",
-      "ROUGH_PLASTIC", "TWO_SIDED",  "MASK",            "DISPERSION", "BITMAP",           "CHECKERBOARD",
-      "AREA_LIGHT",    "CONSTANT_LIGHT", "ENVMAP_LIGHT", "DELTA_LIGHT", "ANALYTIC_SHAPES"};
+      "DIFFUSE",     "CONDUCTOR",      "ROUGH_CONDUCTOR", "DIELECTRIC",     "ROUGH_DIELECTRIC",
+      "PLASTIC",     "ROUGH_PLASTIC",  "TWO_SIDED",       "MASK",           "DISPERSION",
+      "BITMAP",      "CHECKERBOARD",   "AREA_LIGHT",      "CONSTANT_LIGHT", "ENVMAP_LIGHT",
+      "DELTA_LIGHT", "ANALYTIC_SHAPES"};
   const auto defines = [&](const std::string& present, const std::string& value, const std::string& others) {
     std::string text = "-DKB_SPECIALISED";
     for (const std::string& f : features) text += " -DKB_HAS_" + f + "=" + (f == present ? value : others);
