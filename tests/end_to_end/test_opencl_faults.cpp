@@ -1,5 +1,5 @@
-// OpenCL calls that fail, one after the other: the program ends with the image that it would have made, or with
-// exit code 3, one message and no file. Every call of a small render is made to fail in turn.
+// OpenCL calls that fail, one after the other: the program ends with the image that it would have made, or
+// with exit code 3, one message and no file. Every call of a small render is made to fail in turn.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -63,8 +63,8 @@ Finished run_with(const Fault& fault, const Names& arguments = small_render()) {
 
 /// Exit code 0 and the image, or 3, one message that names the call, and no file. Nothing leaks either way.
 void expect_clean_end(const Finished& result, const Finished& good, const Fault& fault) {
-  const std::string where =
-      fault.function + " " + std::to_string(fault.nth) + ": " + std::to_string(fault.code) + "\n" + result.outcome.err;
+  const std::string where = fault.function + " " + std::to_string(fault.nth) + ": " +
+                            std::to_string(fault.code) + "\n" + result.outcome.err;
   EXPECT_EQ(result.outcome.signal, 0) << where;
   EXPECT_EQ(result.report.at("live_buffers"), 0) << where;
   EXPECT_GE(result.report.at("failed"), 1) << where;

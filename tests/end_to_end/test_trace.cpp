@@ -26,16 +26,19 @@ std::string skeleton(const std::string& text) {
     kept += '\n';
     at = end + 1;
   }
-  kept.erase(std::remove_if(kept.begin(), kept.end(), [](char c) { return std::isdigit(c) || c == '.' || c == '-'; }),
+  kept.erase(std::remove_if(kept.begin(), kept.end(),
+                            [](char c) { return std::isdigit(c) || c == '.' || c == '-'; }),
              kept.end());
   return kept;
 }
 
-/// Both backends follow one sequence of shapes, kinds and spectra: what parts them, if anything does, is rounding.
+/// Both backends follow one sequence of shapes, kinds and spectra: what parts them, if anything does, is
+/// rounding.
 TEST(Trace, BackendsAgree) {
   const TemporaryFolder folder;
   for (const std::string sample : {"0", "1", "17"}) {
-    const Outcome cpu = run_program(folder, trace({"--pixel", "5,9", "--sample", sample, "--backend", "cpu"}));
+    const Outcome cpu =
+        run_program(folder, trace({"--pixel", "5,9", "--sample", sample, "--backend", "cpu"}));
     const Outcome opencl =
         run_program(folder, trace({"--pixel", "5,9", "--sample", sample, "--backend", "opencl"}));
     EXPECT_EQ(cpu.code, 0) << cpu.err;
@@ -64,14 +67,15 @@ TEST(Device, ChosenByNumberOrName) {
   const TemporaryFolder folder;
   const std::string list = run_program(folder, {"devices"}).out;  // "index  name ...", then "    0  NAME ..."
   const std::size_t name = list.find("\n    0  ") + 8;
-  for (const std::string device : {std::string("0"), list.substr(name, 12)}) {
+  for (const std::string& device : {std::string("0"), list.substr(name, 12)}) {
     const Outcome outcome = run_program(folder, trace({"--pixel", "1,1", "--device", device}));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find(" on opencl ("), std::string::npos) << outcome.out;
   }
   const Outcome unknown = run_program(folder, trace({"--pixel", "1,1", "--device", "nosuchdevice"}));
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_EQ(unknown.err.rfind("kiloband: no OpenCL device has 'nosuchdevice' in its name: there is 0 '", 0), 0u)
+  EXPECT_EQ(unknown.err.rfind("kiloband: no OpenCL device has 'nosuchdevice' in its name: there is 0 '", 0),
+            0u)
       << unknown.err;
   const Outcome number = run_program(folder, trace({"--pixel", "1,1", "--device", "99"}));
   EXPECT_EQ(number.code, 2);

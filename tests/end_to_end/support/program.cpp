@@ -29,7 +29,9 @@ struct Pipe {
 
 [[noreturn]] void become_program(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
                                  const Treatment& treatment, const Pipe& out, const Pipe& err) {
-  std::vector<char*> argv{const_cast<char*>("kiloband")};
+  std::vector<char*> argv;
+  for (const std::string& word : treatment.under) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(const_cast<char*>(argv.empty() ? "kiloband" : KILOBAND_PROGRAM));
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ})
@@ -42,7 +44,8 @@ struct Pipe {
     ready = ready && setrlimit(RLIMIT_FSIZE, &limit) == 0;
   }
   if (treatment.unprivileged && geteuid() == 0) ready = ready && setgid(65534) == 0 && setuid(65534) == 0;
-  if (ready) execv(KILOBAND_PROGRAM, argv.data());
+  if (ready && treatment.under.empty()) execv(KILOBAND_PROGRAM, argv.data());
+  if (ready) execvp(argv.front(), argv.data());
   _exit(126);
 }
 

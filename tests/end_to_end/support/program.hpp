@@ -39,6 +39,7 @@ struct Treatment {
   double after_seconds = 0;
   std::optional<uint64_t> file_size_limit;  // bytes, as `ulimit -f`: what a full disk is tried with
   std::vector<std::pair<std::string, std::string>> environment;  // added to that of the tests
+  std::vector<std::string> under;  // command that starts the program, such as a checker with its options
   bool unprivileged = false;                // as user 65534 if we are root, to whom no folder is read-only
 };
 

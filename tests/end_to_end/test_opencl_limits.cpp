@@ -1,0 +1,130 @@
+// Launches stay short and paths fit the memory, whatever the scene; the image does not depend on either.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "scene/reader.hpp"
+#include "src_gpu/device_state.hpp"
+#include "src_gpu/launch_pace.hpp"
+#include "src_gpu/opencl_backend.hpp"
+#include "tests/support/render_harness.hpp"
+
+namespace kiloband::test {
+namespace {
+
+using gpu::LaunchPace;
+
+TEST(LaunchPace, BeginsSmallAndGrowsByFour) {
+  LaunchPace pace(0.5, 100, 10, 5000);
+  EXPECT_EQ(pace.limit(), 100u);
+  for (const uint64_t limit : {400u, 1600u, 5000u, 5000u}) {
+    pace.learn(pace.limit(), 1e-6);
+    EXPECT_EQ(pace.limit(), limit);
+  }
+}
+
+TEST(LaunchPace, AimsAtHalfTheTime) {
+  LaunchPace pace(0.5, 1000, 10, 1u << 20);
+  pace.learn(1000, 1.0);  // 1 ms each: 250 in a quarter of a second
+  EXPECT_EQ(pace.limit(), 250u);
+  pace.learn(250, 0.25);
+  EXPECT_EQ(pace.limit(), 250u);
+  pace.learn(250, 0.05);  // easier: the hard part is forgotten by halves
+  EXPECT_EQ(pace.limit(), 500u);
+}
+
+TEST(LaunchPace, SmallLaunchesTellNothingOfLargeOnes) {
+  LaunchPace pace(0.5, 1000, 10, 1u << 20);
+  pace.learn(3, 1e-9);
+  EXPECT_EQ(pace.limit(), 1000u);
+  pace.learn(0, 0);
+  EXPECT_EQ(pace.limit(), 1000u);
+}
+
+TEST(LaunchPace, StaysWithinItsBounds) {
+  LaunchPace pace(0.5, 100, 10, 1000);
+  pace.learn(100, 1e9);
+  EXPECT_EQ(pace.limit(), 10u);
+  EXPECT_EQ(LaunchPace(1, 0, 64, 32).limit(), 32u);
+  EXPECT_EQ(LaunchPace(1, 1u << 30, 64, 128).limit(), 128u);
+}
+
+/// The inside of a bright ball with a lamp: roulette alone ends paths.
+FlatScene closed_room(uint32_t size, int rr_depth, const std::string& bands) {
+  const std::string xml =
+      "<scene version='3.0.0'><integrator type='path'><integer name='max_depth' value='-1'/>"
+      "<integer name='rr_depth' value='" +
+      std::to_string(rr_depth) + "'/></integrator>" + perspective_sensor("0, 0, 0.5", "0, 0, -1", 60, size) +
+      "<shape type='sphere'><bsdf type='twosided'><bsdf type='diffuse'><spectrum name='reflectance' "
+      "value='0.999'/></bsdf></bsdf></shape><shape type='sphere'><transform name='to_world'><scale "
+      "value='0.1'/></transform><emitter type='area'><spectrum name='radiance' value='400:1, "
+      "700:3'/></emitter></shape></scene>";
+  const ChannelList channels = parse_channels(bands);
+  return flatten(read_scene_text(xml, "room.xml", ".", {}), {channels, parse_channels("400:700:4"), {}});
+}
+
+struct Render {
+  std::vector<float> image;
+  double longest_launch_seconds = 0;
+  std::vector<std::string> notes;
+};
+
+Render render_with(const FlatScene& scene, OpenclOptions options, uint32_t samples) {
+  Render result;
+  options.sink = [&](const Diagnostic& d) { result.notes.push_back(d.to_string()); };
+  SamplingSettings sampling;
+  sampling.replicates = 1;
+  const auto backend = make_opencl_backend(scene, {}, sampling, options);
+  const Film& f = scene.film;
+  SpectralFilm film({0, 0, f.crop_width, f.crop_height}, {scene.channels.size(), 1, false, false});
+  std::vector<uint32_t> blocks(film.blocks().size());
+  for (uint32_t i = 0; i < blocks.size(); ++i) blocks[i] = i;
+  const std::atomic<bool> stop{false};
+  backend->render(film, {0, 0, samples}, blocks, stop, {});
+  const std::size_t row = std::size_t{f.crop_width} * scene.channels.size();
+  result.image.resize(row * f.crop_height);
+  for (uint32_t y = 0; y < f.crop_height; ++y) film.row(y, std::span(result.image).subspan(y * row, row), {});
+  result.longest_launch_seconds = backend->longest_launch_seconds();
+  return result;
+}
+
+/// Paths of a hundred vertices and more: with little memory a round's arena is full again and again.
+TEST(OpenclLimits, LongPathsInLittleMemory) {
+  const FlatScene scene = closed_room(16, 100, "400:700:8");
+  for (const gpu::Method method : {gpu::Method::kDpeptBatch, gpu::Method::kDpeptPath, gpu::Method::kPt}) {
+    OpenclOptions options;
+    options.method = method;
+    const Render whole = render_with(scene, options, 4);
+    options.launch_seconds = 1e-4;
+    EXPECT_EQ(render_with(scene, options, 4).image, whole.image) << "short launches";
+    for (const uint64_t bytes : {uint64_t{600} << 10, uint64_t{3} << 20}) {
+      options.device_memory = bytes;
+      EXPECT_EQ(render_with(scene, options, 4).image, whole.image) << bytes;
+    }
+  }
+}
+
+/// Launches aim at half of the given time. How long one takes on a busy machine is not ours to say, so those
+/// over all paths of a round (dpept) are held against those without a limit, which are ten times as long as
+/// the given time.
+TEST(OpenclLimits, LaunchesAreShort) {
+  const FlatScene scene = closed_room(64, 8, "400:700:1000");
+  for (const gpu::Method method : {gpu::Method::kDpeptBatch, gpu::Method::kDpeptPath}) {
+    OpenclOptions options;
+    options.method = method;
+    options.launch_seconds = 0.005;
+    const Render quick = render_with(scene, options, 8);
+    options.launch_seconds = 100;
+    const Render free = render_with(scene, options, 8);
+    const std::string found =
+        fmt::format("{}: longest launch {:.4f} s, without a limit {:.4f} s", gpu::to_string(method),
+                    quick.longest_launch_seconds, free.longest_launch_seconds);
+    EXPECT_EQ(quick.image, free.image) << found;
+    EXPECT_GT(quick.longest_launch_seconds, 0.0) << found;
+    EXPECT_LT(quick.longest_launch_seconds, free.longest_launch_seconds / 2) << found;
+    RecordProperty(gpu::to_string(method), found);
+    std::puts(found.c_str());
+  }
+}
+
+}  // namespace
+}  // namespace kiloband::test
