@@ -121,11 +121,6 @@ std::vector<AuxiliaryPixel> DeviceState::auxiliary(const PixelRect& rect) {
   return pixels;
 }
 
-Method preferred_method(std::size_t channels) {
-  (void)channels;
-  return Method::kDpeptBatch;
-}
-
 const char* to_string(Method method) {
   switch (method) {
     case Method::kPt:

@@ -87,8 +87,9 @@ class DeviceState {
   std::optional<Evaluation> evaluation_;
 };
 
-/// The method that is fastest for this many channels (measured: validation/README.md).
-Method preferred_method(std::size_t channels);
+/// On PoCL the fastest at every number of channels that was measured, 8 to 1024 (validation/README.md). The paper finds
+/// dpept-path ahead below 16 channels on GPUs with 16-wide SIMD; no GPU has been measured here.
+inline constexpr Method kDefaultMethod = Method::kDpeptBatch;
 
 const char* to_string(Method method);
 

@@ -40,7 +40,7 @@ class Renderer final : public Backend {
       : options_(options),
         settings_(settings),
         host_(scene, derived),
-        method_(options.method.value_or(gpu::preferred_method(scene.channels.size()))),
+        method_(options.method.value_or(gpu::kDefaultMethod)),
         context_(gpu::select_device(options.device), {.profiling = true}) {
     limit_memory();
     repeated([] {});

@@ -16,7 +16,7 @@ namespace kiloband {
 struct OpenclOptions {
   std::optional<std::string> device;  // index or part of the name; nothing: the first GPU, else what there is
   std::optional<uint64_t> device_memory;  // bytes; nothing: gpu::default_memory_budget
-  std::optional<gpu::Method> method;      // nothing: by the number of channels (preferred_method)
+  std::optional<gpu::Method> method;      // nothing: gpu::kDefaultMethod
   bool specialised = true;                // kernels compiled for the scene's features only
   bool program_cache = true;              // binaries on disk
   double launch_seconds = 0.5;            // longest launch aimed at: display drivers kill long ones

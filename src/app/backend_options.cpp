@@ -76,7 +76,7 @@ void BackendOptions::add_to(CLI::App& command, bool with_method) {
   if (!with_method) return;
   command
       .add_option("--method", method,
-                  "opencl: evaluation of paths (default: by the number of channels, see ARCHITECTURE.md)")
+                  "opencl: how paths are evaluated (default dpept-batch); all give the same image")
       ->check(CLI::IsMember({"dpept-batch", "dpept-path", "pt"}));
 }
 
