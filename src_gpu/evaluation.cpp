@@ -6,6 +6,8 @@ namespace kiloband::gpu {
 namespace {
 
 constexpr uint64_t kLocalSize = 64;
+/// Film values that a launch clears: 8 MiB.
+constexpr uint64_t kClearItems = 1u << 20;
 constexpr uint32_t kEvaluationArguments = 13, kFilmArguments = 5;
 /// Means are downloaded in pieces of at most this many bytes and at most this part of the film, unless that
 /// is little.
@@ -180,7 +182,9 @@ void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, co
 void Evaluation::clear(uint64_t pixels) {
   clear_.set(sum_, compensation_, counts_,
              static_cast<uint32_t>(shape_.film_transposed ? film_pixels_ : pixels), layout_.film_columns);
-  clear_.launch((shape_.film_transposed ? film_pixels_ : pixels) * layout_.film_columns, kLocalSize);
+  const uint64_t items = (shape_.film_transposed ? film_pixels_ : pixels) * layout_.film_columns;
+  for (uint64_t first = 0; first < items; first += kClearItems)
+    clear_.launch(std::min(kClearItems, items - first), kLocalSize, first);
 }
 
 void Evaluation::resample(const KbRound& round) {

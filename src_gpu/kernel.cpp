@@ -48,12 +48,12 @@ void Kernel::set_raw(uint32_t index, uint64_t bytes, const void* value) {
 
 cl::Event Kernel::launch_event(uint64_t items, uint64_t local) {
   cl::Event event;
-  enqueue(items, local, &event);
+  enqueue(items, local, 0, &event);
   return event;
 }
 
-void Kernel::launch(uint64_t items, uint64_t local) {
-  enqueue(items, local, nullptr);
+void Kernel::launch(uint64_t items, uint64_t local, uint64_t first) {
+  enqueue(items, local, first, nullptr);
 }
 
 double Kernel::launch_timed(uint64_t items, uint64_t local) {
@@ -63,14 +63,14 @@ double Kernel::launch_timed(uint64_t items, uint64_t local) {
   return seconds_of(*context_, event);
 }
 
-void Kernel::enqueue(uint64_t items, uint64_t local, cl::Event* event) {
+void Kernel::enqueue(uint64_t items, uint64_t local, uint64_t first, cl::Event* event) {
   if (items == 0) return;
   const cl::NDRange global(local == 0 ? items : round_up(items, local));
   const cl::NDRange group = local == 0 ? cl::NullRange : cl::NDRange(local);
   cl::Event own;
   if (!event && context_->options().profiling) event = &own;
   checked(site(Phase::kRun), [&] {
-    context_->queue().enqueueNDRangeKernel(kernel_, cl::NullRange, global, group, nullptr, event);
+    context_->queue().enqueueNDRangeKernel(kernel_, cl::NDRange(first), global, group, nullptr, event);
   });
   if (context_->options().profiling) context_->record(scale_, name_, *event);
 }

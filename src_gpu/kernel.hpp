@@ -36,10 +36,11 @@ class Kernel {
     return *this;
   }
 
-  /// Enqueues work-items 0 .. items - 1, in groups of `local` (0: the driver chooses). With a local size the
-  /// number of work-items is rounded up to whole groups: the kernel compares its global id with its number of
-  /// items. No items: no launch. throws DeviceLost, DeviceOutOfMemory, DeviceError  naming the kernel
-  void launch(uint64_t items, uint64_t local = 0);
+  /// Enqueues work-items first .. first + items - 1, in groups of `local` (0: the driver chooses). With a
+  /// local size the number of work-items is rounded up to whole groups: the kernel compares its global id
+  /// with its number of items. No items: no launch. throws DeviceLost, DeviceOutOfMemory, DeviceError  naming
+  /// the kernel
+  void launch(uint64_t items, uint64_t local = 0, uint64_t first = 0);
   /// The same, waits for it. The context must have profiling.
   /// returns seconds on the device
   double launch_timed(uint64_t items, uint64_t local = 0);
@@ -73,7 +74,7 @@ class Kernel {
   }
   void set_raw(uint32_t index, uint64_t bytes, const void* value);
   void check_count(uint64_t count) const;
-  void enqueue(uint64_t items, uint64_t local, cl::Event* event);
+  void enqueue(uint64_t items, uint64_t local, uint64_t first, cl::Event* event);
   CallSite site(Phase phase) const;
 
   DeviceContext* context_;

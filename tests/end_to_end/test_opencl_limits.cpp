@@ -107,7 +107,7 @@ TEST(OpenclLimits, LongPathsInLittleMemory) {
 /// over all paths of a round (dpept) are held against those without a limit, which are ten times as long as
 /// the given time.
 TEST(OpenclLimits, LaunchesAreShort) {
-  const FlatScene scene = closed_room(64, 8, "400:700:1000");
+  const FlatScene scene = closed_room(64, 12, "400:700:1600");
   for (const gpu::Method method : {gpu::Method::kDpeptBatch, gpu::Method::kDpeptPath}) {
     OpenclOptions options;
     options.method = method;
