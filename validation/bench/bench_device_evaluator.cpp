@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <random>
 #include <thread>
 
 #include "src_cpu/evaluator.hpp"
 #include "tests/unit/gpu_evaluator/device_evaluator.hpp"
+#include "validation/bench/synthetic_paths.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -33,48 +33,6 @@ double best_seconds(const std::function<void()>& work) {
     if (i > 0) best = std::min(best, processor_seconds() - start);
   }
   return best;
-}
-
-FlatScene make_scene(std::size_t channels) {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> uniform(0.1, 0.9);
-  FlatScene scene;
-  const double step = 400.0 / static_cast<double>(channels);
-  for (std::size_t k = 0; k < channels; ++k)
-    scene.channels.push_back(
-        {380 + step * static_cast<double>(k), 380 + step * static_cast<double>(k + 1), {}});
-  scene.channel_scale.assign(channels, 1.0);
-  for (int s = 0; s < 6; ++s) {
-    SpectrumRow row;
-    row.table = {380, 5, {}, true, 0};
-    for (int i = 0; i <= 80; ++i) row.table.values.push_back(uniform(random));
-    row.is_emission = s == 5;
-    scene.spectra.push_back(row);
-  }
-  return scene;
-}
-
-/// One path per job; a light sample at three vertices of four.
-PathBuffer make_paths() {
-  std::mt19937 random(2);
-  std::uniform_real_distribution<float> uniform(0.1f, 0.9f);
-  std::poisson_distribution<int> extra(4.0);
-  PathBuffer paths;
-  for (uint32_t job = 0; job < kPixels * kSamples; ++job) {
-    const uint32_t count = 1 + static_cast<uint32_t>(extra(random));
-    paths.paths.push_back({static_cast<uint32_t>(paths.slots.size()), count, job % kBlockPixels});
-    for (uint32_t v = 0; v < count; ++v) {
-      KbPathVertex vertex{};
-      vertex.head = KB_KIND_SCALED | (uniform(random) < 0.7f ? KB_VERTEX_NEE : 0u);
-      if (v + 1 < count) vertex.head |= KB_VERTEX_SCATTER;
-      vertex.row_a = static_cast<uint16_t>(random() % 5);
-      vertex.nee_row = 5;
-      vertex.nee0 = uniform(random);
-      vertex.scatter0 = uniform(random);
-      paths.slots.push_back(vertex);
-    }
-  }
-  return paths;
 }
 
 RoundOfPaths make_round(uint32_t blocks, uint32_t samples) {
@@ -148,9 +106,9 @@ double triad_bandwidth(std::size_t bytes) {
 }
 
 void bench(std::size_t channels) {
-  const FlatScene scene = make_scene(channels);
+  const FlatScene scene = synthetic_scene(channels);
   const gpu::ChannelTables tables = gpu::make_channel_tables(scene, {});
-  const PathBuffer paths = make_paths();
+  const PathBuffer paths = synthetic_paths(kPixels * kSamples, kBlockPixels, 4.0, 0.7f);
   const RoundOfPaths round = make_round(kBlocks, kSamples);
   EvaluatorBuild build;
   build.vectors = std::min<uint32_t>(8, static_cast<uint32_t>((channels + 15) / 16));

@@ -11,58 +11,16 @@
 #include <string>
 
 #include "src_cpu/evaluator.hpp"
+#include "validation/bench/synthetic_paths.hpp"
 
 namespace kiloband {
 namespace {
 
 constexpr std::size_t kPixels = 1024;
 
-FlatScene make_scene(std::size_t channels) {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> uniform(0.1, 0.9);
-  FlatScene scene;
-  for (std::size_t k = 0; k < channels; ++k) {
-    const double step = 400.0 / static_cast<double>(channels);
-    scene.channels.push_back(
-        {380 + step * static_cast<double>(k), 380 + step * static_cast<double>(k + 1), {}});
-  }
-  scene.channel_scale.assign(channels, 1.0);
-  for (int s = 0; s < 6; ++s) {
-    SpectrumRow row;
-    row.table = {380, 5, {}, false, 0};
-    for (int i = 0; i <= 80; ++i) row.table.values.push_back(uniform(random));
-    row.is_emission = s == 5;
-    scene.spectra.push_back(row);
-  }
-  return scene;
-}
-
-PathBuffer make_paths() {
-  std::mt19937 random(2);
-  std::uniform_real_distribution<float> uniform(0.1f, 0.9f);
-  std::poisson_distribution<int> extra(2.0);
-  PathBuffer paths;
-  for (uint32_t pixel = 0; pixel < kPixels; ++pixel) {
-    SavedPath path{static_cast<uint32_t>(paths.slots.size()), 1 + static_cast<uint32_t>(extra(random)),
-                   pixel};
-    for (uint32_t v = 0; v < path.count; ++v) {
-      KbPathVertex vertex{};
-      vertex.head = KB_KIND_SCALED | (uniform(random) < 0.75f ? KB_VERTEX_NEE : 0u);
-      if (v + 1 < path.count) vertex.head |= KB_VERTEX_SCATTER;
-      vertex.row_a = static_cast<uint16_t>(random() % 5);
-      vertex.nee_row = 5;
-      vertex.nee0 = uniform(random);
-      vertex.scatter0 = uniform(random);
-      paths.slots.push_back(vertex);
-    }
-    paths.paths.push_back(path);
-  }
-  return paths;
-}
-
 void evaluate(benchmark::State& state, Isa isa, std::size_t channels, bool shared, bool derived) {
-  const FlatScene scene = make_scene(channels);
-  const PathBuffer paths = make_paths();
+  const FlatScene scene = synthetic_scene(channels);
+  const PathBuffer paths = synthetic_paths(kPixels, kPixels, 2.0, 0.75f);
   DerivedChannels responses;
   for (int d = 0; derived && d < 3; ++d) {
     responses.names.push_back(std::string(1, "XYZ"[d]));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "backend_images.hpp"
@@ -99,16 +100,23 @@ TEST_F(Methods, AgreeForAnyNumberOfChannelsWithResponses) {
   }
 }
 
-/// Scenes that together need every feature. The kernels are the same text with parts left out, without
-/// contraction: the same bits.
+/// The kernels are the same text with parts left out, without contraction: the same bits. By default scenes
+/// that together need every feature; with KILOBAND_THOROUGH set, every scene and method (minutes of kernel
+/// builds).
 TEST_F(Methods, SpecialisedKernelsGiveTheSameBits) {
-  for (const char* name : {"diffuse_room", "crop_window", "hidden_emitters"}) {
+  const bool thorough = std::getenv("KILOBAND_THOROUGH") != nullptr;
+  std::vector<std::string> scenes{"diffuse_room", "crop_window", "hidden_emitters"};
+  std::vector<std::string> methods{"opencl:dpept-batch"};
+  if (thorough) {
+    scenes.clear();
+    for (const ZooScene& zoo : scene_zoo()) scenes.push_back(zoo.name);
+    methods.assign(kOpenclMethods.begin(), kOpenclMethods.end());
+  }
+  for (const std::string& name : scenes) {
     const FlatScene scene = folder_.flatten(zoo_scene(name));
-    const OpenclOptions specialised;
-    for (const std::string& method : {std::string("opencl:dpept-batch")}) {
+    for (const std::string& method : methods) {
       expect_same_bits(image(method, scene, {}, WavelengthMode::kShared),
-                       image(method, scene, {}, WavelengthMode::kShared, specialised),
-                       std::string(name) + ", " + method);
+                       image(method, scene, {}, WavelengthMode::kShared, {}), name + ", " + method);
     }
   }
 }
