@@ -35,19 +35,29 @@ struct Absorption {
   double water = 0, mixed = 0, ozone = 0;
 };
 
-template <class Rows>
-Absorption interpolate(const Rows& rows, double lambda_nm) {
+/// Coefficients between two rows of a table.
+template <class Rows, class Mix>
+Absorption interpolate(const Rows& rows, double lambda_nm, const Mix& mix) {
   const auto above = std::lower_bound(std::begin(rows) + 1, std::end(rows) - 1, lambda_nm,
                                       [](const auto& row, double nm) { return row.lambda_nm < nm; });
   const auto below = above - 1;
   const double t =
       std::clamp((lambda_nm - below->lambda_nm) / (above->lambda_nm - below->lambda_nm), 0.0, 1.0);
-  const auto mix = [t](double a, double b) { return (1 - t) * a + t * b; };
-  return {mix(below->water, above->water), mix(below->mixed, above->mixed), mix(below->ozone, above->ozone)};
+  return {mix(below->water, above->water, t), mix(below->mixed, above->mixed, t),
+          mix(below->ozone, above->ozone, t)};
+}
+
+double linear_mix(double a, double b, double t) {
+  return (1 - t) * a + t * b;
+}
+/// The coarse rows of the infrared change by powers of ten from one to the next.
+double geometric_mix(double a, double b, double t) {
+  return a > 0 && b > 0 ? std::exp(linear_mix(std::log(a), std::log(b), t)) : linear_mix(a, b, t);
 }
 
 Absorption absorption(double lambda_nm) {
-  return lambda_nm <= kTableEndNm ? interpolate(kSpctral2, lambda_nm) : interpolate(kInfrared, lambda_nm);
+  return lambda_nm <= kTableEndNm ? interpolate(kSpctral2, lambda_nm, linear_mix)
+                                  : interpolate(kInfrared, lambda_nm, geometric_mix);
 }
 
 /// Band functions (Bird and Riordan 1984, equations 2-8 and 2-11): optical depths that grow like the square

@@ -26,18 +26,19 @@ const std::string kField =
 /// samples: the standard error is 0.3 %, 2 % would be missed once in a billion runs.
 TEST(Sky, LightsAFieldAsTheModelSays) {
   const TemporaryFolder folder;
-  const Outcome sky =
-      run_program(folder, {"sky", "sky.exr", "--elevation", "35", "--azimuth", "120", "--size", "64x33",
-                           "--bands", "500-510, 540-560, 9000-10000", "--preview", "sky.png"});
+  const Outcome sky = run_program(
+      folder, {"sky", "sky.exr", "--elevation", "35", "--azimuth", "120", "--size", "64x33", "--bands",
+               "500-510, 540-560, 560-580, 8000-9000, 9000-10000, 10000-11000", "--preview", "sky.png"});
   ASSERT_EQ(sky.code, 0) << sky.err;
-  EXPECT_EQ(sky.err.substr(0, 34), "wrote sky.exr\nwrote sky.png\nin 3 b") << sky.err;
+  EXPECT_EQ(sky.err.substr(0, 34), "wrote sky.exr\nwrote sky.png\nin 6 b") << sky.err;
   folder.write("field.xml", kField);
-  const Outcome outcome = run_program(
-      folder, quiet_render("field.xml", {"--bands", "545-555, 9400-9600", "--spp", "64", "-o", "field.hdr"}));
+  const Outcome outcome = run_program(folder, quiet_render("field.xml", {"--bands", "545-555, 9000-10000",
+                                                                         "--spp", "64", "-o", "field.hdr"}));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Cube cube = read_cube(folder / "field.hdr");
   double mean[2] = {};
-  for (std::size_t i = 0; i < cube.mean.size(); ++i) mean[i % 2] += cube.mean[i] / cube.pixels();
+  for (std::size_t i = 0; i < cube.mean.size(); ++i)
+    mean[i % 2] += cube.mean[i] / static_cast<double>(cube.pixels());
   const ClearSky model({.sun_elevation_deg = 35, .sun_azimuth_deg = 120});
   const double up = std::sin(35 * std::numbers::pi / 180);
   const auto irradiance = [&](double low, double high) {
@@ -45,8 +46,14 @@ TEST(Sky, LightsAFieldAsTheModelSays) {
            model.aerosol().mean(low, high) + model.reflected().mean(low, high) +
            model.thermal_irradiance(low, high) / (high - low);
   };
-  EXPECT_NEAR(mean[0] / (0.5 / std::numbers::pi * 10 * irradiance(540, 560)), 1, 0.02);
-  EXPECT_NEAR(mean[1] / (0.5 / std::numbers::pi * 200 * irradiance(9000, 10000)), 1, 0.02);
+  // Between band centres the map is linear in wavelength: 550 is a centre, 505 and 570 are the next ones; the
+  // whole of a band among equal ones sees an eighth of each neighbour.
+  const double visible = 0.5 * (0.9444 * irradiance(540, 560) + 0.0556 * irradiance(500, 510)) +
+                         0.5 * (0.875 * irradiance(540, 560) + 0.125 * irradiance(560, 580));
+  const double infrared =
+      (irradiance(8000, 9000) + 6 * irradiance(9000, 10000) + irradiance(10000, 11000)) / 8;
+  EXPECT_NEAR(mean[0] / (0.5 / std::numbers::pi * 10 * visible), 1, 0.02);
+  EXPECT_NEAR(mean[1] / (0.5 / std::numbers::pi * 1000 * infrared), 1, 0.02);
 }
 
 TEST(Sky, WritesEnviDensities) {

@@ -78,9 +78,10 @@ TEST(ClearSky, ScatteredLightIsBlue) {
   EXPECT_EQ(sky.aerosol().integral(300, 4000), 0);
 }
 
-/// Prata 1996: emissivity 1 - (1 + w) exp(-sqrt(1.2 + 3 w)), w = 46.5 e / T cm, e in hPa. Required: 15 %.
-/// Seen: 8 % in the driest, coldest air, 4 % elsewhere.
+/// Prata 1996: emissivity 1 - (1 + w) exp(-sqrt(1.2 + 3 w)), w = 46.5 e / T cm, e in hPa. Required: 15 %;
+/// held here: 10 % below half a centimetre of water, 5 % elsewhere. What is seen is recorded.
 TEST(ClearSky, ThermalRadiationOfTheAirAgreesWithPrata) {
+  double lowest = 0, highest = 0, lowest_of_dry = 0;
   for (const double temperature : {263.0, 273.0, 283.0, 293.0, 303.0}) {
     for (const double humidity : {0.3, 0.6, 0.9}) {
       const double celsius = temperature - 273.15;
@@ -90,13 +91,19 @@ TEST(ClearSky, ThermalRadiationOfTheAirAgreesWithPrata) {
                               std::pow(temperature, 4);
       const ClearSky sky({.water_cm = water, .air_temperature_k = temperature});
       const double irradiance = sky.thermal_irradiance(3000, 100000);
-      EXPECT_NEAR(irradiance / expected, 1, water < 0.2 ? 0.1 : 0.05) << temperature << " K, " << humidity;
+      EXPECT_NEAR(irradiance / expected, 1, water < 0.5 ? 0.1 : 0.05) << temperature << " K, " << humidity;
+      double& low = water < 0.5 ? lowest_of_dry : lowest;
+      low = std::min(low, irradiance / expected - 1);
+      highest = std::max(highest, irradiance / expected - 1);
       if (temperature > 270 && temperature < 300) {
         EXPECT_GT(irradiance, 200);
         EXPECT_LT(irradiance, 400);
       }
     }
   }
+  RecordProperty("lowest", std::to_string(lowest));
+  RecordProperty("lowest_of_dry_air", std::to_string(lowest_of_dry));
+  RecordProperty("highest", std::to_string(highest));
 }
 
 /// The window from 8 to 13 um is colder than the bands beside it, and colder at the zenith than at the
@@ -144,7 +151,7 @@ TEST(ClearSky, AgreesWithTheReferenceSpectrum) {
 /// MODTRAN 5, mid-latitude summer, the lowest kilometre straight down, which has 11.4 % of the air, 40 % of
 /// the 2.9 cm of water and an aerosol of about 0.02. Only where the file is at hand. Two paths stand for it:
 /// one with its gases for 4 to 5 um, one with its water beyond, which has 62 % of its continuum. This is what
-/// the infrared coefficients were fitted to; means over 1 um agree within 0.09.
+/// the infrared coefficients were fitted to; means over 1 um agree within 0.07.
 TEST(ClearSky, AgreesWithTransmissionsOfTheLowestKilometre) {
   const std::filesystem::path file =
       data_directory() / "spectra" / "atmosphere" / "modtran_ihaze1_alt1000m_range0m.csv";
@@ -160,7 +167,7 @@ TEST(ClearSky, AgreesWithTransmissionsOfTheLowestKilometre) {
       const auto t = nm < 5000 ? gases.transmission(lambda_nm, 0.116) : water.transmission(lambda_nm, 0.4);
       mean += t.air * std::exp(-0.02) / 100;
     }
-    EXPECT_NEAR(mean, reference.mean(nm, nm + 1000), 0.09) << nm;
+    EXPECT_NEAR(mean, reference.mean(nm, nm + 1000), 0.07) << nm;
     largest = std::max(largest, std::abs(mean - reference.mean(nm, nm + 1000)));
   }
   RecordProperty("largest_difference", std::to_string(largest));
