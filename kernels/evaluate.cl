@@ -8,8 +8,8 @@
 //   dpept_path   EVALUATION, saved, FILM               round pixels; a work-item evaluates the paths of one pixel
 //   derived_add  layout, FILM, partial, pixels, parts  pixels * D, after dpept_batch; only if there are derived channels
 //
-//   EVALUATION (13): layout, rows, tables, material_rows, cover, cover_breaks, materials, textures, texels, round,
-//                    round_pixels, arena, chunk_next. `rows` is `dense` of resample_rows, with KB_PER_PATH=1 `nodes`.
+//   EVALUATION (14): layout, rows, tables, material_rows, cover, cover_breaks, materials, textures, texels,
+//                    texel_values, round, round_pixels, arena, chunk_next. `rows` is `dense` of resample_rows, with KB_PER_PATH=1 `nodes`.
 //   FILM (5):        sum, compensation, counts, film_pixels, film_first (the film pixel of the round's pixel 0)
 //   saved:           KbSavedPath by job
 //   partial:         [round pixel][work-item of the group][D] floats, parts = local size of dpept_batch; not touched if

@@ -36,6 +36,7 @@ hwy::AlignedFreeUniquePtr<T[]> aligned_zeros(std::size_t n) {
 }
 template hwy::AlignedFreeUniquePtr<float[]> aligned_zeros<float>(std::size_t);
 template hwy::AlignedFreeUniquePtr<double[]> aligned_zeros<double>(std::size_t);
+template hwy::AlignedFreeUniquePtr<int32_t[]> aligned_zeros<int32_t>(std::size_t);
 
 DenseSpectra::DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kernels)
     : scene_(scene),

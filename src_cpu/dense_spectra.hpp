@@ -45,6 +45,7 @@ struct DenseSpectra {
   }
   /// width_k / channel_scale_k: emission of 1 W m^-2 sr^-1 nm^-1.
   const float* unit_emission() const { return unit_emission_.get(); }
+  double emission_factor(std::size_t channel) const { return emission_factor_[channel]; }
   const float* zeros() const { return zeros_.get(); }
   /// clamp(lambda_k, 360, 830), nm, in double: where textures are evaluated.
   const double* texture_lambda();

@@ -43,6 +43,30 @@ double texel_value(const KbFloat4& texel, double lambda_nm) {
   return texel.w * (0.5 + v / (2 * std::sqrt(1 + v * v)));
 }
 
+/// One value of a spectral texel that is given at band centres.
+double band_value(const BandSet& set, const float* values, double lambda_nm) {
+  if (!set.extrapolate && (lambda_nm < set.min_nm || lambda_nm > set.max_nm)) return 0;
+  const std::vector<double>& c = set.centres_nm;
+  if (lambda_nm <= c.front()) return set.scale * values[0];
+  std::size_t i = 1;
+  while (i < c.size() && lambda_nm > c[i]) ++i;
+  if (i == c.size()) return set.scale * values[i - 1];
+  const double t = (lambda_nm - c[i - 1]) / (c[i] - c[i - 1]);
+  return set.scale * ((1 - t) * values[i - 1] + t * values[i]);
+}
+
+/// A texel at the point's wavelength, per nm; texel: its number in the texture.
+double texel_at(const Point& at, uint32_t texture, std::size_t texel) {
+  const KbTexture& t = at.scene.textures[texture];
+  if (!(t.flags & KB_TEXTURE_SPECTRAL))
+    return texel_value(at.scene.texels[t.first_texel + texel], at.lambda_nm);
+  const float* values = at.scene.spectral_texels[texture]->data() + texel * t.values;
+  if (t.flags & KB_TEXTURE_BANDS) return band_value(at.scene.band_sets[t.first_row], values, at.lambda_nm);
+  double sum = 0;
+  for (uint32_t p = 0; p < t.values; ++p) sum += values[p] * spectrum(at, t.first_row + p);
+  return sum;
+}
+
 double textured(const Point& at, const KbTextureSample& sample, bool emission) {
   const KbTexture& t = at.scene.textures[sample.texture];
   const bool environment = (t.flags & KB_TEXTURE_ENVMAP) != 0;
@@ -50,7 +74,7 @@ double textured(const Point& at, const KbTextureSample& sample, bool emission) {
   const uint32_t x1 = wrapped(x0 + 1, t.width, environment ? KB_WRAP_REPEAT : t.wrap);
   const uint32_t y1 = wrapped(y0 + 1, t.height, environment ? KB_WRAP_CLAMP : t.wrap);
   const auto texel = [&](uint32_t x, uint32_t y) {
-    return texel_value(at.scene.texels[t.first_texel + std::size_t{y} * t.width + x], at.lambda_nm);
+    return texel_at(at, sample.texture, std::size_t{y} * t.width + x);
   };
   const double fx = sample.fx, fy = sample.fy;
   const double top = (1 - fx) * texel(x0, y0) + fx * texel(x1, y0);

@@ -16,7 +16,7 @@ struct Evaluator::Impl {
         derived_offset(pad_channels(scene.channels.size())),
         spectra(scene, kernels),
         derived_rows(scene, derived, kernels, derived_offset),
-        builder(scene) {
+        builder(scene, kernels) {
     const std::size_t groups = (derived_offset + pad_channels(derived_rows.count())) / kRowPadding;
     stride = (groups | 1) * kRowPadding;
   }

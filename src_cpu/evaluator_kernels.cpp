@@ -240,7 +240,32 @@ void sample_table(const FloatTable& table, const double* lambda_nm, std::size_t 
   }
 }
 
-inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table};
+void weighted_sum(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
+                  float* out) {
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    Floats sum = hn::Zero(kTag);
+    for (std::size_t r = 0; r < rows; ++r) sum = hn::MulAdd(constant(weights[r]), load(row[r], i), sum);
+    hn::StoreU(sum, kTag, out + i);
+  }
+  for (; i < count; ++i) {
+    float sum = 0;
+    for (std::size_t r = 0; r < rows; ++r) sum += weights[r] * row[r][i];
+    out[i] = sum;
+  }
+}
+
+void mix_bands(const float* values, const int32_t* index, const float* first, const float* second,
+               std::size_t count, float* out) {
+  const hn::RebindToSigned<Tag> index_tag;
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const auto at = hn::LoadU(index_tag, index + i);
+    const Floats a = hn::GatherIndex(kTag, values, at), b = hn::GatherIndex(kTag, values + 1, at);
+    hn::StoreU(hn::MulAdd(load(second, i), b, hn::Mul(load(first, i), a)), kTag, out + i);
+  }
+}
+
+inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, weighted_sum, mix_bands};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kiloband

@@ -102,6 +102,14 @@ struct EvaluatorKernels {
   void (*evaluate_path)(const PathProgram& path, float* film);
   /// out[i] = table(lambda_nm[i]) for i < count rounded up to kMaxLanes; positions in double.
   void (*sample_table)(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out);
+  /// out[i] = sum over r < rows of weights[r] * row[r][i], i < count. Nothing is read or written beyond
+  /// count.
+  void (*weighted_sum)(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
+                       float* out);
+  /// out[i] = first[i] * values[index[i]] + second[i] * values[index[i] + 1], i < count rounded up to
+  /// kMaxLanes.
+  void (*mix_bands)(const float* values, const int32_t* index, const float* first, const float* second,
+                    std::size_t count, float* out);
 };
 
 /// isa: resolved, not kAuto.

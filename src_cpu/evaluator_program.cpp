@@ -6,16 +6,10 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "src_cpu/texel_corners.hpp"
+
 namespace kiloband {
 namespace {
-
-uint32_t wrap_texel(uint32_t i, uint32_t size, uint32_t wrap) {
-  if (i < size) return i;
-  if (wrap == KB_WRAP_REPEAT) return i % size;
-  if (wrap == KB_WRAP_CLAMP) return size - 1;
-  const uint32_t j = i % (2 * size);
-  return j < size ? j : 2 * size - 1 - j;
-}
 
 /// One term of a lookup. A flat texel is evaluated here, in double: S(1e10) is exactly 1.
 void add_texel(TextureTerms& terms, double& constant, const KbFloat4& texel, double weight) {
@@ -50,6 +44,7 @@ void ProgramBuilder::reserve(std::size_t slots) {
   generals_.clear();
   textures_.clear();
   textured_ = false;
+  spectral_.begin_path();
   if (generals_.capacity() >= slots) return;
   slots = std::max<std::size_t>(64, 2 * slots);
   steps_.reserve(2 * slots);
@@ -66,7 +61,7 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> slots, DenseSpec
     if (next > slots.size()) throw std::logic_error("saved path: texture samples are missing");
     KbTextureSample copies[4];
     if (samples > 0) std::memcpy(copies, &slots[i] + 1, samples * sizeof(KbTextureSample));
-    add_vertex(vertex, copies, next == slots.size(), spectra);
+    add_vertex(vertex, sources(vertex, copies, spectra), next == slots.size(), spectra);
     i = next;
   }
   PathProgram program;
@@ -77,61 +72,61 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> slots, DenseSpec
   return program;
 }
 
-void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const KbTextureSample* samples, bool last,
+ProgramBuilder::Sources ProgramBuilder::sources(const KbPathVertex& vertex, const KbTextureSample* samples,
+                                                DenseSpectra& spectra) {
+  const uint32_t head = vertex.head, kind = head & KB_VERTEX_KIND_MASK;
+  const bool reflects = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
+  const auto source = [&](uint32_t flag, bool used, uint32_t row, bool emission) -> SpectralSource {
+    if (head & flag) return texture(*samples++, emission, spectra);
+    return {used ? spectra.spectrum(row) : nullptr, nullptr};
+  };
+  const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
+  Sources from;
+  from.a = source(KB_VERTEX_TEX_A, reflects, vertex.row_a, false);
+  from.b = source(KB_VERTEX_TEX_B, reflects && two, vertex.row_b, false);
+  from.emit = source(KB_VERTEX_TEX_EMIT, head & KB_VERTEX_EMIT, vertex.emit_row, true);
+  from.nee = source(KB_VERTEX_TEX_NEE, head & KB_VERTEX_NEE, vertex.nee_row, true);
+  return from;
+}
+
+void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const Sources& from, bool last,
                                 DenseSpectra& spectra) {
   const uint32_t head = vertex.head;
-  if ((head & (KB_VERTEX_EMIT | KB_VERTEX_TEX_EMIT)) == KB_VERTEX_EMIT) {
-    steps_.push_back(
-        {StepKind::kEmit, vertex.emit_weight, 0, nullptr, spectra.spectrum(vertex.emit_row), nullptr});
-  }
+  if ((head & KB_VERTEX_EMIT) && !from.emit.texture)
+    steps_.push_back({StepKind::kEmit, vertex.emit_weight, 0, nullptr, from.emit.row, nullptr});
   const bool nee = head & KB_VERTEX_NEE;
   const bool scatter = head & KB_VERTEX_SCATTER;
-  if ((head & (KB_VERTEX_DEGRADE | KB_VERTEX_TEX_MASK)) || (head & KB_VERTEX_KIND_MASK) != KB_KIND_SCALED ||
+  if ((head & KB_VERTEX_DEGRADE) || from.any_colour() || (head & KB_VERTEX_KIND_MASK) != KB_KIND_SCALED ||
       (nee && !scatter && !last)) {
-    add_general(vertex, samples, spectra);
+    add_general(vertex, from, spectra);
     return;
   }
   if (!nee && !scatter) return;
   // No light sample: a row of zeros costs less than a branch. After the last vertex nobody reads the
   // throughput.
-  steps_.push_back({StepKind::kScaled, nee ? vertex.nee0 : 0, scatter ? vertex.scatter0 : 0,
-                    spectra.spectrum(vertex.row_a), nee ? spectra.spectrum(vertex.nee_row) : spectra.zeros(),
-                    nullptr});
+  steps_.push_back({StepKind::kScaled, nee ? vertex.nee0 : 0, scatter ? vertex.scatter0 : 0, from.a.row,
+                    nee ? from.nee.row : spectra.zeros(), nullptr});
 }
 
-void ProgramBuilder::add_general(const KbPathVertex& vertex, const KbTextureSample* samples,
-                                 DenseSpectra& spectra) {
+void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra) {
   const uint32_t head = vertex.head;
   const uint32_t material = head >> KB_VERTEX_MATERIAL_SHIFT;
   GeneralVertex& out = generals_.emplace_back();
   out.kind = head & KB_VERTEX_KIND_MASK;
   out.flags = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
+  if (from.emit.texture) out.flags |= head & KB_VERTEX_EMIT;
   out.emit_weight = vertex.emit_weight;
   out.nee0 = vertex.nee0;
   out.nee1 = vertex.nee1;
   out.scatter0 = vertex.scatter0;
   out.scatter1 = vertex.scatter1;
   if (head & KB_VERTEX_DEGRADE) out.survivor = kb_as_u32(vertex.scatter1);
+  out.a = from.a;
+  out.b = from.b;
+  out.emit = from.emit;
+  out.nee = from.nee;
 
   const bool reflects = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
-  const bool two = out.kind == KB_KIND_TWO_TERM || out.kind == KB_KIND_NONLINEAR;
-  if (head & KB_VERTEX_TEX_A)
-    out.a.texture = texture(*samples++, false, spectra);
-  else if (reflects)
-    out.a.row = spectra.spectrum(vertex.row_a);
-  if (head & KB_VERTEX_TEX_B)
-    out.b.texture = texture(*samples++, false, spectra);
-  else if (reflects && two)
-    out.b.row = spectra.spectrum(vertex.row_b);
-  if (head & KB_VERTEX_TEX_EMIT) {
-    out.emit.texture = texture(*samples++, true, spectra);
-    out.flags |= head & KB_VERTEX_EMIT;
-  }
-  if (head & KB_VERTEX_TEX_NEE)
-    out.nee.texture = texture(*samples++, true, spectra);
-  else if (head & KB_VERTEX_NEE)
-    out.nee.row = spectra.spectrum(vertex.nee_row);
-
   if (reflects && out.kind == KB_KIND_NONLINEAR) {
     if (material >= scene_.materials.size()) throw std::logic_error("saved path: material does not exist");
     out.fdr_int = scene_.materials[material].fdr_int;
@@ -163,30 +158,22 @@ void ProgramBuilder::add_fresnel(GeneralVertex& out, uint32_t material, DenseSpe
 }
 
 /// emission: the value stands for radiance, and its factor brings it to film units.
-const TextureTerms* ProgramBuilder::texture(const KbTextureSample& sample, bool emission,
-                                            DenseSpectra& spectra) {
+SpectralSource ProgramBuilder::texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra) {
   if (sample.texture >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
   const KbTexture& t = scene_.textures[sample.texture];
-  const bool environment = t.flags & KB_TEXTURE_ENVMAP;
-  const uint32_t wrap_x = environment ? KB_WRAP_REPEAT : t.wrap;
-  const uint32_t wrap_y = environment ? KB_WRAP_CLAMP : t.wrap;
+  if (t.flags & KB_TEXTURE_SPECTRAL) return {spectral_.row(sample, spectra), nullptr};
   TextureTerms& terms = textures_.emplace_back();
+  const TexelCorners corners(t, sample);
   double constant = 0;
-  for (uint32_t corner = 0; corner < 4; ++corner) {
-    const uint32_t dx = corner & 1, dy = corner >> 1;
-    const uint32_t x = wrap_texel((sample.xy & 0xffffu) + dx, t.width, wrap_x);
-    const uint32_t y = wrap_texel((sample.xy >> 16) + dy, t.height, wrap_y);
-    const double fx = sample.fx, fy = sample.fy;
-    const std::size_t index = t.first_texel + static_cast<std::size_t>(y) * t.width + x;
-    add_texel(terms, constant, scene_.texels[index], (dx ? fx : 1 - fx) * (dy ? fy : 1 - fy));
-  }
+  for (int c = 0; c < 4; ++c)
+    add_texel(terms, constant, scene_.texels[t.first_texel + corners.texel[c]], corners.weight[c]);
   terms.constant = static_cast<float>(constant);
   if (t.illuminant_row != KB_NONE)
     terms.factor = spectra.spectrum(t.illuminant_row);
   else if (emission)
     terms.factor = spectra.unit_emission();
   textured_ |= terms.count > 0;
-  return &terms;
+  return {nullptr, &terms};
 }
 
 }  // namespace kiloband

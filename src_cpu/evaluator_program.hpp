@@ -7,29 +7,40 @@
 
 #include "src_cpu/dense_spectra.hpp"
 #include "src_cpu/path_buffer.hpp"
+#include "src_cpu/spectral_textures.hpp"
 
 namespace kiloband {
 
 class ProgramBuilder {
  public:
-  explicit ProgramBuilder(const FlatScene& scene) : scene_(scene) {}
+  ProgramBuilder(const FlatScene& scene, const EvaluatorKernels& kernels)
+      : scene_(scene), spectral_(scene, kernels) {}
 
   /// The program of the path in `slots` at the offset of `spectra`; valid until the next call.
   /// throws std::logic_error if the path refers to what the scene does not have
   PathProgram build(std::span<const KbPathVertex> slots, DenseSpectra& spectra);
 
  private:
+  /// The spectral factors that a vertex uses.
+  struct Sources {
+    SpectralSource a, b, emit, nee;
+
+    /// Colours of bitmaps are evaluated channel by channel; all else are rows.
+    bool any_colour() const { return a.texture || b.texture || emit.texture || nee.texture; }
+  };
+
   void reserve(std::size_t slots);
-  void add_vertex(const KbPathVertex& vertex, const KbTextureSample* samples, bool last,
-                  DenseSpectra& spectra);
-  void add_general(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
+  Sources sources(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
+  void add_vertex(const KbPathVertex& vertex, const Sources& from, bool last, DenseSpectra& spectra);
+  void add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra);
   void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
-  const TextureTerms* texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
+  SpectralSource texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
 
   const FlatScene& scene_;
   std::vector<PathStep> steps_;
   std::vector<GeneralVertex> generals_;  // reserved: steps point into it
   std::vector<TextureTerms> textures_;   // reserved: generals point into it
+  SpectralTextures spectral_;
   bool textured_ = false;
 };
 

@@ -120,20 +120,18 @@ ResolvedSpectrum resolve_spectrum(const FlatScene& scene, uint32_t ref, glm::vec
 
 namespace {
 
-/// Indices of the four texels of a lookup. A second texel beyond the end has weight 0 unless the texture
-/// repeats.
+/// Indices of the four texels of a lookup, from the texture's `first` on. A second texel beyond the end has
+/// weight 0 unless the texture repeats.
 struct Corners {
   std::size_t at[4];  // (x0, y0) (x1, y0) (x0, y1) (x1, y1)
 };
 
-Corners corners_of(const FlatScene& scene, const KbTextureSample& sample) {
-  const KbTexture& texture = scene.textures[sample.texture];
+Corners corners_of(const KbTexture& texture, std::size_t first, const KbTextureSample& sample) {
   const uint32_t x0 = sample.xy & 0xffffu, y0 = sample.xy >> 16;
   const bool repeat_x = texture.wrap == KB_WRAP_REPEAT || (texture.flags & KB_TEXTURE_ENVMAP) != 0;
   const bool repeat_y = texture.wrap == KB_WRAP_REPEAT && (texture.flags & KB_TEXTURE_ENVMAP) == 0;
   const uint32_t x1 = x0 + 1 < texture.width ? x0 + 1 : (repeat_x ? 0 : x0);
   const uint32_t y1 = y0 + 1 < texture.height ? y0 + 1 : (repeat_y ? 0 : y0);
-  const std::size_t first = texture.first_texel;
   const std::size_t row0 = first + static_cast<std::size_t>(y0) * texture.width;
   const std::size_t row1 = first + static_cast<std::size_t>(y1) * texture.width;
   return {{row0 + x0, row0 + x1, row1 + x0, row1 + x1}};
@@ -142,7 +140,8 @@ Corners corners_of(const FlatScene& scene, const KbTextureSample& sample) {
 }  // namespace
 
 float bitmap_value(const FlatScene& scene, const KbTextureSample& sample) {
-  const Corners c = corners_of(scene, sample);
+  const KbTexture& texture = scene.textures[sample.texture];
+  const Corners c = corners_of(texture, texture.first_texel, sample);
   const float top = (1 - sample.fx) * scene.texels[c.at[0]].w + sample.fx * scene.texels[c.at[1]].w;
   const float bottom = (1 - sample.fx) * scene.texels[c.at[2]].w + sample.fx * scene.texels[c.at[3]].w;
   return (1 - sample.fy) * top + sample.fy * bottom;
@@ -150,7 +149,8 @@ float bitmap_value(const FlatScene& scene, const KbTextureSample& sample) {
 
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum) {
   if (!spectrum.textured) return scene.spectra[spectrum.row].bound;
-  const Corners c = corners_of(scene, spectrum.texture);
+  const KbTexture& texture = scene.textures[spectrum.texture.texture];
+  const Corners c = corners_of(texture, texture.first_bound, spectrum.texture);
   return std::max({scene.texel_bounds[c.at[0]], scene.texel_bounds[c.at[1]], scene.texel_bounds[c.at[2]],
                    scene.texel_bounds[c.at[3]]});
 }

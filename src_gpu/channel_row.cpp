@@ -193,13 +193,15 @@ double error_of_cells(const RowFunction& row, const ChannelList& channels, uint3
   return CellSearch(row, channels).error(cells, kNoLimit);
 }
 
-void fill_nodes(const RowFunction& row, const ChannelList& channels, std::span<const double> factor,
-                uint32_t cells, std::size_t stride, float* nodes) {
+void fill_nodes(const RowFunction& row, const ChannelList& channels, const RowUnits& units, uint32_t cells,
+                std::size_t stride, float* nodes) {
   for (uint32_t j = 0; j <= cells; ++j) {
     float* out = nodes + j * stride;
     for (std::size_t k = 0; k < channels.size(); ++k) {
-      const double value = node_value(row, channels[k], j, cells);
-      out[k] = static_cast<float>(factor.empty() ? value : value * factor[k]);
+      double value = node_value(row, channels[k], j, cells);
+      if (!units.factor.empty()) value *= units.factor[k];
+      if (!units.shift.empty()) value -= units.shift[k];
+      out[k] = static_cast<float>(value);
     }
   }
 }

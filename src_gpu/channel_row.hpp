@@ -39,9 +39,14 @@ RowCells choose_cells(const RowFunction& row, const ChannelList& channels, doubl
 /// The error of a given number of cells.
 double error_of_cells(const RowFunction& row, const ChannelList& channels, uint32_t cells);
 
-/// nodes[j * stride + k] = factor[k] * row(lambda_k(mu = j / cells)), j = 0 .. cells; factor may be empty
-/// (1). At mu = 0 and 1 a jump counts as outside the channel.
-void fill_nodes(const RowFunction& row, const ChannelList& channels, std::span<const double> factor,
-                uint32_t cells, std::size_t stride, float* nodes);
+/// What is made of a row's values: value * factor[k] - shift[k]; empty: 1 and 0.
+struct RowUnits {
+  std::vector<double> factor, shift;  // by channel
+};
+
+/// nodes[j * stride + k] = row(lambda_k(mu = j / cells)) in the channel's units, j = 0 .. cells. At mu = 0
+/// and 1 a jump counts as outside the channel.
+void fill_nodes(const RowFunction& row, const ChannelList& channels, const RowUnits& units, uint32_t cells,
+                std::size_t stride, float* nodes);
 
 }  // namespace kiloband::gpu

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "scene/band_set.hpp"
 #include "spectral/planck.hpp"
 #include "src_gpu/channel_cover.hpp"
 #include "src_gpu/channel_row.hpp"
@@ -55,7 +56,8 @@ class TableMaker {
  private:
   struct Row {
     RowFunction function;
-    std::vector<double> factor;  // by channel; empty: 1
+    RowUnits units;
+    double precision = 1;  // the error bound is divided by it
   };
 
   void add_spectra();
@@ -63,6 +65,7 @@ class TableMaker {
   void add_materials();
   void add_conductor(const KbMaterial& material);
   void add_dispersive(const KbMaterial& material);
+  void add_band_sets();
   void add_derived();
   const SpectrumRow& spectrum(uint32_t row) const;
   std::vector<RowCells> choose() const;
@@ -85,16 +88,16 @@ const SpectrumRow& TableMaker::spectrum(uint32_t row) const {
 
 void TableMaker::add_spectra() {
   for (const SpectrumRow& row : scene_.spectra)
-    rows_.push_back({spectrum_row(row), row.is_emission ? emission_factor_ : std::vector<double>()});
+    rows_.push_back({spectrum_row(row), {row.is_emission ? emission_factor_ : std::vector<double>(), {}}});
   for (const KbTexture& texture : scene_.textures)
-    if (texture.illuminant_row != KB_NONE) rows_.at(texture.illuminant_row).factor = emission_factor_;
+    if (texture.illuminant_row != KB_NONE) rows_.at(texture.illuminant_row).units.factor = emission_factor_;
 }
 
 void TableMaker::add_unit_rows() {
   out_.layout.unit_row = static_cast<uint32_t>(rows_.size());
   RowFunction one;
   one.value = [](double) { return 1.0; };
-  rows_.push_back({one, emission_factor_});
+  rows_.push_back({one, {emission_factor_, {}}});
   out_.layout.wavelength_row = static_cast<uint32_t>(rows_.size());
   rows_.push_back({wavelength_row(), {}});
 }
@@ -137,6 +140,39 @@ void TableMaker::add_materials() {
   }
 }
 
+/// Position in bands as a function of wavelength: linear between centres, constant outside.
+RowFunction band_position_row(const BandSet& set) {
+  RowFunction f;
+  f.value = [&set](double lambda_nm) {
+    const BandPosition position = band_position(set, lambda_nm);
+    return position.index + position.fraction;
+  };
+  const std::vector<double>& c = set.centres_nm;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const bool inner = i > 0 && i + 1 < c.size();
+    if (!inner || std::abs((c[i + 1] - c[i]) / (c[i] - c[i - 1]) - 1) > 1e-9) f.kinks_nm.push_back(c[i]);
+  }
+  return f;
+}
+
+/// The number of a channel's first band, the distance from there, and the unit of values. A position's error
+/// counts in bands, whatever the position.
+void TableMaker::add_band_sets() {
+  out_.layout.band_row = static_cast<uint32_t>(rows_.size());
+  for (const BandSet& set : scene_.band_sets) {
+    std::vector<double> first;
+    for (const Channel& channel : scene_.channels) first.push_back(band_position(set, channel.min_nm).index);
+    RowFunction one;
+    one.value = [](double) { return 1.0; };
+    rows_.push_back({std::move(one), {first, {}}});
+    rows_.push_back({band_position_row(set), {{}, first}, static_cast<double>(set.centres_nm.size())});
+    RowFunction unit;
+    unit.value = [&set](double lambda_nm) { return band_position(set, lambda_nm).inside ? set.scale : 0.0; };
+    if (!set.extrapolate) unit.jumps_nm = {set.min_nm, set.max_nm};
+    rows_.push_back({std::move(unit), {set.is_emission ? emission_factor_ : std::vector<double>(), {}}});
+  }
+}
+
 /// Where a response can be other than 0, nm. The last entry's wavelength may round to a hair beyond it.
 Channel support(const RegularTable& table) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -161,15 +197,16 @@ void TableMaker::add_derived() {
     if (scale == 0) scale = 1;
     for (double& f : factor) f /= scale;
     out_.derived_scale.push_back(scale);
-    rows_.push_back({RowFunction::of_table(response), std::move(factor)});
+    rows_.push_back({RowFunction::of_table(response), {std::move(factor), {}}});
   }
 }
 
 std::vector<RowCells> TableMaker::choose() const {
   std::vector<RowCells> cells;
   for (const Row& row : rows_) {
-    cells.push_back(choose_cells(row.function, scene_.channels, options_.relative_error,
-                                 kAcceptedFactor * options_.relative_error, options_.max_cells));
+    const double wanted = options_.relative_error / row.precision;
+    cells.push_back(
+        choose_cells(row.function, scene_.channels, wanted, kAcceptedFactor * wanted, options_.max_cells));
   }
   return cells;
 }
@@ -204,7 +241,7 @@ void TableMaker::fill(const std::vector<RowCells>& cells) {
   }
   out_.nodes.assign(size, 0.0f);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    fill_nodes(rows_[r].function, scene_.channels, rows_[r].factor, cells[r].cells, stride,
+    fill_nodes(rows_[r].function, scene_.channels, rows_[r].units, cells[r].cells, stride,
                out_.nodes.data() + out_.tables[r].first);
   }
 }
@@ -219,6 +256,7 @@ ChannelTables TableMaker::make() {
   add_spectra();
   add_unit_rows();
   add_materials();
+  add_band_sets();
   add_derived();
   layout.rows = static_cast<uint32_t>(rows_.size());
   std::vector<RowCells> cells = choose();

@@ -20,6 +20,23 @@ std::vector<float> bounds_of_rows(const FlatScene& scene) {
   return bounds;
 }
 
+/// The spectral texels of all textures, each at its first_value.
+DeviceBuffer<float> upload_texel_values(DeviceMemory& memory, const FlatScene& scene) {
+  uint64_t floats = 0;
+  for (std::size_t t = 0; t < scene.spectral_texels.size(); ++t) {
+    if (!scene.spectral_texels[t]) continue;
+    const uint64_t first = uint64_t{scene.textures[t].first_value} * KB_VALUE_UNIT;
+    floats = std::max(floats, first + scene.spectral_texels[t]->size());
+  }
+  DeviceBuffer<float> buffer = memory.allocate<float>("spectral texels", floats);
+  for (std::size_t t = 0; t < scene.spectral_texels.size(); ++t) {
+    if (!scene.spectral_texels[t]) continue;
+    buffer.upload(std::span<const float>(*scene.spectral_texels[t]),
+                  uint64_t{scene.textures[t].first_value} * KB_VALUE_UNIT);
+  }
+  return buffer;
+}
+
 }  // namespace
 
 std::vector<std::string> scene_defines(const SceneFeatures& f, bool specialised) {
@@ -37,6 +54,7 @@ std::vector<std::string> scene_defines(const SceneFeatures& f, bool specialised)
       {"DISPERSION", f.dispersion},
       {"BITMAP", f.bitmap},
       {"CHECKERBOARD", f.checkerboard},
+      {"SPECTRAL_TEXTURE", f.spectral_texture},
       {"AREA_LIGHT", f.area_light},
       {"CONSTANT_LIGHT", f.constant_light},
       {"ENVMAP_LIGHT", f.envmap_light},
@@ -77,6 +95,7 @@ DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
       textures_(memory.upload("textures", scene.textures)),
       checkerboards_(memory.upload("checkerboards", scene.checkerboards)),
       texels_(memory.upload("texels", scene.texels)),
+      texel_values_(upload_texel_values(memory, scene)),
       texel_bounds_(memory.upload("texel bounds", scene.texel_bounds)),
       spectrum_bounds_(memory.upload("spectrum bounds", bounds_of_rows(scene))),
       normals_(memory.upload("normals", scene.normals)),

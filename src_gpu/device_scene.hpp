@@ -38,6 +38,7 @@ class DeviceScene {
   const DeviceBuffer<KbMaterial>& materials() const { return materials_; }
   const DeviceBuffer<KbTexture>& textures() const { return textures_; }
   const DeviceBuffer<KbFloat4>& texels() const { return texels_; }
+  const DeviceBuffer<float>& texel_values() const { return texel_values_; }
 
  private:
   DeviceBuffer<KbSceneConstants> constants_;
@@ -48,6 +49,8 @@ class DeviceScene {
   DeviceBuffer<KbTexture> textures_;
   DeviceBuffer<KbCheckerboard> checkerboards_;
   DeviceBuffer<KbFloat4> texels_;
+  DeviceBuffer<float>
+      texel_values_;  // of spectral textures; not among KB_SCENE_PARAMS: only evaluation reads them
   DeviceBuffer<float> texel_bounds_, spectrum_bounds_;
   DeviceBuffer<KbFloat3> normals_;
   DeviceBuffer<KbFloat2> uvs_;

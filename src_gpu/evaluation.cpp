@@ -8,7 +8,7 @@ namespace {
 constexpr uint64_t kLocalSize = 64;
 /// Film values that a launch clears: 8 MiB.
 constexpr uint64_t kClearItems = 1u << 20;
-constexpr uint32_t kEvaluationArguments = 13, kFilmArguments = 5;
+constexpr uint32_t kEvaluationArguments = 14, kFilmArguments = 5;
 /// Means are downloaded in pieces of at most this many bytes and at most this part of the film, unless that
 /// is little.
 constexpr uint64_t kMeansBytes = 16u << 20, kMeansPart = 16, kLittle = 16u << 10;
@@ -140,7 +140,8 @@ uint32_t Evaluation::bind_evaluation(Kernel& kernel, const DeviceScene& scene, c
                                      const PathPool& pool) const {
   kernel.set_from(0, spectra.layout, shape_.shared_wavelengths ? dense_ : spectra.nodes, spectra.tables,
                   spectra.materials, spectra.cover, spectra.cover_breaks, scene.materials(), scene.textures(),
-                  scene.texels(), pool.round(), pool.pixels(), pool.arena(), pool.chunk_next());
+                  scene.texels(), scene.texel_values(), pool.round(), pool.pixels(), pool.arena(),
+                  pool.chunk_next());
   return kEvaluationArguments;
 }
 

@@ -14,6 +14,10 @@
 namespace kiloband {
 namespace {
 
+double mebibytes(double bytes) {
+  return bytes / (1024.0 * 1024.0);
+}
+
 const char* name_of(uint32_t emitter_type) {
   static constexpr const char* kNames[] = {"area", "constant", "envmap", "point", "spot", "directional"};
   return kNames[emitter_type];
@@ -50,12 +54,13 @@ void print_contents(const FlatScene& scene) {
   std::size_t entries = 0;
   for (const SpectrumRow& row : scene.spectra) entries += row.table.values.size();
   fmt::print("spectra      {} ({} table entries)\n", scene.spectra.size(), entries);
-  fmt::print("textures     {} ({} texels)\n", scene.textures.size(), scene.texels.size());
+  fmt::print("textures     {} ({} texels)\n", scene.textures.size(), scene.texel_bounds.size());
+  std::size_t values = 0;
+  for (const SpectralTexels& texels : scene.spectral_texels) values += texels ? texels->size() : 0;
+  if (values > 0)
+    fmt::print("spectral     {:.1f} MiB of bands and weights\n",
+               mebibytes(4.0 * static_cast<double>(values)));
   fmt::print("features     {}\n", fmt::join(scene.features.names(), ", "));
-}
-
-double mebibytes(double bytes) {
-  return bytes / (1024.0 * 1024.0);
 }
 
 void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples) {

@@ -32,14 +32,6 @@ uint32_t parse_extent(std::string_view text, const std::string& whole) {
   return value;
 }
 
-std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
-  const auto cross = text.find('x');
-  if (cross == std::string::npos)
-    throw InputError("--size " + text + ": must be WIDTHxHEIGHT, for example 640x480");
-  return {parse_extent(std::string_view(text).substr(0, cross), text),
-          parse_extent(std::string_view(text).substr(cross + 1), text)};
-}
-
 /// Part of the response's integral that no channel covers.
 double uncovered_part(const Spectrum& response, const ChannelList& channels) {
   const auto range = response.data_range();
@@ -65,6 +57,14 @@ double uncovered_part(const Spectrum& response, const ChannelList& channels) {
 }
 
 }  // namespace
+
+std::pair<uint32_t, uint32_t> parse_size_option(const std::string& text) {
+  const auto cross = text.find('x');
+  if (cross == std::string::npos)
+    throw InputError("--size " + text + ": must be WIDTHxHEIGHT, for example 640x480");
+  return {parse_extent(std::string_view(text).substr(0, cross), text),
+          parse_extent(std::string_view(text).substr(cross + 1), text)};
+}
 
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("SCENE", scene, "Mitsuba 3 scene file (XML)")->required();
@@ -102,7 +102,7 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) 
       throw InputError("-D " + define + ": the parameter is given twice");
   }
   read.sink = sink;
-  if (options.size) read.film_size = parse_size(*options.size);
+  if (options.size) read.film_size = parse_size_option(*options.size);
   LoadedScene loaded;
   loaded.description = read_scene(options.scene, read);
   if (options.max_depth) loaded.description.integrator.max_depth = *options.max_depth;

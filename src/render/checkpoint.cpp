@@ -123,6 +123,16 @@ class Reader {
   Hash hash_;
 };
 
+void add_spectral_textures(Hash& hash, const FlatScene& scene) {
+  for (const BandSet& set : scene.band_sets) {
+    hash.add_all(set.centres_nm);
+    for (const double value : {set.min_nm, set.max_nm, set.scale}) hash.add_value(value);
+    hash.add_value(set.extrapolate);
+  }
+  for (const SpectralTexels& texels : scene.spectral_texels)
+    if (texels) hash.add_all(*texels);
+}
+
 std::array<uint64_t, 5> header_of(const SpectralFilm& film, uint64_t fingerprint) {
   return {fingerprint, film.options().replicates, film.rect().pixels(), film.options().channels,
           film.blocks().size()};
@@ -138,6 +148,7 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   add_spectra(hash, scene.spectra);
   hash.add_all(scene.textures);
   hash.add_all(scene.texels);
+  add_spectral_textures(hash, scene);
   hash.add_all(scene.checkerboards);
   hash.add_all(scene.materials);
   hash.add_all(scene.surfaces);

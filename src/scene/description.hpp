@@ -13,6 +13,7 @@
 #include "base/diagnostics.hpp"
 #include "scene/image.hpp"
 #include "scene/mesh.hpp"
+#include "scene/spectral_image.hpp"
 #include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 
@@ -43,9 +44,24 @@ struct CheckerboardTexture {
   glm::dmat3 to_uv{1.0};
 };
 
-/// A spectral parameter. For emission a bitmap is upsampled per texel and multiplied by D65 as in Mitsuba.
+/// Texels are spectra: those of an image's bands, or mixtures of endmembers whose weights are the image's
+/// values.
+struct SpectralBitmapTexture {
+  std::string id;
+  SourcePosition position;
+  std::shared_ptr<const SpectralImage> image;
+  std::vector<Spectrum> endmembers;  // as many as the image has values; empty: the values are bands
+  bool extrapolate = false;          // bands: the end values continue beyond the outermost edges
+  bool nearest = false;
+  WrapMode wrap = WrapMode::kRepeat;
+  glm::dmat3 to_uv{1.0};
+};
+
+/// A spectral parameter. For emission a bitmap is upsampled per texel and multiplied by D65 as in Mitsuba; a
+/// spectral bitmap is taken as it is.
 using Texture =
-    std::variant<Spectrum, std::shared_ptr<const BitmapTexture>, std::shared_ptr<const CheckerboardTexture>>;
+    std::variant<Spectrum, std::shared_ptr<const BitmapTexture>, std::shared_ptr<const CheckerboardTexture>,
+                 std::shared_ptr<const SpectralBitmapTexture>>;
 
 // ---- BSDFs ----
 enum class Microfacet { kBeckmann, kGgx };
@@ -115,6 +131,11 @@ struct EnvmapEmitter {
   double scale = 1;
   Transform to_world{1.0};
 };
+struct SpectralEnvmapEmitter {
+  std::shared_ptr<const SpectralImage> image;  // lat-long
+  double scale = 1;
+  Transform to_world{1.0};
+};
 struct PointEmitter {
   Spectrum intensity;  // W sr^-1 nm^-1
   glm::dvec3 position{0};
@@ -134,7 +155,9 @@ struct DirectionalEmitter {
 struct Emitter {
   std::string id;
   SourcePosition position;
-  std::variant<ConstantEmitter, EnvmapEmitter, PointEmitter, SpotEmitter, DirectionalEmitter> model;
+  std::variant<ConstantEmitter, EnvmapEmitter, SpectralEnvmapEmitter, PointEmitter, SpotEmitter,
+               DirectionalEmitter>
+      model;
 };
 
 // ---- shapes ----

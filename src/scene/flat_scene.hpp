@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct SceneFeatures {
   bool diffuse = false, conductor = false, rough_conductor = false, dielectric = false,
        rough_dielectric = false;
   bool plastic = false, rough_plastic = false, two_sided = false, mask = false, dispersion = false;
-  bool bitmap = false, checkerboard = false;
+  bool bitmap = false, checkerboard = false, spectral_texture = false;
   bool area_light = false, constant_light = false, envmap_light = false, delta_light = false;
   bool analytic_shapes = false;
 
@@ -42,6 +43,19 @@ struct EnvmapSampling {
   std::vector<float> row_cdf;       // height rows of width + 1
 };
 
+/// The wavelengths of spectral texels (KB_TEXTURE_BANDS): a texel's spectrum is linear between band centres,
+/// constant from the outer centres to the outermost edges, and beyond these 0, or continued if `extrapolate`.
+struct BandSet {
+  std::vector<double> centres_nm;  // ascending
+  double min_nm = 0, max_nm = 0;   // outermost edges
+  bool extrapolate = false;
+  bool is_emission = false;  // values are divided by the channel's scale
+  double scale = 1;          // multiplies all values
+};
+
+/// The numbers of spectral texels, [y][x][value]; shared with the image that they were read from.
+using SpectralTexels = std::shared_ptr<const std::vector<float>>;
+
 /// The flattened scene. Positions carry one spare vertex at the end: ray tracers read vertices with 16-byte
 /// loads.
 struct FlatScene {
@@ -55,6 +69,9 @@ struct FlatScene {
   std::vector<KbTexture> textures;
   std::vector<KbFloat4> texels;
   std::vector<float> texel_bounds;  // per texel: upper bound of its spectrum over guide bands and channels
+  std::vector<BandSet> band_sets;
+  std::vector<SpectralTexels>
+      spectral_texels;  // by texture; null for others; may end before the last texture
   std::vector<KbCheckerboard> checkerboards;
 
   std::vector<KbMaterial> materials;

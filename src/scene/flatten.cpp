@@ -56,6 +56,7 @@ std::vector<std::string> SceneFeatures::names() const {
                                               {"dispersion", dispersion},
                                               {"bitmap", bitmap},
                                               {"checkerboard", checkerboard},
+                                              {"spectral texture", spectral_texture},
                                               {"area light", area_light},
                                               {"constant environment", constant_light},
                                               {"environment map", envmap_light},

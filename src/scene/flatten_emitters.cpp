@@ -31,11 +31,6 @@ Transform frame_along(const glm::dvec3& z) {
   return {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), glm::dvec4(0, 0, 0, 1)};
 }
 
-void set_transforms(KbEmitter& record, const Transform& to_world) {
-  store_transform(to_world, record.to_world);
-  store_transform(glm::inverse(to_world), record.to_object);
-}
-
 /// Solid angle of the spot weighted by its falloff, from the beam's cone to the cutoff linearly in angle.
 double spot_solid_angle(double beam, double cutoff) {
   constexpr int kSteps = 256;
@@ -50,6 +45,11 @@ double spot_solid_angle(double beam, double cutoff) {
 
 }  // namespace
 
+void set_emitter_transforms(KbEmitter& record, const Transform& to_world) {
+  store_transform(to_world, record.to_world);
+  store_transform(glm::inverse(to_world), record.to_object);
+}
+
 void Flattener::add_area_emitter(uint32_t shape_index) {
   const Shape& shape = in_.shapes[shape_index];
   const std::string name = fmt::format("emitter of {}", out_.shape_names[shape_index]);
@@ -57,12 +57,17 @@ void Flattener::add_area_emitter(uint32_t shape_index) {
   record.type = KB_EMITTER_AREA;
   record.shape = shape_index;
   record.ref = reference(shape.emitter->radiance, {name + ": radiance", shape.emitter_position, true});
-  set_transforms(record, Transform{1.0});
+  set_emitter_transforms(record, Transform{1.0});
   out_.shapes[shape_index].emitter = static_cast<uint32_t>(out_.emitters.size());
   out_.emitters.push_back(record);
   out_.emitter_names.push_back(out_.shape_names[shape_index]);
   out_.features.area_light = true;
 
+  const double factor = kPi * out_.shapes[shape_index].area;
+  if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(shape.emitter->radiance)) {
+    powers_.push_back(scaled_power(texture_colours_.at(record.ref & KB_REF_INDEX_MASK), factor));
+    return;
+  }
   Spectrum colour = illuminant_d65();
   double mean = 1;
   if (const auto* spectrum = std::get_if<Spectrum>(&shape.emitter->radiance)) {
@@ -72,7 +77,21 @@ void Flattener::add_area_emitter(uint32_t shape_index) {
     if ((*image)->raw) colour = Spectrum::constant(1);
     mean = texture_means_[record.ref & KB_REF_INDEX_MASK];
   }
-  powers_.push_back({colour, mean * kPi * out_.shapes[shape_index].area});
+  powers_.push_back({colour, mean * factor});
+}
+
+Flattener::EmitterPower Flattener::scaled_power(const WeightedSpectra& colour, double factor) {
+  EmitterPower power{colour.front().first, factor * colour.front().second, {}};
+  for (std::size_t i = 1; i < colour.size(); ++i)
+    power.more.emplace_back(colour[i].first, factor * colour[i].second);
+  return power;
+}
+
+double Flattener::band_power(const EmitterPower& power, const Channel& band) {
+  double sum = power.factor * power.spectrum.integral(band.min_nm, band.max_nm);
+  for (const auto& [spectrum, factor] : power.more)
+    sum += factor * spectrum.integral(band.min_nm, band.max_nm);
+  return std::max(0.0, sum);
 }
 
 KbEmitter Flattener::make_emitter(const Emitter& emitter) {
@@ -82,7 +101,7 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
   const auto use = [&](const char* what) {
     return SpectrumSource{name + ": " + what, emitter.position, true};
   };
-  set_transforms(record, Transform{1.0});
+  set_emitter_transforms(record, Transform{1.0});
   if (const auto* constant = std::get_if<ConstantEmitter>(&emitter.model)) {
     record.type = KB_EMITTER_CONSTANT;
     record.ref = spectra_.row(constant->radiance, use("radiance"));
@@ -90,15 +109,17 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
     out_.features.constant_light = true;
   } else if (const auto* envmap = std::get_if<EnvmapEmitter>(&emitter.model)) {
     add_environment_map(record, *envmap, use("envmap"));
+  } else if (const auto* spectral = std::get_if<SpectralEnvmapEmitter>(&emitter.model)) {
+    add_spectral_environment(record, *spectral, use("spectral_envmap"));
   } else if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) {
     record.type = KB_EMITTER_POINT;
     record.ref = spectra_.row(point->intensity, use("intensity"));
-    set_transforms(record, glm::translate(Transform{1.0}, point->position));
+    set_emitter_transforms(record, glm::translate(Transform{1.0}, point->position));
     powers_.push_back({point->intensity, 4 * kPi});
   } else if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model)) {
     record.type = KB_EMITTER_SPOT;
     record.ref = spectra_.row(spot->intensity, use("intensity"));
-    set_transforms(record, spot->to_world);
+    set_emitter_transforms(record, spot->to_world);
     record.cutoff_angle = static_cast<float>(spot->cutoff_angle);
     record.beam_width = static_cast<float>(spot->beam_width);
     record.cos_cutoff = static_cast<float>(std::cos(spot->cutoff_angle));
@@ -108,7 +129,7 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
     const auto& directional = std::get<DirectionalEmitter>(emitter.model);
     record.type = KB_EMITTER_DIRECTIONAL;
     record.ref = spectra_.row(directional.irradiance, use("irradiance"));
-    set_transforms(record, frame_along(directional.direction));
+    set_emitter_transforms(record, frame_along(directional.direction));
     powers_.push_back({directional.irradiance, disc});
   }
   return record;
@@ -128,7 +149,7 @@ void Flattener::add_emitters() {
 void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter,
                                     const SpectrumSource& use) {
   record.type = KB_EMITTER_ENVMAP;
-  set_transforms(record, emitter.to_world);
+  set_emitter_transforms(record, emitter.to_world);
   auto bitmap_texture = std::make_shared<BitmapTexture>();
   bitmap_texture->image = emitter.image;
   bitmap_texture->file = emitter.file;
@@ -167,7 +188,7 @@ void Flattener::select_emitters() {
     std::vector<double> power(count);
     double total = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      power[i] = std::max(0.0, powers_[i].factor * powers_[i].spectrum.integral(band.min_nm, band.max_nm));
+      power[i] = band_power(powers_[i], band);
       total += power[i];
     }
     if (!(total > 0) || !std::isfinite(total)) continue;
@@ -221,8 +242,12 @@ void Flattener::set_channel_scales() {
     for (std::size_t row = 0; row < out_.spectra.size(); ++row) {
       if (!out_.spectra[row].is_emission) continue;
       const double scale = row == d65_row_ ? std::max(1.0, rgb_emission_peak_) : 1.0;
-      peak = std::max(peak, scale * peak_in(out_.spectra[row], channel));
+      const auto weight = emission_row_factors_.find(static_cast<uint32_t>(row));
+      const double largest = weight == emission_row_factors_.end() ? scale : weight->second;
+      peak = std::max(peak, largest * peak_in(out_.spectra[row], channel));
     }
+    for (const Spectrum& spectrum : emission_peaks_)
+      peak = std::max(peak, spectrum.max_over(channel.min_nm, channel.max_nm));
     if (peak > 0) out_.channel_scale[k] = std::exp2(std::floor(std::log2(peak * channel.width_nm())));
   }
 }

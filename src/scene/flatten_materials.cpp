@@ -172,7 +172,7 @@ void Flattener::set_opacity(KbSurface& record, const MaskBsdf& mask, const Spect
   } else if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&mask.opacity)) {
     record.opacity_ref = KB_REF_BITMAP | bitmap(*image, BitmapUse::kOpacity);
   } else {
-    throw InputError(use.position, use.name + ": a checkerboard is not supported here");
+    throw InputError(use.position, use.name + ": only a number or a bitmap is supported here");
   }
 }
 

@@ -32,13 +32,13 @@ float value_of(const Image& image, std::size_t texel) {
   return (image.pixels[3 * texel] + image.pixels[3 * texel + 1] + image.pixels[3 * texel + 2]) / 3;
 }
 
-void store_uv(const glm::dmat3& to_uv, float (&out)[6]) {
+}  // namespace
+
+void store_uv_transform(const glm::dmat3& to_uv, float (&out)[6]) {
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 3; ++column) out[3 * row + column] = static_cast<float>(to_uv[column][row]);
   }
 }
-
-}  // namespace
 
 uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePosition& position,
                            const std::string& name) {
@@ -63,6 +63,8 @@ uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use)
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
     return KB_REF_BITMAP | bitmap(*image, use.emission ? BitmapUse::kEmission : BitmapUse::kReflectance);
   }
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    return KB_REF_BITMAP | spectral_bitmap(*spectral, use);
   return KB_REF_CHECKERBOARD |
          checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
 }
@@ -78,12 +80,13 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
   record.width = image.width;
   record.height = image.height;
   const std::size_t count = std::size_t{image.width} * image.height;
-  record.first_texel = first_texel_index(out_.texels.size(), count, texture->position,
+  record.first_texel = static_cast<uint32_t>(out_.texels.size());  // never more of them than of bounds
+  record.first_bound = first_texel_index(out_.texel_bounds.size(), count, texture->position,
                                          texture->id.empty() ? texture->file.string() : texture->id);
   record.wrap = static_cast<uint32_t>(texture->wrap);
   record.flags = texture->nearest ? KB_TEXTURE_NEAREST : 0;
   record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
-  store_uv(texture->to_uv, record.to_uv);
+  store_uv_transform(texture->to_uv, record.to_uv);
 
   static const SigmoidTable kTable;
   const bool flat = texture->raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emission);
@@ -134,7 +137,7 @@ uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture
   KbCheckerboard record{};
   record.ref0 = spectra_.row(texture->color0, {use.name + " color0", texture->position, use.emission});
   record.ref1 = spectra_.row(texture->color1, {use.name + " color1", texture->position, use.emission});
-  store_uv(texture->to_uv, record.to_uv);
+  store_uv_transform(texture->to_uv, record.to_uv);
   out_.checkerboards.push_back(record);
   return place->second;
 }
@@ -144,6 +147,8 @@ double Flattener::texture_mean(const Texture& texture) {
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
     return texture_means_[bitmap(*image, BitmapUse::kReflectance)];
   }
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    return texture_means_[spectral_bitmap(*spectral, {})];
   const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
   return 0.5 * (spectra_.guide_mean(board.color0) + spectra_.guide_mean(board.color1));
 }
@@ -153,6 +158,8 @@ double Flattener::texture_bound(const Texture& texture) {
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
     return texture_bounds_[bitmap(*image, BitmapUse::kReflectance)];
   }
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    return texture_bounds_[spectral_bitmap(*spectral, {})];
   const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
   return std::max(spectra_.bound(board.color0), spectra_.bound(board.color1));
 }

@@ -22,6 +22,19 @@ class Flattener {
   enum class BitmapUse { kReflectance, kEmission, kOpacity };
   uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use);
   float texel_bound(const KbFloat4& texel) const;
+  // flatten_spectral.cpp
+  uint32_t spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
+                           const SpectrumSource& use);
+  uint32_t add_spectral_texture(const SpectralBitmapTexture& texture, const SpectrumSource& use,
+                                double scale);
+  void add_bands(KbTexture& record, const SpectralBitmapTexture& texture, const SpectrumSource& use,
+                 double scale);
+  void add_weights(KbTexture& record, const SpectralBitmapTexture& texture, const SpectrumSource& use);
+  uint32_t first_value_unit(const SpectralImage& image, const SourcePosition& position);
+  void add_spectral_environment(KbEmitter& record, const SpectralEnvmapEmitter& emitter,
+                                const SpectrumSource& use);
+
+  // flatten_textures.cpp
   uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use);
   double texture_mean(const Texture& texture);   // over the guide bands; a bitmap's by its texels' values
   double texture_bound(const Texture& texture);  // over guide bands and channels
@@ -59,13 +72,25 @@ class Flattener {
   SpectrumTableBuilder spectra_;
   std::map<const void*, uint32_t> surfaces_, materials_, checkerboards_;
   std::map<std::pair<const void*, BitmapUse>, uint32_t> bitmaps_;
+  std::map<std::pair<const void*, bool>, uint32_t> spectral_bitmaps_;  // by texture and whether it emits
   uint32_t d65_row_ = KB_NONE;
-  /// Per emitter: the spectrum that stands for its colour and the factor that makes it a power (W/nm).
+  /// A sum of spectra.
+  using WeightedSpectra = std::vector<std::pair<Spectrum, double>>;
+  /// Per emitter: the spectrum that stands for its colour and the factor that makes it a power (W/nm);
+  /// mixtures have further terms.
   struct EmitterPower {
     Spectrum spectrum;
     double factor;
+    WeightedSpectra more = {};
   };
+  static EmitterPower scaled_power(const WeightedSpectra& colour, double factor);
+  static double band_power(const EmitterPower& power, const Channel& band);  // W
+
   std::vector<EmitterPower> powers_;
+  std::map<uint32_t, WeightedSpectra> texture_colours_;   // of spectral textures: their mean
+  std::vector<Spectrum> emission_peaks_;                  // the largest value of spectral textures that emit
+  std::map<uint32_t, double> emission_row_factors_;       // largest weight of rows that are endmembers
+  uint64_t value_units_ = 0;                              // of spectral texels, see KbTexture::first_value
   std::vector<double> texture_means_, texture_bounds_;    // per bitmap: mean value, largest texel bound
   double raw_emission_peak_ = 0, rgb_emission_peak_ = 0;  // largest texel scale of emitting bitmaps
 };
@@ -77,5 +102,9 @@ uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePo
 
 /// Row-major 3x4 of an affine transform.
 void store_transform(const Transform& transform, float (&out)[12]);
+/// Row-major 2x3.
+void store_uv_transform(const glm::dmat3& to_uv, float (&out)[6]);
+/// to_world and its inverse.
+void set_emitter_transforms(KbEmitter& record, const Transform& to_world);
 
 }  // namespace kiloband

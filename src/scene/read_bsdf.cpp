@@ -134,6 +134,9 @@ Model read_mask(ReadContext& context, const ObjectReader& object) {
   if (std::holds_alternative<std::shared_ptr<const CheckerboardTexture>>(bsdf.opacity)) {
     object.fail_at("opacity", "opacity: a checkerboard is not supported here");
   }
+  if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(bsdf.opacity)) {
+    object.fail_at("opacity", "opacity: a spectral_bitmap is not supported here");
+  }
   Node* nested = object.nested_one("bsdf");
   if (!nested) object.fail_here("needs a nested bsdf");
   bsdf.nested = read_bsdf(context, *nested);

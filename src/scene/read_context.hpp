@@ -21,10 +21,14 @@ struct ReadContext {
   std::map<const Node*, Texture> textures;                    // bitmaps and checkerboards
   std::map<std::string, std::shared_ptr<const Mesh>> meshes;  // by file and options
   std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const Image>> images;  // by file and raw
+  /// By file and whether its values are weights.
+  std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const SpectralImage>> spectral_images;
 
   /// The existing file that a parameter names. throws InputError at its value
   std::filesystem::path file(const ObjectReader& object, std::string_view parameter);
   std::shared_ptr<const Image> image(const std::filesystem::path& file, bool raw, const Place& place);
+  std::shared_ptr<const SpectralImage> spectral_image(const std::filesystem::path& file, bool weights,
+                                                      const Place& place);
 };
 
 /// Runs a loader; its InputError gets the scene's position in front.
@@ -58,8 +62,13 @@ void check_spectrum(const Spectrum& spectrum, const std::string& label, Spectrum
 
 /// A <spectrum> or <texture> object whose type is a spectrum; nullopt for texture types.
 std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, SpectrumUse use);
-/// A <texture type="bitmap"> or checkerboard.
+/// A <texture type="bitmap">, checkerboard or spectral_bitmap.
 Texture read_texture_object(ReadContext& context, Node& node);
+/// A <texture type="spectral_bitmap">.
+Texture read_spectral_bitmap(ReadContext& context, const ObjectReader& object);
+/// throws InputError  values or mixtures above 1, endmembers that describe emission
+void check_spectral_reflectance(const SpectralBitmapTexture& texture, const std::string& label,
+                                const Place& place);
 /// throws InputError  a bitmap with values above 1
 void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place);
 

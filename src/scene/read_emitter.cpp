@@ -44,6 +44,13 @@ Model read_constant(ReadContext& context, const ObjectReader& object) {
   return ConstantEmitter{emission(context, object, "radiance")};
 }
 
+void check_map_size(const ObjectReader& object, const std::filesystem::path& file, uint32_t width,
+                    uint32_t height) {
+  if (width >= 2 && height >= 2) return;
+  object.fail_at("filename", "an environment map needs at least 2 x 2 pixels, '" + file.filename().string() +
+                                 "' has " + std::to_string(width) + " x " + std::to_string(height));
+}
+
 Model read_envmap(ReadContext& context, const ObjectReader& object) {
   EnvmapEmitter envmap;
   envmap.file = context.file(object, "filename");
@@ -53,12 +60,18 @@ Model read_envmap(ReadContext& context, const ObjectReader& object) {
   object.get_bool("mis_compensation", false);  // only concerns the noise of Mitsuba's sampling
   const Place place = object.value_place("filename");
   envmap.image = context.image(envmap.file, false, place);
-  if (envmap.image->width < 2 || envmap.image->height < 2) {
-    object.fail_at("filename", "an environment map needs at least 2 x 2 pixels, '" +
-                                   envmap.file.filename().string() + "' has " +
-                                   std::to_string(envmap.image->width) + " x " +
-                                   std::to_string(envmap.image->height));
-  }
+  check_map_size(object, envmap.file, envmap.image->width, envmap.image->height);
+  return envmap;
+}
+
+Model read_spectral_envmap(ReadContext& context, const ObjectReader& object) {
+  SpectralEnvmapEmitter envmap;
+  const std::filesystem::path file = context.file(object, "filename");
+  envmap.scale = object.get_float("scale", 1);
+  object.check(envmap.scale >= 0, "scale", envmap.scale, "must be >= 0");
+  envmap.to_world = rotation_and_position(object);
+  envmap.image = context.spectral_image(file, false, object.value_place("filename"));
+  check_map_size(object, file, envmap.image->width, envmap.image->height);
   return envmap;
 }
 
@@ -107,14 +120,12 @@ struct EmitterType {
   Model (*read)(ReadContext&, const ObjectReader&);
 };
 
-constexpr EmitterType kTypes[] = {{"constant", read_constant},
-                                  {"envmap", read_envmap},
-                                  {"point", read_point},
-                                  {"spot", read_spot},
-                                  {"directional", read_directional}};
+constexpr EmitterType kTypes[] = {
+    {"constant", read_constant}, {"envmap", read_envmap}, {"spectral_envmap", read_spectral_envmap},
+    {"point", read_point},       {"spot", read_spot},     {"directional", read_directional}};
 
 [[noreturn]] void refuse(const ObjectReader& object) {
-  object.refuse_type({"area", "constant", "envmap", "point", "spot", "directional"});
+  object.refuse_type({"area", "constant", "envmap", "spectral_envmap", "point", "spot", "directional"});
 }
 
 }  // namespace

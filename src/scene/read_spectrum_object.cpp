@@ -120,7 +120,8 @@ Texture read_d65(ReadContext& context, const ObjectReader& object) {
   if (const auto* spectrum = std::get_if<Spectrum>(&inner))
     return Spectrum::product(illuminant_d65(), *spectrum).scaled(scale);
   const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&inner);
-  if (!bitmap) fail(nested->type_place, object.label() + ": a nested checkerboard is not supported");
+  if (!bitmap)
+    fail(nested->type_place, object.label() + ": a nested " + nested->resolved().type + " is not supported");
   if ((*bitmap)->raw) fail(nested->type_place, object.label() + ": a nested raw bitmap is not supported");
   object.check(scale == 1, "scale", scale, "must be 1 with a nested bitmap");
   return inner;
@@ -141,7 +142,7 @@ constexpr SpectrumType kTypes[] = {{"regular", false, read_regular}, {"irregular
 
 std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, SpectrumUse use) {
   const ObjectReader object(node);
-  std::vector<std::string_view> known = {"bitmap", "checkerboard"};
+  std::vector<std::string_view> known = {"bitmap", "checkerboard", "spectral_bitmap"};
   for (const SpectrumType& type : kTypes) {
     known.push_back(type.name);
     if (object.type() != type.name) continue;
@@ -152,7 +153,8 @@ std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, Sp
     object.finish();
     return result;
   }
-  if (object.type() == "bitmap" || object.type() == "checkerboard") return std::nullopt;
+  if (object.type() == "bitmap" || object.type() == "checkerboard" || object.type() == "spectral_bitmap")
+    return std::nullopt;
   object.refuse_type(known);
 }
 

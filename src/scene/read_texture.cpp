@@ -38,12 +38,16 @@ Texture read_texture_object(ReadContext& context, Node& node) {
   const auto known = context.textures.find(&node);
   if (known != context.textures.end()) return known->second;
   const ObjectReader object(node);
-  Texture texture = node.type == "bitmap" ? read_bitmap(context, object) : read_checkerboard(context, object);
+  Texture texture = node.type == "bitmap"            ? read_bitmap(context, object)
+                    : node.type == "spectral_bitmap" ? read_spectral_bitmap(context, object)
+                                                     : read_checkerboard(context, object);
   context.textures.emplace(&node, texture);
   return texture;
 }
 
 void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place) {
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    check_spectral_reflectance(**spectral, label, place);
   const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture);
   if (!bitmap) return;
   const Image& image = *(*bitmap)->image;

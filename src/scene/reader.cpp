@@ -12,7 +12,7 @@ constexpr uint64_t kMaxSamples = uint64_t{1} << 32;  // per pixel
 class SceneReader {
  public:
   SceneReader(SceneTree& tree, const ReadOptions& options)
-      : tree_(tree), context_{tree, options.sink, options.film_size, {}, {}, {}, {}} {}
+      : tree_(tree), context_{tree, options.sink, options.film_size, {}, {}, {}, {}, {}} {}
 
   SceneDescription run() {
     const ObjectReader scene(*tree_.root);
@@ -58,7 +58,8 @@ class SceneReader {
   void add_emitter(Node& node) {
     scene_.emitters.push_back(read_emitter(context_, node));
     const auto& model = scene_.emitters.back().model;
-    if (!std::holds_alternative<ConstantEmitter>(model) && !std::holds_alternative<EnvmapEmitter>(model))
+    if (!std::holds_alternative<ConstantEmitter>(model) && !std::holds_alternative<EnvmapEmitter>(model) &&
+        !std::holds_alternative<SpectralEnvmapEmitter>(model))
       return;
     if (++environments_ > 1)
       fail(node.place, ObjectReader(node).label() + ": a second environment: only one is allowed");
@@ -112,6 +113,18 @@ std::shared_ptr<const Image> ReadContext::image(const std::filesystem::path& fil
                                                 const Place& place) {
   auto& image = images[{file, raw}];
   if (!image) image = load_at(place, [&] { return std::make_shared<const Image>(read_image(file, raw)); });
+  return image;
+}
+
+std::shared_ptr<const SpectralImage> ReadContext::spectral_image(const std::filesystem::path& file,
+                                                                 bool weights, const Place& place) {
+  auto& image = spectral_images[{file, weights}];
+  if (!image) {
+    image = load_at(place, [&] {
+      return std::make_shared<const SpectralImage>(weights ? read_weight_image(file, sink)
+                                                           : read_spectral_image(file, sink));
+    });
+  }
   return image;
 }
 

@@ -28,15 +28,19 @@ uint32_t SpectrumTableBuilder::row(const Spectrum& spectrum, const SpectrumSourc
   if (spectrum.is_constant()) {
     if (const auto found = constants_.find(key); found != constants_.end()) return found->second;
   }
+  const uint32_t index = new_row(spectrum, use);
+  if (spectrum.is_constant()) constants_[key] = index;
+  return index;
+}
+
+uint32_t SpectrumTableBuilder::new_row(const Spectrum& spectrum, const SpectrumSource& use) {
   if (scene_.spectra.size() >= kMaxRows) {
     throw InputError(use.position, fmt::format("{}: more than {} different spectra", use.name, kMaxRows));
   }
-  check_range(spectrum, use);
+  check_range(spectrum.data_range(), spectrum.extrapolates(), use);
   scene_.spectra.push_back(make_row(spectrum, use));
   scene_.spectra.back().bound = static_cast<float>(bound(spectrum));
-  const auto index = static_cast<uint32_t>(scene_.spectra.size() - 1);
-  if (spectrum.is_constant()) constants_[key] = index;
-  return index;
+  return static_cast<uint32_t>(scene_.spectra.size() - 1);
 }
 
 SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const SpectrumSource& use) const {
@@ -68,15 +72,15 @@ SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const Spect
   return row;
 }
 
-void SpectrumTableBuilder::check_range(const Spectrum& spectrum, const SpectrumSource& use) const {
-  const auto data = spectrum.data_range();
+void SpectrumTableBuilder::check_range(const std::optional<Spectrum::Range>& data, bool extrapolates,
+                                       const SpectrumSource& use) const {
   if (!data) return;
   constexpr double kSlackNm = 1e-6;
   if (data->min_nm <= range_.min_nm + kSlackNm && data->max_nm >= range_.max_nm - kSlackNm) return;
   warn(sink_, use.position,
        fmt::format("{}: data from {:g} to {:g} nm do not cover {:g} to {:g} nm; outside, {}", use.name,
                    data->min_nm, data->max_nm, range_.min_nm, range_.max_nm,
-                   spectrum.extrapolates() ? "the end values are continued" : "the value is 0"));
+                   extrapolates ? "the end values are continued" : "the value is 0"));
 }
 
 double SpectrumTableBuilder::guide_mean(const Spectrum& spectrum) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "scene/flat_scene.hpp"
@@ -25,13 +26,18 @@ class SpectrumTableBuilder {
   /// bound
   uint32_t row(const Spectrum& spectrum, const SpectrumSource& use);
 
+  /// A row of the spectrum's own: rows made one after the other have consecutive indices. throws as row()
+  uint32_t new_row(const Spectrum& spectrum, const SpectrumSource& use);
+  /// Warns if data do not cover guide bands and channels. data: absent if there is no limit
+  void check_range(const std::optional<Spectrum::Range>& data, bool extrapolates,
+                   const SpectrumSource& use) const;
+
   /// Mean over the guide bands (each band one vote).
   double guide_mean(const Spectrum& spectrum) const;
   /// Upper bound over guide bands and rendered channels.
   double bound(const Spectrum& spectrum) const;
 
  private:
-  void check_range(const Spectrum& spectrum, const SpectrumSource& use) const;
   SpectrumRow make_row(const Spectrum& spectrum, const SpectrumSource& use) const;
 
   FlatScene& scene_;

@@ -73,22 +73,34 @@ KB_STATIC_ASSERT(sizeof(KbSurface) == 32, surface_size);
 /* ---- textures --------------------------------------------------------------------------------------------------
    A texel is (c0, c1, c2, scale): value(lambda) = scale * S(c0 x^2 + c1 x + c2), S(v) = 1/2 + v / (2 sqrt(1 + v^2)),
    with x = clamp(lambda_nm, 360, 830). A flat texel has c0 = c1 = 0, c2 = 1e10 (S == 1), scale = value. Lookups are
-   bilinear in the evaluated spectra, as in Mitsuba 3. */
+   bilinear in the evaluated spectra, as in Mitsuba 3.
+
+   Spectral texels are `values` floats in an array of their own. KB_TEXTURE_BANDS: the spectrum at the band centres of
+   a band set, linear between them. KB_TEXTURE_WEIGHTS: weights of the spectra first_row, first_row + 1 ...; they carry
+   the unit of emission themselves. */
 #define KB_WRAP_REPEAT 0u
 #define KB_WRAP_MIRROR 1u
 #define KB_WRAP_CLAMP 2u
 #define KB_TEXTURE_NEAREST 1u
 #define KB_TEXTURE_ENVMAP 2u /* columns repeat, rows clamp, rows align-corners */
+#define KB_TEXTURE_BANDS 4u
+#define KB_TEXTURE_WEIGHTS 8u
+#define KB_TEXTURE_SPECTRAL (KB_TEXTURE_BANDS | KB_TEXTURE_WEIGHTS)
+#define KB_VALUE_UNIT 16u /* floats: spectral texels of a texture begin at a multiple of it */
 
 typedef struct {
   kb_u32 width, height;
-  kb_u32 first_texel;     /* into the texel array, row 0 = v 0 = top */
+  kb_u32 first_texel;     /* into the texel array, row 0 = v 0 = top; 0 of spectral texels */
   kb_u32 wrap;            /* KB_WRAP_* */
   kb_u32 flags;           /* KB_TEXTURE_* */
   kb_u32 illuminant_row;  /* spectrum multiplied on top (D65 for RGB emission), or KB_NONE */
   float to_uv[6];         /* row-major 2x3: uv' = M (u, v, 1) */
+  kb_u32 first_bound;     /* into the bounds of texels, in the order of the texels */
+  kb_u32 values;          /* spectral texels: floats of one */
+  kb_u32 first_row;       /* KB_TEXTURE_BANDS: number of the band set; KB_TEXTURE_WEIGHTS: row of the first spectrum */
+  kb_u32 first_value;     /* spectral texels: where they begin on a device, in units of KB_VALUE_UNIT floats */
 } KbTexture;
-KB_STATIC_ASSERT(sizeof(KbTexture) == 48, texture_size);
+KB_STATIC_ASSERT(sizeof(KbTexture) == 64, texture_size);
 
 typedef struct {
   kb_u32 ref0, ref1; /* named spectra */

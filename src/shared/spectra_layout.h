@@ -5,7 +5,7 @@
 #include "shared/lang.h"
 
 /* Rows 0 .. S-1 are the scene's spectra; then come the unit emission, the wavelengths of textures, the optical
-   constants of materials, and at the end one row per derived channel. */
+   constants of materials, the positions of channels in band sets, and at the end one row per derived channel. */
 typedef struct {
   kb_u32 channels;       /* K */
   kb_u32 stride;         /* floats between rows: K rounded up to a multiple of 16 */
@@ -17,7 +17,8 @@ typedef struct {
   kb_u32 overlapping;    /* 0: every wavelength is covered once, KbCover is not read */
   kb_u32 film_width;     /* of the full film, pixels */
   kb_u32 film_columns;   /* floats of a film pixel: stride, and D rounded up to a multiple of 16 */
-  kb_u32 reserved[2];
+  kb_u32 band_row;       /* three rows for each band set: a band's number, bands from there on, unit (0 outside) */
+  kb_u32 reserved;
 } KbSpectraLayout;
 KB_STATIC_ASSERT(sizeof(KbSpectraLayout) == 48, spectra_layout_size);
 

@@ -45,6 +45,12 @@ inline Text bitmap(const Text& name, const Text& file, const Text& wrap, const T
   return "<texture type='bitmap' name='" + name + "'>" + text("filename", file) + text("wrap_mode", wrap) +
          text("filter_type", filter) + "<transform name='to_uv'>" + to_uv + "</transform></texture>";
 }
+/// `source` names the image: text("filename", ...), or weights and endmembers.
+inline Text spectral_bitmap(const Text& name, const Text& source, const Text& wrap, const Text& filter,
+                            const Text& to_uv) {
+  return "<texture type='spectral_bitmap' name='" + name + "'>" + source + text("wrap_mode", wrap) +
+         text("filter_type", filter) + "<transform name='to_uv'>" + to_uv + "</transform></texture>";
+}
 inline Text checkerboard(const Text& name, const Text& to_uv) {
   return "<texture type='checkerboard' name='" + name + "'>" + spectrum("color0", "450:0.8, 650:0.3") +
          spectrum("color1", "450:0.1, 650:0.5") + "<transform name='to_uv'>" + to_uv +

@@ -144,6 +144,31 @@ Text glowing_shapes() {
                        bitmap("radiance", "colours.ppm", "repeat", "bilinear", scale("1.5")) + "</emitter>");
 }
 
+/// Bands of reflectance, mixtures, and a lamp of bands.
+Text spectral_pictures() {
+  const Text bands = text("filename", "bands.exr");
+  const Text mixtures = text("weights", "colours.ppm") + spectrum("endmember_0", "450:0.3, 650:0.1") +
+                        spectrum("endmember_1", "450:0.1, 550:0.4, 650:0.1") + spectrum("endmember_2", "0.2");
+  const auto paper = [](const Text& source, const Text& wrap, const Text& filter, const Text& to_uv) {
+    return bsdf("diffuse", spectral_bitmap("reflectance", source, wrap, filter, to_uv));
+  };
+  return floor(paper(bands, "repeat", "bilinear", scale("2.7") + turn("z", "25"))) +
+         back(paper(mixtures, "mirror", "bilinear", scale("3.1"))) +
+         left(paper(bands, "clamp", "nearest", scale("1.9"))) + right(diffuse("450:0.2, 650:0.7")) +
+         ball("-0.4 -0.4 0", "0.4",
+              bsdf("plastic",
+                   spectral_bitmap("diffuse_reflectance", mixtures, "repeat", "bilinear", scale("2")))) +
+         ball("0.4 -0.4 0", "0.4",
+              bsdf("roughconductor",
+                   roughness("ggx", "0.3") +
+                       spectral_bitmap("specular_reflectance", bands, "mirror", "bilinear", scale("2")))) +
+         rectangle(scale("0.4") + turn("x", "60") + move("-0.3 0.7 0.3"),
+                   diffuse("0.1") + "<emitter type='area'>" +
+                       spectral_bitmap("radiance", text("filename", "glow.hdr"), "repeat", "bilinear",
+                                       scale("1.5")) +
+                       "</emitter>");
+}
+
 Text delta_lights() {
   return "<emitter type='point'><point name='position' x='-0.5' y='0.6' z='0.3'/>" +
          spectrum("intensity", "450:0.4, 650:0.9") + "</emitter><emitter type='spot'>" +
@@ -189,6 +214,10 @@ const Text kEnvmap = "<emitter type='envmap'>" + text("filename", "sky.pfm") + r
                      "<transform name='to_world'>" + turn("y", "70") + turn("x", "15") +
                      "</transform></emitter>";
 
+const Text kSpectralSky = "<emitter type='spectral_envmap'>" + text("filename", "bright.exr") +
+                          real("scale", "0.8") + "<transform name='to_world'>" + turn("y", "70") +
+                          turn("x", "15") + "</transform></emitter>";
+
 Text crop_window() {
   return integer("width", 70) + integer("height", 56) + integer("crop_offset_x", 18) +
          integer("crop_offset_y", 11) + integer("crop_width", 32) + integer("crop_height", 32);
@@ -205,6 +234,8 @@ std::vector<ZooScene> make_scenes() {
       {"plastics", scene(6, perspective(film("gaussian")), lit_room + plastics()), kCurved},
       {"sheets", scene(8, perspective(film("tent")), lit_room + sheets()), kCurved},
       {"pictures", scene(6, perspective(film("gaussian")), pictures() + ceiling_lamp())},
+      {"spectral_pictures", scene(6, perspective(film("gaussian")), spectral_pictures() + ceiling_lamp())},
+      {"spectral_sky", scene(6, thinlens(film("gaussian")), objects + kSpectralSky)},
       {"glowing_shapes", scene(5, perspective(film("box")), room() + glowing_shapes())},
       {"constant_sky", scene(6, thinlens(film("tent")), objects + sky("450:0.8, 650:1.2"))},
       {"envmap", scene(6, thinlens(film("gaussian")), objects + kEnvmap)},

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "scene/reader.hpp"
+#include "tests/support/cube_files.hpp"
 #include "tests/support/scene_zoo.hpp"
 
 namespace kiloband::test {
@@ -53,6 +54,26 @@ const char* const kPrism =
     "v -0.5 -1 0\nv 0.5 -1 0\nv 0 -1 0.866\nv -0.5 1 0\nv 0.5 1 0\nv 0 1 0.866\n"
     "f 1 2 3\nf 6 5 4\nf 1 4 5 2\nf 2 5 6 3\nf 3 6 4 1\n";
 
+/// Reflectances in regular bands, a lamp in irregular ones, a sky whose sun is bright in the short bands
+/// only.
+void write_spectral_images(const fs::path& folder) {
+  ChannelList regular, irregular, sky;
+  for (int i = 0; i < 22; ++i) regular.push_back({440.0 + 10 * i, 450.0 + 10 * i, ""});
+  for (double nm = 440; nm < 660; nm += regular.size() % 2 == irregular.size() % 2 ? 10 : 20)
+    irregular.push_back({nm, nm + 10, ""});
+  for (int i = 0; i < 6; ++i) sky.push_back({430.0 + 40 * i, 470.0 + 40 * i, ""});
+  write_cube(folder / "bands.exr", 6, 4, regular, [](uint32_t x, uint32_t y, std::size_t b) {
+    return 0.1 + 0.8 * static_cast<double>((7 * x + 11 * y + 5 * b) % 23) / 22;
+  });
+  write_cube(folder / "glow.hdr", 3, 3, irregular, [](uint32_t x, uint32_t y, std::size_t b) {
+    return 1.0 + static_cast<double>((5 * x + 3 * y + 2 * b) % 9);
+  });
+  write_cube(folder / "bright.exr", 16, 9, sky, [](uint32_t x, uint32_t y, std::size_t b) {
+    const bool sun = x == 5 && y == 2 && b < 3;
+    return sun ? 40.0 : 0.2 + 0.02 * x + 0.05 * y + 0.1 * static_cast<double>(b);
+  });
+}
+
 void write_text(const fs::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
@@ -67,6 +88,7 @@ ZooFolder::ZooFolder() {
   write_picture(path_ / "colours.ppm", 7, 5, 3, colours(7, 5, 3));
   write_picture(path_ / "grey.pgm", 6, 6, 1, colours(6, 6, 1));
   write_sky(path_ / "sky.pfm");
+  write_spectral_images(path_);
   write_text(path_ / "gem.obj", kGem);
   write_text(path_ / "prism.obj", kPrism);
   write_text(path_ / "glass.txt", "380 1.60\n500 1.545\n600 1.525\n720 1.51\n");

@@ -3,10 +3,12 @@
 //
 // Paths as in a Cornell box: 1024 pixels of a block, one path each, 3 vertices in the mean (a light sample
 // and a scattering event each, shadowed now and then), five named reflectances, one tabulated lamp. `shared`
-// evaluates one offset per call for all 1024 paths, as the renderer does; `per_path` one offset per path.
+// evaluates one offset per call for all 1024 paths, as the renderer does; `per_path` one offset per path. The
+// reflectances are rows, or lookups of spectral textures: 200 bands, 1000 bands, mixtures of 4 spectra.
 #include <benchmark/benchmark.h>
 #include <hwy/aligned_allocator.h>
 
+#include <cstring>
 #include <random>
 #include <string>
 
@@ -18,9 +20,56 @@ namespace {
 
 constexpr std::size_t kPixels = 1024;
 
-void evaluate(benchmark::State& state, Isa isa, std::size_t channels, bool shared, bool derived) {
-  const FlatScene scene = synthetic_scene(channels);
-  const PathBuffer paths = synthetic_paths(kPixels, kPixels, 2.0, 0.75f);
+/// What reflectances are.
+enum class Reflectances { kRows, kBands200, kBands1000, kMixtures };
+
+/// 64 x 64 texels: more than the caches of a core hold, if there are many bands.
+void add_texture(FlatScene& scene, Reflectances kind) {
+  if (kind == Reflectances::kRows) return;
+  KbTexture texture{};
+  texture.width = texture.height = 64;
+  texture.illuminant_row = KB_NONE;
+  texture.flags = kind == Reflectances::kMixtures ? KB_TEXTURE_WEIGHTS : KB_TEXTURE_BANDS;
+  texture.values = kind == Reflectances::kMixtures ? 4 : kind == Reflectances::kBands200 ? 200 : 1000;
+  if (kind != Reflectances::kMixtures) {
+    BandSet set;
+    const double step = 400.0 / texture.values;
+    for (uint32_t b = 0; b < texture.values; ++b) set.centres_nm.push_back(380 + (b + 0.5) * step);
+    set.min_nm = 380;
+    set.max_nm = 780;
+    scene.band_sets.push_back(set);
+  }
+  const std::size_t count = std::size_t{texture.width} * texture.height * texture.values;
+  scene.spectral_texels.push_back(std::make_shared<const std::vector<float>>(count, 0.2f));
+  scene.textures.push_back(texture);
+}
+
+/// The same paths with every reflectance looked up in texture 0.
+PathBuffer textured(const PathBuffer& plain) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  PathBuffer paths;
+  for (const SavedPath& path : plain.paths) {
+    paths.paths.push_back({static_cast<uint32_t>(paths.slots.size()), 2 * path.count, path.pixel});
+    for (uint32_t v = 0; v < path.count; ++v) {
+      KbPathVertex vertex = plain.slots[path.first + v];
+      vertex.head |= KB_VERTEX_TEX_A;
+      paths.slots.push_back(vertex);
+      const auto x = static_cast<uint32_t>(random() % 64), y = static_cast<uint32_t>(random() % 64);
+      const KbTextureSample sample{0, x | y << 16, uniform(random), uniform(random)};
+      paths.slots.emplace_back();
+      std::memcpy(&paths.slots.back(), &sample, sizeof sample);
+    }
+  }
+  return paths;
+}
+
+void evaluate(benchmark::State& state, Isa isa, std::size_t channels, bool shared, bool derived,
+              Reflectances reflectances) {
+  FlatScene scene = synthetic_scene(channels);
+  add_texture(scene, reflectances);
+  const PathBuffer plain = synthetic_paths(kPixels, kPixels, 2.0, 0.75f);
+  const PathBuffer paths = reflectances == Reflectances::kRows ? plain : textured(plain);
   DerivedChannels responses;
   for (int d = 0; derived && d < 3; ++d) {
     responses.names.push_back(std::string(1, "XYZ"[d]));
@@ -40,7 +89,7 @@ void evaluate(benchmark::State& state, Isa isa, std::size_t channels, bool share
       evaluator.add_per_path(paths, offsets, film);
     benchmark::ClobberMemory();
   }
-  const double work = static_cast<double>(paths.slots.size() * channels);
+  const double work = static_cast<double>(plain.slots.size() * channels);
   state.counters["s_per_channel_vertex"] =
       benchmark::Counter(work, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
@@ -49,12 +98,19 @@ void register_all() {
   for (Isa isa : {Isa::kSse4, Isa::kAvx2, Isa::kAvx512}) {
     if (!is_available(isa)) continue;
     for (std::size_t channels : {8u, 64u, 512u, 1000u}) {
-      for (const auto& [name, shared, derived] :
-           {std::tuple("shared", true, false), std::tuple("shared+XYZ", true, true),
-            std::tuple("per_path", false, false)}) {
+      for (const auto& [name, shared, derived, reflectances] :
+           {std::tuple("shared", true, false, Reflectances::kRows),
+            std::tuple("shared+XYZ", true, true, Reflectances::kRows),
+            std::tuple("shared_bands200", true, false, Reflectances::kBands200),
+            std::tuple("shared_bands1000", true, false, Reflectances::kBands1000),
+            std::tuple("shared_mixtures", true, false, Reflectances::kMixtures),
+            std::tuple("per_path", false, false, Reflectances::kRows),
+            std::tuple("per_path_bands200", false, false, Reflectances::kBands200),
+            std::tuple("per_path_mixtures", false, false, Reflectances::kMixtures)}) {
         const std::string title = std::string(name) + "/" + to_string(isa) + "/" + std::to_string(channels);
-        benchmark::RegisterBenchmark(
-            title.c_str(), [=](benchmark::State& state) { evaluate(state, isa, channels, shared, derived); });
+        benchmark::RegisterBenchmark(title.c_str(), [=](benchmark::State& state) {
+          evaluate(state, isa, channels, shared, derived, reflectances);
+        });
       }
     }
   }

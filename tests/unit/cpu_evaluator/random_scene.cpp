@@ -140,8 +140,9 @@ KbPathVertex random_vertex(const FlatScene& scene, std::mt19937& random) {
 }
 
 KbTextureSample random_sample(const FlatScene& scene, bool emission, std::mt19937& random) {
-  // Textures 0-2 are reflectances; 3-5 emit, the last without an illuminant.
-  const uint32_t t = below(random, 3) + (emission ? 3 : 0);
+  // Textures 0-2 are reflectances; 3-5 emit, the last without an illuminant. The same of spectral ones, 6
+  // to 11.
+  const uint32_t t = below(random, 3) + (emission ? 3 : 0) + (chance(random, 0.5) ? 6 : 0);
   const uint32_t x = below(random, scene.textures[t].width), y = below(random, scene.textures[t].height);
   const float fx = chance(random, 0.2) ? 0 : uniform_float(random, 0, 1);
   return {t, x | y << 16, fx, uniform_float(random, 0, 1)};
@@ -208,6 +209,7 @@ FlatScene make_scene(const ChannelList& channels, std::mt19937& random) {
   add_spectra(scene, range, random);
   add_materials(scene);
   add_textures(scene, random);
+  add_spectral_textures(scene, range, kFirstEmission, random);
   set_scales(scene);
   return scene;
 }

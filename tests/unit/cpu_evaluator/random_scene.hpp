@@ -18,9 +18,14 @@ enum class Layout { kRegular, kOverlapping, kNarrow, kInfrared };
 ChannelList make_channels(std::size_t count, Layout layout, std::mt19937& random);
 
 /// A scene in which every kind of vertex can occur: reflectances, tabulated and thermal emission, conductors
-/// (a perfect mirror too), dispersive dielectrics, a nonlinear plastic, textures of every addressing.
-/// channel_scale follows the brightest emission, as flattening does.
+/// (a perfect mirror too), dispersive dielectrics, a nonlinear plastic, textures of every addressing,
+/// spectral ones too. channel_scale follows the brightest emission, as flattening does.
 FlatScene make_scene(const ChannelList& channels, std::mt19937& random);
+
+/// Six textures more, after those of colours: bands, bands, mixtures; the first three are reflectances, the
+/// others emit. Mixtures are of the spectra from row 0 and row `first_emission` on.
+void add_spectral_textures(FlatScene& scene, const Channel& range, uint32_t first_emission,
+                           std::mt19937& random);
 
 /// Positive weights: values are sums of positive terms, so that their relative error means something.
 PathBuffer make_paths(const FlatScene& scene, std::size_t count, std::mt19937& random);

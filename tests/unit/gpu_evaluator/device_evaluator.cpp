@@ -56,6 +56,16 @@ struct Arena {
   }
 };
 
+std::vector<float> texel_values(const FlatScene& scene) {
+  std::vector<float> all;
+  for (std::size_t t = 0; t < scene.spectral_texels.size(); ++t) {
+    if (!scene.spectral_texels[t]) continue;
+    all.resize(std::size_t{scene.textures[t].first_value} * KB_VALUE_UNIT);
+    all.insert(all.end(), scene.spectral_texels[t]->begin(), scene.spectral_texels[t]->end());
+  }
+  return all;
+}
+
 }  // namespace
 
 uint32_t slots_of(const KbPathVertex& vertex) {
@@ -96,6 +106,7 @@ DeviceEvaluator::DeviceEvaluator(EvaluatorProgram& program, const FlatScene& sce
   materials_ = probe.upload(scene.materials);
   textures_ = probe.upload(scene.textures);
   texels_ = probe.upload(scene.texels);
+  texel_values_ = probe.upload(texel_values(scene));
   const std::size_t floats = std::size_t{film_pixels} * layout_.film_columns;
   sum_ = probe.upload(std::vector<float>(floats, 7.0f));  // clear() must do something
   compensation_ = probe.upload(std::vector<float>(floats, 7.0f));
@@ -153,7 +164,7 @@ cl_uint DeviceEvaluator::set_evaluation(cl::Kernel& k, cl_uint index) {
   const cl::Buffer& rows = program_.build.per_path ? nodes_ : dense_;
   for (const cl::Buffer* b : std::initializer_list<const cl::Buffer*>{
            &layout_buffer_, &rows, &table_buffer_, &material_rows_, &cover_, &breaks_, &materials_,
-           &textures_, &texels_, &record_buffer_, &pixels_, &arena_, &chunk_next_})
+           &textures_, &texels_, &texel_values_, &record_buffer_, &pixels_, &arena_, &chunk_next_})
     k.setArg(index++, *b);
   return index;
 }

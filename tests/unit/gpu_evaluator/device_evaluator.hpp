@@ -105,7 +105,7 @@ class DeviceEvaluator {
   KbRound record_{};
   uint32_t tables_ = 0;
   cl::Buffer layout_buffer_, nodes_, table_buffer_, material_rows_, cover_, breaks_, materials_, textures_,
-      texels_;
+      texels_, texel_values_;
   cl::Buffer dense_, mu_, record_buffer_, pixels_, arena_, chunk_next_, saved_;
   cl::Buffer sum_, compensation_, counts_, partial_;
 };

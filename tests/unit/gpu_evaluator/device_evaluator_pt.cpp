@@ -30,7 +30,7 @@ bool next_bounce(Slot& slot, uint32_t number, uint32_t slots, const RoundOfPaths
   state = {};
   state.job = slot.job;
   if (slot.bounce++ == 0) state.flags |= KB_PATH_FRESH;
-  const bool nothing = p == RoundOfPaths::kEmpty || p == RoundOfPaths::kInvalid;
+  const bool nothing = p == RoundOfPaths::kEmpty || p == RoundOfPaths::kInvalid || paths.paths[p].count == 0;
   if (!nothing) {
     const SavedPath& path = paths.paths[p];
     state.length = slots_of(paths.slots[path.first + slot.at]);

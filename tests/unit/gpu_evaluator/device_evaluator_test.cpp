@@ -237,18 +237,21 @@ TEST(DeviceEvaluator, SpecialisedKernelsComputeTheSameBits) {
       {"-DKB_HAS_PLASTIC=1", 1u << KB_KIND_SCALED | 1u << KB_KIND_TWO_TERM | 1u << KB_KIND_NONLINEAR},
       {"-DKB_HAS_ROUGH_CONDUCTOR=1", 1u << KB_KIND_SCALED | 1u << KB_KIND_CONDUCTOR},
       {"-DKB_HAS_DISPERSION=1", 1u << KB_KIND_SCALED | 1u << KB_KIND_DISPERSIVE},
+      {"-DKB_HAS_BITMAP=1 -DKB_HAS_SPECTRAL_TEXTURE=1", 1u << KB_KIND_SCALED},
   };
+  const PathBuffer many = make_paths(w.scene, 400, random);
   EvaluatorProgram general({16, 2, false, 0});
   for (const auto& [macro, kinds] : features) {
     // Paths whose vertices are all of the build's kinds; with a feature's macro alone the others are compiled
     // out.
     PathBuffer some;
-    some.slots = w.paths.slots;
-    for (const SavedPath& path : w.paths.paths) {
+    some.slots = many.slots;
+    const bool textures = macro.find("TEXTURE") != std::string::npos;
+    for (const SavedPath& path : many.paths) {
       bool fits = true;
-      for (uint32_t i = 0; i < path.count; i += slots_of(w.paths.slots[path.first + i])) {
-        const KbPathVertex& v = w.paths.slots[path.first + i];
-        fits &= !(v.head & KB_VERTEX_TEX_MASK) && (kinds >> (v.head & KB_VERTEX_KIND_MASK) & 1);
+      for (uint32_t i = 0; i < path.count; i += slots_of(many.slots[path.first + i])) {
+        const KbPathVertex& v = many.slots[path.first + i];
+        fits &= (textures || !(v.head & KB_VERTEX_TEX_MASK)) && (kinds >> (v.head & KB_VERTEX_KIND_MASK) & 1);
         fits &= !(v.head & KB_VERTEX_DEGRADE) || macro == "-DKB_HAS_DISPERSION=1";
       }
       if (fits) some.paths.push_back(path);

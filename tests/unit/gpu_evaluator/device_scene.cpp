@@ -45,6 +45,21 @@ void set_material_types(FlatScene& scene) {
   scene.materials[6].type = KB_MATERIAL_PLASTIC;
 }
 
+/// Centres and edges on simple fractions of equal channels, or, for other channels, two centres that enclose
+/// them all and the rest beyond: device tables are then exact.
+void place_bands(BandSet& set, const ChannelList& channels, bool equal, std::mt19937& random) {
+  const Channel range = hull(channels);
+  const double width = channels.front().width_nm();
+  double nm = equal ? range.min_nm + width / 2 : range.min_nm - 1;
+  for (double& centre : set.centres_nm) {
+    centre = nm;
+    nm = equal ? nm + width / 4 * (1 + below(random, 6)) : std::max(nm, range.max_nm) + 1;
+  }
+  set.extrapolate |= !equal;
+  set.min_nm = range.min_nm;
+  set.max_nm = range.min_nm + width * std::ceil((set.centres_nm.back() - range.min_nm) / width);
+}
+
 }  // namespace
 
 FlatScene make_device_scene(std::size_t count, Layout layout, std::mt19937& random) {
@@ -58,6 +73,7 @@ FlatScene make_device_scene(std::size_t count, Layout layout, std::mt19937& rand
     s.table = equal ? stepped_table(channels, low, high, s.table.extrapolate, random)
                     : straight_table(channels, low, high, random);
   }
+  for (BandSet& set : scene.band_sets) place_bands(set, channels, equal, random);
   set_material_types(scene);
   return scene;
 }

@@ -49,7 +49,7 @@ FlatScene texture_scene() {
     for (const auto& map : maps) {
       for (const uint32_t wrap : {KB_WRAP_REPEAT, KB_WRAP_MIRROR, KB_WRAP_CLAMP}) {
         for (const uint32_t flags : {0u, KB_TEXTURE_NEAREST}) {
-          KbTexture texture{size[0], size[1], first, wrap, flags, KB_NONE, {}};
+          KbTexture texture{size[0], size[1], first, wrap, flags, KB_NONE, {}, first};
           std::copy_n(map, 6, texture.to_uv);
           scene.textures.push_back(texture);
         }

@@ -213,6 +213,16 @@ TEST_F(SessionTest, FingerprintSeesSceneSamplingAndInstructionSet) {
   EXPECT_EQ(base, render_fingerprint(scene_, sampling, "avx2", {}));
   EXPECT_NE(base, render_fingerprint(scene_, other, "avx2", {}));
   EXPECT_NE(base, render_fingerprint(moved, sampling, "avx2", {}));
+  FlatScene textured = scene_;
+  textured.band_sets.push_back({{500}, 490, 510});
+  textured.spectral_texels.push_back(std::make_shared<const std::vector<float>>(3, 0.5f));
+  FlatScene brighter = textured;
+  brighter.spectral_texels[0] = std::make_shared<const std::vector<float>>(3, 0.6f);
+  const uint64_t dim = render_fingerprint(textured, sampling, "avx2", {});
+  EXPECT_NE(base, dim);
+  EXPECT_NE(dim, render_fingerprint(brighter, sampling, "avx2", {}));
+  textured.band_sets[0].scale = 2;
+  EXPECT_NE(dim, render_fingerprint(textured, sampling, "avx2", {}));
   EXPECT_NE(base, render_fingerprint(scene_, sampling, "sse4", {}));
   const DerivedChannels one{{"x"}, {RegularTable{400, 1, {1, 1}}}},
       other_values{{"x"}, {RegularTable{400, 1, {1, 2}}}};

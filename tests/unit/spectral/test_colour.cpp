@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "spectral/colour.hpp"
 
@@ -49,6 +50,59 @@ TEST(Colour, D65IsWhite) {
   EXPECT_NEAR(xyz[0] / (xyz[0] + xyz[1] + xyz[2]), 0.3127, 5e-5);  // CIE chromaticity of D65
   EXPECT_NEAR(xyz[1] / (xyz[0] + xyz[1] + xyz[2]), 0.3290, 5e-5);
   for (const double component : xyz_to_linear_srgb(xyz)) EXPECT_NEAR(component, 1, 1e-4);
+}
+
+/// XYZ of a light on a reflectance by a direct sum over 1 nm, relative to the light's own Y.
+std::array<double, 3> direct_xyz(const std::function<double(double)>& light,
+                                 const std::function<double(double)>& reflectance) {
+  std::array<double, 3> xyz{};
+  double white = 0;
+  for (double nm = 360; nm <= 830; nm += 1) {
+    const double matching[3] = {cie_x()(nm), cie_y()(nm), cie_z()(nm)};
+    for (int i = 0; i < 3; ++i) xyz[i] += light(nm) * reflectance(nm) * matching[i];
+    white += light(nm) * matching[1];
+  }
+  for (double& component : xyz) component /= white;
+  return xyz;
+}
+
+// Illuminant A is Planck's law with c2 = 1.435e-2 m K at 2848 K, which is 2855.5 K with today's c2 (CIE 15):
+// published chromaticity (0.44757, 0.40745).
+TEST(Colour, IlluminantA) {
+  const Spectrum light = Spectrum::planck(2848 * 1.4387769 / 1.435, 1);
+  const auto xyz = direct_xyz(light, [](double) { return 1.0; });
+  EXPECT_NEAR(xyz[0] / (xyz[0] + xyz[1] + xyz[2]), 0.44757, 1e-4);
+  EXPECT_NEAR(xyz[1] / (xyz[0] + xyz[1] + xyz[2]), 0.40745, 1e-4);
+}
+
+// Smooth reflectances like those of colour charts under D65: integrals of products of spectra, which previews
+// and responses are made of, against a direct sum over 1 nm.
+TEST(Colour, ReflectancesUnderD65AgreeWithADirectSum) {
+  const auto bump = [](double nm, double centre, double width) {
+    return std::exp(-0.5 * std::pow((nm - centre) / width, 2));
+  };
+  const std::function<double(double)> patches[] = {
+      [](double) { return 0.18; },
+      [&](double nm) { return 0.05 + 0.55 / (1 + std::exp((590 - nm) / 12)); },            // red
+      [&](double nm) { return 0.04 + 0.4 * bump(nm, 530, 30); },                           // green
+      [&](double nm) { return 0.05 + 0.35 * bump(nm, 450, 25); },                          // blue
+      [&](double nm) { return 0.05 + 0.7 / (1 + std::exp((510 - nm) / 10)); },             // yellow
+      [&](double nm) { return 0.1 + 0.4 * bump(nm, 430, 40) + 0.5 * bump(nm, 680, 50); },  // magenta
+      [&](double nm) { return 0.12 + 0.3 * (nm - 400) / 300 * (nm > 400 && nm < 700); }};  // skin
+  for (const auto& patch : patches) {
+    std::vector<double> nm, values;
+    for (double x = 360; x <= 830; x += 10)
+      nm.push_back(x), values.push_back(patch(x));  // as charts are measured
+    const Spectrum reflectance = Spectrum::tabulated(nm, values);
+    const Spectrum light = Spectrum::product(illuminant_d65(), reflectance);
+    const Spectrum* matching[3] = {&cie_x(), &cie_y(), &cie_z()};
+    const double white = Spectrum::product(illuminant_d65(), cie_y()).integral(360, 830);
+    std::array<double, 3> xyz;
+    for (int i = 0; i < 3; ++i) xyz[i] = Spectrum::product(light, *matching[i]).integral(360, 830) / white;
+    const auto rgb = xyz_to_linear_srgb(xyz);
+    const auto expected = xyz_to_linear_srgb(direct_xyz(illuminant_d65(), reflectance));
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(rgb[i], expected[i], 1e-3) << i;
+  }
 }
 
 // The primaries of ITU-R BT.709: red (0.64, 0.33) has no green and no blue.

@@ -102,6 +102,13 @@ TEST(RealSpectra, SunAirAndGases) {
   if (!root) return;
   const Spectrum sun = read_spectrum_file(*root / "solar" / "ASTMG173.csv");
   EXPECT_NEAR(sun.integral(280, 4000), 1347.9, 1);  // W/m^2, ASTM G173-03
+  const std::pair<const char*, double> totals[] = {
+      {"extraterrestrial", 1347.9}, {"global", 1000.4}, {"direct", 900.1}};
+  for (const auto& [name, spectrum] : read_response_file(*root / "solar" / "ASTMG173.csv"))
+    for (const auto& [column, total] : totals)
+      if (name == column) {
+        EXPECT_NEAR(spectrum.integral(280, 4000), total, 1) << name;
+      }
   EXPECT_NEAR(read_spectrum_file(*root / "atmosphere" / "modtran_ihaze1_alt1000m_range0m.csv")(300),
               0.6700066, 1e-9);
   const Spectrum co = read_spectrum_file(*root / "gas" / "CO_Tgas1500K_mole_fraction0.01.csv");
