@@ -33,15 +33,15 @@ void write_scene(const Scene& scene, const fs::path& out) {
 
 int run(int count, char** arguments) {
   if (count < 2 || arguments[1][0] == '-') {
-    std::cerr << "usage: generate_scenes OUT_DIR [conference|statues]...\n";
+    std::cerr << "usage: generate_scenes OUT_DIR [aircraft|conference|statues]...\n";
     return 2;
   }
-  const std::vector<std::pair<std::string, Scene (*)()>> known{{"conference", conference},
-                                                               {"statues", statues}};
+  const std::vector<std::pair<std::string, Scene (*)()>> known{
+      {"aircraft", aircraft}, {"conference", conference}, {"statues", statues}};
   std::vector<std::string> wanted(arguments + 2, arguments + count);
   for (const std::string& name : wanted) {
     if (std::none_of(known.begin(), known.end(), [&](const auto& k) { return k.first == name; })) {
-      std::cerr << "error: unknown scene '" << name << "'; there are conference, statues\n";
+      std::cerr << "error: unknown scene '" << name << "'; there are aircraft, conference, statues\n";
       return 2;
     }
   }

@@ -14,5 +14,6 @@ struct Scene {
 
 Scene conference();
 Scene statues();
+Scene aircraft();
 
 }  // namespace kiloband::generator

@@ -1,6 +1,7 @@
-// Floor, pedestals, a colonnade before the sky, and the sky.
+// Floor, pedestals, a colonnade, the landscape behind it.
 #include "scenes/generator/implicit.hpp"
 #include "scenes/generator/primitives.hpp"
+#include "scenes/generator/sky.hpp"
 #include "scenes/generator/statues.hpp"
 
 namespace kiloband::generator {
@@ -54,35 +55,6 @@ Mesh column(double height) {
                      96, false, 50));
   append(mesh, box({-0.40, top + 0.17, -0.40}, {0.40, height, 0.40}, 0.012));
   return mesh;
-}
-
-/// Direction of a pixel of the environment, as the renderer maps it.
-Vec3 direction(const Image& image, int x, int y) {
-  const double phi = 2 * kPi * (x + 0.5) / image.width, theta = kPi * (y + 0.5) / image.height;
-  return {sine(theta) * sine(phi), cosine(theta), -sine(theta) * cosine(phi)};
-}
-
-/// Clear sky with thin clouds, a hazy sun. RGB times D65: W m^-2 sr^-1 nm^-1.
-Image sky() {
-  Image image(512, 256);
-  const Vec3 sun = normalize({-0.62, 0.58, 0.53});
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const Vec3 d = direction(image, x, y);
-      const double up = clamp(d.y, 0, 1), towards = dot(d, sun);
-      Vec3 colour = mix(Vec3{0.075, 0.082, 0.088}, Vec3{0.012, 0.026, 0.062}, power(up, 0.55));
-      const Vec3 plane = d * (1 / (up + 0.12));
-      const double cloud =
-          smooth_step(0.0, 0.9, turbulence({1.1 * plane.x, 0.5, 1.1 * plane.z}, 300, 5) + 0.15);
-      colour = mix(colour, {0.105, 0.105, 0.104}, cloud * smooth_step(0.02, 0.25, up) * 0.85);
-      const double halo = exponential(-14 * (1 - towards));
-      colour =
-          colour + Vec3{0.16, 0.14, 0.11} * halo + Vec3{34, 30, 24} * smooth_step(0.9968, 0.9986, towards);
-      const Vec3 haze{0.030, 0.034, 0.032};  // below the horizon, where the land ends
-      image.at(x, y) = mix(haze, colour, smooth_step(-0.01, 0.01, d.y));
-    }
-  }
-  return image;
 }
 
 /// White marble with grey veins: sRGB values, 1 m.
@@ -188,7 +160,7 @@ void add_landscape(Parts& parts) {
 }
 
 void add_statue_images(Images& images) {
-  images["sky.pfm"] = sky();
+  images["sky.pfm"] = clear_sky({-0.62, 0.58, 0.53}, 0.85);
   images["marble.ppm"] = marble();
 }
 
