@@ -11,6 +11,7 @@ Scene aircraft() {
   add_intakes(scene.parts);
   add_nozzle(scene.parts);
   add_wings(scene.parts);
+  add_plume(scene.parts);
   scene.images["sky.pfm"] = clear_sky({0.80, 0.26, -0.54}, 0.5);
   return scene;
 }

@@ -22,7 +22,7 @@ void add_fuselage(Parts& parts);  // forebody with spine, centre body, canopy
 void add_intakes(Parts& parts);   // lip, ducts, compressor face
 void add_nozzle(Parts& parts);    // lip, serpentine duct, turbine face, tail cone
 void add_wings(Parts& parts);     // wings with strakes, tailplanes, fins, stores
-/// The hull that the exhaust gas fills.
+/// The hull that the exhaust gas fills: nothing in visible light, for scenes of the infrared.
 void add_plume(Parts& parts);
 
 inline constexpr double kIntakeZ = 2.0, kCompressorZ = -0.6, kTurbineZ = -3.3, kExitZ = -6.8;

@@ -10,7 +10,8 @@ Mesh leaf(double length, double width, double droop) {
   return grid(8, 16, [&](double u, double v) {
     const double side = 2 * u - 1, outline = power(sine(kPi * power(v, 0.75)), 0.8) * (1 - 0.15 * v);
     const double x = side * width / 2 * outline, z = length * v * (1 - 0.12 * v * droop);
-    const double y = -droop * length * v * v * 0.6 + 0.25 * std::fabs(x) + 0.004 * sine(14 * v) * side;
+    const double y =
+        -droop * length * v * v * 0.6 + 0.25 * std::fabs(x) + 0.004 * sine(14 * v) * side * outline;
     return Vec3{-x, y, z};
   });
 }

@@ -7,6 +7,7 @@
 namespace kiloband::generator {
 namespace {
 
+constexpr int kRelaxations = 2;
 constexpr int kBlock = 8;  // cubes along the edge of a block that is looked at, or skipped, together
 
 /// The corner with bits (x, y, z) = (c & 1, c >> 1 & 1, c >> 2); six tetrahedra around the diagonal from 0
@@ -36,7 +37,8 @@ class Marcher {
         }
       }
     }
-    for (const Vec3& p : mesh_.positions) mesh_.normals.push_back(gradient(p));
+    for (int i = 0; i < kRelaxations; ++i) relax();
+    for (const Vec3& p : mesh_.positions) mesh_.normals.push_back(normalize(gradient(p)));
     return std::move(mesh_);
   }
 
@@ -92,11 +94,20 @@ class Marcher {
       }
       ++inside;
     }
-    const auto edge = [&](int a, int b) { return vertex(corner[a], corner[b]); };
-    if (inside == 1) triangle(edge(0, 1), edge(0, 2), edge(0, 3), turned);
-    if (inside == 3) triangle(edge(3, 0), edge(3, 1), edge(3, 2), turned);
+    // One statement per vertex: they are numbered as they are made, and the order of arguments is the
+    // compiler's choice.
+    if (inside == 1 || inside == 3) {
+      const int apex = inside == 1 ? 0 : 3, first = inside == 1 ? 1 : 0;
+      const uint32_t a = vertex(corner[apex], corner[first]);
+      const uint32_t b = vertex(corner[apex], corner[first + 1]);
+      const uint32_t c = vertex(corner[apex], corner[first + 2]);
+      triangle(a, b, c, turned);
+    }
     if (inside == 2) {
-      const uint32_t a = edge(0, 2), b = edge(0, 3), c = edge(1, 3), d = edge(1, 2);
+      const uint32_t a = vertex(corner[0], corner[2]);
+      const uint32_t b = vertex(corner[0], corner[3]);
+      const uint32_t c = vertex(corner[1], corner[3]);
+      const uint32_t d = vertex(corner[1], corner[2]);
       triangle(a, b, c, turned);
       triangle(a, c, d, turned);
     }
@@ -132,9 +143,29 @@ class Marcher {
   }
 
   Vec3 gradient(Vec3 p) const {
-    const double h = 0.35 * step_;
-    const auto along = [&](Vec3 d) { return field_(p + d * h) - field_(p - d * h); };
-    return normalize({along({1, 0, 0}), along({0, 1, 0}), along({0, 0, 1})});
+    const double h = 0.25 * step_;
+    const auto along = [&](Vec3 d) { return (field_(p + d * h) - field_(p - d * h)) / (2 * h); };
+    return {along({1, 0, 0}), along({0, 1, 0}), along({0, 0, 1})};
+  }
+
+  /// Marching leaves slivers: each vertex moves half of the way to the mean of its neighbours, along the
+  /// surface, and is put back onto it by a Newton step (at most half of an edge).
+  void relax() {
+    const std::vector<Vec3> old = mesh_.positions;
+    std::vector<Vec3> sums(old.size());
+    std::vector<int> counts(old.size());
+    for (const auto& t : mesh_.triangles) {
+      for (int c = 0; c < 3; ++c) {
+        sums[t[c]] = sums[t[c]] + old[t[(c + 1) % 3]] + old[t[(c + 2) % 3]];
+        counts[t[c]] += 2;
+      }
+    }
+    for (std::size_t i = 0; i < old.size(); ++i) {
+      const Vec3 g = gradient(old[i]), n = normalize(g), way = sums[i] * (1.0 / counts[i]) - old[i];
+      const Vec3 p = old[i] + (way - n * dot(way, n)) * 0.5;
+      const double off = field_(p) / std::max(length(g), 0.25), limit = 0.5 * step_;
+      mesh_.positions[i] = p - n * clamp(off, -limit, limit);
+    }
   }
 
   const Field& field_;
@@ -146,13 +177,15 @@ class Marcher {
   Mesh mesh_;
 };
 
-Vec3 lattice_gradient(double x, double y, double z, unsigned seed) {
+/// Dot product of v with one of twelve directions from a cube's middle to its edges (Perlin, Improving noise,
+/// 2002).
+double lattice_slope(double x, double y, double z, unsigned seed, Vec3 v) {
   const auto cell = [](double c) { return static_cast<unsigned>(static_cast<int64_t>(c) & 1023); };
   const unsigned at = (cell(z) * 1024 + cell(y)) * 1024 + cell(x);
-  const double cos_theta = 2 * random_number(2 * seed, at) - 1,
-               phi = 2 * kPi * random_number(2 * seed + 1, at);
-  const double sin_theta = std::sqrt(1 - cos_theta * cos_theta);
-  return {sin_theta * cosine(phi), sin_theta * sine(phi), cos_theta};
+  const int edge = static_cast<int>(12 * random_number(seed, at));
+  const double a = edge & 1 ? 1 : -1, b = edge & 2 ? 1 : -1;
+  if (edge < 4) return a * v.x + b * v.y;
+  return edge < 8 ? a * v.y + b * v.z : a * v.z + b * v.x;
 }
 
 }  // namespace
@@ -203,7 +236,7 @@ double noise(Vec3 p, unsigned seed) {
   for (int c = 0; c < 8; ++c) {
     const double cx = x + (c & 1), cy = y + (c >> 1 & 1), cz = z + (c >> 2);
     const double weight = ((c & 1) ? fx : 1 - fx) * ((c >> 1 & 1) ? fy : 1 - fy) * ((c >> 2) ? fz : 1 - fz);
-    sum += weight * dot(lattice_gradient(cx, cy, cz, seed), p - Vec3{cx, cy, cz});
+    sum += weight * lattice_slope(cx, cy, cz, seed, p - Vec3{cx, cy, cz});
   }
   return sum;
 }

@@ -1,7 +1,6 @@
 // generate_scenes OUT_DIR [SCENE]...: writes OUT_DIR/SCENE/ with the scene file, its spectra, meshes and
 // textures.
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 
@@ -10,44 +9,38 @@
 namespace kiloband::generator {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Committed files of the scene, then what is computed. Prints a line for each mesh.
-void write_scene(const Scene& scene, const fs::path& out) {
-  const fs::path folder = out / scene.name;
-  fs::create_directories(folder);
-  fs::copy(fs::path(KILOBAND_SCENES_DIR) / scene.name, folder,
-           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-  fs::create_directories(folder / "meshes");
-  fs::create_directories(folder / "textures");
-  std::size_t total = 0;
-  for (const auto& [name, part] : scene.parts) {
-    const Mesh mesh = in_single_precision(part);
-    write_ply(mesh, folder / "meshes" / (name + ".ply"));
-    std::cout << scene.name << "/" << name << " " << mesh.triangles.size() << "\n";
-    total += mesh.triangles.size();
-  }
-  for (const auto& [name, image] : scene.images) write_image(image, folder / "textures" / name);
-  std::cout << scene.name << " " << total << " triangles\n";
+std::string names() {
+  std::string text;
+  for (const KnownScene& scene : known_scenes()) text += (text.empty() ? "" : ", ") + scene.name;
+  return text;
 }
 
-int run(int count, char** arguments) {
-  if (count < 2 || arguments[1][0] == '-') {
-    std::cerr << "usage: generate_scenes OUT_DIR [aircraft|conference|statues]...\n";
+/// Writes the scene and prints its parts with their triangles.
+void write(const KnownScene& scene, const std::string& out) {
+  std::size_t total = 0;
+  for (const WrittenPart& part : write_scene(scene.make(), KILOBAND_SCENES_DIR, out)) {
+    std::cout << "  " << part.name << " " << part.triangles << "\n";
+    total += part.triangles;
+  }
+  std::cout << out << "/" << scene.name << "/" << scene.name << ".xml: " << total << " triangles\n";
+}
+
+int run(const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments[0].starts_with("-")) {
+    std::cerr << "usage: generate_scenes OUT_DIR [SCENE]...\nscenes: " << names() << " (default: all)\n";
     return 2;
   }
-  const std::vector<std::pair<std::string, Scene (*)()>> known{
-      {"aircraft", aircraft}, {"conference", conference}, {"statues", statues}};
-  std::vector<std::string> wanted(arguments + 2, arguments + count);
+  const std::vector<std::string> wanted(arguments.begin() + 1, arguments.end());
   for (const std::string& name : wanted) {
-    if (std::none_of(known.begin(), known.end(), [&](const auto& k) { return k.first == name; })) {
-      std::cerr << "error: unknown scene '" << name << "'; there are aircraft, conference, statues\n";
+    const auto same = [&](const KnownScene& scene) { return scene.name == name; };
+    if (std::none_of(known_scenes().begin(), known_scenes().end(), same)) {
+      std::cerr << "error: unknown scene '" << name << "'; there are " << names() << "\n";
       return 2;
     }
   }
-  for (const auto& [name, make] : known) {
-    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end()) {
-      write_scene(make(), arguments[1]);
+  for (const KnownScene& scene : known_scenes()) {
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), scene.name) != wanted.end()) {
+      write(scene, arguments[0]);
     }
   }
   return 0;
@@ -58,7 +51,7 @@ int run(int count, char** arguments) {
 
 int main(int count, char** arguments) {
   try {
-    return kiloband::generator::run(count, arguments);
+    return kiloband::generator::run({arguments + 1, arguments + count});
   } catch (const std::exception& error) {
     std::cerr << "error: " << error.what() << "\n";
     return 3;

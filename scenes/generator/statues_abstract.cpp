@@ -34,18 +34,19 @@ Mesh twisted_column() {
   return mesh;
 }
 
-/// Two sheets around the gyroid sin x cos y + sin y cos z + sin z cos x = 0, inside a ball.
+/// One of the two labyrinths that the gyroid sin x cos y + sin y cos z + sin z cos x = 0 divides space into,
+/// inside a ball.
 Mesh gyroid_ball() {
-  constexpr double kRadius = 0.42, kPeriod = 0.27;
+  constexpr double kRadius = 0.42, kPeriod = 0.30;
   const Field field = [](Vec3 p) {
     const Vec3 q = p * (2 * kPi / kPeriod);
     const double g = sine(q.x) * cosine(q.y) + sine(q.y) * cosine(q.z) + sine(q.z) * cosine(q.x);
-    const double wall = (std::sqrt(g * g + 0.002) - 0.36) * kPeriod / (2 * kPi) / 1.5;
+    const double wall = (g + 0.15) * kPeriod / (2 * kPi) / 1.5;
     const double core = sphere_distance(p, {}, 0.12);
-    return blend_intersection(blend(wall, core, 0.02), sphere_distance(p, {}, kRadius), 0.012);
+    return blend_intersection(blend(wall, core, 0.02), sphere_distance(p, {}, kRadius), 0.035);
   };
   const double r = kRadius + 0.02;
-  const Mesh mesh = surface_of(field, {{-r, -r, -r}, {r, r, r}}, 0.0150, 1.3);
+  const Mesh mesh = surface_of(field, {{-r, -r, -r}, {r, r, r}}, 0.0115, 1.3);
   return transformed(mesh, translate({0, kRadius, 0}) * rotate_x(20) * rotate_z(35));
 }
 

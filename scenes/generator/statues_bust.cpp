@@ -57,8 +57,9 @@ double hair(Vec3 p) {
   const double around = arctangent(d.x, d.z), down = length({d.x, 0.7 * d.y, d.z});
   const double locks = sine(15 * around + 60 * down + 3.0 * warp),
                fine = sine(47 * around + 150 * down + 7.0 * warp);
-  const double cap =
-      ellipsoid_distance(p, {0, 0.478, -0.026}, {0.087, 0.098, 0.106}) - 0.0045 * locks - 0.0012 * fine;
+  const double parting = smooth_step(0, 0.05, length({d.x, 0, d.z}));  // locks have no angle at the crown
+  const double cap = ellipsoid_distance(p, {0, 0.478, -0.026}, {0.087, 0.098, 0.106}) -
+                     0.0045 * parting * locks - 0.0012 * parting * fine;
   const double brow = dot(p - Vec3{0, 0.500, 0.078}, {0, -0.50, 0.866}) - 0.004 * sine(260 * p.x);
   const double front = blend_intersection(cap, brow, 0.012);
   const double bun = ellipsoid_distance(p, {0, 0.455, -0.135}, {0.040, 0.036, 0.034}) -
@@ -76,8 +77,7 @@ double wreath(Vec3 m) {
     const Vec3 along = normalize(Vec3{cosine(a), 0.35 * (i % 2 ? 1 : -1), -sine(a)} * -1.0);
     const Vec3 across = cross(along, normalize(out)), q = m - centre;
     const Vec3 local{dot(q, along), dot(q, across), dot(q, normalize(out))};
-    d = std::min(
-        d, ellipsoid_distance(local, {}, {0.024, 0.0095, 0.0042}) - 0.0008 * std::fabs(sine(300 * local.y)));
+    d = blend(d, ellipsoid_distance(local, {}, {0.024, 0.0100, 0.0062}), 0.004);
   }
   return d;
 }

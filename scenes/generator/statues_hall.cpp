@@ -136,7 +136,7 @@ void add_hall(Parts& parts) {
 void add_landscape(Parts& parts) {
   const auto height = [](double x, double z) {
     const double away = length({x, 0, z}), hill = turbulence({x / 210, 0.3, z / 210}, 500, 5);
-    return -9 * smooth_step(8, 40, away) + smooth_step(60, 500, away) * (13 + 42 * hill) +
+    return -9 * smooth_step(8, 40, away) + smooth_step(60, 500, away) * (10 + 30 * hill) +
            2.0 * noise({x / 30, 0, z / 30}, 510) * smooth_step(20, 60, away);
   };
   append(parts["meadow"], grid(220, 120, [&](double u, double v) {
