@@ -24,6 +24,7 @@ class ProgramBuilder {
                   DenseSpectra& spectra);
   void add_general(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
   void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
+  void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) const;
   const TextureTerms* texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
 
   const FlatScene& scene_;

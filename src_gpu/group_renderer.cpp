@@ -111,6 +111,7 @@ KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) c
   KbRound round{};
   round.seed = settings_.seed;
   round.sampler = settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  round.degrade_rough = settings_.rough_dispersion == RoughDispersion::kDegrade;
   round.wavelengths =
       settings_.wavelengths == WavelengthMode::kShared ? KB_WAVELENGTHS_SHARED : KB_WAVELENGTHS_PER_PATH;
   round.replicates = settings_.replicates;

@@ -95,7 +95,11 @@ KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 #define KB_PATH_INVALID 0x04000000u        /* a weight is not finite, or the path is endless */
 #define KB_PATH_PREVIOUS_DELTA 0x08000000u /* the ray was not sampled from a density */
 #define KB_PATH_FINISHED 0x10000000u       /* the slot has no more jobs */
+#define KB_PATH_HEROES 0x40000000u         /* its hero weights are set */
 #define KB_PATH_FRESH 0x20000000u          /* what was appended last belongs to the path's first bounce */
+
+/* Channels that stand for all at rough dispersive boundaries. */
+#define KB_MAX_HEROES 8u
 
 typedef struct {
   kb_u32 job;
@@ -140,7 +144,8 @@ typedef struct {
   kb_u32 pool;          /* P, slots in use */
   kb_u32 blocks;        /* of the round */
   kb_u32 arena_chunks;  /* capacity */
-  kb_u32 reserved[3];
+  kb_u32 degrade_rough; /* rough dispersive boundaries: one channel goes on, instead of spectral MIS */
+  kb_u32 reserved[2];
 } KbRound;
 KB_STATIC_ASSERT(sizeof(KbRound) == 64, round_size);
 
