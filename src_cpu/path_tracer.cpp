@@ -103,6 +103,7 @@ void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t co
     path.key = kb_sampler_key(sampler, settings_.seed, y * flat_.camera.film_width + x, id.sample,
                               id.replicate, id.index);
     path.bound = path.magnitude = 1;
+    path.carried.fill(1);
     path.previous_delta = true;
     path.channel = path.first_slot = path.last_slot = KB_NONE;
     const CameraRay ray = sample_camera_ray(flat_.camera, x, y, kb_sampler_block(path.key, KB_BLOCK_CAMERA));
@@ -235,6 +236,8 @@ void PathTracer::resolve_spectra(Draft& draft, const KbMaterial& material, const
 void PathTracer::append(Path& path, const Draft& draft) {
   ++vertices_;
   if (!stays_finite(draft.vertex, draft.scale, path.magnitude)) path.invalid = true;
+  if (!flat_.channel_bins.empty() && (draft.vertex.head & KB_VERTEX_SCATTER))
+    carry(path.carried, draft.vertex, flat_.channel_bins);
   const auto index = static_cast<uint32_t>(slots_.size());
   (path.last_slot == KB_NONE ? path.first_slot : slots_[path.last_slot].next) = index;
   path.last_slot = index;

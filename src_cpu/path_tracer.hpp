@@ -20,6 +20,7 @@
 #include "render/backend.hpp"
 #include "shared/sampler.h"
 #include "src_cpu/bsdf.hpp"
+#include "src_cpu/channel_choice.hpp"
 #include "src_cpu/conductor_bound.hpp"
 #include "src_cpu/embree_scene.hpp"
 #include "src_cpu/emitter.hpp"
@@ -84,6 +85,7 @@ class PathTracer {
     float magnitude;  // product of the scatter weights: where this overflows the sample is invalid
     bool previous_delta;
     bool invalid;
+    BinnedThroughput carried;                    // with dispersion: what each bin of channels carries
     uint32_t heroes;                             // of spectral MIS; 0: none chosen yet
     std::array<float, kMaxHeroes> hero_weights;  // q_c
   };
@@ -120,6 +122,7 @@ class PathTracer {
   void queue_shadow_ray(const SurfaceHit& hit, const LightSample& light);
   bool refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi,
                            BsdfSample& sample, const SampleId& id, uint32_t bounce, float mu);
+  float survive(Path& path, const BinnedThroughput& carried, const SampleId& id, uint32_t bounce);
   void degrade(Path& path, const SampleId& id, uint32_t bounce);
   /// A surface being shaded, for the steps of one bounce.
   struct Boundary {

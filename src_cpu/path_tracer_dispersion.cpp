@@ -18,19 +18,31 @@ float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, floa
   return static_cast<float>(flat_.spectra[material.eta_row].table(lambda_nm) / exterior);
 }
 
-/// Refraction by an index that depends on wavelength: one channel, chosen uniformly, goes on with weight K.
+/// One channel is what the path stands for from here on. carried: what each still carries. Returns its
+/// probability.
+float PathTracer::survive(Path& path, const BinnedThroughput& carried, const SampleId& id, uint32_t bounce) {
+  const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
+  const ChannelChoice choice = choose_channel(carried, static_cast<uint32_t>(flat_.channels.size()), u);
+  path.channel = choice.channel;
+  return choice.probability;
+}
+
+/// Refraction by an index that depends on wavelength: one channel goes on, with weight 1 / probability.
 bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi,
                                      BsdfSample& sample, const SampleId& id, uint32_t bounce, float mu) {
-  const auto channels = static_cast<uint32_t>(flat_.channels.size());
-  const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
-  path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
-  const float probability = sample.pdf / static_cast<float>(channels);
-  sample = transmit_dispersive(material, wi, channel_eta(material, path.channel, mu), probability);
+  BinnedThroughput carried = path.carried;
+  if ((material.ref_b & KB_REF_KIND_MASK) == KB_REF_SPECTRUM) {
+    for (uint32_t b = 0; b < KB_CHANNEL_BINS; ++b)
+      carried[b] *= flat_.channel_bins[std::size_t{material.ref_b} * KB_CHANNEL_BINS + b];
+  }
+  const float probability = survive(path, carried, id, bounce);
+  sample =
+      transmit_dispersive(material, wi, channel_eta(material, path.channel, mu), sample.pdf * probability);
   sample.needs_channel = true;
   if (!(sample.pdf > 0)) return false;
-  // Roulette follows the one channel that is left: the weight K is shared by all channels' chances, not a
-  // gain of it.
-  sample.bound /= static_cast<float>(channels);
+  // Roulette follows the one channel that is left: its weight stands for all channels' chances, and is no
+  // gain as far as it is the mean one, K.
+  sample.bound /= static_cast<float>(flat_.channels.size());
   draft.vertex.head |= KB_VERTEX_DEGRADE;
   draft.vertex.scatter1 = kb_as_f32(path.channel);
   return true;
@@ -38,14 +50,13 @@ bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial&
 
 /// A rough dispersive boundary: the channel is chosen on arrival, before light and BSDF samples.
 void PathTracer::degrade(Path& path, const SampleId& id, uint32_t bounce) {
-  const auto channels = static_cast<uint32_t>(flat_.channels.size());
-  const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
-  path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
+  const float probability = survive(path, path.carried, id, bounce);
   Draft draft;
   draft.vertex.head = KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE;
   draft.vertex.row_a = static_cast<uint16_t>(flat_.unit_row);
-  draft.vertex.scatter0 = static_cast<float>(channels);
+  draft.vertex.scatter0 = 1 / probability;
   draft.vertex.scatter1 = kb_as_f32(path.channel);
+  path.bound /= probability * static_cast<float>(flat_.channels.size());
   append(path, draft);
 }
 

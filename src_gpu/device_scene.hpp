@@ -38,6 +38,7 @@ class DeviceScene {
   const DeviceBuffer<KbMaterial>& materials() const { return materials_; }
   const DeviceBuffer<KbTexture>& textures() const { return textures_; }
   const DeviceBuffer<KbFloat4>& texels() const { return texels_; }
+  const DeviceBuffer<float>& channel_bins() const { return channel_bins_; }
 
  private:
   DeviceBuffer<KbSceneConstants> constants_;
@@ -57,6 +58,7 @@ class DeviceScene {
   DeviceBuffer<KbEmitter> emitters_;
   DeviceBuffer<float> emitter_cdf_, envmap_marginal_, envmap_rows_;
   DeviceBuffer<KbFloat2> filter_table_;
+  DeviceBuffer<float> channel_bins_;
 };
 
 /// The acceleration structure in device memory.

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <charconv>
+#include <iterator>
 #include <memory>
 
 #include "app/backend_options.hpp"
@@ -39,8 +40,9 @@ Pixel parse_pixel(const std::string& text) {
 }
 
 const char* name_of_kind(uint32_t kind) {
-  static constexpr const char* kNames[] = {"scaled", "two-term", "nonlinear", "conductor", "dispersive"};
-  return kind < 5 ? kNames[kind] : "?";
+  static constexpr const char* kNames[] = {"scaled",     "two-term", "nonlinear",         "conductor",
+                                           "dispersive", "?",        "rough transmission"};
+  return kind < std::size(kNames) ? kNames[kind] : "?";
 }
 
 std::string spectrum_name(const FlatScene& scene, uint32_t row, bool textured) {

@@ -10,6 +10,7 @@
 
 #include "shared/lang.h"
 #include "shared/records.h"
+#include "shared/spectra_layout.h"
 
 #define KB_CHUNK_SLOTS 4u
 
@@ -101,6 +102,14 @@ KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 /* Channels that stand for all at rough dispersive boundaries. */
 #define KB_MAX_HEROES 8u
 
+/* With dispersion, beside the path's state: what each bin of channels still carries (channel_choice.clh), and the
+   probabilities of the heroes (spectral_mis.clh). */
+typedef struct {
+  float carried[KB_CHANNEL_BINS];
+  float heroes[KB_MAX_HEROES];
+} KbDispersionState;
+KB_STATIC_ASSERT(sizeof(KbDispersionState) == 96, dispersion_state_size);
+
 typedef struct {
   kb_u32 job;
   kb_u32 flags;    /* bounce | KB_PATH_* */
@@ -145,7 +154,8 @@ typedef struct {
   kb_u32 blocks;        /* of the round */
   kb_u32 arena_chunks;  /* capacity */
   kb_u32 degrade_rough; /* rough dispersive boundaries: one channel goes on, instead of spectral MIS */
-  kb_u32 reserved[2];
+  kb_u32 dispersion;    /* the scene has boundaries whose index depends on wavelength */
+  kb_u32 reserved;
 } KbRound;
 KB_STATIC_ASSERT(sizeof(KbRound) == 64, round_size);
 
