@@ -62,6 +62,9 @@ __kernel void generate(KB_SCENE_PARAMS, KB_POOL_PARAMS, __global const kb_u32* r
   state.flags = KB_PATH_LIVE | KB_PATH_PREVIOUS_DELTA;
   state.bound = state.magnitude = 1.0f;
   state.channel = KB_NONE;
+#if KB_HAS_DISPERSION
+  for (kb_u32 i = 0u; i < KB_CHANNEL_BINS && pool.round->dispersion; ++i) pool.dispersion[slot].carried[i] = 1.0f;
+#endif
   const JobId id = job_id(&pool, &scene, state.job);
   const CameraRay camera = sample_camera_ray(&scene, id.pixel.x, id.pixel.y,
                                              kb_sampler_block(job_sampler(&pool, &id), KB_BLOCK_CAMERA));

@@ -76,6 +76,20 @@ BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lob
 BsdfSample transmit_dispersive(const KbMaterial& material, glm::vec3 wi, float eta_channel,
                                float probability);
 
+/// A pair of directions at a rough dispersive boundary, for every channel at once. For reflection the vertex
+/// is KB_KIND_DISPERSIVE with w0 = weight, w1 = cosine; for transmission KB_KIND_ROUGH_TRANSMISSION with w0 =
+/// weight and the directions (shared/rough_transmission.h).
+struct BoundaryPair {
+  float weight = 0;  // f |cos theta_o| [1/sr] without Fresnel's reflectance; or without the factor T; 0: none
+  float cosine = 0;  // reflection: of wi and the half vector, negative from inside
+  bool transmission = false;
+};
+BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo);
+
+/// Is a rough boundary's lobe too narrow for float directions, so that it is treated as smooth? eta: either
+/// ratio of the two indices.
+bool acts_smooth(const KbMaterial& material, float eta);
+
 /// The kind of eval_bsdf's weights for this material.
 inline uint8_t eval_kind(const KbMaterial& material) {
   switch (material.type) {

@@ -126,6 +126,29 @@ BsdfSample sample_rough_dielectric(const KbMaterial& material, glm::vec3 wi, flo
 
 namespace kiloband {
 
+bool acts_smooth(const KbMaterial& material, float eta) {
+  return lobes::acts_smooth(Microfacet(material), eta);
+}
+
+BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo) {
+  BoundaryPair pair;
+  if (wi.z == 0 || wo.z == 0) return pair;
+  const bool below = wi.z < 0;
+  if (below) wi.z = -wi.z, wo.z = -wo.z;
+  const Microfacet facets(material);
+  const float masking = facets.masking_over_cos(wi) * facets.masking({wo.x, wo.y, std::abs(wo.z)});
+  pair.transmission = wo.z < 0;
+  if (pair.transmission) {
+    pair.weight = masking;
+    return pair;
+  }
+  const lobes::HalfVector half = lobes::half_vector(wi, wo, 1);
+  if (!(half.dot_i > 0) || !(half.dot_o > 0)) return pair;
+  pair.weight = 0.25f * facets.normal_density(half.m) * masking;
+  pair.cosine = below ? -half.dot_i : half.dot_i;
+  return pair;
+}
+
 BsdfSample transmit_dispersive(const KbMaterial& material, glm::vec3 wi, float eta_channel,
                                float probability) {
   if (!(std::abs(wi.z) > 0) || !(eta_channel > 0) || !(probability > 0)) return {};

@@ -8,7 +8,8 @@
 
 namespace kiloband {
 
-/// What is seen at an emitting point or direction: a spectrum row or a texture sample, both without MIS weight.
+/// What is seen at an emitting point or direction: a spectrum row or a texture sample, both without MIS
+/// weight.
 struct EmittedRadiance {
   uint16_t row = 0;
   bool textured = false;
@@ -18,27 +19,33 @@ struct EmittedRadiance {
 /// One sample of direct light at a point.
 struct LightSample {
   glm::vec3 direction{0};  // unit, from the shaded point towards the light
-  glm::vec3 target{0};     // area and positional lights: the point on the light, moved off its surface towards its front
-  bool infinite = false;   // environment and directional lights: no target
-  bool delta = false;      // cannot be hit by BSDF sampling
-  float pdf = 0;           // solid angle times selection probability [1/sr]; delta lights: selection probability; 0: no sample
-  float factor = 0;        // incident radiance (or, for delta lights, irradiance) = factor * spectrum; about 1 for area lights
+  glm::vec3 target{
+      0};  // area and positional lights: the point on the light, moved off its surface towards its front
+  bool infinite = false;  // environment and directional lights: no target
+  bool delta = false;     // cannot be hit by BSDF sampling
+  float pdf =
+      0;  // solid angle times selection probability [1/sr]; delta lights: selection probability; 0: no sample
+  float factor =
+      0;  // incident radiance (or, for delta lights, irradiance) = factor * spectrum; about 1 for area lights
   EmittedRadiance radiance;
 };
 
-/// Selects an emitter by FlatScene::emitter_cdf (u_select.x), a triangle of a mesh (u_select.y), a point or direction on it
-/// (u_position). Spheres are sampled over the cone that they subtend from outside, over their area from inside; other
-/// shapes over their area; environment maps by their texels; constant environments over the sphere.
-/// Points behind a one-sided area light give pdf 0.
+/// Selects an emitter by FlatScene::emitter_cdf (u_select.x), a triangle of a mesh (u_select.y), a point or
+/// direction on it (u_position). Spheres are sampled over the cone that they subtend from outside, over their
+/// area from inside; other shapes over their area; environment maps by their texels; constant environments
+/// over the sphere. Points behind a one-sided area light give pdf 0.
 LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position);
 
-/// Density with which sample_light() gives the direction from `origin` to `hit_point` on the area light of shape `shape`;
-/// selection included [1/sr]. 0 where the light does not emit (its back) or cannot be sampled.
-/// origin  the `point` that was given to sample_light(): for spheres the density depends on which side it is on
-/// normal  meshes: unit geometric normal of the triangle, turned by KB_SHAPE_FLIP_NORMALS (front); other shapes: ignored
-float area_light_pdf(const FlatScene& scene, uint32_t shape, glm::vec3 origin, glm::vec3 hit_point, glm::vec3 normal);
+/// Density with which sample_light() gives the direction from `origin` to `hit_point` on the area light of
+/// shape `shape`; selection included [1/sr]. 0 where the light does not emit (its back) or cannot be sampled.
+/// origin  the `point` that was given to sample_light(): for spheres the density depends on which side it is
+/// on normal  meshes: unit geometric normal of the triangle, turned by KB_SHAPE_FLIP_NORMALS (front); other
+/// shapes: ignored
+float area_light_pdf(const FlatScene& scene, uint32_t shape, glm::vec3 origin, glm::vec3 hit_point,
+                     glm::vec3 normal);
 
-/// Density with which sample_light() gives a direction that escapes to the environment; 0 without environment [1/sr].
+/// Density with which sample_light() gives a direction that escapes to the environment; 0 without environment
+/// [1/sr].
 float environment_pdf(const FlatScene& scene, glm::vec3 direction);
 /// What the environment sends from `direction` (a unit vector towards it); scene.environment must exist.
 EmittedRadiance environment_radiance(const FlatScene& scene, glm::vec3 direction);

@@ -22,9 +22,9 @@ inline uint32_t find_interval(const float* cdf, uint32_t count, float u) {
 
 /// A point on an area light as seen from a shaded point.
 struct AreaLightSample {
-  float pdf = 0;           // solid angle [1/sr]; 0: no sample
-  float factor = 1;        // pdf over the density that the sample really has: 1 but for triangles of meshes, which are
-                           // chosen with a whole number of steps of 2^-24
+  float pdf = 0;     // solid angle [1/sr]; 0: no sample
+  float factor = 1;  // pdf over the density that the sample really has: 1 but for triangles of meshes, which
+                     // are chosen with a whole number of steps of 2^-24
   glm::vec3 direction{0};  // unit, towards the light
   glm::vec3 position{0};   // on the light
   glm::vec3 normal{0};     // unit, of the light's front

@@ -5,6 +5,7 @@
 #include <complex>
 #include <cstring>
 
+#include "shared/rough_transmission.h"
 #include "spectral/planck.hpp"
 #include "src_cpu/evaluator.hpp"
 
@@ -103,6 +104,27 @@ double vertex_fresnel(const Point& at, const KbPathVertex& vertex, double cosine
   return fresnel(cosine, cosine < 0 ? exterior / interior : interior / exterior);
 }
 
+/// T of shared/rough_transmission.h from the directions as they were saved.
+double rough_transmission(const Point& at, const KbPathVertex& vertex) {
+  const KbMaterial& m = at.scene.materials[vertex.head >> KB_VERTEX_MATERIAL_SHIFT];
+  const KbTransmissionPair p = kb_transmission_pair(vertex);
+  const double exterior = m.k_row == KB_NONE ? m.eta_ext : spectrum(at, m.k_row);
+  const double ratio = spectrum(at, m.eta_row) / exterior;
+  const double e = p.inside ? 1 / ratio : ratio;
+  double x = p.ix + e * p.ox, y = p.iy + e * p.oy, z = p.iz + e * p.oz;
+  const double size2 = x * x + y * y + z * z;
+  const double length = z < 0 ? -std::sqrt(size2) : std::sqrt(size2);
+  x /= length, y /= length, z /= length;
+  const double dot_i = p.ix * x + p.iy * y + p.iz * z, dot_o = p.ox * x + p.oy * y + p.oz * z;
+  if (!(dot_i > 0) || !(dot_o < 0)) return 0;
+  const double au = std::max(m.alpha_u, KB_MIN_ALPHA), av = std::max(m.alpha_v, KB_MIN_ALPHA);
+  const double slope2 = (x * x / (au * au) + y * y / (av * av)) / (z * z);
+  const double shape =
+      m.distribution == KB_MICROFACET_GGX ? 1 / ((1 + slope2) * (1 + slope2)) : std::exp(-slope2);
+  const double density = shape / (KB_PI * au * av * z * z * z * z);
+  return (1 - fresnel(dot_i, e)) * density * dot_i * -dot_o / size2;
+}
+
 double scattering(const Point& at, const KbPathVertex& vertex, double a, double b, double w0, double w1) {
   switch (vertex.head & KB_VERTEX_KIND_MASK) {
     case KB_KIND_TWO_TERM:
@@ -112,6 +134,8 @@ double scattering(const Point& at, const KbPathVertex& vertex, double a, double 
     case KB_KIND_CONDUCTOR:
     case KB_KIND_DISPERSIVE:
       return w0 * a * vertex_fresnel(at, vertex, w1);
+    case KB_KIND_ROUGH_TRANSMISSION:
+      return w0 * a * rough_transmission(at, vertex);
     default:
       return w0 * a;
   }

@@ -21,6 +21,7 @@
 #include <hwy/highway.h>
 
 #include "src_cpu/evaluator_optics-inl.hpp"
+#include "src_cpu/evaluator_transmission-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace kiloband {
@@ -50,6 +51,8 @@ HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, 
     case KB_KIND_CONDUCTOR:
     case KB_KIND_DISPERSIVE:
       return hn::Mul(scaled, fresnel(f, k));
+    case KB_KIND_ROUGH_TRANSMISSION:
+      return hn::Mul(scaled, rough_transmission(v.transmission, k));
     default:
       return scaled;
   }

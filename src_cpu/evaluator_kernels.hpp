@@ -40,6 +40,18 @@ struct FresnelTerms {
   float sine2 = 0;
 };
 
+/// A pair of directions on two sides of a rough boundary (shared/rough_transmission.h): wi in the upper half
+/// of the local frame, wo in the lower one. E = e^2 - 1 as for a dielectric.
+struct TransmissionTerms {
+  const float* high = nullptr;
+  const float* low = nullptr;
+  float ix = 0, iy = 0, iz = 1, ox = 0, oy = 0, oz = -1;
+  float cosine = -1;  // of wi and wo
+  float inverse_alpha_u = 1, inverse_alpha_v = 1;
+  float norm = 1;  // 1 / (pi alpha_u alpha_v)
+  bool ggx = false;
+};
+
 /// A vertex that the fast steps do not cover; see KbPathVertex. Emission from named rows is a step of its
 /// own.
 struct GeneralVertex {
@@ -49,7 +61,8 @@ struct GeneralVertex {
   float emit_weight = 0, nee0 = 0, nee1 = 0, scatter0 = 0, scatter1 = 0;
   float fdr_int = 0;
   FresnelTerms nee_fresnel, scatter_fresnel;
-  uint32_t survivor = 0;  // channel that goes on if KB_VERTEX_DEGRADE
+  TransmissionTerms transmission;  // KB_KIND_ROUGH_TRANSMISSION
+  uint32_t survivor = 0;           // channel that goes on if KB_VERTEX_DEGRADE
 };
 
 enum class StepKind : uint32_t {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "shared/rough_transmission.h"
 #include "src_cpu/texel_corners.hpp"
 
 namespace kiloband {
@@ -133,6 +134,7 @@ void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from
   }
   if (reflects && (out.kind == KB_KIND_CONDUCTOR || out.kind == KB_KIND_DISPERSIVE))
     add_fresnel(out, material, spectra);
+  if (reflects && out.kind == KB_KIND_ROUGH_TRANSMISSION) add_transmission(out, vertex, spectra);
   steps_.push_back({StepKind::kGeneral, 0, 0, nullptr, nullptr, &out});
 }
 
@@ -155,6 +157,22 @@ void ProgramBuilder::add_fresnel(GeneralVertex& out, uint32_t material, DenseSpe
   };
   if (out.flags & KB_VERTEX_NEE) out.nee_fresnel = side(out.nee1);
   if (out.flags & KB_VERTEX_SCATTER) out.scatter_fresnel = side(out.scatter1);
+}
+
+void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& vertex,
+                                      DenseSpectra& spectra) const {
+  const uint32_t material = vertex.head >> KB_VERTEX_MATERIAL_SHIFT;
+  if (material >= scene_.materials.size()) throw std::logic_error("saved path: material does not exist");
+  const KbMaterial& m = scene_.materials[material];
+  const KbTransmissionPair pair = kb_transmission_pair(vertex);
+  const float alpha_u = std::max(m.alpha_u, KB_MIN_ALPHA), alpha_v = std::max(m.alpha_v, KB_MIN_ALPHA);
+  const auto rows = spectra.dispersive(material, pair.inside != 0);
+  out.transmission = {rows[0], rows[1], pair.ix, pair.iy, pair.iz, pair.ox, pair.oy, pair.oz};
+  out.transmission.cosine = pair.ix * pair.ox + pair.iy * pair.oy + pair.iz * pair.oz;
+  out.transmission.inverse_alpha_u = 1 / alpha_u;
+  out.transmission.inverse_alpha_v = 1 / alpha_v;
+  out.transmission.norm = KB_INV_PI / (alpha_u * alpha_v);
+  out.transmission.ggx = m.distribution == KB_MICROFACET_GGX;
 }
 
 /// emission: the value stands for radiance, and its factor brings it to film units.

@@ -34,6 +34,7 @@ class ProgramBuilder {
   void add_vertex(const KbPathVertex& vertex, const Sources& from, bool last, DenseSpectra& spectra);
   void add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra);
   void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
+  void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) const;
   SpectralSource texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
 
   const FlatScene& scene_;

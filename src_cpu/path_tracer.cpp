@@ -19,15 +19,16 @@ constexpr uint32_t kMaxVertices = 100000;  // a longer path counts as invalid an
 constexpr float kLargestWeight = 1e34f;
 
 /// Multiplies `magnitude` by the vertex's scatter weight; false where a contribution could leave the range of
-/// floats or is NaN already.
-bool stays_finite(const KbPathVertex& v, float& magnitude) {
+/// floats or is NaN already. scale: of the weights, where the vertex's spectral factor is not of order 1.
+bool stays_finite(const KbPathVertex& v, float scale, float& magnitude) {
   const float emitted = v.head & KB_VERTEX_EMIT ? v.emit_weight : 0.0f;
   const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
   const bool two =
       kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;  // else the second number is no weight
   const float lit = v.head & KB_VERTEX_NEE ? std::fabs(v.nee0) + (two ? std::fabs(v.nee1) : 0.0f) : 0.0f;
-  const bool fits = magnitude * (emitted + lit) < kLargestWeight;
-  if (v.head & KB_VERTEX_SCATTER) magnitude *= std::fabs(v.scatter0) + (two ? std::fabs(v.scatter1) : 0.0f);
+  const bool fits = magnitude * (emitted + scale * lit) < kLargestWeight;
+  if (v.head & KB_VERTEX_SCATTER)
+    magnitude *= scale * (std::fabs(v.scatter0) + (two ? std::fabs(v.scatter1) : 0.0f));
   return fits && magnitude < kLargestWeight;
 }
 
@@ -102,6 +103,7 @@ void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t co
     path.key = kb_sampler_key(sampler, settings_.seed, y * flat_.camera.film_width + x, id.sample,
                               id.replicate, id.index);
     path.bound = path.magnitude = 1;
+    path.carried.fill(1);
     path.previous_delta = true;
     path.channel = path.first_slot = path.last_slot = KB_NONE;
     const CameraRay ray = sample_camera_ray(flat_.camera, x, y, kb_sampler_block(path.key, KB_BLOCK_CAMERA));
@@ -126,7 +128,8 @@ void PathTracer::trace_closest(bool coherent) {
   rays_ += rays_queue_.size();
   if (recording_) record_closest();
   scene_.embree->closest_hits(rays_queue_, coherent);
-  if (recording_) recording_->answers.insert(recording_->answers.end(), rays_queue_.begin(), rays_queue_.end());
+  if (recording_)
+    recording_->answers.insert(recording_->answers.end(), rays_queue_.begin(), rays_queue_.end());
 }
 
 void PathTracer::trace_shadows() {
@@ -232,7 +235,9 @@ void PathTracer::resolve_spectra(Draft& draft, const KbMaterial& material, const
 
 void PathTracer::append(Path& path, const Draft& draft) {
   ++vertices_;
-  if (!stays_finite(draft.vertex, path.magnitude)) path.invalid = true;
+  if (!stays_finite(draft.vertex, draft.scale, path.magnitude)) path.invalid = true;
+  if (!flat_.channel_bins.empty() && (draft.vertex.head & KB_VERTEX_SCATTER))
+    carry(path.carried, draft.vertex, flat_.channel_bins);
   const auto index = static_cast<uint32_t>(slots_.size());
   (path.last_slot == KB_NONE ? path.first_slot : slots_[path.last_slot].next) = index;
   path.last_slot = index;

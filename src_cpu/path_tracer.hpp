@@ -20,10 +20,12 @@
 #include "render/backend.hpp"
 #include "shared/sampler.h"
 #include "src_cpu/bsdf.hpp"
+#include "src_cpu/channel_choice.hpp"
 #include "src_cpu/conductor_bound.hpp"
 #include "src_cpu/embree_scene.hpp"
 #include "src_cpu/emitter.hpp"
 #include "src_cpu/path_buffer.hpp"
+#include "src_cpu/spectral_mis.hpp"
 #include "src_cpu/surface_hit.hpp"
 
 namespace kiloband {
@@ -83,6 +85,9 @@ class PathTracer {
     float magnitude;  // product of the scatter weights: where this overflows the sample is invalid
     bool previous_delta;
     bool invalid;
+    BinnedThroughput carried;                    // with dispersion: what each bin of channels carries
+    uint32_t heroes;                             // of spectral MIS; 0: none chosen yet
+    std::array<float, kMaxHeroes> hero_weights;  // q_c
   };
   struct Slot {
     KbPathVertex vertex;
@@ -93,6 +98,7 @@ class PathTracer {
     KbPathVertex vertex{};
     KbTextureSample samples[4];
     uint32_t sample_count = 0;
+    float scale = 1;  // largest spectral factor of its weights, where that is not of order 1
   };
 
   void start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id);
@@ -113,9 +119,25 @@ class PathTracer {
   bool scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
                MaterialContext& material, glm::vec3 wi, const KbFloat4& u, float opacity, const SampleId& id,
                uint32_t bounce, float mu);
+  void queue_shadow_ray(const SurfaceHit& hit, const LightSample& light);
   bool refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi,
                            BsdfSample& sample, const SampleId& id, uint32_t bounce, float mu);
+  float survive(Path& path, const BinnedThroughput& carried, const SampleId& id, uint32_t bounce);
   void degrade(Path& path, const SampleId& id, uint32_t bounce);
+  /// A surface being shaded, for the steps of one bounce.
+  struct Boundary {
+    const SurfaceHit& hit;
+    const ShadingFrame& frame;
+    const KbMaterial& material;
+    uint32_t side;  // its index
+    glm::vec3 wi;
+    float opacity;
+  };
+  HeroSet choose_heroes(Path& path, const KbMaterial& material, const SampleId& id, float mu) const;
+  bool add_hero_light(Path& path, const Boundary& at, const HeroSet& heroes, uint32_t bounce);
+  bool scatter_heroes(Path& path, const Boundary& at, const HeroSet& heroes, const KbFloat4& u,
+                      const SampleId& id, uint32_t bounce);
+  void append_pair(Path& path, Draft& draft, const Boundary& at, const BoundaryPair& pair, glm::vec3 wo);
   bool roulette(Draft& draft, Path& path, uint32_t bounce, float u);
   void continue_ray(const SurfaceHit& hit, glm::vec3 direction);
   void pass_through(Path& path, const SurfaceHit& hit, glm::vec3 direction);

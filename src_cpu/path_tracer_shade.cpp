@@ -93,13 +93,23 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
 
   MaterialContext material{&record, &scene_.rough[side], {}};
   if (record.flags & KB_MATERIAL_DISPERSIVE) {
+    const float offset = mu[mu.size() == 1 ? 0 : path.pixel];
     if (is_rough_dispersive(record) && path.channel == KB_NONE) {
       finish(true);
       draft = Draft{};
+      const HeroSet heroes = settings_.rough_dispersion == RoughDispersion::kSpectralMis
+                                 ? choose_heroes(path, record, id, offset)
+                                 : HeroSet{};
+      if (heroes.count > 0) {
+        const Boundary at{hit, frame, record, side, wi, opacity};
+        add_hero_light(path, at, heroes, bounce);
+        if (!passes) return scatter_heroes(path, at, heroes, u, id, bounce);
+        pass_through(path, hit, direction);
+        return true;
+      }
       degrade(path, id, bounce);
     }
-    if (path.channel != KB_NONE)
-      material.dispersion.eta = channel_eta(record, path.channel, mu[mu.size() == 1 ? 0 : path.pixel]);
+    if (path.channel != KB_NONE) material.dispersion.eta = channel_eta(record, path.channel, offset);
   }
   draft.vertex.head |= eval_kind(record) | side << KB_VERTEX_MATERIAL_SHIFT;
   const bool lit =
@@ -161,13 +171,17 @@ bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hi
     draft.vertex.head |= KB_VERTEX_TEX_NEE;
     draft.samples[draft.sample_count++] = light.radiance.texture;
   }
+  queue_shadow_ray(hit, light);
+  return true;
+}
+
+void PathTracer::queue_shadow_ray(const SurfaceHit& hit, const LightSample& light) {
   const glm::vec3 origin = leave_surface(hit, light.direction);
   if (light.infinite) {
     shadow_rays_.emplace_back(origin, light.direction, kInfiniteDistance);
   } else {
     shadow_rays_.emplace_back(origin, light.target - origin, 1.0f);
   }
-  return true;
 }
 
 bool PathTracer::scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
@@ -229,46 +243,6 @@ bool PathTracer::roulette(Draft& draft, Path& path, uint32_t bounce, float u) {
   if (kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR) draft.vertex.scatter1 /= q;
   path.bound /= q;
   return true;
-}
-
-/// Index of the interior over the exterior at the chosen channel's wavelength.
-float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, float mu) const {
-  const Channel& c = flat_.channels[channel];
-  const double lambda_nm = (1.0 - mu) * c.min_nm + mu * c.max_nm;
-  const double exterior =
-      material.k_row == KB_NONE ? material.eta_ext : flat_.spectra[material.k_row].table(lambda_nm);
-  return static_cast<float>(flat_.spectra[material.eta_row].table(lambda_nm) / exterior);
-}
-
-/// Refraction by an index that depends on wavelength: one channel, chosen uniformly, goes on with weight K.
-bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi,
-                                     BsdfSample& sample, const SampleId& id, uint32_t bounce, float mu) {
-  const auto channels = static_cast<uint32_t>(flat_.channels.size());
-  const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
-  path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
-  const float probability = sample.pdf / static_cast<float>(channels);
-  sample = transmit_dispersive(material, wi, channel_eta(material, path.channel, mu), probability);
-  sample.needs_channel = true;
-  if (!(sample.pdf > 0)) return false;
-  // Roulette follows the one channel that is left: the weight K is shared by all channels' chances, not a
-  // gain of it.
-  sample.bound /= static_cast<float>(channels);
-  draft.vertex.head |= KB_VERTEX_DEGRADE;
-  draft.vertex.scatter1 = kb_as_f32(path.channel);
-  return true;
-}
-
-/// A rough dispersive boundary: the channel is chosen on arrival, before light and BSDF samples.
-void PathTracer::degrade(Path& path, const SampleId& id, uint32_t bounce) {
-  const auto channels = static_cast<uint32_t>(flat_.channels.size());
-  const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
-  path.channel = std::min(static_cast<uint32_t>(u * static_cast<float>(channels)), channels - 1);
-  Draft draft;
-  draft.vertex.head = KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE;
-  draft.vertex.row_a = static_cast<uint16_t>(flat_.unit_row);
-  draft.vertex.scatter0 = static_cast<float>(channels);
-  draft.vertex.scatter1 = kb_as_f32(path.channel);
-  append(path, draft);
 }
 
 }  // namespace kiloband

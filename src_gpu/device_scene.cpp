@@ -107,7 +107,8 @@ DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
       emitter_cdf_(memory.upload("emitter distribution", scene.emitter_cdf)),
       envmap_marginal_(memory.upload("environment rows", scene.envmap.marginal_cdf)),
       envmap_rows_(memory.upload("environment distribution", scene.envmap.row_cdf)),
-      filter_table_(memory.upload("filter table", filter_nodes(scene.camera))) {}
+      filter_table_(memory.upload("filter table", filter_nodes(scene.camera))),
+      channel_bins_(memory.upload("reflectances by channel bins", scene.channel_bins)) {}
 
 void DeviceScene::bind(Kernel& kernel, uint32_t first) const {
   kernel.set_from(first, constants_, materials_, material_tables_, surfaces_, shapes_, textures_,

@@ -39,6 +39,7 @@ class DeviceScene {
   const DeviceBuffer<KbTexture>& textures() const { return textures_; }
   const DeviceBuffer<KbFloat4>& texels() const { return texels_; }
   const DeviceBuffer<float>& texel_values() const { return texel_values_; }
+  const DeviceBuffer<float>& channel_bins() const { return channel_bins_; }
 
  private:
   DeviceBuffer<KbSceneConstants> constants_;
@@ -60,6 +61,7 @@ class DeviceScene {
   DeviceBuffer<KbEmitter> emitters_;
   DeviceBuffer<float> emitter_cdf_, envmap_marginal_, envmap_rows_;
   DeviceBuffer<KbFloat2> filter_table_;
+  DeviceBuffer<float> channel_bins_;
 };
 
 /// The acceleration structure in device memory.

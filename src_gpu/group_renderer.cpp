@@ -67,6 +67,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels) const {
   r.most_slots = most_slots_;
   r.most_jobs = most_jobs(device_, most_slots_);
   r.chunks_per_path = chunks_per_path_;
+  r.dispersion = device_.has_dispersion();
   return r;
 }
 
@@ -111,6 +112,8 @@ KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) c
   KbRound round{};
   round.seed = settings_.seed;
   round.sampler = settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  round.dispersion = device_.has_dispersion();
+  round.degrade_rough = settings_.rough_dispersion == RoughDispersion::kDegrade;
   round.wavelengths =
       settings_.wavelengths == WavelengthMode::kShared ? KB_WAVELENGTHS_SHARED : KB_WAVELENGTHS_PER_PATH;
   round.replicates = settings_.replicates;

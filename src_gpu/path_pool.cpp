@@ -11,7 +11,7 @@ constexpr uint64_t kLocalSize = 64;
 constexpr uint32_t kIterationsPerLook = 8;
 
 /// Where the queue stands among a kernel's arguments (the count follows).
-constexpr uint32_t kPoolArguments = 10;
+constexpr uint32_t kPoolArguments = 12;
 constexpr uint32_t kTableArguments = 3;
 constexpr uint32_t kGenerateQueue = DeviceScene::kArguments + kPoolArguments;
 constexpr uint32_t kShadeQueue = DeviceScene::kArguments + kPoolArguments + kTableArguments + 3;
@@ -28,7 +28,8 @@ void throw_for_bugs(const KbFaults& faults) {
 
 uint64_t path_pool_bytes(const PoolSize& size) {
   const uint64_t per_slot = sizeof(KbPathState) + sizeof(KbRay) + sizeof(KbHit) + sizeof(KbShadowRay) +
-                            sizeof(uint64_t) + 2 * sizeof(uint32_t);
+                            sizeof(uint64_t) + 2 * sizeof(uint32_t) +
+                            (size.dispersion ? sizeof(KbDispersionState) : 0);
   const uint64_t per_chunk = KB_CHUNK_SLOTS * sizeof(KbPathVertex) + sizeof(uint32_t);
   return size.slots * per_slot + size.arena_chunks * per_chunk + uint64_t{size.jobs} * sizeof(KbSavedPath) +
          uint64_t{size.pixels} * sizeof(KbRoundPixel) + uint64_t{size.tables} * sizeof(float);
@@ -50,6 +51,7 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
       chunk_next_(memory.allocate<uint32_t>("vertex chunks", size.arena_chunks)),
       saved_(memory.allocate<KbSavedPath>("saved paths", size.jobs)),
       faults_(memory.allocate<KbFaults>("faults", 1)),
+      dispersion_(memory.allocate<KbDispersionState>("dispersion states", size.dispersion ? size.slots : 1)),
       tallies_(memory.allocate<uint64_t>("tallies", size.slots)),
       queue_(memory.allocate<uint32_t>("queue", size.slots)),
       packed_(memory.allocate<uint32_t>("queue", size.slots)),
@@ -66,9 +68,9 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
 
 /// Everything but the queue and its length, which change.
 void PathPool::bind(const DeviceScene& scene, const DeviceBvh& bvh, const DeviceSpectra& spectra) {
-  const auto bind_pool = [this](Kernel& kernel, uint32_t first) {
+  const auto bind_pool = [this, &scene](Kernel& kernel, uint32_t first) {
     kernel.set_from(first, round_, pixels_, mu_, states_, rays_, shadows_, arena_, chunk_next_, saved_,
-                    faults_);
+                    faults_, dispersion_, scene.channel_bins());
   };
   scene.bind(generate_, 0);
   bind_pool(generate_, DeviceScene::kArguments);

@@ -19,6 +19,7 @@ struct PoolSize {
   uint32_t jobs = 0;          // largest samples * padded_pixels of a round
   uint32_t pixels = 0;        // largest padded_pixels of a round
   uint32_t tables = 0;        // largest blocks * samples of a round
+  bool dispersion = false;    // the scene has boundaries whose index depends on wavelength
 };
 
 uint64_t path_pool_bytes(const PoolSize& size);
@@ -85,7 +86,8 @@ class PathPool {
   DeviceBuffer<uint32_t> chunk_next_;
   DeviceBuffer<KbSavedPath> saved_;
   DeviceBuffer<KbFaults> faults_;
-  DeviceBuffer<uint64_t> tallies_;  // by slot: rays in the low word, vertices in the high one
+  DeviceBuffer<KbDispersionState> dispersion_;  // by slot
+  DeviceBuffer<uint64_t> tallies_;              // by slot: rays in the low word, vertices in the high one
   DeviceBuffer<uint32_t> queue_, packed_;
   Kernel reset_, generate_, closest_, shade_, any_, compact_;
   AfterBounce on_hits_;

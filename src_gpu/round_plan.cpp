@@ -38,6 +38,7 @@ uint64_t expected_chunks(const PlanRequest& r, uint64_t jobs) {
 /// Bytes of paths in a round of `jobs` (dpept).
 uint64_t bytes_of_jobs(const PlanRequest& r, uint64_t jobs, uint64_t slots) {
   PoolSize size;
+  size.dispersion = r.dispersion;
   size.slots = to_u32(slots);
   size.jobs = to_u32(jobs);
   size.pixels = to_u32(jobs);
@@ -96,6 +97,7 @@ RoundPlan plan_rounds(const PlanRequest& r) {
   plan.group_pixels = fitting_pixels(r);
   plan.round_jobs = fitting_jobs(r, plan.group_pixels);
   plan.round_pixels = to_u32(std::min(plan.group_pixels, plan.round_jobs));
+  plan.pool.dispersion = r.dispersion;
   plan.pool.tables = to_u32(fitting_tables(r, plan.round_jobs));
   plan.pool.slots = to_u32(
       std::min<uint64_t>(pt ? plan.round_pixels : std::max<uint64_t>(plan.round_jobs / 2, 1), r.most_slots));

@@ -15,6 +15,7 @@
 #include "app/progress_bar.hpp"
 #include "app/render_options.hpp"
 #include "app/render_statistics.hpp"
+#include "app/sampling_options.hpp"
 #include "film/atomic_file.hpp"
 #include "render/checkpoint.hpp"
 #include "render/session.hpp"
@@ -26,9 +27,9 @@ struct RenderOptions {
   SceneOptions scene;
   std::vector<std::string> outputs, responses, aux;
   BackendOptions backend;
-  std::string wavelengths = "shared", sampler = "sobol", quantity;
+  SamplingOptions sampling;
+  std::string quantity;
   std::optional<std::string> preview, stats, time, target_error, checkpoint, checkpoint_interval;
-  uint64_t seed = 0;
   std::optional<uint64_t> spp;
   std::optional<uint32_t> replicates;
   bool variance = false, keep_replicates = false, resume = false, quiet = false;
@@ -112,15 +113,6 @@ void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const
   }
 }
 
-SamplingSettings sampling_settings(const RenderOptions& options, const SessionSettings& session) {
-  SamplingSettings sampling;
-  sampling.seed = options.seed;
-  sampling.wavelengths = options.wavelengths == "shared" ? WavelengthMode::kShared : WavelengthMode::kPerPath;
-  sampling.sampler = options.sampler == "sobol" ? SamplerType::kSobol : SamplerType::kIndependent;
-  sampling.replicates = session_replicates(session);
-  return sampling;
-}
-
 void describe_render(SessionSettings& settings, const RenderOptions& options,
                      const SamplingSettings& sampling, const Backend& backend) {
   settings.metadata["software"] = fmt::format("kiloband {}", KILOBAND_VERSION);
@@ -170,7 +162,7 @@ int render(const RenderOptions& options) {
   const LoadedScene loaded = load_scene(options.scene, sink);
   SessionSettings settings = session_settings(options, files, loaded.description);
   report_replicates(options, settings, sink);
-  const SamplingSettings sampling = sampling_settings(options, settings);
+  const SamplingSettings sampling = options.sampling.settings(session_replicates(settings));
   const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
   const auto backend = make_backend(options.backend, scene, derived, sampling, sink);
@@ -198,25 +190,9 @@ int render(const RenderOptions& options) {
   return report.interrupted ? kInterrupted : kDone;
 }
 
-/// CLI11 would take -1 for 2^64 - 1, and a larger number too.
-std::string check_seed(const std::string& text) {
-  uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size()) return {};
-  return "Value " + text + " not a whole number from 0 to 18446744073709551615";
-}
-
 void add_sampling_options(CLI::App& command, RenderOptions& o) {
   o.backend.add_to(command);
-  command.add_option("--wavelengths", o.wavelengths, "wavelength sampling")
-      ->check(CLI::IsMember({"shared", "per-path"}))
-      ->capture_default_str();
-  command.add_option("--sampler", o.sampler, "random numbers")
-      ->check(CLI::IsMember({"sobol", "independent"}))
-      ->capture_default_str();
-  command.add_option("--seed", o.seed, "seed of all random numbers")
-      ->check(CLI::Validator(check_seed, ""))
-      ->capture_default_str();
+  o.sampling.add_to(command);
   auto* spp = command.add_option("--spp", o.spp, "samples per pixel (default: the scene's)")
                   ->check(CLI::Range(uint64_t{1}, uint64_t{0xffffffff}));
   auto* time = command.add_option("--time", o.time, "render for this long: 60s, 5min, 2h")->excludes(spp);

@@ -3,13 +3,14 @@
 
 #include <bit>
 #include <charconv>
+#include <iterator>
 #include <memory>
 
 #include "app/backend_options.hpp"
 #include "app/commands.hpp"
 #include "app/messages.hpp"
 #include "app/render_options.hpp"
-#include "app/render_statistics.hpp"
+#include "app/sampling_options.hpp"
 #include "render/traced_path.hpp"
 
 namespace kiloband {
@@ -20,8 +21,7 @@ struct TraceOptions {
   BackendOptions backend;
   std::string pixel;
   uint32_t sample = 0, replicates = 16;
-  uint64_t seed = 0;
-  std::string wavelengths = "shared", sampler = "sobol";
+  SamplingOptions sampling;
 };
 
 struct Pixel {
@@ -40,8 +40,9 @@ Pixel parse_pixel(const std::string& text) {
 }
 
 const char* name_of_kind(uint32_t kind) {
-  static constexpr const char* kNames[] = {"scaled", "two-term", "nonlinear", "conductor", "dispersive"};
-  return kind < 5 ? kNames[kind] : "?";
+  static constexpr const char* kNames[] = {"scaled",     "two-term", "nonlinear",         "conductor",
+                                           "dispersive", "?",        "rough transmission"};
+  return kind < std::size(kNames) ? kNames[kind] : "?";
 }
 
 std::string spectrum_name(const FlatScene& scene, uint32_t row, bool textured) {
@@ -107,11 +108,7 @@ int trace(const TraceOptions& options) {
     throw InputError(fmt::format("--pixel {}: the film has {} x {} pixels", options.pixel, camera.film_width,
                                  camera.film_height));
   }
-  SamplingSettings sampling;
-  sampling.seed = options.seed;
-  sampling.replicates = options.replicates;
-  sampling.wavelengths = options.wavelengths == "shared" ? WavelengthMode::kShared : WavelengthMode::kPerPath;
-  sampling.sampler = options.sampler == "sobol" ? SamplerType::kSobol : SamplerType::kIndependent;
+  const SamplingSettings sampling = options.sampling.settings(options.replicates);
   const auto backend = make_backend(options.backend, scene, {}, sampling, sink);
   const SampleRange range{options.sample % options.replicates, options.sample / options.replicates, 1};
   fmt::print("pixel {},{} sample {} (replicate {}, index {}) on {} ({})\n", pixel.x, pixel.y, options.sample,
@@ -132,13 +129,7 @@ Command add_trace(CLI::App& program) {
   command->add_option("--replicates", o->replicates, "of the render that the sample belongs to")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  command->add_option("--seed", o->seed, "seed of all random numbers")->capture_default_str();
-  command->add_option("--wavelengths", o->wavelengths, "wavelength sampling")
-      ->check(CLI::IsMember({"shared", "per-path"}))
-      ->capture_default_str();
-  command->add_option("--sampler", o->sampler, "random numbers")
-      ->check(CLI::IsMember({"sobol", "independent"}))
-      ->capture_default_str();
+  o->sampling.add_to(*command);
   return [o] { return trace(*o); };
 }
 

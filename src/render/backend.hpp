@@ -17,6 +17,9 @@ namespace kiloband {
 
 enum class WavelengthMode { kShared, kPerPath };
 enum class SamplerType { kIndependent, kSobol };
+/// How directions are sampled at rough boundaries whose index depends on wavelength: for several channels at
+/// once, or for one that goes on alone (what smooth boundaries always do).
+enum class RoughDispersion { kSpectralMis, kDegrade };
 
 /// What defines the random numbers of a render; equal settings give equal bits on a device and instruction
 /// set.
@@ -25,6 +28,7 @@ struct SamplingSettings {
   SamplerType sampler = SamplerType::kSobol;
   uint64_t seed = 0;
   uint32_t replicates = 16;
+  RoughDispersion rough_dispersion = RoughDispersion::kSpectralMis;
 };
 
 /// Samples first .. first + count - 1 of one replicate, in every pixel. Sample i of replicate r of R is the
@@ -65,8 +69,8 @@ class Backend {
   /// [y][x] of the rectangle.
   virtual std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) = 0;
 
-  /// The paths of one sample of every pixel of `rect`, [y][x], normalised (traced_path.hpp). rect lies in one block
-  /// of 32 x 32 pixels; range.count is 1.
+  /// The paths of one sample of every pixel of `rect`, [y][x], normalised (traced_path.hpp). rect lies in one
+  /// block of 32 x 32 pixels; range.count is 1.
   virtual std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) = 0;
 
   virtual std::string name() const = 0;    // "cpu"

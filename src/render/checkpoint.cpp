@@ -169,6 +169,7 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   hash.add_value(sampling.seed);
   hash.add_value(sampling.replicates);
   hash.add_value(static_cast<int>(sampling.sampler));
+  hash.add_value(static_cast<int>(sampling.rough_dispersion));
   hash.add_value(static_cast<int>(sampling.wavelengths));
   hash.add({isa.data(), isa.size()});
   for (const std::string& name : derived.names) hash.add({name.data(), name.size()});

@@ -65,6 +65,8 @@ struct FlatScene {
       channel_scale;  // K powers of two; emission rows are divided by it, the film multiplies by it
 
   std::vector<SpectrumRow> spectra;  // at most 65535
+  /// Means of reflectances over bins of channels, [spectrum][KB_CHANNEL_BINS]; empty without dispersion.
+  std::vector<float> channel_bins;
   uint32_t unit_row = KB_NONE;  // a reflectance of 1, where the scene needs one (rough dispersive boundaries)
   std::vector<KbTexture> textures;
   std::vector<KbFloat4> texels;

@@ -34,6 +34,7 @@ FlatScene Flattener::run() {
   select_emitters();
   set_channel_scales();
   set_camera();
+  set_channel_bins();
   out_.positions.push_back({0, 0, 0});  // see FlatScene
   return std::move(out_);
 }

@@ -66,6 +66,9 @@ class Flattener {
   // flatten_camera.cpp
   void set_camera();
 
+  // flatten_channel_bins.cpp
+  void set_channel_bins();
+
   const SceneDescription& in_;
   const FlattenOptions& options_;
   FlatScene out_;

@@ -10,6 +10,7 @@
 
 #include "shared/lang.h"
 #include "shared/records.h"
+#include "shared/spectra_layout.h"
 
 #define KB_CHUNK_SLOTS 4u
 
@@ -95,7 +96,19 @@ KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 #define KB_PATH_INVALID 0x04000000u        /* a weight is not finite, or the path is endless */
 #define KB_PATH_PREVIOUS_DELTA 0x08000000u /* the ray was not sampled from a density */
 #define KB_PATH_FINISHED 0x10000000u       /* the slot has no more jobs */
+#define KB_PATH_HEROES 0x40000000u         /* its hero weights are set */
 #define KB_PATH_FRESH 0x20000000u          /* what was appended last belongs to the path's first bounce */
+
+/* Channels that stand for all at rough dispersive boundaries. */
+#define KB_MAX_HEROES 8u
+
+/* With dispersion, beside the path's state: what each bin of channels still carries (channel_choice.clh), and the
+   probabilities of the heroes (spectral_mis.clh). */
+typedef struct {
+  float carried[KB_CHANNEL_BINS];
+  float heroes[KB_MAX_HEROES];
+} KbDispersionState;
+KB_STATIC_ASSERT(sizeof(KbDispersionState) == 96, dispersion_state_size);
 
 typedef struct {
   kb_u32 job;
@@ -140,7 +153,9 @@ typedef struct {
   kb_u32 pool;          /* P, slots in use */
   kb_u32 blocks;        /* of the round */
   kb_u32 arena_chunks;  /* capacity */
-  kb_u32 reserved[3];
+  kb_u32 degrade_rough; /* rough dispersive boundaries: one channel goes on, instead of spectral MIS */
+  kb_u32 dispersion;    /* the scene has boundaries whose index depends on wavelength */
+  kb_u32 reserved;
 } KbRound;
 KB_STATIC_ASSERT(sizeof(KbRound) == 64, round_size);
 

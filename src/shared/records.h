@@ -196,6 +196,11 @@ KB_STATIC_ASSERT(sizeof(KbCamera) == 128, camera_size);
      KB_KIND_NONLINEAR      B(w0, w1) = w0 * S_a + w1 * S_b / (1 - S_b * fdr_int(material))
      KB_KIND_CONDUCTOR      B(w0, w1) = w0 * S_a * F_conductor(cos = w1; eta_row, k_row of the material)
      KB_KIND_DISPERSIVE     B(w0, w1) = w0 * S_a * F_dielectric(cos = w1 signed, eta_row / exterior of the material)
+     KB_KIND_ROUGH_TRANSMISSION
+                            B(w0, -) = w0 * S_a * T(directions; eta_row / exterior of the material), see
+                            shared/rough_transmission.h: every channel has its own half vector. Such a vertex has a
+                            light sample (w0 = nee0) or a scattering event (w0 = scatter0), not both, and no emission:
+                            what these would need holds the directions
 
    KB_VERTEX_DEGRADE: after B is applied only channel kb_as_u32(scatter1) goes on, tau of the others becomes 0
    (its kind is SCALED; scatter0 includes 1 / probability of the channel). */
@@ -204,7 +209,8 @@ enum KbVertexKind {
   KB_KIND_TWO_TERM = 1,
   KB_KIND_NONLINEAR = 2,
   KB_KIND_CONDUCTOR = 3,
-  KB_KIND_DISPERSIVE = 4
+  KB_KIND_DISPERSIVE = 4,
+  KB_KIND_ROUGH_TRANSMISSION = 6
 };
 
 #define KB_VERTEX_KIND_MASK 0x7u

@@ -27,6 +27,7 @@
 #define KB_STREAM_BLOCKS 0u
 #define KB_STREAM_MU 1u
 #define KB_STREAM_DEGRADE 2u
+#define KB_STREAM_HEROES 5u
 
 /* Parents of the keys of scrambled sequences: one per use, so that no two uses share a key by construction.
  */
@@ -107,6 +108,17 @@ KB_FN float kb_shared_mu(kb_u64 seed, kb_u32 replicate, kb_u32 block_x, kb_u32 b
   const kb_u64 parent = kb_mix64(kb_domain_key(seed, KB_DOMAIN_SHARED_MU) ^ (kb_u64)replicate);
   const kb_u64 key = kb_hash_pair(parent, block_y, block_x);
   return kb_unit_float(kb_van_der_corput(index_in_replicate, kb_low32(key), kb_high32(key)));
+}
+
+/* For rough dispersive boundaries (spectral MIS): x places the channels that stand for all, the same for the
+ * whole path. */
+KB_FN float kb_hero_offset(kb_u64 seed, kb_u32 pixel, kb_u32 sample) {
+  return kb_philox_floats(seed, pixel, sample, 0xffffffffu, KB_STREAM_HEROES).x;
+}
+
+/* At bounce b: x which of them the direction is sampled for, y whether it is sampled for none of them. */
+KB_FN KbFloat4 kb_hero_sample(kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 bounce) {
+  return kb_philox_floats(seed, pixel, sample, bounce, KB_STREAM_HEROES);
 }
 
 /* Chooses the channel that survives a dispersive refraction at bounce b; independent of everything else. */

@@ -25,6 +25,16 @@ KB_STATIC_ASSERT(sizeof(KbSpectraLayout) == 48, spectra_layout_size);
 /* Texture parabolas are expanded around this wavelength, so that their terms stay small in float. */
 #define KB_TEXTURE_CENTRE_NM 595.0f
 
+/* Channels are put into this many bins to choose the one that survives a dispersive refraction: bin b holds the channels
+   k with k * KB_CHANNEL_BINS / K == b, some hold none if K is smaller. */
+#define KB_CHANNEL_BINS 16u
+KB_FN kb_u32 kb_channel_bin_begin(kb_u32 bin, kb_u32 channels) {
+  return (kb_u32)(((kb_u64)bin * channels + (KB_CHANNEL_BINS - 1u)) / KB_CHANNEL_BINS);
+}
+
+/* The part of the probability that is shared evenly by all channels. */
+#define KB_EVEN_CHANNELS 0.1f
+
 /* How many channels m have min_m <= lambda < max_m (at least 1) at the wavelength of channel k: `cover` at mu = 0,
    and from each break's mu on that break's cover. Breaks of channel k: [first of k, first of k + 1), ascending. */
 typedef struct {

@@ -38,6 +38,7 @@ inline constexpr double kRounding = 2e-5;
 struct Mode {
   WavelengthMode wavelengths = WavelengthMode::kShared;
   SamplerType sampler = SamplerType::kSobol;
+  RoughDispersion rough_dispersion = RoughDispersion::kSpectralMis;
 };
 std::string name_of(const Mode& mode);
 inline std::ostream& operator<<(std::ostream& out, const Mode& mode) {

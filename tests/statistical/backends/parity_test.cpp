@@ -37,11 +37,12 @@ struct Configuration {
   SamplerType sampler;
   WavelengthMode wavelengths;
   uint64_t seed;
+  RoughDispersion rough_dispersion = RoughDispersion::kSpectralMis;
 };
 constexpr Configuration kConfigurations[] = {
     {SamplerType::kSobol, WavelengthMode::kShared, 11},
     {SamplerType::kSobol, WavelengthMode::kPerPath, 0x123456789abcdefu},
-    {SamplerType::kIndependent, WavelengthMode::kShared, 13},
+    {SamplerType::kIndependent, WavelengthMode::kShared, 13, RoughDispersion::kDegrade},
     {SamplerType::kIndependent, WavelengthMode::kPerPath, 14},
 };
 
@@ -74,7 +75,7 @@ double offset_of(const FlatScene& scene, const SamplingSettings& s, uint32_t x, 
 class Parity : public testing::TestWithParam<std::string> {
  protected:
   void compare(const FlatScene& scene, const Configuration& c) {
-    const SamplingSettings settings{c.wavelengths, c.sampler, c.seed, kReplicates};
+    const SamplingSettings settings{c.wavelengths, c.sampler, c.seed, kReplicates, c.rough_dispersion};
     const auto cpu = make_zoo_backend("cpu", scene, {}, settings);
     const auto opencl = make_zoo_backend("opencl:dpept-path", scene, {}, settings);
     for (const PixelRect& rect : cut_into_blocks(film_rect(scene))) {

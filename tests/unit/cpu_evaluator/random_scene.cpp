@@ -28,6 +28,8 @@ uint32_t below(std::mt19937& random, std::size_t n) {
 // Rows of make_scene.
 constexpr uint32_t kReflectances = 8, kFirstEmission = 8, kEmissions = 5, kFirstIndex = 13, kIndices = 6;
 constexpr uint32_t kMaterials = 7;
+constexpr uint32_t kKinds[] = {KB_KIND_SCALED,    KB_KIND_TWO_TERM,   KB_KIND_NONLINEAR,
+                               KB_KIND_CONDUCTOR, KB_KIND_DISPERSIVE, KB_KIND_ROUGH_TRANSMISSION};
 
 /// Values in [low, high] around the hull of the channels; some tables end inside it.
 RegularTable random_table(const Channel& range, double low, double high, bool extrapolate,
@@ -65,6 +67,9 @@ void add_materials(FlatScene& scene) {
     material.eta_row = kFirstIndex + first;
     material.k_row = second == KB_NONE ? KB_NONE : kFirstIndex + second;
     material.eta_ext = 1.000277f;
+    material.distribution = scene.materials.size() % 2 ? KB_MICROFACET_GGX : KB_MICROFACET_BECKMANN;
+    material.alpha_u = 0.3f;
+    material.alpha_v = 0.15f;
     scene.materials.push_back(material);
   }
   KbMaterial mirror{};
@@ -111,13 +116,33 @@ void set_scales(FlatScene& scene) {
   }
 }
 
+/// A light sample or a scattering event with a pair of directions about a facet of moderate slope, so that
+/// the factor T is of order 1.
+void make_transmission(const FlatScene& scene, KbPathVertex& v, std::mt19937& random) {
+  const bool nee = chance(random, 0.5), inside = chance(random, 0.5);
+  const KbMaterial& material = scene.materials[v.head >> KB_VERTEX_MATERIAL_SHIFT];
+  const double ratio = scene.spectra[material.eta_row].table(scene.channels.front().centre_nm());
+  const double e = inside ? 1 / ratio : ratio;
+  const double x = uniform(random, -0.5, 0.5), y = uniform(random, -0.5, 0.5);
+  const double limit = std::min(0.9, 0.9 * e), scale = limit / std::max(limit, std::hypot(x, y));
+  v.head &= ~(KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER);
+  v.head |= nee ? KB_VERTEX_NEE : KB_VERTEX_SCATTER;
+  v.emit_weight = static_cast<float>(scale * x);
+  (nee ? v.scatter0 : v.nee0) = static_cast<float>(scale * y);
+  v.nee1 = static_cast<float>(-scale * x / e + uniform(random, -0.03, 0.03));
+  v.scatter1 = static_cast<float>(-scale * y / e + uniform(random, -0.03, 0.03));
+  v.row_b = inside;
+}
+
 /// Weights and flags of one vertex; textured values are decided by the caller.
 KbPathVertex random_vertex(const FlatScene& scene, std::mt19937& random) {
   KbPathVertex v{};
-  const uint32_t kind = below(random, 5);
+  const uint32_t kind = kKinds[below(random, std::size(kKinds))];
   uint32_t material = 6;
   if (kind == KB_KIND_CONDUCTOR) material = std::array<uint32_t, 4>{0, 1, 2, 5}[below(random, 4)];
   if (kind == KB_KIND_DISPERSIVE) material = 3 + below(random, 2);
+  // Far from an index of 1, where wi + e wo cancels.
+  if (kind == KB_KIND_ROUGH_TRANSMISSION) material = 4;
   v.head = kind | material << KB_VERTEX_MATERIAL_SHIFT;
   for (uint32_t flag : {KB_VERTEX_EMIT, KB_VERTEX_NEE, KB_VERTEX_SCATTER})
     if (chance(random, flag == KB_VERTEX_SCATTER ? 0.9 : 0.6)) v.head |= flag;
@@ -136,6 +161,7 @@ KbPathVertex random_vertex(const FlatScene& scene, std::mt19937& random) {
     v.head |= KB_VERTEX_DEGRADE | KB_VERTEX_SCATTER;
     v.scatter1 = kb_as_f32(below(random, scene.channels.size()));
   }
+  if (kind == KB_KIND_ROUGH_TRANSMISSION) make_transmission(scene, v, random);
   return v;
 }
 
@@ -155,6 +181,8 @@ void add_vertex(const FlatScene& scene, PathBuffer& paths, std::mt19937& random)
   if (chance(random, 0.4)) {
     for (uint32_t flag = KB_VERTEX_TEX_A; flag <= KB_VERTEX_TEX_NEE; flag <<= 1) {
       if (!chance(random, 0.5)) continue;
+      if ((vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_ROUGH_TRANSMISSION && flag != KB_VERTEX_TEX_A)
+        continue;
       vertex.head |= flag;
       samples[count++] = random_sample(scene, flag >= KB_VERTEX_TEX_EMIT, random);
     }

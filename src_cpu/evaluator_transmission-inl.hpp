@@ -1,0 +1,69 @@
+// Transmission through a rough boundary for one vector of channels; compiled once per instruction set.
+//
+// No include guard of the usual kind: see evaluator_optics-inl.hpp.
+#if defined(KILOBAND_EVALUATOR_TRANSMISSION_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_EVALUATOR_TRANSMISSION_INL
+#undef KILOBAND_EVALUATOR_TRANSMISSION_INL
+#else
+#define KILOBAND_EVALUATOR_TRANSMISSION_INL
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "src_cpu/evaluator_kernels.hpp"
+#include "src_cpu/evaluator_optics-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace kiloband {
+namespace HWY_NAMESPACE {
+
+/// 1 - F of a dielectric boundary, e^2 = E + 1, for cosines that differ from lane to lane: with g = sqrt(E +
+/// c^2), 1 - F = 1 - (r_s^2 + r_p^2) / 2; 0 where g^2 <= 0. Formulas: dielectric_fresnel().
+HWY_INLINE Floats transmittance(Floats big_e, Floats c) {
+  const Floats c2 = square(c);
+  const Floats g2 = hn::Add(big_e, c2);
+  const Floats g = hn::Sqrt(hn::Max(g2, hn::Zero(kTag)));
+  const Floats e2 = hn::Add(big_e, constant(1));
+  const Floats rs = hn::Div(big_e, hn::Max(square(hn::Add(c, g)), constant(kTiny)));
+  const Floats brewster = hn::MulSub(hn::Add(e2, constant(1)), c2, constant(1));
+  const Floats rp = hn::Div(hn::Mul(big_e, brewster), hn::Max(square(hn::MulAdd(e2, c, g)), constant(kTiny)));
+  const Floats reflectance = hn::Mul(constant(0.5f), hn::MulAdd(rs, rs, square(rp)));
+  return hn::IfThenElseZero(hn::Gt(g2, hn::Zero(kTag)), hn::Sub(constant(1), reflectance));
+}
+
+/// T of shared/rough_transmission.h. With s = wi + e wo and m = s / |s| turned upwards:
+///   D(m) = shape(t) / (pi alpha_u alpha_v cos^4), t = ((s_x / alpha_u)^2 + (s_y / alpha_v)^2) / s_z^2,
+///   cos^2 = s_z^2 / |s|^2, shape = exp(-t) or 1 / (1 + t)^2;  wi.s = 1 + e wi.wo,  wo.s = wi.wo + e.
+HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) {
+  const Floats big_e = hn::Add(hn::LoadU(kTag, p.high + k), hn::LoadU(kTag, p.low + k));
+  const Floats e = hn::Sqrt(hn::Max(hn::Add(big_e, constant(1)), hn::Zero(kTag)));
+  const Floats x = hn::MulAdd(e, constant(p.ox), constant(p.ix));
+  const Floats y = hn::MulAdd(e, constant(p.oy), constant(p.iy));
+  const Floats z = hn::MulAdd(e, constant(p.oz), constant(p.iz));
+  const Floats z2 = hn::Max(square(z), constant(kTiny));
+  const Floats size2 = hn::MulAdd(x, x, hn::MulAdd(y, y, z2));
+  const Floats length = hn::CopySign(hn::Sqrt(size2), z);
+  const Floats dot_i = hn::Div(hn::MulAdd(e, constant(p.cosine), constant(1)), length);
+  const Floats dot_o = hn::Div(hn::Add(e, constant(p.cosine)), length);
+  const Floats u = hn::Mul(x, constant(p.inverse_alpha_u)), v = hn::Mul(y, constant(p.inverse_alpha_v));
+  const Floats slope2 = hn::Div(hn::MulAdd(u, u, square(v)), z2);
+  Floats shape;
+  if (p.ggx)
+    shape = hn::Div(constant(1), square(hn::Add(constant(1), slope2)));
+  else
+    shape = hn::Exp(kTag, hn::Neg(hn::Min(slope2, constant(80))));
+  const Floats inverse_cos2 = hn::Div(size2, z2);
+  const Floats density = hn::Mul(hn::Mul(constant(p.norm), shape), square(inverse_cos2));
+  const Floats seen = hn::Min(dot_i, constant(1));
+  const Floats value =
+      hn::Mul(hn::Mul(transmittance(big_e, seen), density), hn::Div(hn::Mul(seen, hn::Neg(dot_o)), size2));
+  const auto valid = hn::And(hn::Gt(dot_i, hn::Zero(kTag)), hn::Lt(dot_o, hn::Zero(kTag)));
+  return hn::IfThenElseZero(valid, value);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace kiloband
+HWY_AFTER_NAMESPACE();
+
+#endif
