@@ -68,8 +68,9 @@ void add_materials(FlatScene& scene) {
     material.k_row = second == KB_NONE ? KB_NONE : kFirstIndex + second;
     material.eta_ext = 1.000277f;
     material.distribution = scene.materials.size() % 2 ? KB_MICROFACET_GGX : KB_MICROFACET_BECKMANN;
-    material.alpha_u = 0.3f;
-    material.alpha_v = 0.15f;
+    // Rounding of a facet's slope s counts (s / alpha)^2 times in exp(-(s / alpha)^2): rough enough for 1e-5.
+    material.alpha_u = 0.6f;
+    material.alpha_v = 0.4f;
     scene.materials.push_back(material);
   }
   KbMaterial mirror{};
