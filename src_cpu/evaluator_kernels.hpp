@@ -45,8 +45,9 @@ struct FresnelTerms {
 struct TransmissionTerms {
   const float* high = nullptr;
   const float* low = nullptr;
-  float ix = 0, iy = 0, iz = 1, ox = 0, oy = 0, oz = -1;
-  float cosine = -1;  // of wi and wo
+  float sx = 0, sy = 0, sz = 0;  // wi + wo: the half vector is this + (e - 1) wo, without cancellation
+  float ox = 0, oy = 0, oz = -1;
+  float cosine = -1, one_plus_cosine = 0;  // of wi and wo
   float inverse_alpha_u = 1, inverse_alpha_v = 1;
   float norm = 1;  // 1 / (pi alpha_u alpha_v)
   bool ggx = false;

@@ -167,8 +167,11 @@ void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& ve
   const KbTransmissionPair pair = kb_transmission_pair(vertex);
   const float alpha_u = std::max(m.alpha_u, KB_MIN_ALPHA), alpha_v = std::max(m.alpha_v, KB_MIN_ALPHA);
   const auto rows = spectra.dispersive(material, pair.inside != 0);
-  out.transmission = {rows[0], rows[1], pair.ix, pair.iy, pair.iz, pair.ox, pair.oy, pair.oz};
-  out.transmission.cosine = pair.ix * pair.ox + pair.iy * pair.oy + pair.iz * pair.oz;
+  const double cosine = double{pair.ix} * pair.ox + double{pair.iy} * pair.oy + double{pair.iz} * pair.oz;
+  out.transmission = {rows[0],           rows[1], pair.ix + pair.ox, pair.iy + pair.oy,
+                      pair.iz + pair.oz, pair.ox, pair.oy,           pair.oz};
+  out.transmission.cosine = static_cast<float>(cosine);
+  out.transmission.one_plus_cosine = static_cast<float>(1 + cosine);
   out.transmission.inverse_alpha_u = 1 / alpha_u;
   out.transmission.inverse_alpha_v = 1 / alpha_v;
   out.transmission.norm = KB_INV_PI / (alpha_u * alpha_v);

@@ -32,20 +32,23 @@ HWY_INLINE Floats transmittance(Floats big_e, Floats c) {
   return hn::IfThenElseZero(hn::Gt(g2, hn::Zero(kTag)), hn::Sub(constant(1), reflectance));
 }
 
-/// T of shared/rough_transmission.h. With s = wi + e wo and m = s / |s| turned upwards:
+/// T of shared/rough_transmission.h. With s = wi + e wo = (wi + wo) + d wo, d = e - 1 = E / (e + 1), and m =
+/// s / |s| turned upwards:
 ///   D(m) = shape(t) / (pi alpha_u alpha_v cos^4), t = ((s_x / alpha_u)^2 + (s_y / alpha_v)^2) / s_z^2,
-///   cos^2 = s_z^2 / |s|^2, shape = exp(-t) or 1 / (1 + t)^2;  wi.s = 1 + e wi.wo,  wo.s = wi.wo + e.
+///   cos^2 = s_z^2 / |s|^2, shape = exp(-t) or 1 / (1 + t)^2;  wi.s = (1 + wi.wo) + d wi.wo,
+///   wo.s = (1 + wi.wo) + d.
 HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) {
   const Floats big_e = hn::Add(hn::LoadU(kTag, p.high + k), hn::LoadU(kTag, p.low + k));
   const Floats e = hn::Sqrt(hn::Max(hn::Add(big_e, constant(1)), hn::Zero(kTag)));
-  const Floats x = hn::MulAdd(e, constant(p.ox), constant(p.ix));
-  const Floats y = hn::MulAdd(e, constant(p.oy), constant(p.iy));
-  const Floats z = hn::MulAdd(e, constant(p.oz), constant(p.iz));
+  const Floats d = hn::Div(big_e, hn::Add(e, constant(1)));
+  const Floats x = hn::MulAdd(d, constant(p.ox), constant(p.sx));
+  const Floats y = hn::MulAdd(d, constant(p.oy), constant(p.sy));
+  const Floats z = hn::MulAdd(d, constant(p.oz), constant(p.sz));
   const Floats z2 = hn::Max(square(z), constant(kTiny));
   const Floats size2 = hn::MulAdd(x, x, hn::MulAdd(y, y, z2));
   const Floats length = hn::CopySign(hn::Sqrt(size2), z);
-  const Floats dot_i = hn::Div(hn::MulAdd(e, constant(p.cosine), constant(1)), length);
-  const Floats dot_o = hn::Div(hn::Add(e, constant(p.cosine)), length);
+  const Floats dot_i = hn::Div(hn::MulAdd(d, constant(p.cosine), constant(p.one_plus_cosine)), length);
+  const Floats dot_o = hn::Div(hn::Add(d, constant(p.one_plus_cosine)), length);
   const Floats u = hn::Mul(x, constant(p.inverse_alpha_u)), v = hn::Mul(y, constant(p.inverse_alpha_v));
   const Floats slope2 = hn::Div(hn::MulAdd(u, u, square(v)), z2);
   Floats shape;
