@@ -34,7 +34,8 @@ TEST(WrongOption, Command) {
           {"no command", {}, "A subcommand is required (see kiloband --help)"},
           {"unknown command",
            {"rendr", "scene.xml"},
-           "unknown command 'rendr': must be render, info, convert, sensor, devices or trace (see kiloband --help)"},
+           "unknown command 'rendr': must be render, info, convert, sensor, devices or trace (see kiloband "
+           "--help)"},
           {"scene missing", {"render"}, "SCENE is required (see kiloband render --help)"},
           {"scene not there", {"render", "none.xml"}, "none.xml: error: file not found"},
           {"scene is a folder", {"render", "."}, ".: error: not a regular file"},
@@ -261,7 +262,8 @@ TEST(WrongOption, Backends) {
        "--method does not apply to --backend cpu"},
       {"--device on the CPU", quiet_render("scene.xml", {"--backend", "cpu", "--device", "0"}),
        "--device does not apply to --backend cpu"},
-      {"--device-memory on the CPU", quiet_render("scene.xml", {"--backend", "cpu", "--device-memory", "1GiB"}),
+      {"--device-memory on the CPU",
+       quiet_render("scene.xml", {"--backend", "cpu", "--device-memory", "1GiB"}),
        "--device-memory does not apply to --backend cpu"},
       {"--isa on a device", quiet_render("scene.xml", {"--backend", "opencl", "--isa", "avx2"}),
        "--isa does not apply to --backend opencl"},
@@ -269,14 +271,17 @@ TEST(WrongOption, Backends) {
        "--threads does not apply to --backend opencl"},
       {"options of both", quiet_render("scene.xml", {"--threads", "2", "--method", "pt"}),
        "--threads is for the CPU backend, --method for the OpenCL one: choose with --backend"},
-      {"trace has no methods", {"trace", "scene.xml", "--pixel", "0,0", "--method", "pt"},
+      {"trace has no methods",
+       {"trace", "scene.xml", "--pixel", "0,0", "--method", "pt"},
        "The following arguments were not expected: pt --method (see kiloband trace --help)"},
   };
   cases.push_back({"--device-memory", quiet_render("scene.xml", {"--device-memory="}),
                    "--device-memory: 1 required TEXT missing (see kiloband render --help)"});
-  for (const std::string amount : {"four", "0", "-1GiB", "4XiB", "4 gib", "nan", "inf", "1e30", "GiB", "0.1"}) {
-    cases.push_back({"--device-memory " + amount, quiet_render("scene.xml", {"--device-memory=" + amount}),
-                     "--device-memory " + amount + ": must be an amount of memory such as 4GiB, 512MiB or 2e9"});
+  for (const std::string amount :
+       {"four", "0", "-1GiB", "4XiB", "4 gib", "nan", "inf", "1e30", "GiB", "0.1"}) {
+    cases.push_back(
+        {"--device-memory " + amount, quiet_render("scene.xml", {"--device-memory=" + amount}),
+         "--device-memory " + amount + ": must be an amount of memory such as 4GiB, 512MiB or 2e9"});
   }
   expect_refused(folder, cases);
 }
