@@ -1,4 +1,4 @@
-// kiloband info SCENE.xml: what the scene contains.
+// kiloband info SCENE.xml: what the scene contains; kiloband info --materials: the built-in materials.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -9,6 +9,7 @@
 #include "film/spectral_film.hpp"
 #include "render/session.hpp"
 #include "scene/flat_scene.hpp"
+#include "spectral/materials/materials.hpp"
 #include "src_gpu/path_memory.hpp"
 
 namespace kiloband {
@@ -105,7 +106,20 @@ void print_path_memory(const FlatScene& scene) {
   }
 }
 
+void print_family(const char* title, const std::vector<BuiltInMaterial>& materials) {
+  fmt::print("{:<14}{:>9} {:>9}  substance; source\n", title, "from nm", "to nm");
+  for (const BuiltInMaterial& m : materials)
+    fmt::print("  {:<12}{:>9.1f} {:>9.0f}  {}; {}\n", m.name, m.min_nm, m.max_nm, m.substance, m.source);
+}
+
+int print_materials() {
+  print_family("metals", built_in_metals());
+  print_family("transparent", built_in_dielectrics());
+  return kDone;
+}
+
 int info(const SceneOptions& options) {
+  if (options.scene.empty()) throw InputError("SCENE is required (see kiloband info --help)");
   const DiagnosticSink sink = print_diagnostics(false);
   check_scene_file(options.scene);
   const LoadedScene loaded = load_scene(options, sink);
@@ -126,9 +140,13 @@ int info(const SceneOptions& options) {
 
 Command add_info(CLI::App& program) {
   auto options = std::make_shared<SceneOptions>();
+  auto materials = std::make_shared<bool>(false);
   CLI::App* command = program.add_subcommand("info", "Show what a scene contains and needs");
   options->add_to(*command);
-  return [options] { return info(*options); };
+  command->get_option("SCENE")->required(false);
+  command->add_flag("--materials", *materials, "list the built-in materials instead")
+      ->excludes(command->get_option("SCENE"));
+  return [options, materials] { return *materials ? print_materials() : info(*options); };
 }
 
 }  // namespace kiloband

@@ -1,6 +1,7 @@
 // kiloband render SCENE.xml: loads, renders, writes.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <csignal>
@@ -18,6 +19,7 @@
 #include "app/sampling_options.hpp"
 #include "film/atomic_file.hpp"
 #include "render/checkpoint.hpp"
+#include "render/scene_metadata.hpp"
 #include "render/session.hpp"
 
 namespace kiloband {
@@ -113,7 +115,7 @@ void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const
   }
 }
 
-void describe_render(SessionSettings& settings, const RenderOptions& options,
+void describe_render(SessionSettings& settings, const RenderOptions& options, const FlatScene& scene,
                      const SamplingSettings& sampling, const Backend& backend) {
   settings.metadata["software"] = fmt::format("kiloband {}", KILOBAND_VERSION);
   settings.metadata["scene"] = std::filesystem::path(options.scene.scene).filename().string();
@@ -122,6 +124,10 @@ void describe_render(SessionSettings& settings, const RenderOptions& options,
   settings.metadata["seed"] = std::to_string(sampling.seed);
   settings.metadata["sampler"] = to_string(sampling.sampler);
   settings.metadata["wavelengths"] = to_string(sampling.wavelengths);
+  settings.metadata[kCameraKey] = camera_geometry(scene).to_text();
+  const bool objects = std::ranges::find(options.aux, "object") != options.aux.end();
+  if (const std::string names = object_names(scene); objects && !names.empty())
+    settings.metadata["objects"] = names;
 }
 
 void print_summary(const RenderReport& report, const Backend& backend, double setup_seconds) {
@@ -166,7 +172,7 @@ int render(const RenderOptions& options) {
   const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
   const auto backend = make_backend(options.backend, scene, derived, sampling, sink);
-  describe_render(settings, options, sampling, *backend);
+  describe_render(settings, options, scene, sampling, *backend);
   prepare_checkpoint(settings, scene, sampling, *backend, derived);
   catch_stop_signals();
   if (options.backend.backend == "auto" && !options.quiet) {

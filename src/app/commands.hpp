@@ -30,6 +30,7 @@ Command add_render(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_convert(CLI::App& program);
 Command add_sky(CLI::App& program);
+Command add_sensor(CLI::App& program);
 Command add_trace(CLI::App& program);
 Command add_devices(CLI::App& program);
 

@@ -9,6 +9,7 @@
 #include "app/messages.hpp"
 #include "base/error.hpp"
 #include "film/cube_text.hpp"
+#include "film/sensor_cube.hpp"
 #include "spectral/spectrum_files.hpp"
 
 namespace kiloband {
@@ -30,30 +31,6 @@ uint32_t parse_extent(std::string_view text, const std::string& whole) {
     throw InputError("--size " + whole + ": must be WIDTHxHEIGHT with both from 1 to 65535");
   }
   return value;
-}
-
-/// Part of the response's integral that no channel covers.
-double uncovered_part(const Spectrum& response, const ChannelList& channels) {
-  const auto range = response.data_range();
-  const Channel all = hull(channels);
-  const double from = range ? range->min_nm : all.min_nm;
-  const double to = range ? range->max_nm : all.max_nm;
-  const double total = response.integral(from, to);
-  if (!(total > 0)) return 0;
-  // Overlapping channels: sum over the intervals between all edges, each counted once.
-  std::set<double> edges{from, to};
-  for (const Channel& channel : channels) {
-    if (channel.min_nm > from && channel.min_nm < to) edges.insert(channel.min_nm);
-    if (channel.max_nm > from && channel.max_nm < to) edges.insert(channel.max_nm);
-  }
-  double covered = 0;
-  for (auto edge = edges.begin(); std::next(edge) != edges.end(); ++edge) {
-    const double middle = 0.5 * (*edge + *std::next(edge));
-    const bool inside = std::ranges::any_of(
-        channels, [middle](const Channel& c) { return c.min_nm <= middle && middle <= c.max_nm; });
-    if (inside) covered += response.integral(*edge, *std::next(edge));
-  }
-  return 1 - covered / total;
 }
 
 }  // namespace

@@ -45,7 +45,10 @@ void convert_cube(const std::filesystem::path& in, const std::filesystem::path& 
   const Quantity quantity = selection.quantity.value_or(exr ? Quantity::kDensity : Quantity::kIntegral);
   CubeSelection part = selection;
   part.quantity.reset();  // converted once, by the writer
-  const auto source = select_from_cube(open_cube(in, sink), part, sink);
+  // Only sums need the replicates: single channels bring their variances along.
+  const auto source =
+      part.rebin ? with_replicate_variance(select_from_cube(open_replicated_cube(in, sink), part, sink))
+                 : select_from_cube(open_cube(in, sink), part, sink);
   write_cube(*source, out, quantity);
 }
 

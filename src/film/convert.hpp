@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "film/cube_io.hpp"
+#include "film/replicated_cube.hpp"
 #include "film/spectral_film.hpp"
 
 namespace kiloband {
@@ -42,13 +43,17 @@ void check_region(const CubeInfo& info, const PixelRect& region);
 /// is no union of whole bands
 std::unique_ptr<CubeReader> select_from_cube(std::unique_ptr<CubeReader> source,
                                              const CubeSelection& selection, const DiagnosticSink& sink = {});
+/// The same part of a cube and of its replicates: sums of bands have error bars if there are replicates.
+ReplicatedCube select_from_cube(ReplicatedCube source, const CubeSelection& selection,
+                                const DiagnosticSink& sink = {});
 
 /// Copies a cube to a file by extension, a strip of rows at a time (about 128 MiB, at least 32 rows). Values
 /// keep their bits where the quantity does not change.
 void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity quantity_on_disk);
 
-/// open_cube, select_from_cube, write_cube. Without selection.quantity, EXR gets densities and ENVI
-/// integrals.
+/// Opens a cube with its replicates if there are any, select_from_cube, write_cube. Without
+/// selection.quantity, EXR gets densities and ENVI integrals. Sums of channels have the variance that the
+/// replicates give.
 void convert_cube(const std::filesystem::path& in, const std::filesystem::path& out,
                   const CubeSelection& selection, const DiagnosticSink& sink = {});
 
@@ -58,5 +63,8 @@ void convert_cube(const std::filesystem::path& in, const std::filesystem::path& 
 /// several places each row begins with x,y,width,height. throws InputError  no place, an empty place or one
 /// outside the image
 void write_csv(CubeReader& source, const std::filesystem::path& out, const std::vector<PixelRect>& places);
+/// The same with a standard error for every place, from the replicates if there are any.
+void write_csv(ReplicatedCube& source, const std::filesystem::path& out,
+               const std::vector<PixelRect>& places);
 
 }  // namespace kiloband

@@ -4,6 +4,7 @@
 
 #include "film/atomic_file.hpp"
 #include "film/convert.hpp"
+#include "film/csv_fields.hpp"
 #include "film/cube_layout.hpp"
 #include "film/cube_text.hpp"
 
@@ -11,14 +12,6 @@ namespace kiloband {
 namespace {
 
 constexpr uint32_t kTileRows = 32;  // of our EXR files, which are read by whole tiles
-
-/// RFC 4180: quoted where a comma, a quote or a line break would confuse.
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 /// Per band the value and, for single pixels of cubes with variances, the standard error (empty otherwise).
 struct Place {
@@ -37,7 +30,8 @@ Place read_pixel(CubeReader& source, uint32_t x, uint32_t y) {
   return place;
 }
 
-Place read_region(CubeReader& source, const PixelRect& region) {
+/// Means over the pixels of a region, by band.
+std::vector<double> region_means(CubeReader& source, const PixelRect& region) {
   const std::size_t bands = source.info().bands.size(), width = source.info().width;
   std::vector<double> sum(bands, 0);
   std::vector<uint64_t> count(bands, 0);
@@ -52,42 +46,75 @@ Place read_region(CubeReader& source, const PixelRect& region) {
         for (std::size_t k = 0; k < bands; ++k)
           if (const float v = strip[(row * width + x) * bands + k]; !std::isnan(v)) sum[k] += v, ++count[k];
   }
-  Place place;
   for (std::size_t k = 0; k < bands; ++k)
-    place.value.push_back(
-        format_number(count[k] > 0 ? sum[k] / static_cast<double>(count[k]) : std::nan("")));
-  place.error.resize(bands);
+    sum[k] = count[k] > 0 ? sum[k] / static_cast<double>(count[k]) : std::nan("");
+  return sum;
+}
+
+Place read_region(CubeReader& source, const PixelRect& region) {
+  Place place;
+  for (const double mean : region_means(source, region)) place.value.push_back(format_number(mean));
+  place.error.resize(place.value.size());
   return place;
 }
 
-std::string bound_text(const Channel& c, double nm) {
-  return c.min_nm < c.max_nm ? format_number(nm) : "";
+/// A place with the errors that the replicates give.
+Place read_replicated(ReplicatedCube& source, const PixelRect& region) {
+  Place place = read_region(*source.mean, region);
+  std::vector<std::vector<double>> means;
+  for (const auto& replicate : source.replicates) means.push_back(region_means(*replicate, region));
+  std::vector<double> values(means.size());
+  for (std::size_t k = 0; k < place.error.size(); ++k) {
+    for (std::size_t r = 0; r < means.size(); ++r) values[r] = means[r][k];
+    place.error[k] = format_number(replicate_error(values, source.samples));
+  }
+  return place;
+}
+
+void check_places(const CubeInfo& info, const std::vector<PixelRect>& places) {
+  if (places.empty()) throw InputError("CSV: no pixel or region is given");
+  for (const PixelRect& place : places) check_region(info, place);
+}
+
+template <class ReadPlace>
+void write_places(const CubeInfo& info, const std::filesystem::path& out,
+                  const std::vector<PixelRect>& places, bool errors, const ReadPlace& read_place) {
+  const bool several = places.size() > 1;
+  std::string text = several ? "x,y,width,height," : "";
+  text += "channel,min_nm,max_nm,value" + std::string(errors ? ",standard_error" : "") + "\n";
+  const std::vector<std::string> names = unique_band_names(info.bands);
+  for (const PixelRect& p : places) {
+    const Place place = read_place(p);
+    std::string prefix;
+    if (several)
+      for (const uint32_t number : {p.x0, p.y0, p.width, p.height}) prefix += std::to_string(number) + ",";
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const Channel& c = info.bands[k].channel;
+      text += prefix + csv_text(names[k]) + "," + csv_bound(c, c.min_nm) + "," + csv_bound(c, c.max_nm) +
+              "," + place.value[k] + (errors ? "," + place.error[k] : "") + "\n";
+    }
+  }
+  write_file_atomically(out, text);
 }
 
 }  // namespace
 
 void write_csv(CubeReader& source, const std::filesystem::path& out, const std::vector<PixelRect>& places) {
   const CubeInfo& info = source.info();
-  if (places.empty()) throw InputError("CSV: no pixel or region is given");
-  for (const PixelRect& place : places) check_region(info, place);
+  check_places(info, places);
   const auto is_pixel = [](const PixelRect& p) { return p.pixels() == 1; };
   const bool errors = info.variance && std::any_of(places.begin(), places.end(), is_pixel);
-  const bool several = places.size() > 1;
-  std::string text = several ? "x,y,width,height," : "";
-  text += "channel,min_nm,max_nm,value" + std::string(errors ? ",standard_error" : "") + "\n";
-  const std::vector<std::string> names = unique_band_names(info.bands);
-  for (const PixelRect& p : places) {
-    const Place place = is_pixel(p) ? read_pixel(source, p.x0, p.y0) : read_region(source, p);
-    std::string prefix;
-    if (several)
-      for (const uint32_t number : {p.x0, p.y0, p.width, p.height}) prefix += std::to_string(number) + ",";
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      const Channel& c = info.bands[k].channel;
-      text += prefix + csv_text(names[k]) + "," + bound_text(c, c.min_nm) + "," + bound_text(c, c.max_nm) +
-              "," + place.value[k] + (errors ? "," + place.error[k] : "") + "\n";
-    }
-  }
-  write_file_atomically(out, text);
+  write_places(info, out, places, errors, [&](const PixelRect& p) {
+    return is_pixel(p) ? read_pixel(source, p.x0, p.y0) : read_region(source, p);
+  });
+}
+
+void write_csv(ReplicatedCube& source, const std::filesystem::path& out,
+               const std::vector<PixelRect>& places) {
+  if (!source.has_errors()) return write_csv(*source.mean, out, places);
+  check_places(source.mean->info(), places);
+  write_places(source.mean->info(), out, places, true,
+               [&](const PixelRect& p) { return read_replicated(source, p); });
 }
 
 }  // namespace kiloband

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "film/camera_geometry.hpp"
 #include "film/convert.hpp"
 #include "film/convert_rebin.hpp"
 #include "film/cube_layout.hpp"
@@ -81,6 +82,7 @@ class SelectedCube : public CubeReader {
     const bool singles =
         std::any_of(recipes_.begin(), recipes_.end(), [](const Recipe& r) { return r.sources.size() == 1; });
     info_.variance = info_.variance && singles;
+    crop_camera(info_, crop.x0, crop.y0);
   }
 
   const CubeInfo& info() const override { return info_; }
@@ -195,8 +197,10 @@ std::vector<std::size_t> parse_band_indices(std::string_view text, std::size_t c
   return indices;
 }
 
-std::unique_ptr<CubeReader> select_from_cube(std::unique_ptr<CubeReader> source,
-                                             const CubeSelection& selection, const DiagnosticSink& sink) {
+namespace {
+
+std::unique_ptr<CubeReader> select(std::unique_ptr<CubeReader> source, const CubeSelection& selection,
+                                   bool replicated, const DiagnosticSink& sink) {
   const CubeInfo& info = source->info();
   const PixelRect crop = choose_crop(info, selection.crop);
   std::vector<Recipe> recipes = select_bands(info.bands, selection);
@@ -205,10 +209,26 @@ std::unique_ptr<CubeReader> select_from_cube(std::unique_ptr<CubeReader> source,
         std::count_if(recipes.begin(), recipes.end(), [](const Recipe& r) { return r.band.derived; });
     if (derived > 0) note(sink, {}, std::to_string(derived) + " derived bands are dropped by re-binning");
     recipes = rebin(recipes, *selection.rebin);
-    if (info.variance) note_lost_variances(recipes, sink);
+    if (info.variance && !replicated) note_lost_variances(recipes, sink);
   }
   const Quantity quantity = selection.quantity.value_or(info.quantity);
   return std::make_unique<SelectedCube>(std::move(source), std::move(recipes), crop, quantity);
+}
+
+}  // namespace
+
+std::unique_ptr<CubeReader> select_from_cube(std::unique_ptr<CubeReader> source,
+                                             const CubeSelection& selection, const DiagnosticSink& sink) {
+  return select(std::move(source), selection, false, sink);
+}
+
+ReplicatedCube select_from_cube(ReplicatedCube source, const CubeSelection& selection,
+                                const DiagnosticSink& sink) {
+  ReplicatedCube result{
+      select(std::move(source.mean), selection, source.has_errors(), sink), {}, std::move(source.samples)};
+  for (auto& replicate : source.replicates)
+    result.replicates.push_back(select(std::move(replicate), selection, true, {}));
+  return result;
 }
 
 }  // namespace kiloband

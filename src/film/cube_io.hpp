@@ -86,6 +86,10 @@ void write_png(const std::filesystem::path& file, uint32_t width, uint32_t heigh
 /// where the bands reach into 380-780 nm, false colour (three equal thirds of the range) otherwise.
 /// Exposure is left to auto_exposure().
 std::vector<std::array<float, 3>> preview_weights(const std::vector<Band>& bands);
+/// False colour whatever the wavelengths. throws InputError if all bands are derived
+std::vector<std::array<float, 3>> false_colour_weights(const std::vector<Band>& bands);
+/// Whether a channel reaches into 380-780 nm.
+bool shows_visible_light(const std::vector<Band>& bands);
 /// Scale that maps the 99th percentile of the pixels' largest component to 1 (1 for black images).
 float auto_exposure(std::span<const float> linear_rgb);
 

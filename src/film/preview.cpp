@@ -29,25 +29,42 @@ std::array<float, 3> false_colour_weight(const Channel& c, double low, double th
   return weight;
 }
 
-}  // namespace
-
-std::vector<std::array<float, 3>> preview_weights(const std::vector<Band>& bands) {
-  std::vector<std::array<float, 3>> weights(bands.size(), {0, 0, 0});
+ChannelList channels_of(const std::vector<Band>& bands) {
   ChannelList channels;
   for (const Band& band : bands)
     if (!band.derived) channels.push_back(band.channel);
-  if (channels.empty()) {  // sensor responses only: the first three as red, green, blue; a single one as grey
+  return channels;
+}
+
+}  // namespace
+
+bool shows_visible_light(const std::vector<Band>& bands) {
+  return std::any_of(bands.begin(), bands.end(), [](const Band& band) {
+    return !band.derived && band.channel.min_nm < kVisibleMaxNm && band.channel.max_nm > kVisibleMinNm;
+  });
+}
+
+std::vector<std::array<float, 3>> false_colour_weights(const std::vector<Band>& bands) {
+  std::vector<std::array<float, 3>> weights(bands.size(), {0, 0, 0});
+  const ChannelList channels = channels_of(bands);
+  if (channels.empty()) throw InputError("picture: the cube has no channels, only derived bands");
+  const Channel range = hull(channels);
+  for (std::size_t k = 0; k < bands.size(); ++k)
+    if (!bands[k].derived)
+      weights[k] = false_colour_weight(bands[k].channel, range.min_nm, range.width_nm() / 3);
+  return weights;
+}
+
+std::vector<std::array<float, 3>> preview_weights(const std::vector<Band>& bands) {
+  std::vector<std::array<float, 3>> weights(bands.size(), {0, 0, 0});
+  if (channels_of(bands)
+          .empty()) {  // sensor responses only: the first three as red, green, blue; one as grey
     for (std::size_t c = 0; c < 3 && !bands.empty(); ++c) weights[std::min(c, bands.size() - 1)][c] = 1;
     return weights;
   }
-  const Channel range = hull(channels);
-  const bool visible = std::any_of(channels.begin(), channels.end(), [](const Channel& c) {
-    return c.min_nm < kVisibleMaxNm && c.max_nm > kVisibleMinNm;
-  });
+  if (!shows_visible_light(bands)) return false_colour_weights(bands);
   for (std::size_t k = 0; k < bands.size(); ++k)
-    if (!bands[k].derived)
-      weights[k] = visible ? colour_weight(bands[k].channel)
-                           : false_colour_weight(bands[k].channel, range.min_nm, range.width_nm() / 3);
+    if (!bands[k].derived) weights[k] = colour_weight(bands[k].channel);
   return weights;
 }
 

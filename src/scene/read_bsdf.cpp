@@ -39,7 +39,7 @@ Model read_diffuse(ReadContext& context, const ObjectReader& object) {
   return bsdf;
 }
 
-/// The index of a conductor: eta and k, a file, or the perfect mirror.
+/// The index of a conductor: eta and k, a built-in metal or a file, or the perfect mirror.
 void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf& bsdf) {
   const bool explicit_index = object.has("eta") || object.has("k");
   bsdf.eta = read_spectrum(context, object, "eta", SpectrumUse::kQuantity, bsdf.eta);
@@ -50,13 +50,13 @@ void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf&
   if (material != "none") {
     object.fail_at("material",
                    "material '" + material +
-                       "': there are no built-in metals; give 'metal' with a file, or 'eta' and 'k'");
+                       "': only 'none' is supported; give 'metal' with a built-in metal or a file, or 'eta' "
+                       "and 'k'");
   }
-  const auto constants = read_material_file(context, object, "metal");
+  const auto constants = read_material(context, object, "metal", MaterialFamily::kMetal);
   if (!constants) return;
   if (explicit_index || object.has("material"))
     object.fail_at("metal", "'metal' together with 'material', 'eta' or 'k'");
-  if (!constants->k) object.fail_at("metal", "metal: the file gives no extinction k");
   bsdf.eta = constants->n;
   bsdf.k = *constants->k;
 }
@@ -73,7 +73,7 @@ Model read_conductor(ReadContext& context, const ObjectReader& object, bool roug
 Spectrum read_index(ReadContext& context, const ObjectReader& object, std::string_view ior,
                     std::string_view material, double fallback) {
   const double index = read_ior(object, ior, fallback);
-  const auto constants = read_material_file(context, object, material);
+  const auto constants = read_material(context, object, material, MaterialFamily::kDielectric);
   if (!constants) return Spectrum::constant(index);
   if (object.has(ior)) {
     object.fail_at(material, "'" + std::string(material) + "' together with '" + std::string(ior) + "'");

@@ -1,6 +1,7 @@
 #include "scene/read_ior.hpp"
 
 #include "scene/xml_values.hpp"
+#include "spectral/materials/materials.hpp"
 
 namespace kiloband {
 namespace {
@@ -31,6 +32,56 @@ double named_index(const ObjectReader& object, std::string_view parameter, const
                  std::string(parameter) + ": unknown material '" + name + "'" + suggestion(name, known));
 }
 
+/// The file that the value names; nullopt if it is to be a built-in name.
+std::optional<std::filesystem::path> material_file(ReadContext& context, const std::string& value,
+                                                   const Place& place) {
+  const bool must_be_file = value.find_first_of("./") != std::string::npos;
+  try {
+    return find_file(context.tree, value, place);
+  } catch (const InputError&) {
+    if (must_be_file) throw;
+    return std::nullopt;
+  }
+}
+
+std::optional<OpticalConstants> find_built_in(std::string_view name, MaterialFamily family) {
+  if (family == MaterialFamily::kMetal) return find_metal(name);
+  const auto index = find_dielectric(name);
+  return index ? std::optional(OpticalConstants{*index, std::nullopt}) : std::nullopt;
+}
+
+/// "; did you mean 'Au'?", or all names.
+std::string names_near(const std::string& value, MaterialFamily family) {
+  const auto materials = family == MaterialFamily::kMetal ? built_in_metals() : built_in_dielectrics();
+  std::vector<std::string_view> names;
+  std::string all;
+  for (const BuiltInMaterial& material : materials) {
+    names.push_back(material.name);
+    all += (all.empty() ? "; there are " : ", ") + std::string(material.name);
+  }
+  const std::string near = suggestion(value, names);
+  return near.empty() ? all : near;
+}
+
+[[noreturn]] void refuse_name(const ObjectReader& object, std::string_view name, const std::string& value,
+                              MaterialFamily family) {
+  const bool metal = family == MaterialFamily::kMetal;
+  const std::string what = std::string(name) + ": '" + value + "' is ";
+  if (find_built_in(value, metal ? MaterialFamily::kDielectric : MaterialFamily::kMetal))
+    object.fail_at(name, what + (metal ? "a transparent material, not a metal" : "a metal, not transparent"));
+  object.fail_at(name, what + "neither a built-in " + (metal ? "metal" : "transparent material") +
+                           " nor a file" + names_near(value, family));
+}
+
+void check_index(const OpticalConstants& constants, const std::string& label, const Place& place) {
+  for (std::size_t i = 0; i < constants.n.knots_nm().size(); ++i) {
+    if (constants.n.knot_values()[i] > 0) continue;
+    fail(place, label + " index " + format_number(constants.n.knot_values()[i]) + " at " +
+                    format_number(constants.n.knots_nm()[i]) + " nm: must be > 0");
+  }
+  if (constants.k) check_spectrum(*constants.k, label + " extinction", SpectrumUse::kQuantity, place);
+}
+
 }  // namespace
 
 double read_ior(const ObjectReader& object, std::string_view name, double fallback) {
@@ -46,27 +97,25 @@ double read_ior(const ObjectReader& object, std::string_view name, double fallba
   return index;
 }
 
-std::optional<OpticalConstants> read_material_file(ReadContext& context, const ObjectReader& object,
-                                                   std::string_view name) {
+std::optional<OpticalConstants> read_material(ReadContext& context, const ObjectReader& object,
+                                              std::string_view name, MaterialFamily family) {
   if (!object.has(name)) return std::nullopt;
-  const std::string file_name = object.require_string(name);
+  const std::string value = object.require_string(name);
   const Place place = object.value_place(name);
-  const std::filesystem::path file = [&] {
-    try {
-      return find_file(context.tree, file_name, place);
-    } catch (const InputError&) {
-      object.fail_at(
-          name, std::string(name) + ": file '" + file_name + "' not found (there are no built-in materials)");
-    }
-  }();
-  OpticalConstants constants = load_at(place, [&] { return read_optical_constants(file, context.sink); });
-  const std::string label = object.label() + ": " + std::string(name);
-  for (std::size_t i = 0; i < constants.n.knots_nm().size(); ++i) {
-    if (constants.n.knot_values()[i] > 0) continue;
-    fail(place, label + " index " + format_number(constants.n.knot_values()[i]) + " at " +
-                    format_number(constants.n.knots_nm()[i]) + " nm: must be > 0");
+  std::optional<OpticalConstants> constants;
+  if (const auto file = material_file(context, value, place)) {
+    constants = load_at(place, [&] { return read_optical_constants(*file, context.sink); });
+    check_index(*constants, object.label() + ": " + std::string(name), place);
+    if (family == MaterialFamily::kMetal && !constants->k)
+      object.fail_at(name, std::string(name) + ": the file gives no extinction k");
+  } else {
+    constants = find_built_in(value, family);
+    if (!constants) refuse_name(object, name, value, family);
   }
-  if (constants.k) check_spectrum(*constants.k, label + " extinction", SpectrumUse::kQuantity, place);
+  if (object.get_bool("extrapolate", false)) {
+    constants->n = constants->n.extrapolated();
+    if (constants->k) constants->k = constants->k->extrapolated();
+  }
   return constants;
 }
 

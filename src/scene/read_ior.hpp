@@ -1,4 +1,4 @@
-// Indices of refraction: numbers, Mitsuba's material names, files of optical constants.
+// Indices of refraction: numbers, Mitsuba's material names, built-in materials, files of optical constants.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,14 @@ namespace kiloband {
 /// throws InputError  unknown name; not > 0
 double read_ior(const ObjectReader& object, std::string_view name, double fallback);
 
-/// The file that a string parameter names, read as optical constants; nullopt if the parameter is absent.
-/// There are no built-in materials yet: what is not an existing file is an error that says so. n must be > 0,
-/// k >= 0.
-std::optional<OpticalConstants> read_material_file(ReadContext& context, const ObjectReader& object,
-                                                   std::string_view name);
+enum class MaterialFamily { kMetal, kDielectric };
+
+/// The optical constants that a string parameter names; nullopt if the parameter is absent. A value with '.'
+/// or '/' and the name of an existing file are files, all else built-in materials of the family. n must be
+/// > 0, k >= 0; metals have k. With the boolean parameter `extrapolate` the end values continue outside the
+/// data.
+/// throws InputError  neither a file nor a built-in name (with names near it)
+std::optional<OpticalConstants> read_material(ReadContext& context, const ObjectReader& object,
+                                              std::string_view name, MaterialFamily family);
 
 }  // namespace kiloband

@@ -1,10 +1,10 @@
 #include "spectral/dispersion_formula.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "spectral/tabulate.hpp"
 #include "spectral/text_table.hpp"
 
 namespace kiloband {
@@ -42,11 +42,6 @@ double general_square(const Coefficients& c, double l) {
 double index_of_ratio(double ratio) {
   return std::sqrt((1 + 2 * ratio) / (1 - ratio));
 }
-
-/// A cell of the table while it is refined.
-struct Cell {
-  double a, b, n_a, n_b;
-};
 
 }  // namespace
 
@@ -98,14 +93,8 @@ std::size_t max_coefficients(int number) {
   }
 }
 
-// Cells are halved until linear interpolation misses the formula by less than 4e-7 in the middle and at both
-// quarters; for a smooth function the largest error of a cell is within 5 % of the one in the middle, so that
-// 1e-6 holds with a margin.
 Spectrum tabulate_formula(const std::string& where, int number, const std::vector<double>& coefficients,
                           double min_um, double max_um) {
-  constexpr double kMaxError = 4e-7;
-  constexpr std::size_t kMaxPoints = 1u << 18;
-  constexpr int kFirstCells = 64;
   const auto index = [&](double lambda_um) {
     const double n = dispersion_formula(number, coefficients, lambda_um);
     if (!std::isfinite(n) || n <= 0)
@@ -113,33 +102,10 @@ Spectrum tabulate_formula(const std::string& where, int number, const std::vecto
                        to_text(lambda_um) + " um: must be positive and finite");
     return n;
   };
-  std::vector<double> lambda_nm = {min_um * 1000}, values = {index(min_um)};
-  std::vector<Cell> waiting;  // a stack with the shortest wavelengths on top
-  const double step_um = (max_um - min_um) / kFirstCells;
-  for (int i = kFirstCells; i-- > 0;) {
-    const double a = min_um + step_um * i;
-    const double b = i == kFirstCells - 1 ? max_um : min_um + step_um * (i + 1);
-    waiting.push_back({a, b, index(a), index(b)});
-  }
-  while (!waiting.empty()) {
-    const Cell cell = waiting.back();
-    waiting.pop_back();
-    const double middle = 0.5 * (cell.a + cell.b), n = index(middle);
-    double error = std::abs(n - 0.5 * (cell.n_a + cell.n_b));
-    error = std::max(error, std::abs(index(0.5 * (cell.a + middle)) - 0.75 * cell.n_a - 0.25 * cell.n_b));
-    error = std::max(error, std::abs(index(0.5 * (middle + cell.b)) - 0.25 * cell.n_a - 0.75 * cell.n_b));
-    if (error < kMaxError) {
-      lambda_nm.push_back(cell.b * 1000);
-      values.push_back(cell.n_b);
-    } else {
-      waiting.push_back({middle, cell.b, n, cell.n_b});
-      waiting.push_back({cell.a, middle, cell.n_a, n});
-    }
-    if (lambda_nm.size() + waiting.size() > kMaxPoints)
-      throw InputError(where + ": formula " + std::to_string(number) + " varies too fast at " +
-                       to_text(cell.a) + " um");
-  }
-  return Spectrum::tabulated(std::move(lambda_nm), std::move(values));
+  return tabulate_function(index, min_um, max_um, {.absolute = 1e-6}, [&](double lambda_um) {
+    throw InputError(where + ": formula " + std::to_string(number) + " varies too fast at " +
+                     to_text(lambda_um) + " um");
+  });
 }
 
 }  // namespace kiloband

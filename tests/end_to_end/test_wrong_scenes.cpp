@@ -114,10 +114,10 @@ TEST(WrongScene, Values) {
           {"index of refraction 0",
            complete_scene(R"xml(<bsdf type="dielectric"><float name="int_ior" value="0"/></bsdf>)xml"),
            "broken.xml:2:54: error: dielectric bsdf: int_ior 0: must be > 0"},
-          {"metal without file",
-           complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="Au"/></bsdf>)xml"),
-           "broken.xml:2:52: error: conductor bsdf: metal: file 'Au' not found (there are no built-in "
-           "materials)"},
+          {"unknown metal",
+           complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="Auu"/></bsdf>)xml"),
+           "broken.xml:2:52: error: conductor bsdf: metal: 'Auu' is neither a built-in metal nor a file; "
+           "did you mean 'Au'?"},
       });
 }
 

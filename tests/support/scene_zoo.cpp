@@ -193,6 +193,15 @@ Text dispersive(const Text& type, const Text& more = "") {
   return bsdf(type, text("int_material", "glass.txt") + more);
 }
 
+/// Materials by name: metals, and a flint glass.
+Text named_materials() {
+  return ball("-0.6 0.4 -0.2", "0.35", bsdf("conductor", text("metal", "Al"))) +
+         ball("0.5 0.4 -0.2", "0.35", bsdf("roughconductor", text("metal", "Au") + roughness("ggx", "0.2"))) +
+         ball("-0.3 -0.5 0.2", "0.4", bsdf("dielectric", text("int_material", "SF11"))) +
+         ball("0.6 -0.6 0", "0.3",
+              bsdf("roughconductor", text("metal", "Ti") + roughness("beckmann", "0.3")));
+}
+
 /// Spheres one behind the other and a shell: chains of refractions.
 Text lenses() {
   const Text glass = bsdf("dielectric");
@@ -249,6 +258,7 @@ std::vector<ZooScene> make_scenes() {
        scene(10, perspective(film("gaussian")),
              lit_room + ball("0 -0.2 0", "0.6", dispersive("roughdielectric", roughness("ggx", "0.2")))),
        kCurved},
+      {"named_materials", scene(8, perspective(film("gaussian")), lit_room + named_materials()), kCurved},
       {"mirror_box", scene(50, perspective(film("box")), mirrors()), kLong},
       {"lenses", scene(50, perspective(film("gaussian")), lit_room + lenses()), kLong},
       {"unlimited_depth",

@@ -135,10 +135,19 @@ std::vector<BrokenScene> table() {
       {"unknown material",
        complete_scene(R"xml(<bsdf type="dielectric"><string name="int_ior" value="watter"/></bsdf>)xml"),
        "scene.xml:2:55: error: dielectric bsdf: int_ior: unknown material 'watter'; did you mean 'water'?"},
-      {"built-in glass",
-       complete_scene(R"xml(<bsdf type="dielectric"><string name="int_material" value="N-BK7"/></bsdf>)xml"),
-       "scene.xml:2:60: error: dielectric bsdf: int_material: file 'N-BK7' not found (there are no built-in "
-       "materials)"},
+      {"glass with a similar name",
+       complete_scene(R"xml(<bsdf type="dielectric"><string name="int_material" value="NBK7"/></bsdf>)xml"),
+       "scene.xml:2:60: error: dielectric bsdf: int_material: 'NBK7' is neither a built-in transparent "
+       "material nor a file; did you mean 'N-BK7'?"},
+      {"metal as glass",
+       complete_scene(R"xml(<bsdf type="dielectric"><string name="ext_material" value="Au"/></bsdf>)xml"),
+       "scene.xml:2:60: error: dielectric bsdf: ext_material: 'Au' is a metal, not transparent"},
+      {"glass file that is missing",
+       complete_scene(R"xml(<bsdf type="dielectric"><string name="int_material" value="no.yml"/></bsdf>)xml"),
+       "scene.xml:2:60: error: file 'no.yml' not found"},
+      {"extrapolation of a constant index",
+       complete_scene(R"xml(<bsdf type="dielectric"><boolean name="extrapolate" value="true"/></bsdf>)xml"),
+       "scene.xml:2:40: error: dielectric bsdf: unknown parameter 'extrapolate'"},
       {"index given in two ways",
        complete_scene(
            R"xml(<bsdf type="dielectric"><string name="int_material" value="glass.txt"/><float name="int_ior" value="1.5"/></bsdf>)xml"),
@@ -154,8 +163,15 @@ std::vector<BrokenScene> table() {
        "interface"},
       {"built-in metal",
        complete_scene(R"xml(<bsdf type="conductor"><string name="material" value="Au"/></bsdf>)xml"),
-       "scene.xml:2:55: error: conductor bsdf: material 'Au': there are no built-in metals; give 'metal' "
-       "with a file, or 'eta' and 'k'"},
+       "scene.xml:2:55: error: conductor bsdf: material 'Au': only 'none' is supported; give 'metal' with a "
+       "built-in metal or a file, or 'eta' and 'k'"},
+      {"unknown metal",
+       complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="mithril"/></bsdf>)xml"),
+       "scene.xml:2:52: error: conductor bsdf: metal: 'mithril' is neither a built-in metal nor a file; "
+       "there are Ag, Al, Au, Be, Cr, Cu, Ni, Pd, Pt, Ti, W"},
+      {"glass as metal",
+       complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="n-bk7"/></bsdf>)xml"),
+       "scene.xml:2:52: error: conductor bsdf: metal: 'n-bk7' is a transparent material, not a metal"},
       {"metal without extinction",
        complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="glass.txt"/></bsdf>)xml"),
        "scene.xml:2:52: error: conductor bsdf: metal: the file gives no extinction k"},

@@ -75,6 +75,27 @@ TEST(SceneBsdf, OpticalConstantsFromFiles) {
   EXPECT_NEAR(metal.k(600), 4, 1e-12);
 }
 
+TEST(SceneBsdf, BuiltInMaterials) {
+  const auto glass = model_of<DielectricBsdf>(
+      R"(<bsdf type="dielectric"><string name="int_material" value="n-bk7"/><string name="ext_material" value="water"/></bsdf>)");
+  EXPECT_NEAR(glass.int_ior(587.5618), 1.51680, 5e-6);
+  EXPECT_NEAR(glass.ext_ior(589.3), 1.33335, 2e-5);
+  EXPECT_EQ(glass.int_ior(2600), 0);
+  const auto metal = model_of<ConductorBsdf>(
+      R"(<bsdf type="roughconductor"><string name="metal" value="Al"/><boolean name="extrapolate" value="true"/></bsdf>)");
+  EXPECT_EQ(metal.eta(60), metal.eta(metal.eta.data_range()->min_nm));
+  EXPECT_GT(metal.k(60), 0);
+}
+
+/// A file of that name comes before the built-in material.
+TEST(SceneBsdf, FilesComeBeforeBuiltInNames) {
+  const TemporaryFolder folder;
+  folder.write("SF11", "400 1.6\n800 1.5\n");
+  const auto glass = model_of<DielectricBsdf>(
+      R"(<bsdf type="dielectric"><string name="int_material" value="SF11"/></bsdf>)", folder.path());
+  EXPECT_NEAR(glass.int_ior(600), 1.55, 1e-12);
+}
+
 TEST(SceneBsdf, Plastic) {
   const auto plastic = model_of<PlasticBsdf>(R"(<bsdf type="plastic"/>)");
   EXPECT_EQ(plastic.int_ior, 1.49);

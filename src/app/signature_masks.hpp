@@ -1,0 +1,12 @@
+// The masks that the options of a signature describe.
+#pragma once
+
+#include "app/signature_options.hpp"
+
+namespace kiloband {
+
+/// throws InputError  unknown objects, masks without pixels, no distance, surroundings without pixels
+std::vector<SignatureMask> signature_masks(const PlaceOptions& options, CubeReader& cube,
+                                           const CameraGeometry& camera);
+
+}  // namespace kiloband
