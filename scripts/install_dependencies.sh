@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that kiloband is built, tested and looked at with. Needs root or sudo; asks nothing.
-# Usage: scripts/install_dependencies.sh [build|test]   (test, the default, includes what only the tests need)
+# Usage: scripts/install_dependencies.sh [build|test|gallery]   (test, the default, includes what only the tests need; gallery is
+# what scripts/gallery.sh draws with besides what is built with)
 set -euo pipefail
 
 # openimageio-tools: CMake's description of libopenimageio-dev insists on its programs, without depending on them.
@@ -11,7 +12,11 @@ build=(g++ cmake ninja-build pkg-config git ca-certificates
 tests=(libgtest-dev libboost-dev libboost-math-dev libbenchmark-dev clang pocl-opencl-icd oclgrind gdal-bin)
 
 packages=("${build[@]}")
-if [ "${1:-test}" != build ]; then packages+=("${tests[@]}"); fi
+case "${1:-test}" in
+  build) ;;
+  gallery) packages+=(python3-matplotlib) ;;
+  *) packages+=("${tests[@]}") ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
