@@ -50,6 +50,7 @@ void ProgramBuilder::reserve(std::size_t slots) {
   generals_.clear();
   textures_.clear();
   textured_ = false;
+  scratch_used_ = 0;
   if (generals_.capacity() >= slots) return;
   slots = std::max<std::size_t>(64, 2 * slots);
   steps_.reserve(2 * slots);
@@ -162,27 +163,61 @@ void ProgramBuilder::add_fresnel(GeneralVertex& out, uint32_t material, DenseSpe
   if (out.flags & KB_VERTEX_SCATTER) out.scatter_fresnel = side(out.scatter1);
 }
 
-/// emission: the value stands for radiance, and its factor brings it to film units.
-const TextureTerms* ProgramBuilder::texture(const KbTextureSample& sample, bool emission,
-                                            DenseSpectra& spectra) {
-  if (sample.texture >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
-  const KbTexture& t = scene_.textures[sample.texture];
+void ProgramBuilder::add_texels(TextureTerms& terms, uint32_t texture, uint32_t xy, double fx,
+                                double fy) const {
+  const KbTexture& t = scene_.textures[texture];
   const bool environment = t.flags & KB_TEXTURE_ENVMAP;
   const uint32_t wrap_x = environment ? KB_WRAP_REPEAT : t.wrap;
   const uint32_t wrap_y = environment ? KB_WRAP_CLAMP : t.wrap;
-  TextureTerms& terms = textures_.emplace_back();
   double constant = 0;
   for (uint32_t corner = 0; corner < 4; ++corner) {
     const uint32_t dx = corner & 1, dy = corner >> 1;
-    const uint32_t x = wrap_texel((sample.xy & 0xffffu) + dx, t.width, wrap_x);
-    const uint32_t y = wrap_texel((sample.xy >> 16) + dy, t.height, wrap_y);
-    const double fx = sample.fx, fy = sample.fy;
+    const uint32_t x = wrap_texel((xy & 0xffffu) + dx, t.width, wrap_x);
+    const uint32_t y = wrap_texel((xy >> 16) + dy, t.height, wrap_y);
     const std::size_t index = t.first_texel + static_cast<std::size_t>(y) * t.width + x;
     add_texel(terms, constant, scene_.texels[index], (dx ? fx : 1 - fx) * (dy ? fy : 1 - fy));
   }
   terms.constant = static_cast<float>(constant);
-  if (t.illuminant_row != KB_NONE)
-    terms.factor = spectra.spectrum(t.illuminant_row);
+}
+
+float* ProgramBuilder::scratch_row(const DenseSpectra& spectra) {
+  if (scratch_used_ == scratch_.size()) scratch_.push_back(aligned_zeros<float>(spectra.padded_channels()));
+  return scratch_[scratch_used_++].get();
+}
+
+/// An emissivity, a row or a lookup, times Planck's law at a temperature of its own.
+const TextureTerms* ProgramBuilder::thermal(const KbThermalSample& sample, DenseSpectra& spectra) {
+  TextureTerms& terms = textures_.emplace_back();
+  const uint32_t index = sample.source & KB_SAMPLE_INDEX_MASK;
+  float* factor = scratch_row(spectra);
+  terms.factor = factor;
+  if (sample.source & KB_SAMPLE_ROW) {
+    terms.constant = 1;
+    spectra.fill_planck(sample.temperature_k, spectra.spectrum(index), factor);
+    return &terms;
+  }
+  if (index >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
+  constexpr double kUnit = 1.0 / 65535;
+  add_texels(terms, index, sample.xy, (sample.fractions & 0xffffu) * kUnit, (sample.fractions >> 16) * kUnit);
+  spectra.fill_planck(sample.temperature_k, nullptr, factor);
+  textured_ |= terms.count > 0;
+  return &terms;
+}
+
+/// emission: the value stands for radiance, and its factor brings it to film units.
+const TextureTerms* ProgramBuilder::texture(const KbTextureSample& sample, bool emission,
+                                            DenseSpectra& spectra) {
+  if (emission && (sample.texture & KB_SAMPLE_THERMAL)) {
+    KbThermalSample hot;
+    std::memcpy(&hot, &sample, sizeof hot);
+    return thermal(hot, spectra);
+  }
+  if (sample.texture >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
+  TextureTerms& terms = textures_.emplace_back();
+  add_texels(terms, sample.texture, sample.xy, sample.fx, sample.fy);
+  const uint32_t illuminant = scene_.textures[sample.texture].illuminant_row;
+  if (illuminant != KB_NONE)
+    terms.factor = spectra.spectrum(illuminant);
   else if (emission)
     terms.factor = spectra.unit_emission();
   textured_ |= terms.count > 0;

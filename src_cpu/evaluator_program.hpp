@@ -25,11 +25,17 @@ class ProgramBuilder {
   void add_general(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
   void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
   const TextureTerms* texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
+  const TextureTerms* thermal(const KbThermalSample& sample, DenseSpectra& spectra);
+  void add_texels(TextureTerms& terms, uint32_t texture, uint32_t xy, double fx, double fy) const;
+  float* scratch_row(const DenseSpectra& spectra);
 
   const FlatScene& scene_;
   std::vector<PathStep> steps_;
   std::vector<GeneralVertex> generals_;  // reserved: steps point into it
   std::vector<TextureTerms> textures_;   // reserved: generals point into it
+  std::vector<hwy::AlignedFreeUniquePtr<float[]>>
+      scratch_;  // rows of this path; the first scratch_used_ are taken
+  std::size_t scratch_used_ = 0;
   bool textured_ = false;
 };
 

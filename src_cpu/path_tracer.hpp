@@ -108,8 +108,12 @@ class PathTracer {
   void add_escaped(Path& path, const TraceRay& ray, uint32_t bounce);
   void add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction,
                     uint32_t bounce);
+  void add_thermal_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction,
+                            const SampleId& id, uint32_t bounce);
+  void resolve_thermal(LightSample& light, const Path& path, const SampleId& id, uint32_t bounce) const;
   bool add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
-                        const MaterialContext& material, glm::vec3 wi, float opacity, uint32_t bounce);
+                        const MaterialContext& material, glm::vec3 wi, float opacity, const SampleId& id,
+                        uint32_t bounce);
   bool scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
                MaterialContext& material, glm::vec3 wi, const KbFloat4& u, float opacity, const SampleId& id,
                uint32_t bounce, float mu);

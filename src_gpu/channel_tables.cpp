@@ -21,12 +21,15 @@ uint32_t padded(std::size_t n) {
 
 RowFunction planck_row(const SpectrumRow& row) {
   RowFunction f;
+  const bool tabulated = !row.table.values.empty();
+  if (tabulated) f = RowFunction::of_table(row.table);
   f.curved = true;
-  f.value = [&row](double lambda_nm) {
+  f.value = [&row, tabulated](double lambda_nm) {
     if (lambda_nm < row.planck_min_nm || lambda_nm > row.planck_max_nm) return 0.0;
-    return row.planck_scale * planck_radiance(lambda_nm, row.temperature_k);
+    const double factor = tabulated ? row.planck_scale * row.table(lambda_nm) : row.planck_scale;
+    return factor * planck_radiance(lambda_nm, row.temperature_k);
   };
-  f.jumps_nm = {row.planck_min_nm, row.planck_max_nm};
+  f.jumps_nm.insert(f.jumps_nm.end(), {row.planck_min_nm, row.planck_max_nm});
   return f;
 }
 

@@ -28,15 +28,19 @@ uint32_t SpectrumTableBuilder::row(const Spectrum& spectrum, const SpectrumSourc
   if (spectrum.is_constant()) {
     if (const auto found = constants_.find(key); found != constants_.end()) return found->second;
   }
-  if (scene_.spectra.size() >= kMaxRows) {
-    throw InputError(use.position, fmt::format("{}: more than {} different spectra", use.name, kMaxRows));
-  }
   check_range(spectrum, use);
-  scene_.spectra.push_back(make_row(spectrum, use));
-  scene_.spectra.back().bound = static_cast<float>(bound(spectrum));
-  const auto index = static_cast<uint32_t>(scene_.spectra.size() - 1);
+  SpectrumRow made = make_row(spectrum, use);
+  made.bound = static_cast<float>(bound(spectrum));
+  const uint32_t index = add(std::move(made), use.position);
   if (spectrum.is_constant()) constants_[key] = index;
   return index;
+}
+
+uint32_t SpectrumTableBuilder::add(SpectrumRow row, const SourcePosition& position) {
+  if (scene_.spectra.size() >= kMaxRows)
+    throw InputError(position, fmt::format("{}: more than {} different spectra", row.name, kMaxRows));
+  scene_.spectra.push_back(std::move(row));
+  return static_cast<uint32_t>(scene_.spectra.size() - 1);
 }
 
 SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const SpectrumSource& use) const {

@@ -25,6 +25,11 @@ class SpectrumTableBuilder {
   /// bound
   uint32_t row(const Spectrum& spectrum, const SpectrumSource& use);
 
+  /// A row that is no input spectrum. throws as row()
+  uint32_t add(SpectrumRow row, const SourcePosition& position = {});
+  /// All wavelengths that rows must reach.
+  const Channel& range() const { return range_; }
+
   /// Mean over the guide bands (each band one vote).
   double guide_mean(const Spectrum& spectrum) const;
   /// Upper bound over guide bands and rendered channels.
