@@ -94,6 +94,7 @@ class FacetRule {
 
   std::vector<VisibleFacet> run() {
     const double end = facets_.ggx ? 0.5 * kPi : kSlopes;
+    visible_.reserve(1 << 15);
     make_edges();
     std::vector<double> cuts{end};
     for (const Edge& edge : edges_) {
@@ -162,14 +163,22 @@ class FacetRule {
   }
 
   void add_piece(double from, double to, double b, double cosine, double weight) {
+    const glm::dvec2 across(-facets_.alpha_u * sin_phi_ * b, facets_.alpha_v * cos_phi_ * b);
+    const glm::dvec2 along(facets_.alpha_u * cos_phi_, facets_.alpha_v * sin_phi_);
     for (std::size_t i = 0; i < along_.x.size(); ++i) {
       const double t = 0.5 * ((to - from) * along_.x[i] + to + from);
-      const double density = facets_.ggx ? (v_.z * cosine * std::cos(t) + root_ * std::sin(t)) * std::cos(t)
-                                         : (v_.z + root_ * t) * std::exp(-t * t);
-      const double a = facets_.ggx ? std::tan(t) / cosine : t;
-      const glm::dvec3 m(facets_.alpha_u * (cos_phi_ * a - sin_phi_ * b),
-                         facets_.alpha_v * (sin_phi_ * a + cos_phi_ * b), 1);
-      visible_.push_back({glm::normalize(m), masking_over_cos_ * weight * along_.w[i] * density});
+      double density, a = t;
+      if (facets_.ggx) {
+        const double c = std::cos(t), s = std::sin(t);
+        density = (v_.z * cosine * c + root_ * s) * c;
+        a = s / (c * cosine);
+      } else {
+        density = (v_.z + root_ * t) * std::exp(-t * t);
+      }
+      const glm::dvec2 slope = a * along + across;
+      const double inverse = 1 / std::sqrt(1 + slope.x * slope.x + slope.y * slope.y);
+      visible_.push_back(
+          {glm::dvec3(slope, 1) * inverse, masking_over_cos_ * weight * along_.w[i] * density});
     }
   }
 
@@ -190,8 +199,8 @@ Facets::Facets(const KbMaterial& material)
       alpha_v(std::max<double>(material.alpha_v, kMinAlpha)) {}
 
 double Facets::masking_over_cos(const glm::dvec3& v) const {
-  const double root = std::hypot(alpha_u * v.x, alpha_v * v.y);
-  if (ggx) return 2 / (v.z + std::hypot(v.z, root));
+  const double root = std::sqrt(alpha_u * alpha_u * v.x * v.x + alpha_v * alpha_v * v.y * v.y);
+  if (ggx) return 2 / (v.z + std::sqrt(v.z * v.z + root * root));
   if (!(root > 0)) return 1 / v.z;
   const double a = v.z / root;
   return 2 / (v.z * (1 + std::erf(a)) + root * std::exp(-a * a) / std::sqrt(kPi));

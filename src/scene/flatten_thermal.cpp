@@ -188,8 +188,8 @@ KbThermal Flattener::thermal_of_metal(const KbMaterial& material, const std::str
                                out_.spectra[material.ref_a].table},
                               rough ? std::optional(Facets(material)) : std::nullopt, spectra_.range());
   KbThermal record = empty_thermal(KB_THERMAL_NODES);
-  record.alpha_u = rough ? std::max(material.alpha_u, 1e-4f) : 1;
-  record.alpha_v = rough ? std::max(material.alpha_v, 1e-4f) : 1;
+  record.alpha_u = rough ? std::sqrt(std::max(material.alpha_u, 1e-4f)) : 1;
+  record.alpha_v = rough ? std::sqrt(std::max(material.alpha_v, 1e-4f)) : 1;
   record.nodes_cos = static_cast<uint32_t>(metal.cosines().size());
   record.nodes_s = metal.nodes_s();
   record.table = static_cast<uint32_t>(out_.thermal_tables.size());

@@ -69,7 +69,7 @@ class MetalEmissivity::Directions {
 
   /// Weights of the cell cosines; their sum is E. Linear deposition: the absorptance is smooth over a cell.
   std::vector<double> weights(double cosine, double s) const {
-    glm::dvec2 azimuth(std::sqrt(1 - s) / facets_->alpha_u, std::sqrt(s) / facets_->alpha_v);
+    glm::dvec2 azimuth(std::sqrt((1 - s) / facets_->alpha_u), std::sqrt(s / facets_->alpha_v));
     azimuth = glm::normalize(azimuth);
     const double sine = std::sqrt((1 - cosine) * (1 + cosine));
     const glm::dvec3 v(sine * azimuth.x, sine * azimuth.y, cosine);
@@ -177,7 +177,7 @@ void MetalEmissivity::choose_nodes_s() {
   for (nodes_s_ = 3; nodes_s_ < kMost; nodes_s_ = 2 * nodes_s_ - 1) {
     bool good = true;
     const double step = 1.0 / (nodes_s_ - 1);
-    for (const double cosine : {0.05, 0.2, 0.6}) {
+    for (const double cosine : {0.05, 0.1, 0.25, 0.5, 0.8}) {
       for (uint32_t j = 0; j + 1 < nodes_s_; ++j) {
         const std::vector<double> low = at(cosine, j * step), high = at(cosine, (j + 1) * step);
         const std::vector<double> exact = at(cosine, (j + 0.5) * step);

@@ -46,7 +46,7 @@ typedef struct {
   kb_u32 first_row;
   float eta;        /* interior over exterior index */
   float q;          /* smooth plastic */
-  float alpha_u, alpha_v;
+  float alpha_u, alpha_v; /* what s is made of; KB_THERMAL_NODES: roots of the roughnesses */
   kb_u32 field;     /* where T depends on the place: a bitmap of kelvins, or KB_FIELD_VERTEX; else KB_NONE */
   kb_u32 field_offset; /* KB_FIELD_VERTEX: T of vertex i is thermal table entry field_offset + i (mod 2^32) */
   kb_u32 reserved;

@@ -102,7 +102,8 @@ TEST_F(Methods, AgreeForAnyNumberOfChannelsWithResponses) {
 /// Scenes that together need every feature. The kernels are the same text with parts left out, without
 /// contraction: the same bits.
 TEST_F(Methods, SpecialisedKernelsGiveTheSameBits) {
-  for (const char* name : {"diffuse_room", "crop_window", "hidden_emitters"}) {
+  for (const char* name :
+       {"diffuse_room", "crop_window", "hidden_emitters", "thermal", "temperature_field"}) {
     const FlatScene scene = folder_.flatten(zoo_scene(name));
     const OpenclOptions specialised;
     for (const std::string& method : {std::string("opencl:dpept-batch")}) {
