@@ -58,7 +58,12 @@ struct MaterialContext {
   const KbMaterial* material = nullptr;
   const RoughTransmittance* rough_transmittance = nullptr;  // for KB_MATERIAL_ROUGH_PLASTIC, else unused
   DispersionState dispersion;                               // for KB_MATERIAL_DISPERSIVE, else unused
+  const float* compensation =
+      nullptr;  // for KB_MATERIAL_COMPENSATED: its table (shared/thermal.h), else unused
 };
+
+/// E(wi) of a compensated material: the albedo of its single-scattering lobe. source  shared/thermal.h
+float lobe_albedo(const MaterialContext& context, glm::vec3 wi);
 
 /// Value and density for wi -> wo; zero for delta materials and for directions that the material does not
 /// scatter to. throws std::logic_error for a rough plastic without table, a rough dispersive dielectric that

@@ -1,6 +1,7 @@
 // Chooses the material's functions; the diffuse model itself is here.
 #include <stdexcept>
 
+#include "shared/thermal.h"
 #include "src_cpu/bsdf.hpp"
 #include "src_cpu/bsdf_lobes.hpp"
 
@@ -50,6 +51,52 @@ BsdfSample sample_dielectric_side(const MaterialContext& context, glm::vec3 wi, 
 
 }  // namespace
 
+namespace {
+
+/// A place between the nodes of a table.
+struct TablePlace {
+  int node;
+  float t;
+};
+TablePlace table_place(float position, int nodes) {
+  const float x = std::clamp(position, 0.0f, static_cast<float>(nodes - 1));
+  const int node = std::min(static_cast<int>(x), nodes - 2);
+  return {node, x - static_cast<float>(node)};
+}
+
+}  // namespace
+
+float lobe_albedo(const MaterialContext& context, glm::vec3 wi) {
+  const KbMaterial& m = *context.material;
+  const float alpha_u = std::max(m.alpha_u, Microfacet::kMinAlpha),
+              alpha_v = std::max(m.alpha_v, Microfacet::kMinAlpha);
+  const float x2 = alpha_u * alpha_u * wi.x * wi.x, y2 = alpha_v * alpha_v * wi.y * wi.y;
+  const float root2 = x2 + y2, cosine = std::abs(wi.z);
+  const int nodes_s = static_cast<int>(context.compensation[0]),
+            nodes_eta = static_cast<int>(context.compensation[1]);
+  const TablePlace x =
+      table_place(cosine / (cosine + std::sqrt(root2)) * (KB_COMPENSATION_NODES - 1), KB_COMPENSATION_NODES);
+  const TablePlace s =
+      nodes_s > 1 ? table_place((root2 > 0 ? y2 / root2 : 0) * static_cast<float>(nodes_s - 1), nodes_s)
+                  : TablePlace{0, 0};
+  TablePlace eta{0, 0};
+  if (nodes_eta > 1)
+    eta = table_place((index_ratio(context) - context.compensation[2]) * context.compensation[3], nodes_eta);
+  const bool inside = m.type == KB_MATERIAL_ROUGH_DIELECTRIC && wi.z < 0;
+  const float* table = context.compensation + KB_COMPENSATION_HEADER +
+                       (inside ? nodes_eta : 0) * nodes_s * KB_COMPENSATION_NODES;
+  const auto row = [&](int j, int i) {
+    const float* node = table + ((eta.node + i) * nodes_s + s.node + j) * KB_COMPENSATION_NODES + x.node;
+    return node[0] + x.t * (node[1] - node[0]);
+  };
+  const auto plane = [&](int i) {
+    const float low = row(0, i);
+    return s.t > 0 ? low + s.t * (row(1, i) - low) : low;
+  };
+  const float low = plane(0);
+  return eta.t > 0 ? low + eta.t * (plane(1) - low) : low;
+}
+
 /// Both triangles of the map without a branch: the larger coordinate is the radius, the angle is at most
 /// pi/4, where Taylor polynomials reach float precision. Signs and magnitudes agree with shared/warp.h to
 /// rounding.
@@ -78,7 +125,7 @@ BsdfSample lobes::sample_diffuse(const KbMaterial& material, glm::vec2 u) {
   return sample;
 }
 
-BsdfValue eval_bsdf(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) {
+static BsdfValue eval_uncompensated(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) {
   const KbMaterial& material = *context.material;
   if (material.type == KB_MATERIAL_ROUGH_DIELECTRIC)
     return wi.z != 0 && wo.z != 0 ? eval_dielectric_side(context, wi, wo) : BsdfValue{};
@@ -97,7 +144,8 @@ BsdfValue eval_bsdf(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) 
   }
 }
 
-BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lobe, glm::vec2 u) {
+static BsdfSample sample_uncompensated(const MaterialContext& context, glm::vec3 wi, float u_lobe,
+                                       glm::vec2 u) {
   const KbMaterial& material = *context.material;
   if (material.type == KB_MATERIAL_DIELECTRIC || material.type == KB_MATERIAL_ROUGH_DIELECTRIC)
     return wi.z > 0 || wi.z < 0 ? sample_dielectric_side(context, wi, u_lobe, u) : BsdfSample{};
@@ -116,6 +164,27 @@ BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lob
     default:
       return {};
   }
+}
+
+/// Of conductors w0, of the specular lobe of plastics w0, of either lobe of dielectrics.
+BsdfValue eval_bsdf(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) {
+  BsdfValue value = eval_uncompensated(context, wi, wo);
+  if (context.compensation) value.w0 /= lobe_albedo(context, wi);
+  return value;
+}
+
+BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lobe, glm::vec2 u) {
+  BsdfSample sample = sample_uncompensated(context, wi, u_lobe, u);
+  if (!context.compensation || sample.delta || !(sample.pdf > 0)) return sample;
+  const float gain = 1 / lobe_albedo(context, wi);
+  const KbMaterial& material = *context.material;
+  if (material.type == KB_MATERIAL_ROUGH_PLASTIC) {
+    sample.bound += sample.w0 * (gain - 1) * material.bound_a;
+  } else {
+    sample.bound *= gain;
+  }
+  sample.w0 *= gain;
+  return sample;
 }
 
 }  // namespace kiloband

@@ -16,13 +16,15 @@ void split(double x, float& high, float& low) {
   low = static_cast<float>(x - high);
 }
 
-double planck_value(const SpectrumRow& row, double lambda_nm) {
+/// What a Planck row multiplies Planck's law by.
+double planck_factor(const SpectrumRow& row, double lambda_nm) {
   if (lambda_nm < row.planck_min_nm || lambda_nm > row.planck_max_nm) return 0;
-  return row.planck_scale * planck_radiance(lambda_nm, row.temperature_k);
+  return row.planck_scale * (row.table.values.empty() ? 1 : row.table(lambda_nm));
 }
 
 double value_at(const SpectrumRow& row, double lambda_nm) {
-  return row.is_planck ? planck_value(row, lambda_nm) : row.table(lambda_nm);
+  if (!row.is_planck) return row.table(lambda_nm);
+  return planck_factor(row, lambda_nm) * planck_radiance(lambda_nm, row.temperature_k);
 }
 
 }  // namespace
@@ -107,8 +109,46 @@ const float* DenseSpectra::make_spectrum(uint32_t s) {
   return out;
 }
 
-void DenseSpectra::fill_exact(uint32_t s, float* out) const {
+const std::vector<double>& DenseSpectra::planck(double temperature_k) {
+  PlanckRow& row = planck_[temperature_k];
+  if (row.generation == generation_) return row.radiance;
+  row.generation = generation_;
+  row.radiance.resize(channels_);
+  for (std::size_t k = 0; k < channels_; ++k)
+    row.radiance[k] = planck_radiance(lambda_[k], temperature_k) * emission_factor_[k];
+  return row.radiance;
+}
+
+void DenseSpectra::fill_planck(double temperature_k, const float* emissivity, float* out) {
+  if (planck_generation_ != generation_) {
+    planck_a_.resize(channels_);
+    planck_b_.resize(channels_);
+    for (std::size_t k = 0; k < channels_; ++k) {
+      const PlanckTerms terms = planck_terms(lambda_[k]);
+      planck_a_[k] = terms.a * emission_factor_[k];
+      planck_b_[k] = terms.b;
+    }
+    planck_generation_ = generation_;
+  }
+  std::fill(out, out + padded_, 0.0f);
+  if (!(temperature_k > 0)) return;
+  const double inverse = 1 / temperature_k;
+  for (std::size_t k = 0; k < channels_; ++k) {
+    const double e = std::exp(-planck_b_[k] * inverse);
+    out[k] = static_cast<float>(planck_a_[k] * e / (1 - e));
+  }
+  if (!emissivity) return;
+  for (std::size_t k = 0; k < channels_; ++k) out[k] *= emissivity[k];
+}
+
+void DenseSpectra::fill_exact(uint32_t s, float* out) {
   const SpectrumRow& row = scene_.spectra[s];
+  if (row.is_planck && is_emission_[s]) {
+    const std::vector<double>& radiance = planck(row.temperature_k);
+    for (std::size_t k = 0; k < channels_; ++k)
+      out[k] = static_cast<float>(planck_factor(row, lambda_[k]) * radiance[k]);
+    return;
+  }
   for (std::size_t k = 0; k < channels_; ++k) {
     const double value = value_at(row, lambda_[k]);
     out[k] = static_cast<float>(is_emission_[s] ? value * emission_factor_[k] : value);

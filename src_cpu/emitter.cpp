@@ -22,7 +22,8 @@ EmittedRadiance radiance_of(const FlatScene& scene, uint32_t ref, glm::vec2 uv) 
 LightSample sample_area(const FlatScene& scene, const KbEmitter& emitter, glm::vec3 point, float u_triangle,
                         glm::vec2 u) {
   const KbShape& shape = scene.shapes[emitter.shape];
-  const bool textured = (emitter.ref & KB_REF_KIND_MASK) != KB_REF_SPECTRUM;
+  const bool thermal = emitter.type == KB_EMITTER_THERMAL;
+  const bool textured = !thermal && (emitter.ref & KB_REF_KIND_MASK) != KB_REF_SPECTRUM;
   const AreaLightSample on_light = sample_area_light(scene, shape, point, u_triangle, u, textured);
   LightSample sample;
   if (!(on_light.pdf > 0)) return sample;
@@ -30,7 +31,13 @@ LightSample sample_area(const FlatScene& scene, const KbEmitter& emitter, glm::v
   sample.target = offset_ray_origin(on_light.position, on_light.normal);
   sample.pdf = on_light.pdf * emitter.select_pdf;
   sample.factor = on_light.factor;
-  sample.radiance = radiance_of(scene, emitter.ref, on_light.uv);
+  if (!thermal) {
+    sample.radiance = radiance_of(scene, emitter.ref, on_light.uv);
+    return sample;
+  }
+  sample.thermal = true;
+  sample.surface = make_surface_hit(scene, emitter.shape, on_light.triangle, on_light.barycentric.x,
+                                    on_light.barycentric.y, on_light.position, glm::vec3(0), 0);
   return sample;
 }
 
@@ -104,6 +111,7 @@ LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_se
   const KbEmitter& emitter = scene.emitters[index];
   switch (emitter.type) {
     case KB_EMITTER_AREA:
+    case KB_EMITTER_THERMAL:
       return sample_area(scene, emitter, point, u_select.y, u_position);
     case KB_EMITTER_CONSTANT:
     case KB_EMITTER_ENVMAP:

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "scene/flat_scene.hpp"
+#include "src_cpu/surface_hit.hpp"
 
 namespace kiloband {
 
@@ -28,6 +29,8 @@ struct LightSample {
   float factor =
       0;  // incident radiance (or, for delta lights, irradiance) = factor * spectrum; about 1 for area lights
   EmittedRadiance radiance;
+  bool thermal = false;  // `radiance` is not set: the surface there emits towards -direction (thermal.hpp)
+  SurfaceHit surface;    // of thermal lights
 };
 
 /// Selects an emitter by FlatScene::emitter_cdf (u_select.x), a triangle of a mesh (u_select.y), a point or

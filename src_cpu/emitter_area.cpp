@@ -25,10 +25,20 @@ float area_to_solid_angle(glm::vec3 to_light, glm::vec3 front_normal, float area
   return area_to_solid_angle(to_light, glm::length(to_light), front_normal, area);
 }
 
+bool lit_on_both_sides(const KbShape& shape) {
+  return shape.flags & KB_SHAPE_LIT_BOTH_SIDES;
+}
+
+/// The side that is seen of a light that shines on both.
+glm::vec3 facing_normal(const KbShape& shape, glm::vec3 to_light, glm::vec3 normal) {
+  return lit_on_both_sides(shape) && glm::dot(to_light, normal) > 0 ? -normal : normal;
+}
+
 /// Completes a sample whose position and normal are known.
-void finish_by_area(AreaLightSample& sample, glm::vec3 point, float area) {
+void finish_by_area(AreaLightSample& sample, const KbShape& shape, glm::vec3 point) {
   const glm::vec3 to_light = sample.position - point;
-  const float distance = glm::length(to_light);
+  const float distance = glm::length(to_light), area = shape.area;
+  sample.normal = facing_normal(shape, to_light, sample.normal);
   sample.pdf = area_to_solid_angle(to_light, distance, sample.normal, area);
   if (sample.pdf > 0) sample.direction = to_light * (1 / distance);
 }
@@ -67,7 +77,9 @@ AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::v
   sample.position = p0 + b.x * e1 + b.y * e2;
   sample.normal = glm::normalize(glm::cross(e1, e2));
   if (shape.flags & KB_SHAPE_FLIP_NORMALS) sample.normal = -sample.normal;
-  finish_by_area(sample, point, shape.area);
+  finish_by_area(sample, shape, point);
+  sample.triangle = triangle;
+  sample.barycentric = b;
   sample.factor = triangle_area(p0, p1, p2) / shape.area / (cdf[triangle + 1] - cdf[triangle]);
   if (need_uv && sample.pdf > 0) sample.uv = triangle_uv(scene, shape, indices, b);
   return sample;
@@ -78,7 +90,7 @@ AreaLightSample sample_by_area(const KbShape& shape, glm::vec3 point, glm::vec2 
   AreaLightSample sample;
   sample.position = on_light.position;
   sample.normal = on_light.normal;
-  finish_by_area(sample, point, shape.area);
+  finish_by_area(sample, shape, point);
   if (need_uv && sample.pdf > 0) sample.uv = analytic_uv(shape.type, on_light.local);
   return sample;
 }
@@ -148,7 +160,7 @@ AreaLightSample sample_sphere_cone(const KbShape& shape, const SphereView& view,
 
 /// A sphere's front is seen from outside, or from inside if its normals are flipped.
 bool sphere_front_visible(const KbShape& shape, const SphereView& view) {
-  return view.outside() != ((shape.flags & KB_SHAPE_FLIP_NORMALS) != 0);
+  return lit_on_both_sides(shape) || view.outside() != ((shape.flags & KB_SHAPE_FLIP_NORMALS) != 0);
 }
 
 AreaLightSample sample_sphere(const KbShape& shape, glm::vec3 point, glm::vec2 u, bool need_uv) {
@@ -183,10 +195,14 @@ AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, 
 float area_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point, glm::vec3 normal) {
   if (shape.type == KB_SHAPE_SPHERE) return sphere_density(shape, origin, hit_point);
   if (shape.type == KB_SHAPE_MESH) {
-    return shape.first_cdf == KB_NONE ? 0 : area_to_solid_angle(hit_point - origin, normal, shape.area);
+    return shape.first_cdf == KB_NONE
+               ? 0
+               : area_to_solid_angle(hit_point - origin, facing_normal(shape, hit_point - origin, normal),
+                                     shape.area);
   }
   const glm::vec3 front = analytic_surface(shape, glm::dvec3(hit_point)).normal;
-  return area_to_solid_angle(hit_point - origin, front, shape.area);
+  const glm::vec3 to_light = hit_point - origin;
+  return area_to_solid_angle(to_light, facing_normal(shape, to_light, front), shape.area);
 }
 
 }  // namespace kiloband

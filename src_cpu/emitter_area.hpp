@@ -27,8 +27,10 @@ struct AreaLightSample {
                      // are chosen with a whole number of steps of 2^-24
   glm::vec3 direction{0};  // unit, towards the light
   glm::vec3 position{0};   // on the light
-  glm::vec3 normal{0};     // unit, of the light's front
+  glm::vec3 normal{0};     // unit, of the side that is seen: of the light's front, unless both sides are lit
   glm::vec2 uv{0};         // filled in if asked for
+  uint32_t triangle = 0;   // meshes: in the shape, and the point's barycentric coordinates
+  glm::vec2 barycentric{0};
 };
 
 AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,

@@ -25,7 +25,8 @@ double spectrum(const Point& at, uint32_t s) {
   const SpectrumRow& row = at.scene.spectra[s];
   if (!row.is_planck) return row.table(at.lambda_nm);
   const bool inside = at.lambda_nm >= row.planck_min_nm && at.lambda_nm <= row.planck_max_nm;
-  return inside ? row.planck_scale * planck_radiance(at.lambda_nm, row.temperature_k) : 0;
+  const double emissivity = row.table.values.empty() ? 1 : row.table(at.lambda_nm);
+  return inside ? emissivity * row.planck_scale * planck_radiance(at.lambda_nm, row.temperature_k) : 0;
 }
 
 double named(const Point& at, uint32_t s) {
@@ -68,20 +69,41 @@ double texel_at(const Point& at, uint32_t texture, std::size_t texel) {
   return sum;
 }
 
-double textured(const Point& at, const KbTextureSample& sample, bool emission) {
-  const KbTexture& t = at.scene.textures[sample.texture];
+/// The bilinear value of a texture.
+double lookup(const Point& at, uint32_t texture, uint32_t xy, double fx, double fy) {
+  const KbTexture& t = at.scene.textures[texture];
   const bool environment = (t.flags & KB_TEXTURE_ENVMAP) != 0;
-  const uint32_t x0 = sample.xy & 0xffffu, y0 = sample.xy >> 16;
+  const uint32_t x0 = xy & 0xffffu, y0 = xy >> 16;
   const uint32_t x1 = wrapped(x0 + 1, t.width, environment ? KB_WRAP_REPEAT : t.wrap);
   const uint32_t y1 = wrapped(y0 + 1, t.height, environment ? KB_WRAP_CLAMP : t.wrap);
   const auto texel = [&](uint32_t x, uint32_t y) {
-    return texel_at(at, sample.texture, std::size_t{y} * t.width + x);
+    return texel_at(at, texture, std::size_t{y} * t.width + x);
   };
-  const double fx = sample.fx, fy = sample.fy;
   const double top = (1 - fx) * texel(x0, y0) + fx * texel(x1, y0);
   const double bottom = (1 - fx) * texel(x0, y1) + fx * texel(x1, y1);
-  const double illuminant = t.illuminant_row == KB_NONE ? 1 : spectrum(at, t.illuminant_row);
-  return ((1 - fy) * top + fy * bottom) * illuminant * (emission ? at.width_nm : 1);
+  return (1 - fy) * top + fy * bottom;
+}
+
+/// An emissivity times Planck's law at the place's temperature.
+double thermal(const Point& at, const KbThermalSample& sample) {
+  const uint32_t index = sample.source & KB_SAMPLE_INDEX_MASK;
+  const double emissivity = sample.source & KB_SAMPLE_ROW
+                                ? spectrum(at, index)
+                                : lookup(at, index, sample.xy, (sample.fractions & 0xffffu) / 65535.0,
+                                         (sample.fractions >> 16) / 65535.0);
+  return emissivity * planck_radiance(at.lambda_nm, sample.temperature_k) * at.width_nm;
+}
+
+double textured(const Point& at, const KbTextureSample& sample, bool emission) {
+  if (emission && (sample.texture & KB_SAMPLE_THERMAL)) {
+    KbThermalSample hot;
+    std::memcpy(&hot, &sample, sizeof hot);
+    return thermal(at, hot);
+  }
+  const uint32_t row = at.scene.textures[sample.texture].illuminant_row;
+  const double illuminant = row == KB_NONE ? 1 : spectrum(at, row);
+  return lookup(at, sample.texture, sample.xy, sample.fx, sample.fy) * illuminant *
+         (emission ? at.width_nm : 1);
 }
 
 /// Unpolarised Fresnel reflectance of a boundary to the relative complex index m, in the textbook form.

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "shared/rough_transmission.h"
-#include "src_cpu/texel_corners.hpp"
 
 namespace kiloband {
 namespace {
@@ -46,6 +45,7 @@ void ProgramBuilder::reserve(std::size_t slots) {
   textures_.clear();
   textured_ = false;
   spectral_.begin_path();
+  scratch_used_ = 0;
   if (generals_.capacity() >= slots) return;
   slots = std::max<std::size_t>(64, 2 * slots);
   steps_.reserve(2 * slots);
@@ -178,17 +178,52 @@ void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& ve
   out.transmission.ggx = m.distribution == KB_MICROFACET_GGX;
 }
 
+/// corners: of texels of colours.
+void ProgramBuilder::add_texels(TextureTerms& terms, uint32_t texture, const TexelCorners& corners) const {
+  const std::size_t first = scene_.textures[texture].first_texel;
+  double constant = 0;
+  for (int c = 0; c < 4; ++c)
+    add_texel(terms, constant, scene_.texels[first + corners.texel[c]], corners.weight[c]);
+  terms.constant = static_cast<float>(constant);
+}
+
+float* ProgramBuilder::scratch_row(const DenseSpectra& spectra) {
+  if (scratch_used_ == scratch_.size()) scratch_.push_back(aligned_zeros<float>(spectra.padded_channels()));
+  return scratch_[scratch_used_++].get();
+}
+
+/// An emissivity, a row or a lookup, times Planck's law at a temperature of its own.
+SpectralSource ProgramBuilder::thermal(const KbThermalSample& sample, DenseSpectra& spectra) {
+  const uint32_t index = sample.source & KB_SAMPLE_INDEX_MASK;
+  float* factor = scratch_row(spectra);
+  if (sample.source & KB_SAMPLE_ROW) {
+    spectra.fill_planck(sample.temperature_k, spectra.spectrum(index), factor);
+    return {factor, nullptr};
+  }
+  if (index >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
+  constexpr float kUnit = 1.0f / 65535;
+  const KbTextureSample lookup{index, sample.xy, static_cast<float>(sample.fractions & 0xffffu) * kUnit,
+                               static_cast<float>(sample.fractions >> 16) * kUnit};
+  TextureTerms& terms = textures_.emplace_back();
+  add_texels(terms, index, TexelCorners(scene_.textures[index], lookup));
+  spectra.fill_planck(sample.temperature_k, nullptr, factor);
+  terms.factor = factor;
+  textured_ |= terms.count > 0;
+  return {nullptr, &terms};
+}
+
 /// emission: the value stands for radiance, and its factor brings it to film units.
 SpectralSource ProgramBuilder::texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra) {
+  if (emission && (sample.texture & KB_SAMPLE_THERMAL)) {
+    KbThermalSample hot;
+    std::memcpy(&hot, &sample, sizeof hot);
+    return thermal(hot, spectra);
+  }
   if (sample.texture >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
   const KbTexture& t = scene_.textures[sample.texture];
   if (t.flags & KB_TEXTURE_SPECTRAL) return {spectral_.row(sample, spectra), nullptr};
   TextureTerms& terms = textures_.emplace_back();
-  const TexelCorners corners(t, sample);
-  double constant = 0;
-  for (int c = 0; c < 4; ++c)
-    add_texel(terms, constant, scene_.texels[t.first_texel + corners.texel[c]], corners.weight[c]);
-  terms.constant = static_cast<float>(constant);
+  add_texels(terms, sample.texture, TexelCorners(t, sample));
   if (t.illuminant_row != KB_NONE)
     terms.factor = spectra.spectrum(t.illuminant_row);
   else if (emission)

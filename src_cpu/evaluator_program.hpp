@@ -8,6 +8,7 @@
 #include "src_cpu/dense_spectra.hpp"
 #include "src_cpu/path_buffer.hpp"
 #include "src_cpu/spectral_textures.hpp"
+#include "src_cpu/texel_corners.hpp"
 
 namespace kiloband {
 
@@ -36,12 +37,18 @@ class ProgramBuilder {
   void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
   void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) const;
   SpectralSource texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
+  SpectralSource thermal(const KbThermalSample& sample, DenseSpectra& spectra);
+  void add_texels(TextureTerms& terms, uint32_t texture, const TexelCorners& corners) const;
+  float* scratch_row(const DenseSpectra& spectra);
 
   const FlatScene& scene_;
   std::vector<PathStep> steps_;
   std::vector<GeneralVertex> generals_;  // reserved: steps point into it
   std::vector<TextureTerms> textures_;   // reserved: generals point into it
   SpectralTextures spectral_;
+  std::vector<hwy::AlignedFreeUniquePtr<float[]>>
+      scratch_;  // rows of this path; the first scratch_used_ are taken
+  std::size_t scratch_used_ = 0;
   bool textured_ = false;
 };
 

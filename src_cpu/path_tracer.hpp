@@ -114,8 +114,13 @@ class PathTracer {
   void add_escaped(Path& path, const TraceRay& ray, uint32_t bounce);
   void add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction,
                     uint32_t bounce);
+  void add_thermal_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction,
+                            const SampleId& id, uint32_t bounce);
+  LightSample choose_light(const Path& path, const SurfaceHit& hit, const SampleId& id,
+                           uint32_t bounce) const;
   bool add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
-                        const MaterialContext& material, glm::vec3 wi, float opacity, uint32_t bounce);
+                        const MaterialContext& material, glm::vec3 wi, float opacity, const SampleId& id,
+                        uint32_t bounce);
   bool scatter(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
                MaterialContext& material, glm::vec3 wi, const KbFloat4& u, float opacity, const SampleId& id,
                uint32_t bounce, float mu);
@@ -134,7 +139,8 @@ class PathTracer {
     float opacity;
   };
   HeroSet choose_heroes(Path& path, const KbMaterial& material, const SampleId& id, float mu) const;
-  bool add_hero_light(Path& path, const Boundary& at, const HeroSet& heroes, uint32_t bounce);
+  bool add_hero_light(Path& path, const Boundary& at, const HeroSet& heroes, const SampleId& id,
+                      uint32_t bounce);
   bool scatter_heroes(Path& path, const Boundary& at, const HeroSet& heroes, const KbFloat4& u,
                       const SampleId& id, uint32_t bounce);
   void append_pair(Path& path, Draft& draft, const Boundary& at, const BoundaryPair& pair, glm::vec3 wo);

@@ -60,10 +60,12 @@ void PathTracer::degrade(Path& path, const SampleId& id, uint32_t bounce) {
   append(path, draft);
 }
 
-/// The path's hero channels at this boundary. count 0: a lobe is too narrow for float directions, and the
-/// boundary is treated as a smooth one.
+/// The path's hero channels at this boundary. count 0: there are none, since a lobe is too narrow for float
+/// directions and the boundary is treated as a smooth one, or the boundary is energy-compensated (surfaces
+/// that emit thermally), by a factor that depends on the index.
 HeroSet PathTracer::choose_heroes(Path& path, const KbMaterial& material, const SampleId& id,
                                   float mu) const {
+  if (material.flags & KB_MATERIAL_COMPENSATED) return {};
   const auto channels = static_cast<uint32_t>(flat_.channels.size());
   HeroSet heroes;
   heroes.count = std::min(kMaxHeroes, channels);
@@ -102,10 +104,10 @@ void PathTracer::append_pair(Path& path, Draft& draft, const Boundary& at, const
 
 /// Next-event estimation at a rough dispersive boundary: a vertex of its own. Returns whether a shadow ray
 /// was queued.
-bool PathTracer::add_hero_light(Path& path, const Boundary& at, const HeroSet& heroes, uint32_t bounce) {
+bool PathTracer::add_hero_light(Path& path, const Boundary& at, const HeroSet& heroes, const SampleId& id,
+                                uint32_t bounce) {
   if (flat_.emitters.empty()) return false;
-  const KbFloat4 u = kb_sampler_block(path.key, kb_block_light(bounce));
-  const LightSample light = sample_light(flat_, at.hit.point, {u.x, u.y}, {u.z, u.w});
+  const LightSample light = choose_light(path, at.hit, id, bounce);
   if (!(light.pdf > 0) || !(light.factor > 0)) return false;
   const glm::vec3 wo = at.frame.to_local(light.direction);
   const BoundaryPair pair = rough_boundary_pair(at.material, at.wi, wo);

@@ -53,22 +53,23 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   const SurfaceHit hit =
       make_surface_hit(flat_, ray.shape, ray.primitive, ray.u, ray.v, ray.origin(), direction, ray.t_max);
   Draft draft;
-  add_emission(draft, path, hit, direction, bounce);
+  const KbSurface& surface = flat_.surfaces[flat_.shapes[hit.shape].surface];
+  if (surface.flags & KB_SURFACE_THERMAL) {
+    add_thermal_emission(draft, path, hit, direction, id, bounce);
+  } else {
+    add_emission(draft, path, hit, direction, bounce);
+  }
   const auto finish = [&](bool goes_on) {
     if (draft.vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER)) append(path, draft);
     return goes_on;
   };
   if (!wants_bounce(bounce)) return finish(false);
 
-  const KbSurface& surface = flat_.surfaces[flat_.shapes[hit.shape].surface];
   KbFloat4 u = kb_sampler_block(path.key, kb_block_bsdf(bounce));
-  float opacity = surface.opacity;
-  if (surface.opacity_ref != KB_NONE) {
-    const ResolvedSpectrum value = resolve_spectrum(flat_, surface.opacity_ref, hit.uv);
-    opacity = std::clamp(bitmap_value(flat_, value.texture), 0.0f, 1.0f);
-  }
+  const float opacity = opacity_at(flat_, surface, hit.uv);
   const bool passes = opacity < 1 && u.x >= opacity;
-  if (!passes && opacity < 1) u.x = std::min(u.x / opacity, KB_ONE_MINUS_EPSILON);
+  if (opacity < 1)
+    u.x = std::min(passes ? (u.x - opacity) / (1 - opacity) : u.x / opacity, KB_ONE_MINUS_EPSILON);
 
   ShadingFrame frame(hit.shading_normal, glm::vec3(0));
   glm::vec3 wi = frame.to_local(-direction);
@@ -92,6 +93,17 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   wi = frame.to_local(-direction);
 
   MaterialContext material{&record, &scene_.rough[side], {}};
+  if (record.flags & KB_MATERIAL_COMPENSATED) {
+    material.compensation = &flat_.thermal_tables[record.table];
+    // A metal's compensation has two parts, a and a F0: one of them is taken, for light and BSDF sample
+    // alike.
+    if (eval_kind(record) == KB_KIND_CONDUCTOR && u.x >= lobe_albedo(material, wi)) {
+      if (&record != &local) local = record;
+      local.ref_a = record.ref_b;
+      local.bound_a = record.bound_b;
+      material.material = &local;
+    }
+  }
   if (record.flags & KB_MATERIAL_DISPERSIVE) {
     const float offset = mu[mu.size() == 1 ? 0 : path.pixel];
     if (is_rough_dispersive(record) && path.channel == KB_NONE) {
@@ -102,7 +114,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
                                  : HeroSet{};
       if (heroes.count > 0) {
         const Boundary at{hit, frame, record, side, wi, opacity};
-        add_hero_light(path, at, heroes, bounce);
+        add_hero_light(path, at, heroes, id, bounce);
         if (!passes) return scatter_heroes(path, at, heroes, u, id, bounce);
         pass_through(path, hit, direction);
         return true;
@@ -113,10 +125,10 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   }
   draft.vertex.head |= eval_kind(record) | side << KB_VERTEX_MATERIAL_SHIFT;
   const bool lit =
-      has_smooth_lobe(record) && add_light_sample(draft, path, hit, frame, material, wi, opacity, bounce);
+      has_smooth_lobe(record) && add_light_sample(draft, path, hit, frame, material, wi, opacity, id, bounce);
   bool goes_on = false;
   if (passes) {
-    if (draft.vertex.head & KB_VERTEX_NEE) resolve_spectra(draft, record, hit, false);
+    if (draft.vertex.head & KB_VERTEX_NEE) resolve_spectra(draft, *material.material, hit, false);
     pass_through(path, hit, direction);
     goes_on = true;
   } else {
@@ -146,10 +158,9 @@ void PathTracer::continue_ray(const SurfaceHit& hit, glm::vec3 direction) {
 /// vertex is noted by the caller once the vertex is appended. Returns whether a ray was queued.
 bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hit, const ShadingFrame& frame,
                                   const MaterialContext& material, glm::vec3 wi, float opacity,
-                                  uint32_t bounce) {
+                                  const SampleId& id, uint32_t bounce) {
   if (flat_.emitters.empty()) return false;
-  const KbFloat4 u = kb_sampler_block(path.key, kb_block_light(bounce));
-  const LightSample light = sample_light(flat_, hit.point, {u.x, u.y}, {u.z, u.w});
+  const LightSample light = choose_light(path, hit, id, bounce);
   if (!(light.pdf > 0) || !(light.factor > 0)) return false;
   const BsdfValue value = eval_bsdf(material, wi, frame.to_local(light.direction));
   if (value.w0 < kLeastBsdfValue && value.w1 < kLeastBsdfValue) return false;

@@ -31,6 +31,8 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
   const glm::vec3 p2 = to_glm(scene.positions[index[2]]);
   const float w = 1 - u - v;
   hit.point = w * p0 + u * p1 + v * p2;
+  hit.triangle = primitive;
+  hit.barycentric = {u, v};
   const glm::vec3 e1 = p1 - p0;
   const glm::vec3 e2 = p2 - p0;
   const float flip = shape.flags & KB_SHAPE_FLIP_NORMALS ? -1.0f : 1.0f;

@@ -14,6 +14,8 @@ struct SurfaceHit {
   glm::vec3 tangent{0};           // dp/du, not normalised; zero if unknown
   glm::vec2 uv{0};
   uint32_t shape = KB_NONE;
+  uint32_t triangle = 0;     // meshes: in the shape
+  glm::vec2 barycentric{0};  // meshes: weights of its second and third vertex
 };
 
 /// ray_origin + t * direction is only used for analytic shapes; mesh points come from barycentric

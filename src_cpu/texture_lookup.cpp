@@ -147,6 +147,12 @@ float bitmap_value(const FlatScene& scene, const KbTextureSample& sample) {
   return (1 - sample.fy) * top + sample.fy * bottom;
 }
 
+float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv) {
+  if (surface.opacity_ref == KB_NONE) return surface.opacity;
+  const ResolvedSpectrum value = resolve_spectrum(scene, surface.opacity_ref, uv);
+  return std::clamp(bitmap_value(scene, value.texture), 0.0f, 1.0f);
+}
+
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum) {
   if (!spectrum.textured) return scene.spectra[spectrum.row].bound;
   const KbTexture& texture = scene.textures[spectrum.texture.texture];

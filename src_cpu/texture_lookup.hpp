@@ -25,6 +25,9 @@ ResolvedSpectrum resolve_spectrum(const FlatScene& scene, uint32_t ref, glm::vec
 /// The bilinear value of a flat (raw) bitmap, for opacities: sum of weights times texel scale.
 float bitmap_value(const FlatScene& scene, const KbTextureSample& sample);
 
+/// A mask's opacity; 1 for other surfaces.
+float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv);
+
 /// Upper bound of a resolved spectrum over guide bands and rendered channels (of a lookup: of its four
 /// texels).
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum);

@@ -22,12 +22,15 @@ uint32_t padded(std::size_t n) {
 
 RowFunction planck_row(const SpectrumRow& row) {
   RowFunction f;
+  const bool tabulated = !row.table.values.empty();
+  if (tabulated) f = RowFunction::of_table(row.table);
   f.curved = true;
-  f.value = [&row](double lambda_nm) {
+  f.value = [&row, tabulated](double lambda_nm) {
     if (lambda_nm < row.planck_min_nm || lambda_nm > row.planck_max_nm) return 0.0;
-    return row.planck_scale * planck_radiance(lambda_nm, row.temperature_k);
+    const double factor = tabulated ? row.planck_scale * row.table(lambda_nm) : row.planck_scale;
+    return factor * planck_radiance(lambda_nm, row.temperature_k);
   };
-  f.jumps_nm = {row.planck_min_nm, row.planck_max_nm};
+  f.jumps_nm.insert(f.jumps_nm.end(), {row.planck_min_nm, row.planck_max_nm});
   return f;
 }
 
@@ -58,10 +61,13 @@ class TableMaker {
     RowFunction function;
     RowUnits units;
     double precision = 1;  // the error bound is divided by it
+    std::vector<std::pair<double, double>> ends =
+        {};  // by channel, at mu 0 and 1; if not empty, nothing else counts
   };
 
   void add_spectra();
   void add_unit_rows();
+  void add_planck_rows();
   void add_materials();
   void add_conductor(const KbMaterial& material);
   void add_dispersive(const KbMaterial& material);
@@ -100,6 +106,23 @@ void TableMaker::add_unit_rows() {
   rows_.push_back({one, {emission_factor_, {}}});
   out_.layout.wavelength_row = static_cast<uint32_t>(rows_.size());
   rows_.push_back({wavelength_row(), {}});
+}
+
+void TableMaker::add_planck_rows() {
+  out_.layout.planck_row = KB_NONE;
+  if (!scene_.features.temperature_field) return;
+  out_.layout.planck_row = static_cast<uint32_t>(rows_.size());
+  std::vector<Row> rows(KB_PLANCK_ROWS);
+  for (std::size_t k = 0; k < scene_.channels.size(); ++k) {
+    const Channel& c = scene_.channels[k];
+    const double high = static_cast<float>(c.min_nm), scale = std::log2(scene_.channel_scale[k]);
+    rows[KB_PLANCK_MIN_HIGH].ends.push_back({high, high});
+    rows[KB_PLANCK_MIN_LOW].ends.push_back({c.min_nm - high, c.min_nm - high});
+    rows[KB_PLANCK_WIDTH].ends.push_back({c.width_nm(), c.width_nm()});
+    rows[KB_PLANCK_MU].ends.push_back({0, 1});
+    rows[KB_PLANCK_LOG2_SCALE].ends.push_back({scale, scale});
+  }
+  rows_.insert(rows_.end(), rows.begin(), rows.end());
 }
 
 /// n - 1 and k.
@@ -204,6 +227,10 @@ void TableMaker::add_derived() {
 std::vector<RowCells> TableMaker::choose() const {
   std::vector<RowCells> cells;
   for (const Row& row : rows_) {
+    if (!row.ends.empty()) {
+      cells.push_back({});
+      continue;
+    }
     const double wanted = options_.relative_error / row.precision;
     cells.push_back(
         choose_cells(row.function, scene_.channels, wanted, kAcceptedFactor * wanted, options_.max_cells));
@@ -241,8 +268,13 @@ void TableMaker::fill(const std::vector<RowCells>& cells) {
   }
   out_.nodes.assign(size, 0.0f);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    fill_nodes(rows_[r].function, scene_.channels, rows_[r].units, cells[r].cells, stride,
-               out_.nodes.data() + out_.tables[r].first);
+    float* nodes = out_.nodes.data() + out_.tables[r].first;
+    for (std::size_t k = 0; k < rows_[r].ends.size(); ++k) {
+      nodes[k] = static_cast<float>(rows_[r].ends[k].first);
+      nodes[stride + k] = static_cast<float>(rows_[r].ends[k].second);
+    }
+    if (!rows_[r].ends.empty()) continue;
+    fill_nodes(rows_[r].function, scene_.channels, rows_[r].units, cells[r].cells, stride, nodes);
   }
 }
 
@@ -255,6 +287,7 @@ ChannelTables TableMaker::make() {
   layout.film_columns = layout.stride + padded(derived_.responses.size());
   add_spectra();
   add_unit_rows();
+  add_planck_rows();
   add_materials();
   add_band_sets();
   add_derived();

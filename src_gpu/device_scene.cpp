@@ -60,6 +60,9 @@ std::vector<std::string> scene_defines(const SceneFeatures& f, bool specialised)
       {"ENVMAP_LIGHT", f.envmap_light},
       {"DELTA_LIGHT", f.delta_light},
       {"ANALYTIC_SHAPES", f.analytic_shapes},
+      {"THERMAL", f.thermal},
+      {"COMPENSATION", f.compensation},
+      {"TEMPERATURE_FIELD", f.temperature_field},
   };
   std::vector<std::string> defines{"KB_SPECIALISED"};
   for (const auto& [name, present] : features) {
@@ -108,13 +111,14 @@ DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
       envmap_marginal_(memory.upload("environment rows", scene.envmap.marginal_cdf)),
       envmap_rows_(memory.upload("environment distribution", scene.envmap.row_cdf)),
       filter_table_(memory.upload("filter table", filter_nodes(scene.camera))),
-      channel_bins_(memory.upload("reflectances by channel bins", scene.channel_bins)) {}
+      channel_bins_(memory.upload("reflectances by channel bins", scene.channel_bins)),
+      thermals_(memory.upload("thermal emission", scene.thermals)) {}
 
 void DeviceScene::bind(Kernel& kernel, uint32_t first) const {
   kernel.set_from(first, constants_, materials_, material_tables_, surfaces_, shapes_, textures_,
                   checkerboards_, texels_, texel_bounds_, spectrum_bounds_, normals_, uvs_, positions_,
                   triangles_, area_cdf_, emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_,
-                  filter_table_);
+                  filter_table_, thermals_);
 }
 
 DeviceBvh::DeviceBvh(DeviceMemory& memory, const Bvh& bvh)

@@ -25,7 +25,7 @@ KbSceneConstants scene_constants(const FlatScene& scene);
 /// The scene's arrays in device memory.
 class DeviceScene {
  public:
-  static constexpr uint32_t kArguments = 20;
+  static constexpr uint32_t kArguments = 21;
 
   /// material_tables  of make_material_tables(), which must have completed scene.materials before
   /// throws DeviceOutOfMemory naming the array that does not fit; DeviceLost, DeviceError
@@ -62,6 +62,7 @@ class DeviceScene {
   DeviceBuffer<float> emitter_cdf_, envmap_marginal_, envmap_rows_;
   DeviceBuffer<KbFloat2> filter_table_;
   DeviceBuffer<float> channel_bins_;
+  DeviceBuffer<KbThermal> thermals_;
 };
 
 /// The acceleration structure in device memory.

@@ -20,12 +20,15 @@ class Builder {
 
   std::vector<float> build() {
     for (KbMaterial& material : scene_.materials) {
+      const uint32_t compensation = material.table;
       material.table = KB_NONE;
       if (material.type == KB_MATERIAL_ROUGH_PLASTIC) add_rough_plastic(material);
       const bool metal =
           material.type == KB_MATERIAL_CONDUCTOR || material.type == KB_MATERIAL_ROUGH_CONDUCTOR;
       if (metal && !(material.flags & KB_MATERIAL_PERFECT_MIRROR)) add_conductor(material);
+      if (material.flags & KB_MATERIAL_COMPENSATED) add_compensation(material, compensation);
     }
+    add_thermals();
     return std::move(tables_);
   }
 
@@ -39,6 +42,30 @@ class Builder {
     const auto offset = static_cast<uint32_t>(tables_.size());
     tables_.insert(tables_.end(), values.begin(), values.end());
     return offset;
+  }
+
+  /// Behind a copy of the material's other table.
+  void add_compensation(KbMaterial& material, uint32_t first) {
+    std::vector<float> table;
+    if (material.table != KB_NONE) {
+      const bool plastic = material.type == KB_MATERIAL_ROUGH_PLASTIC;
+      const auto begin = tables_.begin() + material.table;
+      table.assign(begin, begin + (plastic ? kRoughPlasticNodes : kConductorCells + 1));
+    }
+    const float* source = &scene_.thermal_tables.at(first);
+    const std::size_t sides = material.type == KB_MATERIAL_ROUGH_DIELECTRIC ? 2 : 1;
+    const std::size_t nodes =
+        sides * static_cast<std::size_t>(source[0]) * static_cast<std::size_t>(source[1]);
+    table.insert(table.end(), source, source + KB_COMPENSATION_HEADER + nodes * KB_COMPENSATION_NODES);
+    material.table = append(table);
+  }
+
+  void add_thermals() {
+    const uint32_t shift = append(scene_.thermal_tables);
+    for (KbThermal& thermal : scene_.thermals) {
+      if (thermal.table != KB_NONE) thermal.table += shift;
+      thermal.field_offset += shift;
+    }
   }
 
   void add_rough_plastic(KbMaterial& material) {

@@ -15,8 +15,10 @@ inline constexpr int kConductorCells = 64;     // bound of Fresnel's reflectance
 ///   (rough) conductor, unless it is a perfect mirror: kConductorCells + 1 upper bounds of the reflectance
 ///   over
 ///                     the rendered channels and the guide bands
-/// Equal materials share a table. A rough plastic takes about 20 ms, a metal 10 us per channel.
-/// throws std::logic_error if a material refers to a spectrum that is not there
+///   compensated: after these, the compensation table of shared/thermal.h
+/// At the end come the scene's thermal tables; KbThermal::table and field_offset are moved there.
+/// Equal materials share a table, unless they are compensated. A rough plastic takes about 20 ms, a metal 10
+/// us per channel. throws std::logic_error if a material refers to a spectrum that is not there
 std::vector<float> make_material_tables(FlatScene& scene);
 
 }  // namespace kiloband::gpu

@@ -20,7 +20,8 @@ double mebibytes(double bytes) {
 }
 
 const char* name_of(uint32_t emitter_type) {
-  static constexpr const char* kNames[] = {"area", "constant", "envmap", "point", "spot", "directional"};
+  static constexpr const char* kNames[] = {"area", "constant",    "envmap", "point",
+                                           "spot", "directional", "thermal"};
   return kNames[emitter_type];
 }
 
@@ -90,7 +91,8 @@ uint64_t longest_path(const Integrator& integrator) {
 void print_path_memory(const FlatScene& scene) {
   using gpu::Method;
   const uint64_t vertices = longest_path(scene.integrator);
-  const bool textured = scene.features.bitmap || scene.features.envmap_light;
+  const bool textured =
+      scene.features.bitmap || scene.features.envmap_light || scene.features.temperature_field;
   const uint64_t slots = textured ? 2 : 1;
   const uint64_t pt = gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots);
   const uint64_t dpept = gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots);

@@ -122,6 +122,13 @@ struct Bsdf {
 struct AreaEmitter {
   Texture radiance;  // W m^-2 sr^-1 nm^-1, on the normal side
 };
+/// Emission by Kirchhoff's law, eps(lambda, theta) B(lambda, T): T is a constant, an image or a property of
+/// vertices.
+struct ThermalEmitter {
+  double temperature_k = 0;                      // where neither of the following is given
+  std::shared_ptr<const BitmapTexture> texture;  // one channel, raw values in K; or null
+  std::string attribute;                         // vertex property in K; or empty
+};
 struct ConstantEmitter {
   Spectrum radiance;
 };
@@ -177,7 +184,8 @@ struct Shape {
   bool flip_normals = false;
   std::shared_ptr<const Bsdf> bsdf;  // never null: the default is filled in
   std::optional<AreaEmitter> emitter;
-  SourcePosition emitter_position;
+  std::optional<ThermalEmitter> thermal;  // never together with `emitter`
+  SourcePosition emitter_position;        // of either
   std::variant<MeshShape, SphereShape, DiskShape, CylinderShape> geometry;
 };
 
@@ -231,6 +239,10 @@ struct SceneDescription {
   std::filesystem::path file;
   std::vector<Shape> shapes;
   std::vector<Emitter> emitters;
+  /// What every shape without an emitter of its own has, and what is seen where there is nothing and no
+  /// environment.
+  std::optional<double> ambient_temperature_k;
+  SourcePosition ambient_position;
   Sensor sensor;
   Integrator integrator;
 };

@@ -8,6 +8,7 @@
 
 #include "scene/description.hpp"
 #include "shared/records.h"
+#include "shared/thermal.h"
 #include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 
@@ -21,6 +22,9 @@ struct SceneFeatures {
   bool bitmap = false, checkerboard = false, spectral_texture = false;
   bool area_light = false, constant_light = false, envmap_light = false, delta_light = false;
   bool analytic_shapes = false;
+  bool thermal = false;            // surfaces emit by Kirchhoff's law
+  bool compensation = false;       // rough ones among them
+  bool temperature_field = false;  // and their temperature depends on the place
 
   /// Names of the features that are present, for `info` and the statistics.
   std::vector<std::string> names() const;
@@ -30,7 +34,8 @@ struct SceneFeatures {
 struct SpectrumRow {
   std::string name;        // where it comes from, for messages
   RegularTable table;      // reflectances, indices, tabulated emission
-  bool is_planck = false;  // then: planck_scale * planck_radiance(lambda, temperature_k) on [min_nm, max_nm]
+  bool is_planck = false;  // then: planck_scale * planck_radiance(lambda, temperature_k) on [min_nm, max_nm],
+                           // times the table if that is not empty (an emissivity)
   double temperature_k = 0, planck_scale = 1, planck_min_nm = 0, planck_max_nm = 1e300;
   bool is_emission = false;  // values are divided by the channel's scale
   float bound = 0;           // upper bound over guide bands and rendered channels
@@ -78,6 +83,9 @@ struct FlatScene {
 
   std::vector<KbMaterial> materials;
   std::vector<KbSurface> surfaces;
+  std::vector<KbThermal> thermals;
+  std::vector<float>
+      thermal_tables;  // what KbThermal::table, field_offset and compensated KbMaterial::table refer to
   std::vector<KbShape> shapes;
   std::vector<std::string> shape_names, material_names;
   std::vector<KbFloat3> positions;  // world, m

@@ -62,7 +62,10 @@ std::vector<std::string> SceneFeatures::names() const {
                                               {"constant environment", constant_light},
                                               {"environment map", envmap_light},
                                               {"delta light", delta_light},
-                                              {"analytic shapes", analytic_shapes}};
+                                              {"analytic shapes", analytic_shapes},
+                                              {"thermal emission", thermal},
+                                              {"energy compensation", compensation},
+                                              {"temperature field", temperature_field}};
   std::vector<std::string> present;
   for (const auto& [name, is_present] : all) {
     if (is_present) present.emplace_back(name);

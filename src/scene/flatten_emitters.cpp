@@ -135,6 +135,16 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
   return record;
 }
 
+/// Without an environment, what is seen past all shapes is a black body of the ambient temperature.
+void Flattener::add_ambient_environment() {
+  const double temperature_k = in_.ambient_temperature_k.value_or(0);
+  if (out_.environment != KB_NONE || !(temperature_k > 0)) return;
+  const Spectrum radiance = Spectrum::planck(temperature_k, 1);
+  out_.environment = static_cast<uint32_t>(out_.emitters.size());
+  out_.emitters.push_back(make_emitter({"ambient", in_.ambient_position, ConstantEmitter{radiance}}));
+  out_.emitter_names.push_back("ambient");
+}
+
 void Flattener::add_emitters() {
   for (const Emitter& emitter : in_.emitters) {
     const KbEmitter record = make_emitter(emitter);
@@ -144,6 +154,7 @@ void Flattener::add_emitters() {
     out_.emitters.push_back(record);
     out_.emitter_names.push_back(emitter.id);
   }
+  add_ambient_environment();
 }
 
 void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter,
@@ -188,7 +199,9 @@ void Flattener::select_emitters() {
     std::vector<double> power(count);
     double total = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      power[i] = band_power(powers_[i], band);
+      const EmitterPower& p = powers_[i];
+      const auto b = static_cast<std::size_t>(&band - out_.guide.data());
+      power[i] = p.by_band.empty() ? band_power(p, band) : p.by_band[b];
       total += power[i];
     }
     if (!(total > 0) || !std::isfinite(total)) continue;
@@ -209,7 +222,7 @@ void Flattener::select_emitters() {
 namespace {
 
 /// Largest value of an emission row in a channel, W m^-2 sr^-1 nm^-1: at all knots of its table, and at five
-/// wavelengths (Planck's law is smooth).
+/// wavelengths (Planck's law is smooth; emissivities count as 1).
 double peak_in(const SpectrumRow& row, const Channel& channel) {
   double peak = 0;
   for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
@@ -248,6 +261,11 @@ void Flattener::set_channel_scales() {
     }
     for (const Spectrum& spectrum : emission_peaks_)
       peak = std::max(peak, spectrum.max_over(channel.min_nm, channel.max_nm));
+    for (const Heat& heat : heats_) {
+      if (heat.field == KB_NONE) continue;
+      for (const double nm : {channel.min_nm, channel.centre_nm(), channel.max_nm})
+        peak = std::max(peak, planck_radiance(nm, heat.temperature_k));
+    }
     if (peak > 0) out_.channel_scale[k] = std::exp2(std::floor(std::log2(peak * channel.width_nm())));
   }
 }

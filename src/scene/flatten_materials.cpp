@@ -5,11 +5,12 @@
 #include "scene/flattener.hpp"
 
 namespace kiloband {
-namespace {
 
 std::string describe(const Bsdf& bsdf) {
   return bsdf.id.empty() ? "bsdf" : "bsdf '" + bsdf.id + "'";
 }
+
+namespace {
 
 /// Unpolarised Fresnel reflectance of a dielectric for light from the outside (eta: inside over outside).
 double fresnel(double cos_i, double eta) {
@@ -43,6 +44,7 @@ KbMaterial empty_material(uint32_t type) {
   record.type = type;
   record.ref_a = record.ref_b = record.eta_row = record.k_row = KB_NONE;
   record.eta = record.eta_ext = 1;
+  record.table = KB_NONE;
   return record;
 }
 
@@ -142,10 +144,11 @@ KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name,
   return record;
 }
 
-uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf) {
-  if (const auto found = materials_.find(bsdf.get()); found != materials_.end()) return found->second;
+uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated) {
+  const auto known = materials_.find({bsdf.get(), compensated});
+  if (known != materials_.end()) return known->second;
   const std::string name = describe(*bsdf);
-  const KbMaterial record = std::visit(
+  KbMaterial record = std::visit(
       [&](const auto& model) -> KbMaterial {
         using Model = std::decay_t<decltype(model)>;
         if constexpr (std::is_same_v<Model, TwoSidedBsdf> || std::is_same_v<Model, MaskBsdf>) {
@@ -155,14 +158,14 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf) {
         }
       },
       bsdf->model);
+  if (compensated) compensate(record, *bsdf);
   out_.materials.push_back(record);
   out_.material_names.push_back(bsdf->id.empty() ? fmt::format("material {}", out_.materials.size() - 1)
                                                  : bsdf->id);
   const auto index = static_cast<uint32_t>(out_.materials.size() - 1);
   if (index >= 1u << (32 - KB_VERTEX_MATERIAL_SHIFT))
     throw InputError(bsdf->position, "more than 1048576 bsdfs");
-  materials_[bsdf.get()] = index;
-  return index;
+  return materials_[{bsdf.get(), compensated}] = index;
 }
 
 void Flattener::set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumSource& use) {
@@ -176,29 +179,47 @@ void Flattener::set_opacity(KbSurface& record, const MaskBsdf& mask, const Spect
   }
 }
 
-uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf) {
-  if (const auto found = surfaces_.find(bsdf.get()); found != surfaces_.end()) return found->second;
+static bool is_rough(const Bsdf& bsdf) {
+  if (const auto* conductor = std::get_if<ConductorBsdf>(&bsdf.model))
+    return conductor->roughness.has_value();
+  if (const auto* dielectric = std::get_if<DielectricBsdf>(&bsdf.model))
+    return dielectric->roughness.has_value();
+  const auto* plastic = std::get_if<PlasticBsdf>(&bsdf.model);
+  return plastic && plastic->roughness;
+}
+
+uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
+  if (const auto found = surfaces_.find({bsdf.get(), heat}); found != surfaces_.end()) return found->second;
   KbSurface record{};
-  record.back = record.opacity_ref = KB_NONE;
+  record.back = record.opacity_ref = record.front_thermal = record.back_thermal = KB_NONE;
   record.opacity = 1;
   std::shared_ptr<const Bsdf> inner = bsdf;
   if (const auto* mask = std::get_if<MaskBsdf>(&inner->model)) {
     set_opacity(record, *mask, {describe(*bsdf) + ": opacity", bsdf->position, false});
     inner = mask->nested;
   }
+  std::shared_ptr<const Bsdf> front = inner, back;
   if (const auto* two_sided = std::get_if<TwoSidedBsdf>(&inner->model)) {
-    record.front = material(two_sided->front);
-    record.back = two_sided->back ? material(two_sided->back) : record.front;
+    front = two_sided->front;
+    back = two_sided->back ? two_sided->back : front;
     record.flags |= KB_SURFACE_TWO_SIDED;
     out_.features.two_sided = true;
-  } else {
-    record.front = material(inner);
-    const uint32_t type = out_.materials[record.front].type;
-    if (type == KB_MATERIAL_DIELECTRIC || type == KB_MATERIAL_ROUGH_DIELECTRIC)
-      record.flags |= KB_SURFACE_TRANSMISSIVE;
+  }
+  const bool emits = heat != KB_NONE;
+  record.front = material(front, emits && is_rough(*front));
+  if (back) record.back = material(back, emits && is_rough(*back));
+  const uint32_t type = out_.materials[record.front].type;
+  if (!back && (type == KB_MATERIAL_DIELECTRIC || type == KB_MATERIAL_ROUGH_DIELECTRIC))
+    record.flags |= KB_SURFACE_TRANSMISSIVE;
+  if (emits) {
+    record.flags |= KB_SURFACE_THERMAL;
+    record.front_thermal = thermal(front, record.front, heat);
+    const bool same = record.flags & KB_SURFACE_TRANSMISSIVE;
+    record.back_thermal = same ? record.front_thermal : back ? thermal(back, record.back, heat) : black(heat);
+    out_.features.thermal |= record.front_thermal != KB_NONE || record.back_thermal != KB_NONE;
   }
   out_.surfaces.push_back(record);
-  return surfaces_[bsdf.get()] = static_cast<uint32_t>(out_.surfaces.size() - 1);
+  return surfaces_[{bsdf.get(), heat}] = static_cast<uint32_t>(out_.surfaces.size() - 1);
 }
 
 }  // namespace kiloband

@@ -49,7 +49,8 @@ void extend_bounds(const KbShape& shape, glm::dvec3& low, glm::dvec3& high) {
 void Flattener::add_shapes() {
   for (const Shape& shape : in_.shapes) {
     KbShape record{};
-    record.surface = surface(shape.bsdf);
+    heat_of_shape_.push_back(heat_of(shape));
+    record.surface = surface(shape.bsdf, heat_of_shape_.back());
     record.emitter = record.first_cdf = KB_NONE;
     record.flags = shape.flip_normals ? KB_SHAPE_FLIP_NORMALS : 0;
     store_transform(shape.to_world, record.to_world);
@@ -67,6 +68,7 @@ void Flattener::add_shapes() {
     out_.shapes.push_back(record);
     out_.shape_names.push_back(shape.id.empty() ? fmt::format("shape {}", out_.shapes.size() - 1) : shape.id);
     if (shape.emitter) add_area_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
+    if (shape.thermal) add_thermal_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
   }
 }
 
@@ -124,7 +126,7 @@ void Flattener::add_areas(KbShape& record, const Shape& shape) {
   }
   record.area = static_cast<float>(total);
   record.first_cdf = KB_NONE;
-  if (!shape.emitter) return;
+  if (!shape.emitter && !shape.thermal) return;
   if (!std::isfinite(total)) throw InputError(shape.position, "area light: its area in m^2 must be finite");
   check_lattice_items(areas.size(), shape.position, "triangles of an area light");
   record.first_cdf = static_cast<uint32_t>(out_.area_cdf.size());

@@ -41,13 +41,48 @@ class Flattener {
   uint32_t d65_row();
 
   // flatten_materials.cpp
-  uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf);
-  uint32_t material(const std::shared_ptr<const Bsdf>& bsdf);
+  /// heat: of the shape, or KB_NONE. Materials and surfaces with different heat are different.
+  uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
+  uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated);
   KbMaterial make(const DiffuseBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
   void set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumSource& use);
+
+  // flatten_thermal.cpp
+  /// A temperature: of shapes that have the same, number or field.
+  struct Heat {
+    double temperature_k = 0;
+    uint32_t field = KB_NONE, field_offset = 0;
+    double mean_k = 0;  // of a field
+  };
+  /// Index of the shape's temperature, or KB_NONE where it does not emit by Kirchhoff's law.
+  uint32_t heat_of(const Shape& shape);
+  uint32_t image_heat(const std::shared_ptr<const BitmapTexture>& image);
+  uint32_t vertex_heat(const std::vector<float>& temperatures);
+  /// The row of an emissivity times Planck's law; of fields, of the emissivity alone.
+  uint32_t emission_row(uint32_t heat, const RegularTable& emissivity, const std::string& name);
+  uint32_t black_row(uint32_t heat);
+  /// What 1 - a reflectance emits; KB_NONE where that is 0.
+  uint32_t complement(uint32_t ref, uint32_t heat);
+  uint32_t complement_row(uint32_t row, uint32_t heat);
+  uint32_t complement_bitmap(uint32_t index, uint32_t heat);
+  uint32_t complement_checkerboard(uint32_t index, uint32_t heat);
+  /// The thermal record of a material, or of a black back; KB_NONE where nothing is emitted.
+  uint32_t thermal(const std::shared_ptr<const Bsdf>& bsdf, uint32_t material, uint32_t heat);
+  uint32_t black(uint32_t heat);
+  uint32_t add_thermal(KbThermal record, uint32_t heat);
+  KbThermal thermal_of(const KbMaterial& material, const std::string& name, uint32_t heat);
+  KbThermal thermal_of_metal(const KbMaterial& material, const std::string& name, uint32_t heat);
+  KbThermal thermal_of_plastic(const KbMaterial& material, uint32_t heat);
+  uint32_t nonlinear_complement(const KbMaterial& material, uint32_t heat);
+  void check_thermal(const Bsdf& bsdf, const KbMaterial& material) const;
+  void require_emission_data(const Texture& texture, const SpectrumSource& use) const;
+  void compensate(KbMaterial& material, const Bsdf& bsdf);
+  void add_thermal_emitter(uint32_t shape_index);
+  double emissivity_estimate(uint32_t thermal, double lambda_nm) const;
+  double reference_estimate(uint32_t ref, double lambda_nm) const;
 
   // flatten_shapes.cpp
   void add_shapes();
@@ -57,6 +92,7 @@ class Flattener {
 
   // flatten_emitters.cpp
   void add_emitters();
+  void add_ambient_environment();
   void add_area_emitter(uint32_t shape_index);
   void add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumSource& use);
   KbEmitter make_emitter(const Emitter& emitter);
@@ -73,7 +109,15 @@ class Flattener {
   const FlattenOptions& options_;
   FlatScene out_;
   SpectrumTableBuilder spectra_;
-  std::map<const void*, uint32_t> surfaces_, materials_, checkerboards_;
+  std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;  // by bsdf and heat
+  std::map<std::pair<const void*, bool>, uint32_t> materials_;     // by bsdf and compensation
+  std::map<const void*, uint32_t> checkerboards_;
+  std::vector<Heat> heats_;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> emission_rows_, complements_,
+      thermals_;                                    // by what and heat
+  std::map<uint32_t, uint32_t> complement_texels_;  // first texel of the complement, by bitmap
+  std::map<const void*, uint32_t> image_heats_;
+  std::vector<uint32_t> heat_of_shape_;
   std::map<std::pair<const void*, BitmapUse>, uint32_t> bitmaps_;
   std::map<std::pair<const void*, bool>, uint32_t> spectral_bitmaps_;  // by texture and whether it emits
   uint32_t d65_row_ = KB_NONE;
@@ -85,6 +129,7 @@ class Flattener {
     Spectrum spectrum;
     double factor;
     WeightedSpectra more = {};
+    std::vector<double> by_band = {};  // if not empty: power in each guide band (W) instead
   };
   static EmitterPower scaled_power(const WeightedSpectra& colour, double factor);
   static double band_power(const EmitterPower& power, const Channel& band);  // W
@@ -97,6 +142,9 @@ class Flattener {
   std::vector<double> texture_means_, texture_bounds_;    // per bitmap: mean value, largest texel bound
   double raw_emission_peak_ = 0, rgb_emission_peak_ = 0;  // largest texel scale of emitting bitmaps
 };
+
+/// "bsdf 'wall'", for messages.
+std::string describe(const Bsdf& bsdf);
 
 /// KbTexture::first_texel of a bitmap of `count` texels after `before` others. name is the bitmap's, for the
 /// message. throws InputError  the last texel's index does not fit into 32 bits

@@ -75,6 +75,13 @@ void check_reflectance_texture(const Texture& texture, const std::string& label,
 std::shared_ptr<const Bsdf> read_bsdf(ReadContext& context, Node& node);
 Shape read_shape(ReadContext& context, Node& node);
 AreaEmitter read_area_emitter(ReadContext& context, Node& node);
+ThermalEmitter read_thermal_emitter(ReadContext& context, Node& node);
+/// <emitter type="thermal"> directly under the scene. throws InputError if it is not one number
+double read_ambient_temperature(ReadContext& context, Node& node);
+/// throws InputError  `shape` has no such vertex property, or values that are no temperatures
+void check_temperatures(const Shape& shape, const std::string& label, const Place& place);
+/// Mitsuba's weight for choosing lights: checked, with a note.
+void accept_sampling_weight(const ReadContext& context, const ObjectReader& object);
 Emitter read_emitter(ReadContext& context, Node& node);
 Sensor read_sensor(ReadContext& context, Node& node);
 Film read_film(ReadContext& context, Node& node);

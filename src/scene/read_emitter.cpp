@@ -20,17 +20,6 @@ Spectrum emission(ReadContext& context, const ObjectReader& object, std::string_
   return read_spectrum(context, object, name, SpectrumUse::kEmission, default_emission());
 }
 
-/// Mitsuba's weight for choosing lights. Ours are chosen by what they emit: only the noise differs.
-void accept_sampling_weight(const ReadContext& context, const ObjectReader& object) {
-  if (!object.has("sampling_weight")) return;
-  const double weight = object.get_float("sampling_weight", 1);
-  object.check(weight > 0, "sampling_weight", weight, "must be > 0");
-  if (weight != 1) {
-    note(context.sink, object.value_place("sampling_weight").position(),
-         object.label() + ": 'sampling_weight' has no meaning here: lights are chosen by their power");
-  }
-}
-
 /// The transform of an emitter that is not a surface.
 Transform rotation_and_position(const ObjectReader& object) {
   const Transform to_world = object.get_transform("to_world");
@@ -125,16 +114,27 @@ constexpr EmitterType kTypes[] = {
     {"point", read_point},       {"spot", read_spot},     {"directional", read_directional}};
 
 [[noreturn]] void refuse(const ObjectReader& object) {
-  object.refuse_type({"area", "constant", "envmap", "spectral_envmap", "point", "spot", "directional"});
+  object.refuse_type({"area", "thermal", "constant", "envmap", "spectral_envmap", "point", "spot", "directional"});
 }
 
 }  // namespace
+
+/// Mitsuba's weight for choosing lights. Ours are chosen by what they emit: only the noise differs.
+void accept_sampling_weight(const ReadContext& context, const ObjectReader& object) {
+  if (!object.has("sampling_weight")) return;
+  const double weight = object.get_float("sampling_weight", 1);
+  object.check(weight > 0, "sampling_weight", weight, "must be > 0");
+  if (weight != 1) {
+    note(context.sink, object.value_place("sampling_weight").position(),
+         object.label() + ": 'sampling_weight' has no meaning here: lights are chosen by their power");
+  }
+}
 
 AreaEmitter read_area_emitter(ReadContext& context, Node& node) {
   const ObjectReader object(node);
   for (const EmitterType& type : kTypes) {
     if (node.type == type.name)
-      fail(node.type_place, object.label() + ": only area emitters can be part of a shape");
+      fail(node.type_place, object.label() + ": only area and thermal emitters can be part of a shape");
   }
   if (node.type != "area") refuse(object);
   if (object.has("to_world")) object.fail_at("to_world", "an area emitter has no transform of its own");

@@ -147,7 +147,7 @@ const ShapeType& find_type(const ObjectReader& object) {
 /// Diffuse 0.5, or black for emitters.
 std::shared_ptr<const Bsdf> default_bsdf(const Shape& shape) {
   return std::make_shared<const Bsdf>(
-      Bsdf{"", shape.position, DiffuseBsdf{Spectrum::constant(shape.emitter ? 0.0 : 0.5)}});
+      Bsdf{"", shape.position, DiffuseBsdf{Spectrum::constant(shape.emitter || shape.thermal ? 0.0 : 0.5)}});
 }
 
 }  // namespace
@@ -165,8 +165,13 @@ Shape read_shape(ReadContext& context, Node& node) {
   }
   shape.geometry = type.read(context, object, shape);
   if (Node* emitter = object.nested_one("emitter")) {
-    shape.emitter = read_area_emitter(context, *emitter);
     shape.emitter_position = emitter->place.position();
+    if (emitter->type == "thermal") {
+      shape.thermal = read_thermal_emitter(context, *emitter);
+      check_temperatures(shape, object.label(), emitter->place);
+    } else {
+      shape.emitter = read_area_emitter(context, *emitter);
+    }
   }
   Node* bsdf = object.nested_one("bsdf");
   shape.bsdf = bsdf ? read_bsdf(context, *bsdf) : default_bsdf(shape);

@@ -19,6 +19,7 @@ class SceneReader {
     for (const auto& child : tree_.root->children) {
       if (child->resolved().kind == TagKind::kObject) read(scene, *child);
     }
+    read_ambient(scene);
     check_parts();
     scene.finish();
     check_whole(scene);
@@ -34,7 +35,7 @@ class SceneReader {
   void read(const ObjectReader& scene, Node& child) {
     Node& node = child.resolved();
     const std::string& tag = node.tag;
-    if (is_part(node)) return;
+    if (is_part(node) || is_thermal(node)) return;
     child.used = true;
     if (tag == "shape") {
       scene_.shapes.push_back(read_shape(context_, node));
@@ -65,6 +66,21 @@ class SceneReader {
       fail(node.place, ObjectReader(node).label() + ": a second environment: only one is allowed");
   }
 
+  static bool is_thermal(const Node& node) { return node.tag == "emitter" && node.type == "thermal"; }
+
+  /// A thermal emitter that no shape refers to is the ambient temperature.
+  void read_ambient(const ObjectReader& scene) {
+    for (const auto& child : tree_.root->children) {
+      Node& node = child->resolved();
+      if (node.kind != TagKind::kObject || !is_thermal(node)) continue;
+      child->used = true;
+      if (node.used_as_part) continue;
+      if (scene_.ambient_temperature_k) fail(child->place, scene.label() + ": a second ambient temperature");
+      scene_.ambient_temperature_k = read_ambient_temperature(context_, node);
+      scene_.ambient_position = node.place.position();
+    }
+  }
+
   /// Objects that have an effect only as a part of another; they are read by what refers to them.
   static bool is_part(const Node& node) {
     return node.tag == "film" || node.tag == "sampler" || node.tag == "rfilter" ||
@@ -87,10 +103,10 @@ class SceneReader {
 
   void check_whole(const ObjectReader& scene) const {
     if (sensors_ == 0) scene.fail_here("has no sensor");
-    if (scene_.shapes.empty() && environments_ == 0)
+    if (scene_.shapes.empty() && environments_ == 0 && !scene_.ambient_temperature_k)
       scene.fail_here("has neither a shape nor an environment");
-    bool lit = !scene_.emitters.empty();
-    for (const Shape& shape : scene_.shapes) lit = lit || shape.emitter.has_value();
+    bool lit = !scene_.emitters.empty() || scene_.ambient_temperature_k;
+    for (const Shape& shape : scene_.shapes) lit = lit || shape.emitter || shape.thermal;
     if (!lit) scene.fail_here("has no emitter");
   }
 

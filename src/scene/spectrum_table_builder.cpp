@@ -34,12 +34,16 @@ uint32_t SpectrumTableBuilder::row(const Spectrum& spectrum, const SpectrumSourc
 }
 
 uint32_t SpectrumTableBuilder::new_row(const Spectrum& spectrum, const SpectrumSource& use) {
-  if (scene_.spectra.size() >= kMaxRows) {
-    throw InputError(use.position, fmt::format("{}: more than {} different spectra", use.name, kMaxRows));
-  }
   check_range(spectrum.data_range(), spectrum.extrapolates(), use);
-  scene_.spectra.push_back(make_row(spectrum, use));
-  scene_.spectra.back().bound = static_cast<float>(bound(spectrum));
+  SpectrumRow made = make_row(spectrum, use);
+  made.bound = static_cast<float>(bound(spectrum));
+  return add(std::move(made), use.position);
+}
+
+uint32_t SpectrumTableBuilder::add(SpectrumRow row, const SourcePosition& position) {
+  if (scene_.spectra.size() >= kMaxRows)
+    throw InputError(position, fmt::format("{}: more than {} different spectra", row.name, kMaxRows));
+  scene_.spectra.push_back(std::move(row));
   return static_cast<uint32_t>(scene_.spectra.size() - 1);
 }
 

@@ -31,6 +31,10 @@ class SpectrumTableBuilder {
   /// Warns if data do not cover guide bands and channels. data: absent if there is no limit
   void check_range(const std::optional<Spectrum::Range>& data, bool extrapolates,
                    const SpectrumSource& use) const;
+  /// A row that is no input spectrum. throws as row()
+  uint32_t add(SpectrumRow row, const SourcePosition& position = {});
+  /// All wavelengths that rows must reach.
+  const Channel& range() const { return range_; }
 
   /// Mean over the guide bands (each band one vote).
   double guide_mean(const Spectrum& spectrum) const;

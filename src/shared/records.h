@@ -34,13 +34,15 @@ enum KbMaterialType {
 #define KB_MATERIAL_DISPERSIVE 2u        /* dielectric: eta depends on the wavelength, rows eta_row / eta_ext_row */
 #define KB_MATERIAL_SAMPLE_VISIBLE 4u    /* rough: sample visible normals */
 #define KB_MATERIAL_PERFECT_MIRROR 8u    /* conductor: eta 0, k 1, reflectance 1 at every wavelength */
+#define KB_MATERIAL_COMPENSATED 16u      /* rough: scaled by 1 / E, the albedo of single scattering, see thermal.h */
 
 /* One leaf BSDF. Spectral quantities are references; scalars that steer sampling are averages over the guide bands. */
 typedef struct {
   kb_u32 type;      /* KbMaterialType */
   kb_u32 flags;     /* KB_MATERIAL_* */
   kb_u32 ref_a;     /* diffuse: reflectance; conductor, plastic: specular reflectance; dielectric: specular reflectance */
-  kb_u32 ref_b;     /* plastic: diffuse reflectance; dielectric: specular transmittance */
+  kb_u32 ref_b;     /* plastic: diffuse reflectance; dielectric: specular transmittance; compensated conductor: ref_a
+                       times the reflectance at normal incidence */
   kb_u32 eta_row;   /* conductor: n; dispersive dielectric: interior index; else KB_NONE */
   kb_u32 k_row;     /* conductor: k; dispersive dielectric: exterior index row, or KB_NONE for the constant eta_ext */
   kb_u32 distribution; /* KB_MICROFACET_* */
@@ -52,12 +54,15 @@ typedef struct {
   float specular_weight; /* plastic: probability scale of the specular lobe, s / (s + d) of the guide means, mixed with uniform */
   float bound_a;    /* upper bound of ref_a over guide and rendered channels */
   float bound_b;    /* the same of ref_b */
-  kb_u32 table;     /* OpenCL: where the material's table of scalars begins (rough plastic, conductors), or KB_NONE */
+  kb_u32 table;     /* as flattened: where a compensated material's table begins in the thermal tables, else KB_NONE;
+                       OpenCL: where the material's table of scalars begins (rough plastic, conductors, then the
+                       compensation), or KB_NONE */
 } KbMaterial;
 KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 
 #define KB_SURFACE_TRANSMISSIVE 1u /* one material, both sides, not flipped */
 #define KB_SURFACE_TWO_SIDED 2u    /* back != KB_NONE: the frame is flipped for directions below the surface */
+#define KB_SURFACE_THERMAL 4u      /* emits by Kirchhoff's law: front_thermal, back_thermal */
 
 /* What a shape's bsdf comes to: the materials of its two sides and its opacity. */
 typedef struct {
@@ -66,7 +71,8 @@ typedef struct {
   kb_u32 flags;   /* KB_SURFACE_* */
   kb_u32 opacity_ref; /* bitmap reference, or KB_NONE for the constant */
   float opacity;  /* 1: no mask */
-  kb_u32 reserved0, reserved1, reserved2;
+  kb_u32 front_thermal, back_thermal; /* KB_SURFACE_THERMAL: KbThermal (thermal.h) of a side, or KB_NONE: emits nothing */
+  kb_u32 reserved;
 } KbSurface;
 KB_STATIC_ASSERT(sizeof(KbSurface) == 32, surface_size);
 
@@ -114,6 +120,7 @@ enum KbShapeType { KB_SHAPE_MESH = 0, KB_SHAPE_SPHERE = 1, KB_SHAPE_DISK = 2, KB
 #define KB_SHAPE_FLIP_NORMALS 1u
 #define KB_SHAPE_HAS_NORMALS 2u /* mesh: interpolated normals */
 #define KB_SHAPE_HAS_UVS 4u
+#define KB_SHAPE_LIT_BOTH_SIDES 8u /* as a light: both sides are sampled */
 
 /* Rectangles and cubes are meshes. For sphere, disk and cylinder, to_world maps the canonical shape (unit sphere;
    unit disk in z = 0; unit-radius cylinder along z in [0, 1]) to the world. */
@@ -138,7 +145,8 @@ enum KbEmitterType {
   KB_EMITTER_ENVMAP = 2,
   KB_EMITTER_POINT = 3,
   KB_EMITTER_SPOT = 4,
-  KB_EMITTER_DIRECTIONAL = 5
+  KB_EMITTER_DIRECTIONAL = 5,
+  KB_EMITTER_THERMAL = 6 /* a shape with a temperature of its own; what it emits is its surface's */
 };
 
 typedef struct {

@@ -27,6 +27,7 @@
 #define KB_STREAM_BLOCKS 0u
 #define KB_STREAM_MU 1u
 #define KB_STREAM_DEGRADE 2u
+#define KB_STREAM_THERMAL 3u
 #define KB_STREAM_HEROES 5u
 
 /* Parents of the keys of scrambled sequences: one per use, so that no two uses share a key by construction.
@@ -124,6 +125,12 @@ KB_FN KbFloat4 kb_hero_sample(kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 b
 /* Chooses the channel that survives a dispersive refraction at bounce b; independent of everything else. */
 KB_FN float kb_degrade_sample(kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 bounce) {
   return kb_philox_floats(seed, pixel, sample, bounce, KB_STREAM_DEGRADE).x;
+}
+
+/* Chooses what a thermally emitting surface is taken to emit (KbThermal) at bounce b: x, y on the surface that was hit,
+   z, w on the one that light is sampled from. */
+KB_FN KbFloat4 kb_thermal_sample(kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 bounce) {
+  return kb_philox_floats(seed, pixel, sample, bounce, KB_STREAM_THERMAL);
 }
 
 #endif

@@ -18,9 +18,19 @@ typedef struct {
   kb_u32 film_width;     /* of the full film, pixels */
   kb_u32 film_columns;   /* floats of a film pixel: stride, and D rounded up to a multiple of 16 */
   kb_u32 band_row;       /* three rows for each band set: a band's number, bands from there on, unit (0 outside) */
+  kb_u32 planck_row;     /* five rows for Planck's law at any temperature (KB_PLANCK_*), or KB_NONE as 0xffffffff */
   kb_u32 reserved;
 } KbSpectraLayout;
 KB_STATIC_ASSERT(sizeof(KbSpectraLayout) == 48, spectra_layout_size);
+
+/* Rows of channels that do not depend on mu, but for one: lowest wavelength as a sum of two floats and width, nm;
+   mu itself; log2 of channel_scale, an integer. */
+#define KB_PLANCK_MIN_HIGH 0u
+#define KB_PLANCK_MIN_LOW 1u
+#define KB_PLANCK_WIDTH 2u
+#define KB_PLANCK_MU 3u
+#define KB_PLANCK_LOG2_SCALE 4u
+#define KB_PLANCK_ROWS 5u
 
 /* Texture parabolas are expanded around this wavelength, so that their terms stay small in float. */
 #define KB_TEXTURE_CENTRE_NM 595.0f

@@ -63,6 +63,11 @@ double planck_radiance(double lambda_nm, double temperature_k) {
   return kFirst / (square * square * lambda_nm) * (std::exp(-x) / -std::expm1(-x));
 }
 
+PlanckTerms planck_terms(double lambda_nm) {
+  const double square = lambda_nm * lambda_nm;
+  return {kFirst / (square * square * lambda_nm), kSecond_nm_k / lambda_nm};
+}
+
 // In t = ln(lambda) the integrand is lambda B; a panel may span 0.5 in t and 4 in x = c2 / (lambda T), over
 // which a 16-point rule is exact to rounding (x and exp(-x) are entire functions of t).
 double planck_integral(double min_nm, double max_nm, double temperature_k) {

@@ -8,6 +8,12 @@ namespace kiloband {
 /// 1e-300.
 double planck_radiance(double lambda_nm, double temperature_k);
 
+/// The same as a(lambda) exp(-x) / (1 - exp(-x)), x = b(lambda) / T: a in W m^-2 sr^-1 nm^-1, b in K.
+struct PlanckTerms {
+  double a, b;
+};
+PlanckTerms planck_terms(double lambda_nm);
+
 /// Integral over [min_nm, max_nm], W m^-2 sr^-1, relative error < 1e-10 for any width (Gauss-Legendre in
 /// ln(lambda)). 0 < min_nm <= max_nm, finite.
 double planck_integral(double min_nm, double max_nm, double temperature_k);

@@ -61,7 +61,8 @@ class DeviceScene {
                 up(scene.emitter_cdf),
                 up(scene.envmap.marginal_cdf),
                 up(scene.envmap.row_cdf),
-                up(filter)};
+                up(filter),
+                up(scene.thermals)};
   }
 
   template <class... Args>
@@ -71,7 +72,7 @@ class DeviceScene {
 
  private:
   Probe& probe_;
-  std::array<cl::Buffer, 20> buffers_;
+  std::array<cl::Buffer, 21> buffers_;
 };
 
 /// One KbPrimitive per triangle of a mesh and per analytic shape, in the order of the shapes.

@@ -219,6 +219,41 @@ Text mirrors() {
          ball("-0.5 0.3 0.2", "0.15", diffuse("0") + lamp("450:8, 650:5"));
 }
 
+Text thermal(const Text& temperature) {
+  return "<emitter type='thermal'>" + temperature + "</emitter>";
+}
+Text hot(const Text& kelvin) {
+  return thermal(real("temperature", kelvin));
+}
+
+/// Hot and warm things of all materials, in a warm room.
+Text hot_things() {
+  const Text base = spectrum("diffuse_reflectance", "450:0.3, 650:0.6");
+  return ball("-0.6 0.4 -0.2", "0.3", metal("roughconductor", roughness("ggx", "0.3")) + hot("2400")) +
+         ball("0 0.4 -0.2", "0.3", metal("roughconductor", roughness("beckmann", "0.1", "0.4"))) +
+         ball("0.6 0.4 -0.2", "0.3", metal("conductor") + hot("2200")) +
+         ball("-0.6 -0.5 0.1", "0.3", bsdf("roughplastic", base + roughness("ggx", "0.2"))) +
+         ball("0 -0.5 0.1", "0.3",
+              bsdf("roughdielectric", roughness("ggx", "0.3") + spectrum("specular_transmittance", "0.8"))) +
+         rectangle(scale("0.3") + turn("y", "30") + move("0.6 -0.5 0.1"),
+                   bsdf("twosided", bsdf("plastic", base) + diffuse("0.4")) + hot("2300"));
+}
+
+/// Temperatures by image and by vertex, on pictures and on metal.
+Text heated_shapes() {
+  const Text by_vertex = thermal(text("temperature_attribute", "kelvin"));
+  const Text by_image = thermal(bitmap("temperature", "kelvin.pfm", "clamp", "bilinear", scale("1")));
+  const Text picture =
+      bsdf("diffuse", bitmap("reflectance", "colours.ppm", "repeat", "bilinear", scale("2")));
+  return rectangle(scale("0.45") + turn("y", "20") + move("-0.5 0.4 0"), picture + by_image) +
+         rectangle(scale("0.4") + turn("x", "-40") + move("0.5 -0.5 0.2"),
+                   bsdf("mask", real("opacity", "0.7") + diffuse("0.2")) + by_image) +
+         shape("ply", scale("0.4") + move("0.5 0.4 -0.2"),
+               text("filename", "hot.ply") + metal("roughconductor", roughness("ggx", "0.3")) + by_vertex) +
+         shape("ply", scale("0.4") + turn("x", "-60") + move("-0.4 -0.5 0.2"),
+               text("filename", "hot.ply") + bsdf("twosided", picture) + by_vertex);
+}
+
 const Text kEnvmap = "<emitter type='envmap'>" + text("filename", "sky.pfm") + real("scale", "0.8") +
                      "<transform name='to_world'>" + turn("y", "70") + turn("x", "15") +
                      "</transform></emitter>";
@@ -267,6 +302,9 @@ std::vector<ZooScene> make_scenes() {
                  ceiling(diffuse("0.95")) + boxes() + sky("0.7"))},
       {"crop_window", scene(6, perspective(film("gaussian", crop_window())), lit_room + metals() + glasses()),
        kCurved},
+      {"thermal", scene(6, perspective(film("gaussian")), room() + hot_things() + hot("1900")), kCurved},
+      {"temperature_field",
+       scene(6, perspective(film("gaussian")), room() + ceiling_lamp() + heated_shapes()), kCurved},
       {"hidden_emitters",
        scene(6, thinlens(film("box")), objects + glowing_shapes() + kEnvmap, yes("hide_emitters"))},
   };

@@ -74,6 +74,21 @@ void write_spectral_images(const fs::path& folder) {
   });
 }
 
+/// Kelvins, 3 x 2, as PFM.
+void write_temperatures(const fs::path& file) {
+  std::ofstream out(file, std::ios::binary);
+  const float kelvin[] = {2100, 2400, 2000, 2300, 0, 2500};
+  out << "Pf\n3 2\n-1.0\n";
+  out.write(reinterpret_cast<const char*>(kelvin), sizeof kelvin);
+}
+
+/// A folded square with a temperature at each vertex.
+const char* const kHotPly =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float u\nproperty float v\nproperty float kelvin\nelement face 2\n"
+    "property list uchar int vertex_indices\nend_header\n"
+    "-1 -1 0 0 0 2000\n1 -1 0.2 1 0 2200\n1 1 0 1 1 2500\n-1 1 0.2 0 1 2300\n3 0 1 2\n3 0 2 3\n";
+
 void write_text(const fs::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
@@ -89,6 +104,8 @@ ZooFolder::ZooFolder() {
   write_picture(path_ / "grey.pgm", 6, 6, 1, colours(6, 6, 1));
   write_sky(path_ / "sky.pfm");
   write_spectral_images(path_);
+  write_temperatures(path_ / "kelvin.pfm");
+  write_text(path_ / "hot.ply", kHotPly);
   write_text(path_ / "gem.obj", kGem);
   write_text(path_ / "prism.obj", kPrism);
   write_text(path_ / "glass.txt", "380 1.60\n500 1.545\n600 1.525\n720 1.51\n");

@@ -166,7 +166,27 @@ KbPathVertex random_vertex(const FlatScene& scene, std::mt19937& random) {
   return v;
 }
 
+/// An emissivity, of a reflectance's row or bitmap, at a temperature of its own.
+KbTextureSample random_thermal_sample(const FlatScene& scene, std::mt19937& random) {
+  const float temperature_k =
+      chance(random, 0.1) ? 0 : static_cast<float>(std::exp(uniform(random, 5.3, 8.6)));
+  KbThermalSample thermal{KB_SAMPLE_THERMAL | KB_SAMPLE_ROW | below(random, kReflectances), 0, 0,
+                          temperature_k};
+  if (chance(random, 0.5)) {
+    const uint32_t t = below(random, 3);
+    const uint32_t x = below(random, scene.textures[t].width), y = below(random, scene.textures[t].height);
+    thermal = {KB_SAMPLE_THERMAL | t, x | y << 16, below(random, 65536) | below(random, 65536) << 16,
+               temperature_k};
+  }
+  KbTextureSample sample;
+  static_assert(sizeof sample == sizeof thermal);
+  std::memcpy(&sample, &thermal, sizeof sample);
+  return sample;
+}
+
 KbTextureSample random_sample(const FlatScene& scene, bool emission, std::mt19937& random) {
+  if (emission && scene.features.temperature_field && chance(random, 0.5))
+    return random_thermal_sample(scene, random);
   // Textures 0-2 are reflectances; 3-5 emit, the last without an illuminant. The same of spectral ones, 6
   // to 11.
   const uint32_t t = below(random, 3) + (emission ? 3 : 0) + (chance(random, 0.5) ? 6 : 0);

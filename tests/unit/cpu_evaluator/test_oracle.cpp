@@ -74,6 +74,18 @@ TEST_P(Oracle, RandomPathsAgree) {
   EXPECT_GT(lit, 1000u);  // the comparison is not one of zeros
 }
 
+/// Emissivities at temperatures of their own, from 200 to 5400 K and 0 K.
+TEST_P(Oracle, RandomTemperaturesAgree) {
+  std::mt19937 random(17);
+  for (Layout layout : {Layout::kRegular, Layout::kInfrared}) {
+    FlatScene scene = make_scene(make_channels(100, layout, random), random);
+    scene.features.temperature_field = true;
+    const PathBuffer paths = make_paths(scene, 60, random);
+    for (const bool shared : {true, false})
+      EXPECT_LT(largest_error(scene, {}, paths, GetParam(), 0.37109375, shared), kTolerance);
+  }
+}
+
 TEST_P(Oracle, LongPath) {
   // 1000 vertices on one material with a throughput around 1. The rounding of a float row (3e-8 in the mean,
   // 6e-8 at most) is the same at every vertex and adds up to at most 6e-5; the other roundings are a random

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "scene/compensation.hpp"
 #include "tests/support/opencl_probe.hpp"
 
 namespace kiloband::test {
@@ -24,6 +25,9 @@ static inline MaterialContext context_of(__global const KbMaterial* materials, _
   context.material = materials[query->material];
   context.table = context.material.table == KB_NONE ? 0 : tables + context.material.table;
   context.dispersion_eta = query->dispersion_eta;
+#if KB_HAS_COMPENSATION
+  context.compensation = compensation_table(&context.material, context.table);
+#endif
   return context;
 }
 static inline Sample record_of(BsdfSample s) {
@@ -93,6 +97,16 @@ uint32_t Scene::add(const KbMaterial& given) {
     material.table = static_cast<uint32_t>(tables_.size());
     tables_.insert(tables_.end(), rough.external.begin(), rough.external.end());
   }
+  if (material.flags & KB_MATERIAL_COMPENSATED) {
+    const bool metal = material.type == KB_MATERIAL_ROUGH_CONDUCTOR;
+    if (material.table == KB_NONE) material.table = static_cast<uint32_t>(tables_.size());
+    if (metal && !(material.flags & KB_MATERIAL_PERFECT_MIRROR)) tables_.resize(tables_.size() + 65, 1.0f);
+    const bool dispersive = material.flags & KB_MATERIAL_DISPERSIVE;
+    const std::vector<float> table =
+        make_compensation_table(material, {material.eta, dispersive ? 1.3 * material.eta : material.eta});
+    tables_.insert(tables_.end(), table.begin(), table.end());
+    compensations_[static_cast<uint32_t>(materials_.size())] = table;
+  }
   materials_.push_back(material);
   rough_.push_back(rough);
   return static_cast<uint32_t>(materials_.size() - 1);
@@ -106,7 +120,11 @@ uint32_t Scene::add_without_table(KbMaterial material) {
 }
 
 MaterialContext Scene::context(const Query& query) const {
-  return {&materials_[query.material], &rough_[query.material], {query.dispersion_eta}};
+  const auto found = compensations_.find(query.material);
+  return {&materials_[query.material],
+          &rough_[query.material],
+          {query.dispersion_eta},
+          found == compensations_.end() ? nullptr : found->second.data()};
 }
 
 Sample record_of(const BsdfSample& s) {

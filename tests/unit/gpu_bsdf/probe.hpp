@@ -1,6 +1,7 @@
 // Runs the device's BSDFs and the CPU's on the same queries.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,6 +52,7 @@ class Scene {
   std::vector<KbMaterial> materials_;
   std::vector<RoughTransmittance> rough_;  // by material
   std::vector<float> tables_;
+  std::map<uint32_t, std::vector<float>> compensations_;  // by material
 };
 
 /// kernels' conductor_bound at each cosine; an empty table is a null pointer there.

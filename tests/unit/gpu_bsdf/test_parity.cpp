@@ -66,6 +66,27 @@ TEST(DeviceBsdf, AgreesWithTheCpuForDispersiveDielectrics) {
   EXPECT_GT(total, 1000);
 }
 
+TEST(DeviceBsdf, AgreesWithTheCpuForCompensatedMaterials) {
+  Scene scene;
+  Uniform uniform(9);
+  std::vector<Query> queries;
+  for (const uint32_t distribution : {KB_MICROFACET_BECKMANN, KB_MICROFACET_GGX}) {
+    for (const KbMaterialType type :
+         {KB_MATERIAL_ROUGH_CONDUCTOR, KB_MATERIAL_ROUGH_DIELECTRIC, KB_MATERIAL_ROUGH_PLASTIC}) {
+      for (const float alpha_v : {0.4f, 0.1f}) {
+        if (type == KB_MATERIAL_ROUGH_PLASTIC && alpha_v != 0.4f) continue;
+        KbMaterial material = rough(type, distribution, 0.4f, alpha_v, true);
+        material.flags |= KB_MATERIAL_COMPENSATED;
+        add_queries(scene, scene.add(material), 0, 3000, uniform, queries);
+      }
+    }
+  }
+  KbMaterial dispersive = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MICROFACET_GGX, 0.3f, 0.3f, true);
+  dispersive.flags |= KB_MATERIAL_COMPENSATED | KB_MATERIAL_DISPERSIVE;
+  add_queries(scene, scene.add(dispersive), 1.66f, 3000, uniform, queries);
+  Comparison(scene).check(queries, scene.on_cpu(queries), scene.on_device(queries));
+}
+
 /// The bits of what two builds answered.
 template <class T>
 bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {

@@ -26,11 +26,18 @@ DerivedChannels straight_responses() {
   return derived;
 }
 
+/// temperatures: some emission is an emissivity with a temperature of its own.
+FlatScene with_temperatures(FlatScene scene, bool temperatures) {
+  scene.features.temperature_field = temperatures;
+  return scene;
+}
+
 /// Scene, paths and expected means for a build.
 struct Workload {
-  Workload(const Case& c, const DerivedChannels& responses, bool per_path, std::mt19937& random)
+  Workload(const Case& c, const DerivedChannels& responses, bool per_path, std::mt19937& random,
+           bool temperatures = false)
       : derived(responses),
-        scene(make_device_scene(c.channels, c.layout, random)),
+        scene(with_temperatures(make_device_scene(c.channels, c.layout, random), temperatures)),
         tables(gpu::make_channel_tables(scene, derived)),
         paths(make_paths(scene, c.channels == 1000 ? 8 : 40, random)),
         round(make_round(paths, c.channels == 1000 ? 6 : 12, c.channels == 1000 ? 2 : 5, random)),
@@ -51,6 +58,19 @@ std::vector<Case> cases() {
 }
 
 class DeviceEvaluation : public testing::TestWithParam<EvaluatorBuild> {};
+
+/// Planck's law at any temperature from 200 to 5400 K, in float.
+TEST_P(DeviceEvaluation, RandomTemperaturesAgreeWithTheOracle) {
+  EvaluatorProgram program(GetParam());
+  std::mt19937 random(17);
+  for (const Case& c : {Case{100, Layout::kRegular}, {100, Layout::kInfrared}, {7, Layout::kNarrow}}) {
+    const Workload w(c, straight_responses(), GetParam().per_path, random, true);
+    DeviceEvaluator device(program, w.scene, w.tables, w.round.pixels);
+    device.load(w.paths, w.round);
+    device.batch(3, 5);
+    EXPECT_LT(largest_error(device.means(), w.expected), kTolerance) << c.channels;
+  }
+}
 
 TEST_P(DeviceEvaluation, RandomPathsAgreeWithTheOracle) {
   EvaluatorProgram program(GetParam());

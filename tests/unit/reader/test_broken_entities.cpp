@@ -32,8 +32,6 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:13: error: bsdf type 'difuse' is not supported; did you mean 'diffuse'?"},
       {"unsupported bsdf", complete_scene(R"xml(<bsdf type="thindielectric"/>)xml"),
        "scene.xml:2:13: error: bsdf type 'thindielectric' is not supported"},
-      {"thermal emitter", complete_scene(R"xml(<shape type="sphere"><emitter type="thermal"/></shape>)xml"),
-       "scene.xml:2:37: error: emitter type 'thermal' is not supported"},
       {"reflectance above 1",
        complete_scene(
            R"xml(<bsdf type="diffuse" id="leaf"><spectrum name="reflectance" value="500:0.9, 550:1.27"/></bsdf>)xml"),
@@ -243,7 +241,7 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:43: error: cube shape: a second bsdf"},
       {"point light in a shape",
        complete_scene(R"xml(<shape type="cube"><emitter type="point"/></shape>)xml"),
-       "scene.xml:2:35: error: point emitter: only area emitters can be part of a shape"},
+       "scene.xml:2:35: error: point emitter: only area and thermal emitters can be part of a shape"},
       {"area light with a transform",
        complete_scene(
            R"xml(<shape type="cube"><emitter type="area"><transform name="to_world"><scale value="2"/></transform></emitter></shape>)xml"),
