@@ -117,8 +117,7 @@ void set_scales(FlatScene& scene) {
   }
 }
 
-/// A light sample or a scattering event with a pair of directions about a facet of moderate slope, so that
-/// the factor T is of order 1.
+/// A light sample or scattering event with directions about a facet of moderate slope: T is of order 1.
 void make_transmission(const FlatScene& scene, KbPathVertex& v, std::mt19937& random) {
   const bool nee = chance(random, 0.5), inside = chance(random, 0.5);
   const KbMaterial& material = scene.materials[v.head >> KB_VERTEX_MATERIAL_SHIFT];
@@ -135,7 +134,7 @@ void make_transmission(const FlatScene& scene, KbPathVertex& v, std::mt19937& ra
   v.row_b = inside;
 }
 
-/// Weights and flags of one vertex; textured values are decided by the caller.
+/// Textured values are decided by the caller.
 KbPathVertex random_vertex(const FlatScene& scene, std::mt19937& random) {
   KbPathVertex v{};
   const uint32_t kind = kKinds[below(random, std::size(kKinds))];
@@ -187,8 +186,7 @@ KbTextureSample random_thermal_sample(const FlatScene& scene, std::mt19937& rand
 KbTextureSample random_sample(const FlatScene& scene, bool emission, std::mt19937& random) {
   if (emission && scene.features.temperature_field && chance(random, 0.5))
     return random_thermal_sample(scene, random);
-  // Textures 0-2 are reflectances; 3-5 emit, the last without an illuminant. The same of spectral ones, 6
-  // to 11.
+  // Textures 0-2 are reflectances; 3-5 emit, the last without an illuminant; 6-11 the same, spectral.
   const uint32_t t = below(random, 3) + (emission ? 3 : 0) + (chance(random, 0.5) ? 6 : 0);
   const uint32_t x = below(random, scene.textures[t].width), y = below(random, scene.textures[t].height);
   const float fx = chance(random, 0.2) ? 0 : uniform_float(random, 0, 1);
