@@ -11,11 +11,24 @@ namespace {
 /// Rays of a launch that cannot be measured beforehand: short on any device.
 constexpr uint32_t kAuxiliaryPixels = 1u << 15;
 
+/// A program's chunks where they are not the usual ones.
+void add_chunk_define(std::vector<std::string>& defines, const HostScene& host, Method method) {
+  const uint32_t slots = chunk_slots(method, host.scene.features);
+  if (slots != KB_CHUNK_SLOTS) defines.push_back("KB_CHUNK_SLOTS=" + std::to_string(slots) + "u");
+}
+
+std::vector<std::string> evaluation_defines(const HostScene& host, const DeviceSettings& settings) {
+  std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
+  add_chunk_define(defines, host, settings.method);
+  return defines;
+}
+
 std::vector<std::string> path_defines(const HostScene& host, const DeviceSettings& settings) {
   std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
   // In steps of 8: scenes whose trees differ a little share a program.
   defines.push_back("KB_BVH_STACK=" + std::to_string(host.bvh.stack_entries() / 8 * 8 + 8));
   if (settings.method == Method::kPt) defines.push_back("KB_METHOD_PT=1");
+  add_chunk_define(defines, host, settings.method);
   return defines;
 }
 
@@ -56,7 +69,8 @@ uint64_t DeviceState::table_bytes() const {
   return gpu::table_bytes(host_.spectra.layout, shape_);
 }
 uint64_t DeviceState::slot_bytes() const {
-  return gpu::slot_bytes(host_.spectra.layout, shape_);
+  const uint64_t more = chunk_slots() - KB_CHUNK_SLOTS;
+  return gpu::slot_bytes(host_.spectra.layout, shape_) + more * sizeof(KbPathVertex);
 }
 
 void DeviceState::release_pool() {
@@ -67,9 +81,8 @@ void DeviceState::release_pool() {
 void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels) {
   release_pool();
   pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size);
-  evaluation_.emplace(context, memory, host_.spectra.layout, shape_,
-                      scene_defines(host_.scene.features, settings_.specialised), settings_.program_cache,
-                      size, film_pixels);
+  evaluation_.emplace(context, memory, host_.spectra.layout, shape_, evaluation_defines(host_, settings_),
+                      settings_.program_cache, size, film_pixels);
   evaluation_->bind(scene_, spectra_, *pool_);
 }
 

@@ -53,6 +53,7 @@ class DeviceState {
   uint64_t table_bytes() const;
   uint64_t slot_bytes() const;
   bool has_dispersion() const { return host_.scene.features.dispersion; }
+  uint32_t chunk_slots() const { return gpu::chunk_slots(method, host_.scene.features); }
 
   void clear_film(uint64_t pixels);
   /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's
@@ -88,8 +89,8 @@ class DeviceState {
   std::optional<Evaluation> evaluation_;
 };
 
-/// On PoCL the fastest at every number of channels that was measured, 8 to 1024 (validation/README.md). The paper finds
-/// dpept-path ahead below 16 channels on GPUs with 16-wide SIMD; no GPU has been measured here.
+/// On PoCL the fastest at every number of channels that was measured, 8 to 1024 (validation/README.md). The
+/// paper finds dpept-path ahead below 16 channels on GPUs with 16-wide SIMD; no GPU has been measured here.
 inline constexpr Method kDefaultMethod = Method::kDpeptBatch;
 
 const char* to_string(Method method);

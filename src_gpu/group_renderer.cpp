@@ -68,6 +68,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels) const {
   r.most_jobs = most_jobs(device_, most_slots_);
   r.chunks_per_path = chunks_per_path_;
   r.dispersion = device_.has_dispersion();
+  r.chunk_slots = device_.chunk_slots();
   return r;
 }
 

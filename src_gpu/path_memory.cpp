@@ -2,8 +2,11 @@
 
 namespace kiloband::gpu {
 
-uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uint64_t slots_each) {
+uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uint64_t slots_each,
+                        const SceneFeatures& features) {
   PoolSize one;
+  one.dispersion = features.dispersion;
+  one.chunk_slots = chunk_slots(method, features);
   one.slots = 1;
   if (method == Method::kPt) {
     one.arena_chunks = 1;

@@ -30,7 +30,7 @@ uint64_t path_pool_bytes(const PoolSize& size) {
   const uint64_t per_slot = sizeof(KbPathState) + sizeof(KbRay) + sizeof(KbHit) + sizeof(KbShadowRay) +
                             sizeof(uint64_t) + 2 * sizeof(uint32_t) +
                             (size.dispersion ? sizeof(KbDispersionState) : 0);
-  const uint64_t per_chunk = KB_CHUNK_SLOTS * sizeof(KbPathVertex) + sizeof(uint32_t);
+  const uint64_t per_chunk = size.chunk_slots * sizeof(KbPathVertex) + sizeof(uint32_t);
   return size.slots * per_slot + size.arena_chunks * per_chunk + uint64_t{size.jobs} * sizeof(KbSavedPath) +
          uint64_t{size.pixels} * sizeof(KbRoundPixel) + uint64_t{size.tables} * sizeof(float);
 }
@@ -47,7 +47,7 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
       rays_(memory.allocate<KbRay>("rays", size.slots)),
       hits_(memory.allocate<KbHit>("hits", size.slots)),
       shadows_(memory.allocate<KbShadowRay>("shadow rays", size.slots)),
-      arena_(memory.allocate<KbPathVertex>("path vertices", uint64_t{size.arena_chunks} * KB_CHUNK_SLOTS)),
+      arena_(memory.allocate<KbPathVertex>("path vertices", uint64_t{size.arena_chunks} * size.chunk_slots)),
       chunk_next_(memory.allocate<uint32_t>("vertex chunks", size.arena_chunks)),
       saved_(memory.allocate<KbSavedPath>("saved paths", size.jobs)),
       faults_(memory.allocate<KbFaults>("faults", 1)),

@@ -85,6 +85,10 @@ uint64_t arena_chunks(const PlanRequest& r, const PoolSize& others, uint64_t job
 
 }  // namespace
 
+uint32_t chunk_slots(Method method, const SceneFeatures& features) {
+  return method == Method::kPt && features.dispersion ? KB_PT_DISPERSION_CHUNK_SLOTS : KB_CHUNK_SLOTS;
+}
+
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {
   const uint64_t most = cpu_device ? 16 : 64;
   return static_cast<uint32_t>(table_bytes > 0 ? std::clamp<uint64_t>(kTablesOfBlock / table_bytes, 1, most)
@@ -98,6 +102,7 @@ RoundPlan plan_rounds(const PlanRequest& r) {
   plan.round_jobs = fitting_jobs(r, plan.group_pixels);
   plan.round_pixels = to_u32(std::min(plan.group_pixels, plan.round_jobs));
   plan.pool.dispersion = r.dispersion;
+  plan.pool.chunk_slots = r.chunk_slots;
   plan.pool.tables = to_u32(fitting_tables(r, plan.round_jobs));
   plan.pool.slots = to_u32(
       std::min<uint64_t>(pt ? plan.round_pixels : std::max<uint64_t>(plan.round_jobs / 2, 1), r.most_slots));

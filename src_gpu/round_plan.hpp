@@ -11,6 +11,9 @@ namespace kiloband::gpu {
 /// The three evaluations of one pipeline (paper, sections 4 and 5).
 enum class Method { kDpeptBatch, kDpeptPath, kPt };
 
+/// Vertices of a chunk: with the method pt, which empties chunks at every bounce, what a bounce may append.
+uint32_t chunk_slots(Method method, const SceneFeatures& features);
+
 struct PlanRequest {
   uint64_t budget = 0;   // bytes that may be used
   uint64_t largest = 0;  // bytes of the largest buffer
@@ -24,6 +27,7 @@ struct PlanRequest {
   uint64_t most_jobs = 1;      // paths per round that it gains from
   double chunks_per_path = 3;  // expected
   bool dispersion = false;     // PoolSize::dispersion
+  uint32_t chunk_slots = KB_CHUNK_SLOTS;
 };
 
 struct RoundPlan {

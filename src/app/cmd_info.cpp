@@ -94,8 +94,10 @@ void print_path_memory(const FlatScene& scene) {
   const bool textured =
       scene.features.bitmap || scene.features.envmap_light || scene.features.temperature_field;
   const uint64_t slots = textured ? 2 : 1;
-  const uint64_t pt = gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots);
-  const uint64_t dpept = gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots);
+  const uint64_t pt =
+      gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots, scene.features);
+  const uint64_t dpept =
+      gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots, scene.features);
   fmt::print(
       "opencl path  pt {} bytes with {} channels; dpept-path, dpept-batch {} bytes with {} vertices of {} "
       "bytes\n",

@@ -12,7 +12,12 @@
 #include "shared/records.h"
 #include "shared/spectra_layout.h"
 
+#ifndef KB_CHUNK_SLOTS
 #define KB_CHUNK_SLOTS 4u
+#endif
+/* With the method pt a slot's chunk holds what a path appends between two updates; with dispersion that is up to three
+   vertices and three slots of samples. */
+#define KB_PT_DISPERSION_CHUNK_SLOTS 8u
 
 /* ---- the scene beside its arrays
  * --------------------------------------------------------------------------------- */
