@@ -70,15 +70,20 @@ float lobe_albedo(const MaterialContext& context, glm::vec3 wi) {
   const KbMaterial& m = *context.material;
   const float alpha_u = std::max(m.alpha_u, Microfacet::kMinAlpha),
               alpha_v = std::max(m.alpha_v, Microfacet::kMinAlpha);
-  const float x2 = alpha_u * alpha_u * wi.x * wi.x, y2 = alpha_v * alpha_v * wi.y * wi.y;
-  const float root2 = x2 + y2, cosine = std::abs(wi.z);
+  const float root = std::sqrt(alpha_u * alpha_u * wi.x * wi.x + alpha_v * alpha_v * wi.y * wi.y);
+  const float cosine = std::abs(wi.z);
   const int nodes_s = static_cast<int>(context.compensation[0]),
             nodes_eta = static_cast<int>(context.compensation[1]);
   const TablePlace x =
-      table_place(cosine / (cosine + std::sqrt(root2)) * (KB_COMPENSATION_NODES - 1), KB_COMPENSATION_NODES);
-  const TablePlace s =
-      nodes_s > 1 ? table_place((root2 > 0 ? y2 / root2 : 0) * static_cast<float>(nodes_s - 1), nodes_s)
-                  : TablePlace{0, 0};
+      table_place(cosine / (cosine + root) * (KB_COMPENSATION_NODES - 1), KB_COMPENSATION_NODES);
+  TablePlace s{0, 0};
+  if (nodes_s > 1) {
+    const bool glass = m.type == KB_MATERIAL_ROUGH_DIELECTRIC;
+    const float px = (glass ? std::sqrt(std::sqrt(alpha_u)) : alpha_u) * wi.x;
+    const float py = (glass ? std::sqrt(std::sqrt(alpha_v)) : alpha_v) * wi.y;
+    const float sum = px * px + py * py;
+    s = table_place((sum > 0 ? py * py / sum : 0) * static_cast<float>(nodes_s - 1), nodes_s);
+  }
   TablePlace eta{0, 0};
   if (nodes_eta > 1)
     eta = table_place((index_ratio(context) - context.compensation[2]) * context.compensation[3], nodes_eta);

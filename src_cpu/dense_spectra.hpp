@@ -49,7 +49,7 @@ struct DenseSpectra {
   double emission_factor(std::size_t channel) const { return emission_factor_[channel]; }
   const float* zeros() const { return zeros_.get(); }
   /// Planck's law at a temperature that no row has, in film units, times `emissivity` (null: 1). Double
-  /// precision, one exponential a channel (about 6 ns): the relative error is that of the stored float. out:
+  /// precision, one exponential a channel (about 4 ns): the relative error is that of the stored float. out:
   /// padded_channels() floats
   void fill_planck(double temperature_k, const float* emissivity, float* out);
   std::size_t padded_channels() const { return padded_; }

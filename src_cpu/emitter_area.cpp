@@ -29,9 +29,16 @@ bool lit_on_both_sides(const KbShape& shape) {
   return shape.flags & KB_SHAPE_LIT_BOTH_SIDES;
 }
 
-/// The side that is seen of a light that shines on both.
+/// A light that shines on both sides lies edge-on to whatever is in its plane, itself too; only rounding
+/// would say which side is seen. Below this cosine it is not sampled: BSDF samples find it.
+constexpr float kEdgeOn = 1e-6f;
+
+/// The side that is seen of a light that shines on both; 0: edge-on.
 glm::vec3 facing_normal(const KbShape& shape, glm::vec3 to_light, glm::vec3 normal) {
-  return lit_on_both_sides(shape) && glm::dot(to_light, normal) > 0 ? -normal : normal;
+  if (!lit_on_both_sides(shape)) return normal;
+  const float away = glm::dot(to_light, normal);
+  if (!(std::fabs(away) > kEdgeOn * glm::length(to_light))) return glm::vec3(0);
+  return away > 0 ? -normal : normal;
 }
 
 /// Completes a sample whose position and normal are known.

@@ -20,10 +20,13 @@ struct Aspect {
 };
 
 Aspect aspect_of(const KbThermal& thermal, glm::vec3 w) {
-  const float x2 = thermal.alpha_u * thermal.alpha_u * w.x * w.x,
-              y2 = thermal.alpha_v * thermal.alpha_v * w.y * w.y;
-  const float root2 = x2 + y2, cosine = std::min(std::abs(w.z), 1.0f);
-  return {cosine, cosine / (cosine + std::sqrt(root2)), root2 > 0 ? y2 / root2 : 0, w.z < 0};
+  const float ax = thermal.alpha_u * w.x, ay = thermal.alpha_v * w.y;
+  const float cosine = std::min(std::abs(w.z), 1.0f);
+  const bool glass = thermal.flags & KB_THERMAL_TRANSMITS;
+  const float px = glass ? std::sqrt(std::sqrt(thermal.alpha_u)) * w.x : ax;
+  const float py = glass ? std::sqrt(std::sqrt(thermal.alpha_v)) * w.y : ay;
+  const float sum = px * px + py * py;
+  return {cosine, cosine / (cosine + std::sqrt(ax * ax + ay * ay)), sum > 0 ? py * py / sum : 0, w.z < 0};
 }
 
 /// Linear between equidistant nodes; position in units of nodes.

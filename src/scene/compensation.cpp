@@ -25,13 +25,18 @@ void append_grid(const KbMaterial& material, const std::function<double(const gl
     const double s = nodes_s > 1 ? static_cast<double>(j) / (nodes_s - 1) : 0;
     for (int i = 0; i < KB_COMPENSATION_NODES; ++i) {
       const double x = static_cast<double>(i) / (KB_COMPENSATION_NODES - 1);
-      out.push_back(static_cast<float>(f(compensation_direction(facets, x, s))));
+      out.push_back(static_cast<float>(f(compensation_direction(facets, x, s, transmits(material)))));
     }
   }
 }
 
-double scattered(const Facets& facets, const glm::dvec3& v, double eta) {
-  const Albedo albedo = boundary_albedo(facets, v, eta);
+/// Of anisotropic dielectrics, whose tables are coarse in s anyway, with fewer nodes: seconds are at stake.
+Albedo table_albedo(const KbMaterial& material, const Facets& facets, const glm::dvec3& v, double eta) {
+  return boundary_albedo(facets, v, eta, is_anisotropic(material) ? kFacetNodes / 2 : kFacetNodes);
+}
+
+double scattered(const KbMaterial& material, const Facets& facets, const glm::dvec3& v, double eta) {
+  const Albedo albedo = table_albedo(material, facets, v, eta);
   return albedo.reflected + albedo.transmitted;
 }
 
@@ -69,7 +74,8 @@ std::vector<float> make_compensation_table(const KbMaterial& material, const Ind
     for (int i = 0; i < nodes; ++i) {
       const double eta = index.min + i * step;
       append_grid(
-          material, [&](const glm::dvec3& v) { return scattered(facets, v, inside ? 1 / eta : eta); }, table);
+          material,
+          [&](const glm::dvec3& v) { return scattered(material, facets, v, inside ? 1 / eta : eta); }, table);
     }
   }
   return table;
@@ -91,7 +97,7 @@ std::vector<float> make_reflected_part(const KbMaterial& material) {
     append_grid(
         material,
         [&](const glm::dvec3& v) {
-          const Albedo albedo = boundary_albedo(facets, v, eta);
+          const Albedo albedo = table_albedo(material, facets, v, eta);
           return albedo.reflected / (albedo.reflected + albedo.transmitted);
         },
         table);

@@ -257,9 +257,10 @@ Albedo boundary_albedo(const Facets& facets, const glm::dvec3& v, double eta, in
   return sum;
 }
 
-glm::dvec3 compensation_direction(const Facets& facets, double x, double s) {
-  const glm::dvec2 azimuth =
-      glm::normalize(glm::dvec2(std::sqrt(1 - s) / facets.alpha_u, std::sqrt(s) / facets.alpha_v));
+glm::dvec3 compensation_direction(const Facets& facets, double x, double s, bool dielectric) {
+  const double exponent = dielectric ? 0.25 : 1;
+  const glm::dvec2 azimuth = glm::normalize(glm::dvec2(std::sqrt(1 - s) / std::pow(facets.alpha_u, exponent),
+                                                       std::sqrt(s) / std::pow(facets.alpha_v, exponent)));
   const double alpha = std::hypot(facets.alpha_u * azimuth.x, facets.alpha_v * azimuth.y);
   const double sine = (1 - x) / std::hypot(1 - x, alpha * x),
                cosine = alpha * x / std::hypot(1 - x, alpha * x);

@@ -55,7 +55,8 @@ double mirror_albedo(const Facets& facets, const glm::dvec3& v, int nodes = kFac
 /// index
 Albedo boundary_albedo(const Facets& facets, const glm::dvec3& v, double eta, int nodes = kFacetNodes);
 
-/// The direction at a position of the compensation tables' grid: x, s in [0, 1] (shared/thermal.h).
-glm::dvec3 compensation_direction(const Facets& facets, double x, double s);
+/// The direction at a position of the compensation tables' grid: x, s in [0, 1] (shared/thermal.h), of
+/// dielectrics or others.
+glm::dvec3 compensation_direction(const Facets& facets, double x, double s, bool dielectric);
 
 }  // namespace kiloband

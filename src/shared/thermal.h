@@ -12,10 +12,10 @@
    specular lobe of plastics by 1 / E.
 
    The table: a header, then E at KB_COMPENSATION_NODES positions x for each node of s, of the relative index, of the
-   side (dielectrics: outside, inside), the last being outermost; linear in between. With x' = alpha_u wi.x, y' = alpha_v
-   wi.y, root = hypot(x', y'):
-     x = |wi.z| / (|wi.z| + root) in [0, 1],   s = y'^2 / root^2 in [0, 1] (0 where root is 0),
-   in which E is smooth for any roughness. */
+   side (dielectrics: outside, inside), the last being outermost; linear in between. In the local frame
+     x = |z| / (|z| + hypot(alpha_u x, alpha_v y)) in [0, 1],
+     s = (p y)^2 / ((o x)^2 + (p y)^2) in [0, 1] (0 where both are 0), o and p = alpha_u and alpha_v, whose fourth roots
+         for dielectrics, where the true azimuth counts too (Fresnel's reflectance, total reflection). */
 #define KB_COMPENSATION_NODES 257
 #define KB_COMPENSATION_HEADER 4 /* nodes of s, nodes of the index, first index, index nodes per unit of the index */
 

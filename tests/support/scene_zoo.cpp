@@ -251,7 +251,7 @@ std::vector<ZooScene> make_scenes() {
        kCurved},
       {"thermal", scene(6, perspective(film("gaussian")), room() + hot_things() + hot("1900")), kCurved},
       {"temperature_field",
-       scene(6, perspective(film("gaussian")), room() + ceiling_lamp() + heated_shapes()), kCurved},
+       scene(6, perspective(film("gaussian")), room() + ceiling_lamp() + heated_shapes())},
       {"hidden_emitters",
        scene(6, thinlens(film("box")), objects + glowing_shapes() + kEnvmap, yes("hide_emitters"))},
   };
