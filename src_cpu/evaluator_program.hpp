@@ -23,6 +23,7 @@ class ProgramBuilder {
   void add_vertex(const KbPathVertex& vertex, const KbTextureSample* samples, bool last,
                   DenseSpectra& spectra);
   void add_general(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
+  void add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions, DenseSpectra& spectra);
   void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
   const TextureTerms* texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
 
@@ -30,7 +31,8 @@ class ProgramBuilder {
   std::vector<PathStep> steps_;
   std::vector<GeneralVertex> generals_;  // reserved: steps point into it
   std::vector<TextureTerms> textures_;   // reserved: generals point into it
-  bool textured_ = false;
+  std::vector<KbPlumeCell> cells_;       // reserved: generals point into it
+  bool textured_ = false, gas_ = false;
 };
 
 }  // namespace kiloband

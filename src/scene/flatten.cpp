@@ -32,6 +32,7 @@ FlatScene Flattener::run() {
   compute_bounds();
   add_emitters();
   select_emitters();
+  add_media();
   set_channel_scales();
   set_camera();
   out_.positions.push_back({0, 0, 0});  // see FlatScene
@@ -60,7 +61,9 @@ std::vector<std::string> SceneFeatures::names() const {
                                               {"constant environment", constant_light},
                                               {"environment map", envmap_light},
                                               {"delta light", delta_light},
-                                              {"analytic shapes", analytic_shapes}};
+                                              {"analytic shapes", analytic_shapes},
+                                              {"gas", gas},
+                                              {"plume", plume}};
   std::vector<std::string> present;
   for (const auto& [name, is_present] : all) {
     if (is_present) present.emplace_back(name);

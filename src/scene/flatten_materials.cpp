@@ -148,8 +148,9 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf) {
   const KbMaterial record = std::visit(
       [&](const auto& model) -> KbMaterial {
         using Model = std::decay_t<decltype(model)>;
-        if constexpr (std::is_same_v<Model, TwoSidedBsdf> || std::is_same_v<Model, MaskBsdf>) {
-          throw InputError(bsdf->position, name + ": a twosided or mask bsdf cannot be nested here");
+        if constexpr (std::is_same_v<Model, TwoSidedBsdf> || std::is_same_v<Model, MaskBsdf> ||
+                      std::is_same_v<Model, NullBsdf>) {
+          throw InputError(bsdf->position, name + ": a twosided, mask or null bsdf cannot be nested here");
         } else {
           return make(model, name, bsdf->position);
         }
@@ -186,7 +187,10 @@ uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf) {
     set_opacity(record, *mask, {describe(*bsdf) + ": opacity", bsdf->position, false});
     inner = mask->nested;
   }
-  if (const auto* two_sided = std::get_if<TwoSidedBsdf>(&inner->model)) {
+  if (std::holds_alternative<NullBsdf>(inner->model)) {
+    record.front = KB_NONE;
+    record.flags |= KB_SURFACE_NULL;
+  } else if (const auto* two_sided = std::get_if<TwoSidedBsdf>(&inner->model)) {
     record.front = material(two_sided->front);
     record.back = two_sided->back ? material(two_sided->back) : record.front;
     record.flags |= KB_SURFACE_TWO_SIDED;

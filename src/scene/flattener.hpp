@@ -42,6 +42,15 @@ class Flattener {
   void add_areas(KbShape& record, const Shape& shape);
   void compute_bounds();
 
+  // flatten_media.cpp
+  void add_media();
+  uint32_t medium(const std::shared_ptr<const Medium>& medium);
+  uint32_t add_medium(const KbMedium& record, const std::string& name, const SourcePosition& position);
+  uint32_t interior(uint32_t shape_index);
+  void set_grid(KbMedium& record, const GridField& grid);
+  void set_jet(KbMedium& record, const JetField& jet);
+  void set_ladder(KbMedium& record) const;
+
   // flatten_emitters.cpp
   void add_emitters();
   void add_area_emitter(uint32_t shape_index);
@@ -57,7 +66,7 @@ class Flattener {
   const FlattenOptions& options_;
   FlatScene out_;
   SpectrumTableBuilder spectra_;
-  std::map<const void*, uint32_t> surfaces_, materials_, checkerboards_;
+  std::map<const void*, uint32_t> surfaces_, materials_, checkerboards_, media_;
   std::map<std::pair<const void*, BitmapUse>, uint32_t> bitmaps_;
   uint32_t d65_row_ = KB_NONE;
   /// Per emitter: the spectrum that stands for its colour and the factor that makes it a power (W/nm).

@@ -21,6 +21,7 @@ struct ReadContext {
   std::map<const Node*, Texture> textures;                    // bitmaps and checkerboards
   std::map<std::string, std::shared_ptr<const Mesh>> meshes;  // by file and options
   std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const Image>> images;  // by file and raw
+  std::map<const Node*, std::shared_ptr<const Medium>> media;
 
   /// The existing file that a parameter names. throws InputError at its value
   std::filesystem::path file(const ObjectReader& object, std::string_view parameter);
@@ -41,7 +42,8 @@ auto load_at(const Place& place, Loader&& loader) {
 enum class SpectrumUse {
   kReflectance,  // numbers flat, colours upsampled, all in [0, 1]
   kEmission,     // numbers and colours times D65, all >= 0
-  kQuantity      // numbers flat, colours upsampled, all >= 0: indices, absorption, sensor responses
+  kQuantity,     // numbers flat, colours upsampled, all >= 0: indices, sensor responses
+  kAbsorption    // the same in 1/m; files may be in 1/cm
 };
 
 /// A spectral parameter; `fallback` where the file has none.
@@ -64,6 +66,9 @@ Texture read_texture_object(ReadContext& context, Node& node);
 void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place);
 
 std::shared_ptr<const Bsdf> read_bsdf(ReadContext& context, Node& node);
+std::shared_ptr<const Medium> read_medium(ReadContext& context, Node& node);
+/// The medium inside a shape, or null. throws InputError  a medium that is not named "interior"
+std::shared_ptr<const Medium> read_interior(ReadContext& context, const ObjectReader& shape);
 Shape read_shape(ReadContext& context, Node& node);
 AreaEmitter read_area_emitter(ReadContext& context, Node& node);
 Emitter read_emitter(ReadContext& context, Node& node);

@@ -28,15 +28,32 @@ uint32_t SpectrumTableBuilder::row(const Spectrum& spectrum, const SpectrumSourc
   if (spectrum.is_constant()) {
     if (const auto found = constants_.find(key); found != constants_.end()) return found->second;
   }
-  if (scene_.spectra.size() >= kMaxRows) {
-    throw InputError(use.position, fmt::format("{}: more than {} different spectra", use.name, kMaxRows));
-  }
+  check_count(use);
   check_range(spectrum, use);
   scene_.spectra.push_back(make_row(spectrum, use));
   scene_.spectra.back().bound = static_cast<float>(bound(spectrum));
   const auto index = static_cast<uint32_t>(scene_.spectra.size() - 1);
   if (spectrum.is_constant()) constants_[key] = index;
   return index;
+}
+
+uint32_t SpectrumTableBuilder::absorption_row(const Spectrum& spectrum, GasSpectrum treatment,
+                                              const SpectrumSource& use) {
+  check_count(use);
+  check_range(spectrum, use);
+  SpectrumRow row;
+  row.name = use.name;
+  ChannelKnots knots = sampled_knots(spectrum, scene_.channels, use.name);
+  if (treatment == GasSpectrum::kCorrelatedK) knots = sorted_knots(knots);
+  row.absorption = std::make_shared<const ChannelKnots>(std::move(knots));
+  row.bound = static_cast<float>(bound(spectrum));
+  scene_.spectra.push_back(std::move(row));
+  return static_cast<uint32_t>(scene_.spectra.size() - 1);
+}
+
+void SpectrumTableBuilder::check_count(const SpectrumSource& use) const {
+  if (scene_.spectra.size() < kMaxRows) return;
+  throw InputError(use.position, fmt::format("{}: more than {} different spectra", use.name, kMaxRows));
 }
 
 SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const SpectrumSource& use) const {

@@ -25,12 +25,17 @@ class SpectrumTableBuilder {
   /// bound
   uint32_t row(const Spectrum& spectrum, const SpectrumSource& use);
 
+  /// Row of a gas's absorption coefficient, by its very knots (SpectrumRow::absorption).
+  /// throws InputError  as row()
+  uint32_t absorption_row(const Spectrum& spectrum, GasSpectrum treatment, const SpectrumSource& use);
+
   /// Mean over the guide bands (each band one vote).
   double guide_mean(const Spectrum& spectrum) const;
   /// Upper bound over guide bands and rendered channels.
   double bound(const Spectrum& spectrum) const;
 
  private:
+  void check_count(const SpectrumSource& use) const;
   void check_range(const Spectrum& spectrum, const SpectrumSource& use) const;
   SpectrumRow make_row(const Spectrum& spectrum, const SpectrumSource& use) const;
 

@@ -11,7 +11,17 @@
 #include "shared/lang.h"
 #include "shared/records.h"
 
+#ifndef KB_CHUNK_SLOTS
 #define KB_CHUNK_SLOTS 4u
+#endif
+/* With the method pt a slot's chunk holds what a path appends between two updates: in scenes with gas more.
+ */
+#define KB_PT_GAS_CHUNK_SLOTS 40u
+
+/* Interiors that a path may be in at a time; a sample that is in more of them is invalid. */
+#define KB_MEDIUM_DEPTH 4
+/* Gases that a shadow ray may pass; one that passes more makes its sample invalid. */
+#define KB_SHADOW_MEDIA 8u
 
 /* ---- the scene beside its arrays
  * --------------------------------------------------------------------------------- */
@@ -26,8 +36,10 @@ typedef struct {
   kb_u32 unit_row;     /* a reflectance of 1, or KB_NONE */
   kb_u32 envmap_width; /* cells of the environment map's distribution */
   kb_u32 envmap_height;
-  float filter_ratio; /* gaussian: radius / stddev of the table */
-  kb_u32 reserved[6];
+  float filter_ratio;                   /* gaussian: radius / stddev of the table */
+  kb_u32 atmosphere;                    /* medium outside all interiors, or KB_NONE */
+  kb_u16 camera_media[KB_MEDIUM_DEPTH]; /* where rays begin: as KbGasState::inside */
+  kb_u32 reserved[3];
 } KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
 
@@ -108,6 +120,20 @@ typedef struct {
   kb_u32 lit;      /* arena slots up to and with the last vertex that has light */
 } KbPathState;
 KB_STATIC_ASSERT(sizeof(KbPathState) == 32, path_state_size);
+
+/* In scenes with gas: where a path is. */
+#define KB_ESCAPE_UNKNOWN 0u
+#define KB_ESCAPE_YES 1u
+#define KB_ESCAPE_NO 2u
+typedef struct {
+  kb_u16 inside[KB_MEDIUM_DEPTH]; /* medium + 1 of the interiors entered and not left, in order; 0: none */
+  kb_u16 shadow_inside[KB_MEDIUM_DEPTH]; /* the same where the shadow ray begins */
+  kb_u32 crossings;                      /* null boundaries passed */
+  kb_u32 escape;                         /* KB_ESCAPE_*: whether the ray at hand leaves the scene */
+  float atmosphere_column;               /* m, passed on a ray that leaves the scene */
+  float begin, shadow_begin; /* ray parameter of the surface that the ray left: its origin is off it */
+} KbGasState;
+KB_STATIC_ASSERT(sizeof(KbGasState) == 36, gas_state_size);
 
 /* A pixel of the round. */
 typedef struct {

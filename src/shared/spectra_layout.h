@@ -17,7 +17,8 @@ typedef struct {
   kb_u32 overlapping;    /* 0: every wavelength is covered once, KbCover is not read */
   kb_u32 film_width;     /* of the full film, pixels */
   kb_u32 film_columns;   /* floats of a film pixel: stride, and D rounded up to a multiple of 16 */
-  kb_u32 reserved[2];
+  kb_u32 lambda_row;     /* lambda_k, nm; 0xffffffff where the scene has no plume */
+  kb_u32 reserved;
 } KbSpectraLayout;
 KB_STATIC_ASSERT(sizeof(KbSpectraLayout) == 48, spectra_layout_size);
 
