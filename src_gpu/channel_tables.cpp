@@ -41,6 +41,26 @@ RowFunction wavelength_row() {
   return f;
 }
 
+/// Floats before the knots of a gas's row: where each channel's begin.
+std::size_t line_heads(const ChannelKnots& lines) {
+  return padded(lines.first.size());
+}
+
+std::size_t line_floats(const ChannelKnots& lines) {
+  return line_heads(lines) + padded(2 * lines.mu.size());
+}
+
+/// See line_value() of kernels/spectral_row.clh.
+void fill_lines(const ChannelKnots& lines, float* nodes) {
+  const std::size_t heads = line_heads(lines);
+  for (std::size_t k = 0; k < lines.first.size(); ++k)
+    nodes[k] = kb_as_f32(static_cast<uint32_t>(heads + 2 * std::size_t{lines.first[k]}));
+  for (std::size_t i = 0; i < lines.mu.size(); ++i) {
+    nodes[heads + 2 * i] = static_cast<float>(lines.mu[i]);
+    nodes[heads + 2 * i + 1] = static_cast<float>(lines.value[i]);
+  }
+}
+
 /// Collects rows, then makes their nodes.
 class TableMaker {
  public:
@@ -55,7 +75,8 @@ class TableMaker {
  private:
   struct Row {
     RowFunction function;
-    std::vector<double> factor;  // by channel; empty: 1
+    std::vector<double> factor;            // by channel; empty: 1
+    const ChannelKnots* lines = nullptr;  // a gas's: then there is no function
   };
 
   void add_spectra();
@@ -84,8 +105,12 @@ const SpectrumRow& TableMaker::spectrum(uint32_t row) const {
 }
 
 void TableMaker::add_spectra() {
-  for (const SpectrumRow& row : scene_.spectra)
-    rows_.push_back({spectrum_row(row), row.is_emission ? emission_factor_ : std::vector<double>()});
+  for (const SpectrumRow& row : scene_.spectra) {
+    if (row.absorption)
+      rows_.push_back({{}, {}, row.absorption.get()});
+    else
+      rows_.push_back({spectrum_row(row), row.is_emission ? emission_factor_ : std::vector<double>(), nullptr});
+  }
   for (const KbTexture& texture : scene_.textures)
     if (texture.illuminant_row != KB_NONE) rows_.at(texture.illuminant_row).factor = emission_factor_;
 }
@@ -94,17 +119,23 @@ void TableMaker::add_unit_rows() {
   out_.layout.unit_row = static_cast<uint32_t>(rows_.size());
   RowFunction one;
   one.value = [](double) { return 1.0; };
-  rows_.push_back({one, emission_factor_});
+  rows_.push_back({one, emission_factor_, nullptr});
   out_.layout.wavelength_row = static_cast<uint32_t>(rows_.size());
-  rows_.push_back({wavelength_row(), {}});
+  rows_.push_back({wavelength_row(), {}, nullptr});
+  out_.layout.lambda_row = KB_NONE;
+  if (!scene_.features.plume) return;
+  out_.layout.lambda_row = static_cast<uint32_t>(rows_.size());
+  RowFunction lambda;
+  lambda.value = [](double lambda_nm) { return lambda_nm; };
+  rows_.push_back({lambda, {}, nullptr});
 }
 
 /// n - 1 and k.
 void TableMaker::add_conductor(const KbMaterial& material) {
   RowFunction index = spectrum_row(spectrum(material.eta_row));
   index.value = [n = index.value](double lambda_nm) { return n(lambda_nm) - 1; };
-  rows_.push_back({std::move(index), {}});
-  rows_.push_back({spectrum_row(spectrum(material.k_row)), {}});
+  rows_.push_back({std::move(index), {}, nullptr});
+  rows_.push_back({spectrum_row(spectrum(material.k_row)), {}, nullptr});
 }
 
 /// Interior over exterior index, minus 1: matched boundaries keep their digits.
@@ -122,7 +153,7 @@ void TableMaker::add_dispersive(const KbMaterial& material) {
       return (interior(x) - exterior(x)) / exterior(x);
     };
   }
-  rows_.push_back({std::move(relative), {}});
+  rows_.push_back({std::move(relative), {}, nullptr});
 }
 
 void TableMaker::add_materials() {
@@ -161,13 +192,17 @@ void TableMaker::add_derived() {
     if (scale == 0) scale = 1;
     for (double& f : factor) f /= scale;
     out_.derived_scale.push_back(scale);
-    rows_.push_back({RowFunction::of_table(response), std::move(factor)});
+    rows_.push_back({RowFunction::of_table(response), std::move(factor), nullptr});
   }
 }
 
 std::vector<RowCells> TableMaker::choose() const {
   std::vector<RowCells> cells;
   for (const Row& row : rows_) {
+    if (row.lines) {
+      cells.push_back({0, 0, false});
+      continue;
+    }
     cells.push_back(choose_cells(row.function, scene_.channels, options_.relative_error,
                                  kAcceptedFactor * options_.relative_error, options_.max_cells));
   }
@@ -184,7 +219,7 @@ void TableMaker::fit(std::vector<RowCells>& cells) const {
   };
   while (bytes() > options_.max_bytes) {
     const auto largest = std::ranges::max_element(cells, {}, &RowCells::cells);
-    if (largest->cells == 1) return;
+    if (largest->cells <= 1) return;
     largest->cells /= 2;
     const auto row = static_cast<std::size_t>(largest - cells.begin());
     largest->error = error_of_cells(rows_[row].function, scene_.channels, largest->cells);
@@ -198,14 +233,19 @@ void TableMaker::fill(const std::vector<RowCells>& cells) {
     out_.tables.push_back({static_cast<uint32_t>(size), row.cells});
     out_.error.push_back(row.error);
     out_.has_jump.push_back(row.has_jump);
-    size += (std::size_t{row.cells} + 1) * stride;
+    const ChannelKnots* lines = rows_[out_.tables.size() - 1].lines;
+    size += lines ? line_floats(*lines) : (std::size_t{row.cells} + 1) * stride;
     if (size > std::numeric_limits<uint32_t>::max())
       throw std::logic_error("channel tables: more nodes than 32 bits count");
   }
   out_.nodes.assign(size, 0.0f);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
-    fill_nodes(rows_[r].function, scene_.channels, rows_[r].factor, cells[r].cells, stride,
-               out_.nodes.data() + out_.tables[r].first);
+    float* nodes = out_.nodes.data() + out_.tables[r].first;
+    if (rows_[r].lines) {
+      fill_lines(*rows_[r].lines, nodes);
+      continue;
+    }
+    fill_nodes(rows_[r].function, scene_.channels, rows_[r].factor, cells[r].cells, stride, nodes);
   }
 }
 

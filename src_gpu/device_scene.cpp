@@ -42,6 +42,8 @@ std::vector<std::string> scene_defines(const SceneFeatures& f, bool specialised)
       {"ENVMAP_LIGHT", f.envmap_light},
       {"DELTA_LIGHT", f.delta_light},
       {"ANALYTIC_SHAPES", f.analytic_shapes},
+      {"GAS", f.gas},
+      {"PLUME", f.plume},
   };
   std::vector<std::string> defines{"KB_SPECIALISED"};
   for (const auto& [name, present] : features) {
@@ -62,6 +64,9 @@ KbSceneConstants scene_constants(const FlatScene& scene) {
   c.unit_row = scene.unit_row;
   c.envmap_width = scene.envmap.width;
   c.envmap_height = scene.envmap.height;
+  c.atmosphere = scene.atmosphere;
+  std::ranges::copy(scene.camera_media, c.camera_media);
+  c.gas = scene.features.gas ? 1 : 0;
   if (scene.camera.filter == KB_FILTER_GAUSSIAN)
     c.filter_ratio = scene.camera.filter_radius / scene.camera.filter_stddev;
   return c;
@@ -88,13 +93,16 @@ DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
       emitter_cdf_(memory.upload("emitter distribution", scene.emitter_cdf)),
       envmap_marginal_(memory.upload("environment rows", scene.envmap.marginal_cdf)),
       envmap_rows_(memory.upload("environment distribution", scene.envmap.row_cdf)),
+      media_(memory.upload("media", scene.media)),
+      plume_nodes_(memory.upload("plumes", scene.plume_nodes)),
+      interiors_(memory.upload("interiors", scene.interiors)),
       filter_table_(memory.upload("filter table", filter_nodes(scene.camera))) {}
 
 void DeviceScene::bind(Kernel& kernel, uint32_t first) const {
   kernel.set_from(first, constants_, materials_, material_tables_, surfaces_, shapes_, textures_,
                   checkerboards_, texels_, texel_bounds_, spectrum_bounds_, normals_, uvs_, positions_,
-                  triangles_, area_cdf_, emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_,
-                  filter_table_);
+                  triangles_, area_cdf_, emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_, media_,
+                  plume_nodes_, interiors_, filter_table_);
 }
 
 DeviceBvh::DeviceBvh(DeviceMemory& memory, const Bvh& bvh)

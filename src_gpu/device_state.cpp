@@ -11,11 +11,24 @@ namespace {
 /// Rays of a launch that cannot be measured beforehand: short on any device.
 constexpr uint32_t kAuxiliaryPixels = 1u << 15;
 
+/// With the method pt and gas a slot's chunk takes more vertices than the usual one.
+void add_chunk_define(std::vector<std::string>& defines, const HostScene& host, Method method) {
+  if (method == Method::kPt && host.scene.features.gas)
+    defines.push_back("KB_CHUNK_SLOTS=" + std::to_string(KB_PT_GAS_CHUNK_SLOTS) + "u");
+}
+
 std::vector<std::string> path_defines(const HostScene& host, const DeviceSettings& settings) {
   std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
   // In steps of 8: scenes whose trees differ a little share a program.
   defines.push_back("KB_BVH_STACK=" + std::to_string(host.bvh.stack_entries() / 8 * 8 + 8));
   if (settings.method == Method::kPt) defines.push_back("KB_METHOD_PT=1");
+  add_chunk_define(defines, host, settings.method);
+  return defines;
+}
+
+std::vector<std::string> evaluation_defines(const HostScene& host, const DeviceSettings& settings) {
+  std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
+  add_chunk_define(defines, host, settings.method);
   return defines;
 }
 
@@ -56,7 +69,8 @@ uint64_t DeviceState::table_bytes() const {
   return gpu::table_bytes(host_.spectra.layout, shape_);
 }
 uint64_t DeviceState::slot_bytes() const {
-  return gpu::slot_bytes(host_.spectra.layout, shape_);
+  const uint64_t vertices = method == Method::kPt && has_gas() ? KB_PT_GAS_CHUNK_SLOTS * sizeof(KbPathVertex) : 0;
+  return gpu::slot_bytes(host_.spectra.layout, shape_) + vertices;
 }
 
 void DeviceState::release_pool() {
@@ -68,8 +82,7 @@ void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels) {
   release_pool();
   pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size);
   evaluation_.emplace(context, memory, host_.spectra.layout, shape_,
-                      scene_defines(host_.scene.features, settings_.specialised), settings_.program_cache,
-                      size, film_pixels);
+                      evaluation_defines(host_, settings_), settings_.program_cache, size, film_pixels);
   evaluation_->bind(scene_, spectra_, *pool_);
 }
 

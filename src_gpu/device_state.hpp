@@ -52,6 +52,7 @@ class DeviceState {
   uint64_t film_bytes_per_pixel() const;
   uint64_t table_bytes() const;
   uint64_t slot_bytes() const;
+  bool has_gas() const { return host_.scene.features.gas; }
 
   void clear_film(uint64_t pixels);
   /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's

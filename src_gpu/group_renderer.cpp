@@ -67,6 +67,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels) const {
   r.most_slots = most_slots_;
   r.most_jobs = most_jobs(device_, most_slots_);
   r.chunks_per_path = chunks_per_path_;
+  r.gas = device_.has_gas();
   return r;
 }
 

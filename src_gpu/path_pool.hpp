@@ -15,10 +15,12 @@ namespace kiloband::gpu {
 /// Capacities. Bytes of each: see path_pool_bytes().
 struct PoolSize {
   uint32_t slots = 0;         // paths in flight
-  uint32_t arena_chunks = 0;  // of KB_CHUNK_SLOTS vertices; the method pt has one per slot
+  uint32_t arena_chunks = 0;  // the method pt has one per slot
   uint32_t jobs = 0;          // largest samples * padded_pixels of a round
   uint32_t pixels = 0;        // largest padded_pixels of a round
   uint32_t tables = 0;        // largest blocks * samples of a round
+  bool gas = false;           // the scene has gas
+  uint32_t chunk_slots = KB_CHUNK_SLOTS;  // vertices of a chunk
 };
 
 uint64_t path_pool_bytes(const PoolSize& size);
@@ -85,6 +87,7 @@ class PathPool {
   DeviceBuffer<uint32_t> chunk_next_;
   DeviceBuffer<KbSavedPath> saved_;
   DeviceBuffer<KbFaults> faults_;
+  DeviceBuffer<KbGasState> gas_;
   DeviceBuffer<uint64_t> tallies_;  // by slot: rays in the low word, vertices in the high one
   DeviceBuffer<uint32_t> queue_, packed_;
   Kernel reset_, generate_, closest_, shade_, any_, compact_;

@@ -38,6 +38,7 @@ uint64_t expected_chunks(const PlanRequest& r, uint64_t jobs) {
 /// Bytes of paths in a round of `jobs` (dpept).
 uint64_t bytes_of_jobs(const PlanRequest& r, uint64_t jobs, uint64_t slots) {
   PoolSize size;
+  size.gas = r.gas;
   size.slots = to_u32(slots);
   size.jobs = to_u32(jobs);
   size.pixels = to_u32(jobs);
@@ -103,6 +104,8 @@ RoundPlan plan_rounds(const PlanRequest& r) {
     plan.pool.slots /= 2;
   plan.pool.pixels = plan.round_pixels + (pt ? plan.pool.slots : 0);
   plan.pool.jobs = pt ? 1 : to_u32(plan.round_jobs);
+  plan.pool.gas = r.gas;
+  if (pt && r.gas) plan.pool.chunk_slots = KB_PT_GAS_CHUNK_SLOTS;
   plan.pool.arena_chunks = pt ? plan.pool.slots : to_u32(arena_chunks(r, plan.pool, plan.round_jobs));
   return plan;
 }

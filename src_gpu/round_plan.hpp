@@ -23,6 +23,7 @@ struct PlanRequest {
   uint32_t most_slots = 1;     // paths in flight that the device gains from
   uint64_t most_jobs = 1;      // paths per round that it gains from
   double chunks_per_path = 3;  // expected
+  bool gas = false;            // the scene has gas
 };
 
 struct RoundPlan {

@@ -39,7 +39,8 @@ typedef struct {
   float filter_ratio;                   /* gaussian: radius / stddev of the table */
   kb_u32 atmosphere;                    /* medium outside all interiors, or KB_NONE */
   kb_u16 camera_media[KB_MEDIUM_DEPTH]; /* where rays begin: as KbGasState::inside */
-  kb_u32 reserved[3];
+  kb_u32 gas;         /* 1: the scene has media or null boundaries */
+  kb_u32 reserved[2];
 } KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
 
@@ -204,7 +205,7 @@ KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
    at nodes[first + j * stride + k], j = 0 .. cells. */
 typedef struct {
   kb_u32 first;
-  kb_u32 cells; /* at least 1 */
+  kb_u32 cells; /* at least 1; 0: a gas's row, kernels/spectral_row.clh has its layout */
 } KbChannelTable;
 KB_STATIC_ASSERT(sizeof(KbChannelTable) == 8, channel_table_size);
 

@@ -172,7 +172,7 @@ KB_FN float kb_plume_stop(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
 typedef struct {
   float stop;
   KbGasPoint middle, end;
-  float half, column; /* m, of its first half and of all of it */
+  float first_half, column; /* m, of its first half and of all of it */
 } KbPlumeStep;
 
 /* The parabola through three values over h: h / 6 (a + 4 m + b), its first half h / 24 (5 a + 8 m - b). */
@@ -183,7 +183,7 @@ KB_FN KbPlumeStep kb_plume_try(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_G
   s.end = kb_plume_at(w, m, nodes, s.stop);
   const float width = m->scale * (s.stop - w->at);
   s.column = width / 6.0f * (w->last_scale + 4.0f * s.middle.scale + s.end.scale);
-  s.half = width / 24.0f * (5.0f * w->last_scale + 8.0f * s.middle.scale - s.end.scale);
+  s.first_half = width / 24.0f * (5.0f * w->last_scale + 8.0f * s.middle.scale - s.end.scale);
   return s;
 }
 
@@ -204,7 +204,7 @@ KB_FN float kb_plume_column(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_GLOB
 KB_FN float kb_plume_bend(const KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, const KbPlumeStep* s,
                           const float* below) {
   float middle[KB_PLUME_LADDER], largest = 0.0f;
-  const float share = s->column > 0.0f ? s->half / s->column : 0.5f;
+  const float share = s->column > 0.0f ? s->first_half / s->column : 0.5f;
   kb_plume_ladder(m, s->middle.temperature_k, middle);
   for (int j = 0; j < KB_PLUME_LADDER; ++j)
     largest = kb_fmax(largest, kb_fabs(middle[j] - kb_plume_mix(w->last[j], below[j], share)));
