@@ -75,7 +75,7 @@ class TableMaker {
  private:
   struct Row {
     RowFunction function;
-    std::vector<double> factor;            // by channel; empty: 1
+    std::vector<double> factor;           // by channel; empty: 1
     const ChannelKnots* lines = nullptr;  // a gas's: then there is no function
   };
 
@@ -109,7 +109,8 @@ void TableMaker::add_spectra() {
     if (row.absorption)
       rows_.push_back({{}, {}, row.absorption.get()});
     else
-      rows_.push_back({spectrum_row(row), row.is_emission ? emission_factor_ : std::vector<double>(), nullptr});
+      rows_.push_back(
+          {spectrum_row(row), row.is_emission ? emission_factor_ : std::vector<double>(), nullptr});
   }
   for (const KbTexture& texture : scene_.textures)
     if (texture.illuminant_row != KB_NONE) rows_.at(texture.illuminant_row).factor = emission_factor_;

@@ -69,7 +69,8 @@ uint64_t DeviceState::table_bytes() const {
   return gpu::table_bytes(host_.spectra.layout, shape_);
 }
 uint64_t DeviceState::slot_bytes() const {
-  const uint64_t vertices = method == Method::kPt && has_gas() ? KB_PT_GAS_CHUNK_SLOTS * sizeof(KbPathVertex) : 0;
+  const uint64_t vertices =
+      method == Method::kPt && has_gas() ? KB_PT_GAS_CHUNK_SLOTS * sizeof(KbPathVertex) : 0;
   return gpu::slot_bytes(host_.spectra.layout, shape_) + vertices;
 }
 
@@ -81,8 +82,8 @@ void DeviceState::release_pool() {
 void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels) {
   release_pool();
   pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size);
-  evaluation_.emplace(context, memory, host_.spectra.layout, shape_,
-                      evaluation_defines(host_, settings_), settings_.program_cache, size, film_pixels);
+  evaluation_.emplace(context, memory, host_.spectra.layout, shape_, evaluation_defines(host_, settings_),
+                      settings_.program_cache, size, film_pixels);
   evaluation_->bind(scene_, spectra_, *pool_);
 }
 

@@ -88,8 +88,8 @@ class DeviceState {
   std::optional<Evaluation> evaluation_;
 };
 
-/// On PoCL the fastest at every number of channels that was measured, 8 to 1024 (validation/README.md). The paper finds
-/// dpept-path ahead below 16 channels on GPUs with 16-wide SIMD; no GPU has been measured here.
+/// On PoCL the fastest at every number of channels that was measured, 8 to 1024 (validation/README.md). The
+/// paper finds dpept-path ahead below 16 channels on GPUs with 16-wide SIMD; no GPU has been measured here.
 inline constexpr Method kDefaultMethod = Method::kDpeptBatch;
 
 const char* to_string(Method method);

@@ -106,7 +106,8 @@ void print_path_memory(const FlatScene& scene) {
   const bool gas = scene.features.gas;
   const uint64_t slots = (textured ? 2 : 1) + (gas ? 2 : 0);  // gas: a vertex on the way, one for its light
   const uint64_t pt = gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots, gas);
-  const uint64_t dpept = gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots, gas);
+  const uint64_t dpept =
+      gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots, gas);
   fmt::print(
       "opencl path  pt {} bytes with {} channels; dpept-path, dpept-batch {} bytes with {} vertices of {} "
       "bytes\n",

@@ -40,7 +40,8 @@ Pixel parse_pixel(const std::string& text) {
 }
 
 const char* name_of_kind(uint32_t kind) {
-  static constexpr const char* kNames[] = {"scaled", "two-term", "nonlinear", "conductor", "dispersive", "gas"};
+  static constexpr const char* kNames[] = {"scaled",    "two-term",   "nonlinear",
+                                           "conductor", "dispersive", "gas"};
   return kind < std::size(kNames) ? kNames[kind] : "?";
 }
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "scene/channel_knots.hpp"
 #include "scene/description.hpp"
 #include "shared/pipeline.h"
 #include "shared/records.h"
+#include "spectral/channel_knots.hpp"
 #include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 

@@ -9,6 +9,21 @@ typedef struct {
   float temperature_k, scale;
 } KbGasPoint;
 
+/* exp(x) for x <= 0 to 2e-7, 0 below -87: the same bits on host and device, so that both cut a ray into the
+   same cells. x = n ln 2 + r, |r| <= ln 2 / 2, and the series of exp(r) to the sixth power. */
+KB_FN float kb_plume_exp(float x) {
+  if (!(x > -87.0f)) return 0.0f;
+  const float n = kb_floor(x * 1.44269504f + 0.5f);
+  const float r = (x - n * 0.693359375f) + n * 2.12194440e-4f; /* ln 2 in two parts */
+  float sum = 1.0f / 720.0f;
+  sum = sum * r + 1.0f / 120.0f;
+  sum = sum * r + 1.0f / 24.0f;
+  sum = sum * r + 1.0f / 6.0f;
+  sum = sum * r + 0.5f;
+  sum = (sum * r + 1.0f) * r + 1.0f;
+  return sum * kb_as_f32((kb_u32)((kb_i32)n + 127) << 23);
+}
+
 KB_FN float kb_plume_mix(float a, float b, float t) {
   return a + t * (b - a);
 }
@@ -45,7 +60,7 @@ KB_FN KbGasPoint kb_grid_at(KB_GLOBAL const KbMedium* m, KB_GLOBAL const KbFloat
    w)^2) the scale is c and the temperature ambient + c (temperature - ambient). */
 KB_FN KbGasPoint kb_jet_at(KB_GLOBAL const KbMedium* m, KbFloat3 p) {
   const float w = m->radius + m->spread * p.z;
-  const float excess = m->radius / w * kb_exp(-(p.x * p.x + p.y * p.y) / (w * w));
+  const float excess = m->radius / w * kb_plume_exp(-(p.x * p.x + p.y * p.y) / (w * w));
   KbGasPoint gas;
   gas.temperature_k = m->ambient_k + excess * (m->temperature_k - m->ambient_k);
   gas.scale = excess;
@@ -55,7 +70,7 @@ KB_FN KbGasPoint kb_jet_at(KB_GLOBAL const KbMedium* m, KbFloat3 p) {
 /* Planck's law at temperature_k <= reference_k over that at reference_k; x: hc / (k lambda reference_k). */
 KB_FN float kb_planck_below(float x, float reference_k, float temperature_k) {
   const float ratio = reference_k / temperature_k;
-  return kb_exp(-x * (ratio - 1.0f)) * (1.0f - kb_exp(-x)) / (1.0f - kb_exp(-x * ratio));
+  return kb_plume_exp(-x * (ratio - 1.0f)) * (1.0f - kb_plume_exp(-x)) / (1.0f - kb_plume_exp(-x * ratio));
 }
 
 /* Row-major 3x4 matrices. */

@@ -102,7 +102,7 @@ TEST_F(Methods, AgreeForAnyNumberOfChannelsWithResponses) {
 /// Scenes that together need every feature. The kernels are the same text with parts left out, without
 /// contraction: the same bits.
 TEST_F(Methods, SpecialisedKernelsGiveTheSameBits) {
-  for (const char* name : {"diffuse_room", "crop_window", "hidden_emitters"}) {
+  for (const char* name : {"diffuse_room", "crop_window", "hidden_emitters", "plumes"}) {
     const FlatScene scene = folder_.flatten(zoo_scene(name));
     const OpenclOptions specialised;
     for (const std::string& method : {std::string("opencl:dpept-batch")}) {

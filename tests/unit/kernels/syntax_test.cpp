@@ -52,11 +52,13 @@ TEST(KernelSyntax, EveryFileCompilesAlone) {
 }
 
 TEST(KernelSyntax, EveryFeatureCanBeAbsent) {
-  const std::vector<std::string> features{
-      "DIFFUSE",     "CONDUCTOR",      "ROUGH_CONDUCTOR", "DIELECTRIC",     "ROUGH_DIELECTRIC",
-      "PLASTIC",     "ROUGH_PLASTIC",  "TWO_SIDED",       "MASK",           "DISPERSION",
-      "BITMAP",      "CHECKERBOARD",   "AREA_LIGHT",      "CONSTANT_LIGHT", "ENVMAP_LIGHT",
-      "DELTA_LIGHT", "ANALYTIC_SHAPES", "GAS",             "PLUME"};
+  const std::vector<std::string> features{"DIFFUSE",       "CONDUCTOR",        "ROUGH_CONDUCTOR",
+                                          "DIELECTRIC",    "ROUGH_DIELECTRIC", "PLASTIC",
+                                          "ROUGH_PLASTIC", "TWO_SIDED",        "MASK",
+                                          "DISPERSION",    "BITMAP",           "CHECKERBOARD",
+                                          "AREA_LIGHT",    "CONSTANT_LIGHT",   "ENVMAP_LIGHT",
+                                          "DELTA_LIGHT",   "ANALYTIC_SHAPES",  "GAS",
+                                          "PLUME"};
   const auto defines = [&](const std::string& present, const std::string& value, const std::string& others) {
     std::string text = "-DKB_SPECIALISED";
     for (const std::string& f : features) text += " -DKB_HAS_" + f + "=" + (f == present ? value : others);

@@ -1,4 +1,4 @@
-#include "scene/channel_knots.hpp"
+#include "spectral/channel_knots.hpp"
 
 #include <algorithm>
 #include <limits>
