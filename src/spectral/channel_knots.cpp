@@ -125,7 +125,7 @@ class Thinner {
   void finish() { builder_.add(1, last_value_); }
 
  private:
-  static constexpr double kTolerance = 1e-4;
+  static constexpr double kTolerance = 3e-4;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   void keep_last() {

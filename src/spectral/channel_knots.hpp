@@ -28,7 +28,7 @@ struct ChannelKnots {
 ChannelKnots sampled_knots(const Spectrum& spectrum, const ChannelList& channels, const std::string& name);
 
 /// The same values in ascending order: mu is the fraction of the channel where the value is smaller.
-/// Integrals over mu of a function of the value alone are the same (to 1e-4), and smooth integrands.
+/// Integrals over mu of a function of the value alone are the same (to 3e-4), and smooth integrands.
 ChannelKnots sorted_knots(const ChannelKnots& sampled);
 
 }  // namespace kiloband

@@ -3,8 +3,12 @@
 //
 // Tolerance as in device_evaluator_test.cpp. A line's flank of a hundredth of a channel turns the rounding of
 // mu, 3e-8, into 3e-6 of kappa.
+#include <cmath>
+#include <cstring>
+
 #include "../cpu_evaluator/random_gas.hpp"
 #include "device_scene.hpp"
+#include "spectral/planck.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -63,6 +67,50 @@ INSTANTIATE_TEST_SUITE_P(, DeviceGas,
                                   std::to_string(p.param.vectors) +
                                   (p.param.per_path ? "_per_path" : "_shared");
                          });
+
+/// Planck's law relative to a reference, over exponents hc / (k lambda T) of up to 240: plumes of one black
+/// cell.
+TEST(DeviceGasPlanck, RatioOverTheFloatRange) {
+  std::mt19937 random(33);
+  EvaluatorProgram program({16, 1, false, 0});
+  ChannelList channels;
+  for (double nm = 300; nm < 20000; nm *= 1.05) channels.push_back({nm, nm * 1.0001, {}});
+  for (const double reference_k : {200.0, 700.0, 6000.0}) {
+    FlatScene scene = make_scene(channels, random);
+    add_gas(scene, random);
+    scene.spectra.back().temperature_k = reference_k;
+    for (std::size_t k = 0; k < channels.size(); ++k)
+      scene.channel_scale[k] = std::exp2(std::floor(
+          std::log2(planck_radiance(channels[k].centre_nm(), reference_k) * channels[k].width_nm())));
+    PathBuffer paths;
+    for (const double ratio : {1.0, 0.999, 0.95, 0.8, 0.5, 0.2}) {
+      KbPathVertex v{};
+      v.head = KB_KIND_MEDIUM | KB_VERTEX_EMIT | 1u << KB_VERTEX_MATERIAL_SHIFT;
+      v.row_a = static_cast<uint16_t>(scene.spectra.size() - 4);
+      v.emit_row = static_cast<uint16_t>(scene.spectra.size() - 1);
+      v.emit_weight = 1;
+      v.nee0 = static_cast<float>(ratio * reference_k);
+      v.nee1 = static_cast<float>(reference_k);
+      const KbPlumeCell cell{1e6f, v.nee0};
+      paths.paths.push_back(
+          {static_cast<uint32_t>(paths.slots.size()), 2, static_cast<uint32_t>(paths.paths.size())});
+      paths.slots.push_back(v);
+      paths.slots.push_back({});
+      std::memcpy(static_cast<void*>(&paths.slots.back()), &cell, sizeof cell);
+    }
+    RoundOfPaths round;
+    round.pixels = 6;
+    round.path = {0, 1, 2, 3, 4, 5};
+    round.mu = {0.25f};
+    round.block.assign(6, 0);
+    const gpu::ChannelTables tables = gpu::make_channel_tables(scene, {});
+    DeviceEvaluator device(program, scene, tables, 6);
+    device.load(paths, round);
+    device.batch(1, 6);
+    const Expected expected = reference(scene, {}, tables, paths, round, false);
+    EXPECT_LT(largest_error(device.means(), expected), kTolerance) << reference_k;
+  }
+}
 
 /// A row of lines has the knots of its data, whatever their number; other rows are what they are without gas.
 TEST(DeviceGasTables, RowsOfLinesKeepTheirKnots) {
