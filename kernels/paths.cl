@@ -8,6 +8,7 @@
 // All run over a queue of slots: work-item i < count works on slot queue[i].
 #include "bvh.clh"
 #include "camera.clh"
+#include "gas_path.clh"
 #include "scatter.clh"
 
 /* Every slot starts in the state "ended" before its first job. */
@@ -75,6 +76,9 @@ __kernel void generate(KB_SCENE_PARAMS, KB_POOL_PARAMS, __global const kb_u32* r
   ray.t_min = camera.t_min;
   ray.t_max = camera.t_max;
   ray.previous_pdf = 0.0f;
+#if KB_HAS_GAS
+  if (scene.constants->gas) pool.gas[slot] = gas_at_camera(&scene, ray.t_min);
+#endif
   pool.rays[slot] = ray;
   pool.states[slot] = state;
 }
@@ -95,13 +99,25 @@ __kernel void closest_hits(__global const KbShape* restrict shapes, __global con
   if (fault) atomic_or(&faults->code, fault);
 }
 
-/* One bounce of the path in `slot`. */
-static inline void advance(Bounce* b, __global const KbPrimitive* primitives, const KbRay* ray, KbHit hit) {
+/* One bounce of the path in `slot`, or its way to a null boundary. */
+static inline void advance(Bounce* b, __global const KbBvhNode* nodes, __global const KbPrimitive* primitives,
+                           const KbRay* ray, KbHit hit, __global KbFaults* faults) {
   b->direction = vload3(0, ray->direction);
   b->draft = empty_draft();
   b->has_shadow = false;
-  bool goes_on = false;
-  if (b->scene->constants->max_depth == 0u) {
+  bool goes_on = false, passes_boundary = false, fresh = b->bounce == 0u;
+#if KB_HAS_GAS
+  const bool gas = b->scene->constants->gas && b->scene->constants->max_depth != 0u;
+  if (gas) {
+    fresh = fresh && b->gas.crossings == 0u;
+    passes_boundary = is_boundary(b->scene, primitives, hit);
+    if (passes_boundary) goes_on = pass_boundary(b, nodes, primitives, ray, hit, faults);
+    if (!passes_boundary && hit.primitive != KB_NONE) arrive_through_gas(b, ray, hit.t);
+  }
+#endif
+  if (passes_boundary) {
+    /* no bounce */
+  } else if (b->scene->constants->max_depth == 0u) {
     /* nothing is seen, not even lights */
   } else if (hit.primitive == KB_NONE) {
     add_escaped(b, ray);
@@ -114,13 +130,15 @@ static inline void advance(Bounce* b, __global const KbPrimitive* primitives, co
     goes_on = false;
   }
   if (!goes_on) b->state.flags = (b->state.flags & ~KB_PATH_LIVE) | KB_PATH_ENDED;
-  b->state.flags = b->bounce == 0u ? b->state.flags | KB_PATH_FRESH : b->state.flags & ~KB_PATH_FRESH;
-  if (goes_on) ++b->state.flags; /* the bounce number */
+  b->state.flags = fresh ? b->state.flags | KB_PATH_FRESH : b->state.flags & ~KB_PATH_FRESH;
+  if (goes_on && !passes_boundary) ++b->state.flags; /* the bounce number */
+  (void)nodes, (void)faults;
 }
 
 __kernel void shade(KB_SCENE_PARAMS, KB_POOL_PARAMS, KB_CHANNEL_TABLE_PARAMS,
-                    __global const KbPrimitive* restrict primitives, __global const KbHit* restrict hits,
-                    __global uint2* restrict tallies, __global const kb_u32* restrict queue, kb_u32 count) {
+                    __global const KbBvhNode* restrict nodes, __global const KbPrimitive* restrict primitives,
+                    __global const KbHit* restrict hits, __global uint2* restrict tallies,
+                    __global const kb_u32* restrict queue, kb_u32 count) {
   if (get_global_id(0) >= count) return;
   KB_SCENE_INIT(scene);
   KB_POOL_INIT(pool);
@@ -144,7 +162,13 @@ __kernel void shade(KB_SCENE_PARAMS, KB_POOL_PARAMS, KB_CHANNEL_TABLE_PARAMS,
   b.bounce = b.state.flags & KB_PATH_BOUNCE_MASK;
   const KbRay ray = pool.rays[b.slot];
   const kb_u32 before = b.state.length;
-  advance(&b, primitives, &ray, hits[b.slot]);
+#if KB_HAS_GAS
+  if (scene.constants->gas) b.gas = pool.gas[b.slot];
+#endif
+  advance(&b, nodes, primitives, &ray, hits[b.slot], pool.faults);
+#if KB_HAS_GAS
+  if (scene.constants->gas) pool.gas[b.slot] = b.gas;
+#endif
   pool.states[b.slot] = b.state;
   if (b.state.flags & KB_PATH_LIVE) pool.rays[b.slot] = b.next;
   if (b.has_shadow) pool.shadows[b.slot] = b.shadow;
@@ -171,6 +195,34 @@ __kernel void any_hits(__global const KbShape* restrict shapes, __global const K
     states[slot].lit = states[slot].length;
 }
 
+#if KB_HAS_GAS
+/* The same in scenes with gas: shadow rays pass null boundaries, and what they pass of gas becomes vertices. */
+__kernel void shadow_walks(KB_SCENE_PARAMS, KB_POOL_PARAMS, __global const KbBvhNode* restrict nodes,
+                           __global const KbPrimitive* restrict primitives, __global uint2* restrict tallies,
+                           __global const kb_u32* restrict queue, kb_u32 count) {
+  if (get_global_id(0) >= count) return;
+  KB_SCENE_INIT(scene);
+  KB_POOL_INIT(pool);
+  const kb_u32 slot = queue[get_global_id(0)];
+  const KbShadowRay ray = pool.shadows[slot];
+  if (ray.t_max < 0.0f) return;
+  KbPathState state = pool.states[slot];
+  ShadowWalk walk = begin_shadow(&pool.gas[slot]);
+  kb_u32 fault = 0u;
+  const bool visible = walk_shadow(&scene, nodes, primitives, &ray, &walk, &fault);
+  tallies[slot].x += walk.rays;
+  if (fault) atomic_or(&pool.faults->code, fault);
+  if (walk.invalid) state.flags |= KB_PATH_INVALID;
+  if (visible) {
+    append_columns(&scene, &pool, &state, slot, ray.vertex, &walk.columns);
+    state.lit = state.length;
+  } else {
+    pool.arena[ray.vertex].head &= ~KB_VERTEX_NEE;
+  }
+  pool.states[slot] = state;
+}
+#endif
+
 /* Slots that have not finished, in any order: results do not depend on it. */
 __kernel void compact(__global const KbPathState* restrict states, __global const kb_u32* restrict queue,
                       __global kb_u32* restrict packed, __global KbFaults* restrict faults, kb_u32 count) {
@@ -188,14 +240,24 @@ __kernel void auxiliary(KB_SCENE_PARAMS, __global const KbBvhNode* restrict node
   KB_SCENE_INIT(scene);
   const CameraRay ray = centre_camera_ray(&scene, x0 + i % width, y0 + i / width);
   kb_u32 fault = 0u;
-  const KbHit hit = closest_hit(nodes, primitives, scene.shapes, ray.origin, ray.direction, ray.t_min, ray.t_max, &fault);
+  float3 origin = ray.origin;
+  float passed = 0.0f;
+  KbHit hit = closest_hit(nodes, primitives, scene.shapes, origin, ray.direction, ray.t_min, ray.t_max, &fault);
+#if KB_HAS_GAS
+  while (is_boundary(&scene, primitives, hit)) {
+    const SurfaceHit boundary = make_surface_hit(&scene, &primitives[hit.primitive], hit, origin, ray.direction);
+    passed += hit.t;
+    origin = leave_surface(&boundary, ray.direction);
+    hit = closest_hit(nodes, primitives, scene.shapes, origin, ray.direction, 0.0f, ray.t_max - passed, &fault);
+  }
+#endif
   if (fault) atomic_or(&faults->code, fault);
   KbAuxiliary pixel = {0.0f, {0.0f, 0.0f, 0.0f}, -1.0f, -1.0f};
   if (hit.primitive != KB_NONE) {
-    const SurfaceHit surface_hit = make_surface_hit(&scene, &primitives[hit.primitive], hit, ray.origin, ray.direction);
+    const SurfaceHit surface_hit = make_surface_hit(&scene, &primitives[hit.primitive], hit, origin, ray.direction);
     const KbSurface surface = scene.surfaces[scene.shapes[surface_hit.shape].surface];
     const bool behind = dot(surface_hit.shading_normal, ray.direction) > 0.0f && surface.back != KB_NONE;
-    pixel.depth = hit.t;
+    pixel.depth = passed + hit.t;
     vstore3(surface_hit.shading_normal, 0, pixel.normal);
     pixel.object = (float)surface_hit.shape;
     pixel.material = (float)(behind ? surface.back : surface.front);

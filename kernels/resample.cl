@@ -18,6 +18,12 @@ __kernel void resample_rows(__global const KbSpectraLayout* restrict layout, __g
   const kb_u32 k = (kb_u32)(i % vectors) * KB_WIDTH;
   const kb_u32 row = (kb_u32)(i / vectors % layout->rows);
   const float mu = shared_mu[i / vectors / layout->rows];
+#if KB_HAS_GAS
+  if (tables[row].cells == 0u) {
+    store_reals(dense + i * KB_WIDTH, line_values(nodes, tables[row].first, layout->channels, k, mu));
+    return;
+  }
+#endif
   Reals value = mixed_value(find_nodes(nodes, tables, layout->stride, row, mu), layout->stride, k);
   if (layout->overlapping && row >= layout->derived_row)
     value = value / load_cover(cover, cover_breaks, layout->channels, k, mu);

@@ -19,6 +19,7 @@ float probability_in(float carried, float total, uint32_t channels) {
 
 void carry(BinnedThroughput& carried, const KbPathVertex& vertex, std::span<const float> bins) {
   const uint32_t kind = vertex.head & KB_VERTEX_KIND_MASK;
+  if (kind == KB_KIND_MEDIUM) return;  // gas: lines are finer than bins
   const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
   if (vertex.head & (KB_VERTEX_TEX_A | (two ? KB_VERTEX_TEX_B : 0u))) return;
   const float* a = &bins[std::size_t{vertex.row_a} * KB_CHANNEL_BINS];

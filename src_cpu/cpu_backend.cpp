@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "src_cpu/block_worker.hpp"
+#include "src_cpu/boundary.hpp"
 #include "src_cpu/camera.hpp"
 
 namespace kiloband {
@@ -83,6 +84,7 @@ class CpuBackend final : public Backend {
  private:
   void note_invalid(const InvalidSample& sample);
   void count(BlockWorker& worker, uint64_t rays_before, uint64_t vertices_before);
+  float pass_boundaries(TraceRay& ray, float far) const;
 
   FlatScene scene_;
   DerivedChannels derived_;
@@ -137,25 +139,38 @@ void CpuBackend::render(SpectralFilm& film, const SampleRange& range, const std:
   if (failure) std::rethrow_exception(failure);
 }
 
+/// A ray that has hit a null boundary goes on to the first surface that is none. Returns the distance passed.
+float CpuBackend::pass_boundaries(TraceRay& ray, float far) const {
+  float passed = 0;
+  while (is_boundary(scene_, ray.shape)) {
+    passed += ray.t_max;
+    ray = TraceRay(leave_surface(surface_of(scene_, ray), ray.direction()), ray.direction(), 0, far - passed);
+    embree_->closest_hits(std::span(&ray, 1), false);
+  }
+  return passed;
+}
+
 std::vector<AuxiliaryPixel> CpuBackend::auxiliary(const PixelRect& rect) {
   std::vector<AuxiliaryPixel> pixels(rect.pixels());
   std::vector<TraceRay> rays;
+  std::vector<float> far;
   rays.reserve(rect.pixels());
   for (uint32_t i = 0; i < rect.pixels(); ++i) {
     const CameraRay ray =
         centre_camera_ray(scene_.camera, rect.x0 + i % rect.width, rect.y0 + i / rect.width);
     rays.emplace_back(ray.origin, ray.direction, ray.t_min, ray.t_max);
+    far.push_back(ray.t_max);
   }
   embree_->closest_hits(rays, true);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const TraceRay& ray = rays[i];
+    TraceRay& ray = rays[i];
+    const float in_front = pass_boundaries(ray, far[i]);
     if (ray.shape == KB_NONE) continue;
-    const SurfaceHit hit = make_surface_hit(scene_, ray.shape, ray.primitive, ray.u, ray.v, ray.origin(),
-                                            ray.direction(), ray.t_max);
+    const SurfaceHit hit = surface_of(scene_, ray);
     const KbSurface& surface = scene_.surfaces[scene_.shapes[hit.shape].surface];
     const bool behind = glm::dot(hit.shading_normal, ray.direction()) > 0 && surface.back != KB_NONE;
     const glm::vec3 n = hit.shading_normal;
-    pixels[i] = {ray.t_max,
+    pixels[i] = {in_front + ray.t_max,
                  {n.x, n.y, n.z},
                  static_cast<float>(hit.shape),
                  static_cast<float>(behind ? surface.back : surface.front)};

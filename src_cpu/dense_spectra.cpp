@@ -93,10 +93,23 @@ const double* DenseSpectra::texture_lambda() {
   return texture_lambda_.get();
 }
 
+const float* DenseSpectra::planck_second() {
+  if (!planck_second_) planck_second_ = aligned_zeros<float>(padded_);
+  if (planck_generation_ != generation_) {
+    std::fill_n(planck_second_.get(), padded_, 1.0f);
+    for (std::size_t k = 0; k < channels_; ++k)
+      planck_second_[k] = static_cast<float>(kPlanckSecond_nm_k / lambda_[k]);
+    planck_generation_ = generation_;
+  }
+  return planck_second_.get();
+}
+
 const float* DenseSpectra::make_spectrum(uint32_t s) {
   float* out = new_row();
   const SpectrumRow& row = scene_.spectra[s];
-  if (fast_ && !row.is_planck && !is_emission_[s]) {
+  if (row.absorption) {
+    for (std::size_t k = 0; k < channels_; ++k) out[k] = static_cast<float>((*row.absorption)(k, mu_));
+  } else if (fast_ && !row.is_planck && !is_emission_[s]) {
     const std::vector<float>& table = float_table(s);
     kernels_.sample_table(
         {table.data(), table.size(), row.table.min_nm, row.table.step_nm, row.table.extrapolate},

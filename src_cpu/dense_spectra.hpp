@@ -56,6 +56,9 @@ struct DenseSpectra {
   /// clamp(lambda_k, 360, 830), nm, in double: where textures are evaluated.
   const double* texture_lambda();
 
+  /// hc / (k lambda_k) in kelvin, 1 in the padding: what Planck's law at other temperatures needs.
+  const float* planck_second();
+
   /// T = n^2 - 1 - k^2 as a sum of two floats, and n k, of a conductor.
   std::array<const float*, 3> conductor(uint32_t material);
   /// E = e^2 - 1 as a sum of two floats, where e is the relative index of a dispersive dielectric: interior
@@ -103,7 +106,8 @@ struct DenseSpectra {
   std::vector<double> min_nm_, max_nm_, emission_factor_;  // emission_factor: width_k / channel_scale_k
   std::vector<bool> is_emission_;                          // of a spectrum
   hwy::AlignedFreeUniquePtr<double[]> lambda_, texture_lambda_;
-  hwy::AlignedFreeUniquePtr<float[]> unit_emission_, zeros_;
+  uint64_t planck_generation_ = 0;
+  hwy::AlignedFreeUniquePtr<float[]> unit_emission_, zeros_, planck_second_;
   std::vector<Row> rows_;                                 // by spectrum
   std::vector<MaterialRows> material_rows_;               // by material
   std::map<double, PlanckRow> planck_;                    // by temperature

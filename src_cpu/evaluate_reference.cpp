@@ -19,10 +19,13 @@ struct Point {
   const FlatScene& scene;
   double lambda_nm;
   double width_nm;
+  uint32_t channel = 0;
+  double mu = 0;
 };
 
 double spectrum(const Point& at, uint32_t s) {
   const SpectrumRow& row = at.scene.spectra[s];
+  if (row.absorption) return (*row.absorption)(at.channel, at.mu);
   if (!row.is_planck) return row.table(at.lambda_nm);
   const bool inside = at.lambda_nm >= row.planck_min_nm && at.lambda_nm <= row.planck_max_nm;
   const double emissivity = row.table.values.empty() ? 1 : row.table(at.lambda_nm);
@@ -166,6 +169,7 @@ double scattering(const Point& at, const KbPathVertex& vertex, double a, double 
 /// tau and L of one channel along the path.
 struct State {
   double tau = 1, radiance = 0;
+  double aside = 1;  // q of records.h
 };
 
 /// samples: the vertex's texture samples, in order. k: the channel.
@@ -182,15 +186,67 @@ void apply(const Point& at, const KbPathVertex& v, const KbTextureSample* sample
   const double emitted = value(KB_VERTEX_TEX_EMIT, v.head & KB_VERTEX_EMIT, v.emit_row, true);
   const double light = value(KB_VERTEX_TEX_NEE, v.head & KB_VERTEX_NEE, v.nee_row, true);
   if (v.head & KB_VERTEX_EMIT) state.radiance += state.tau * v.emit_weight * emitted;
-  if (v.head & KB_VERTEX_NEE) state.radiance += state.tau * scattering(at, v, a, b, v.nee0, v.nee1) * light;
+  if (v.head & KB_VERTEX_NEE) {
+    const double lit = state.tau * scattering(at, v, a, b, v.nee0, v.nee1) * light;
+    if (v.head & KB_VERTEX_DEFER)
+      state.aside = lit;
+    else
+      state.radiance += lit;
+  }
   if (v.head & KB_VERTEX_SCATTER) state.tau *= scattering(at, v, a, b, v.scatter0, v.scatter1);
   if ((v.head & KB_VERTEX_DEGRADE) && k != kb_as_u32(v.scatter1)) state.tau = 0;
+}
+
+/// A plume's cells: the source function is linear in the column within each.
+void apply_plume(const Point& at, const KbPathVertex& v, const KbPathVertex* extensions, State& state) {
+  const double kappa = named(at, v.row_a);
+  double near = planck_radiance(at.lambda_nm, v.nee0), sum = 0, passed = 1;
+  for (uint32_t i = 0; i < v.head >> KB_VERTEX_MATERIAL_SHIFT; ++i) {
+    KbPlumeCell cell;
+    std::memcpy(&cell, reinterpret_cast<const char*>(extensions) + i * sizeof cell, sizeof cell);
+    const double far = planck_radiance(at.lambda_nm, cell.temperature_k);
+    const double x = kappa * cell.column, stays = -std::expm1(-x);
+    const double share = x < 1e-4 ? x / 2 - x * x / 3 : (stays - x * std::exp(-x)) / x;
+    sum += passed * (stays * near + share * (far - near));
+    passed *= std::exp(-x);
+    near = far;
+  }
+  state.radiance += state.tau * state.aside * v.emit_weight * sum * at.width_nm;
+  state.tau *= passed;
+  state.aside = 1;
+}
+
+/// Gas along a ray.
+void apply_medium(const Point& at, const KbPathVertex& v, const KbPathVertex* extensions, State& state) {
+  const double kappa = named(at, v.row_a);
+  if (v.head & KB_VERTEX_NEE) {
+    state.aside *= std::exp(-kappa * v.nee0);
+    if (v.head & KB_VERTEX_DEFER) return;
+    state.radiance += state.aside;
+    state.aside = 1;
+  } else if (v.head & KB_VERTEX_DEFER) {
+    state.aside = std::exp(-kappa * v.scatter0);
+  } else if (v.head >> KB_VERTEX_MATERIAL_SHIFT) {
+    apply_plume(at, v, extensions, state);
+  } else {
+    const double x = kappa * v.scatter0;
+    if (v.head & KB_VERTEX_EMIT) {
+      state.radiance += state.tau * state.aside * v.emit_weight * -std::expm1(-x) * named(at, v.emit_row);
+      state.aside = 1;
+    }
+    if (v.head & KB_VERTEX_SCATTER) state.tau *= std::exp(-x);
+  }
 }
 
 double channel_value(const Point& at, const PathBuffer& paths, const SavedPath& path, uint32_t k) {
   State state;
   for (uint32_t i = path.first; i < path.first + path.count; ++i) {
     const KbPathVertex& vertex = paths.slots[i];
+    if ((vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_MEDIUM) {
+      apply_medium(at, vertex, &vertex + 1, state);
+      i += kb_vertex_extensions(vertex.head);
+      continue;
+    }
     KbTextureSample samples[4];
     uint32_t count = 0;
     for (uint32_t flag = KB_VERTEX_TEX_A; flag <= KB_VERTEX_TEX_NEE; flag <<= 1)
@@ -210,7 +266,8 @@ std::vector<double> evaluate_path_reference(const FlatScene& scene, const Derive
   std::vector<double> values(channels + derived.responses.size());
   for (std::size_t k = 0; k < channels; ++k) {
     const Channel& channel = scene.channels[k];
-    const Point at{scene, (1 - mu) * channel.min_nm + mu * channel.max_nm, channel.width_nm()};
+    const Point at{scene, (1 - mu) * channel.min_nm + mu * channel.max_nm, channel.width_nm(),
+                   static_cast<uint32_t>(k), mu};
     values[k] = channel_value(at, paths, paths.paths[path], static_cast<uint32_t>(k));
     const auto covers = [&](const Channel& c) { return c.min_nm <= at.lambda_nm && at.lambda_nm < c.max_nm; };
     const auto cover =

@@ -20,6 +20,7 @@
 // After foreach_target.h, as Highway asks for.
 #include <hwy/highway.h>
 
+#include "src_cpu/evaluator_gas-inl.hpp"
 #include "src_cpu/evaluator_optics-inl.hpp"
 #include "src_cpu/evaluator_transmission-inl.hpp"
 
@@ -58,9 +59,9 @@ HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, 
   }
 }
 
-/// One vertex for the vector of channels at k.
+/// One vertex for the vector of channels at k. aside: the third register of scenes with gas, see records.h.
 HWY_INLINE void general_vector(const GeneralVertex& v, const double* lambda, std::size_t k, float* tau,
-                               float* radiance) {
+                               float* radiance, float* aside) {
   Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance);
   if (v.flags & KB_VERTEX_EMIT) {
     l = hn::MulAdd(hn::Mul(t, constant(v.emit_weight)), source(v.emit, lambda, k), l);
@@ -72,7 +73,11 @@ HWY_INLINE void general_vector(const GeneralVertex& v, const double* lambda, std
     if (v.kind == KB_KIND_NONLINEAR) b = hn::Div(b, hn::NegMulAdd(b, constant(v.fdr_int), constant(1)));
     if (v.flags & KB_VERTEX_NEE) {
       const Floats f = reflect(v, a, b, v.nee0, v.nee1, v.nee_fresnel, k);
-      l = hn::MulAdd(hn::Mul(t, f), source(v.nee, lambda, k), l);
+      const Floats light = source(v.nee, lambda, k);
+      if (v.flags & KB_VERTEX_DEFER)
+        hn::Store(hn::Mul(hn::Mul(t, f), light), kTag, aside);
+      else
+        l = hn::MulAdd(hn::Mul(t, f), light, l);
     }
     if (v.flags & KB_VERTEX_SCATTER)
       t = hn::Mul(t, reflect(v, a, b, v.scatter0, v.scatter1, v.scatter_fresnel, k));
@@ -83,9 +88,14 @@ HWY_INLINE void general_vector(const GeneralVertex& v, const double* lambda, std
 
 /// One vertex for `vectors` vectors of channels from k on. Returns false if no channel of the block goes on.
 HWY_NOINLINE bool general_step(const GeneralVertex& v, const double* lambda, std::size_t k,
-                               std::size_t vectors, float* tau, float* radiance) {
+                               std::size_t vectors, float* tau, float* radiance, float* aside) {
+  if (v.kind == KB_KIND_MEDIUM) {
+    for (std::size_t i = 0; i < vectors * kLanes; i += kLanes)
+      medium_vector(v, k + i, tau + i, radiance + i, aside + i);
+    return true;
+  }
   for (std::size_t i = 0; i < vectors * kLanes; i += kLanes)
-    general_vector(v, lambda, k + i, tau + i, radiance + i);
+    general_vector(v, lambda, k + i, tau + i, radiance + i, aside + i);
   if (!(v.flags & KB_VERTEX_DEGRADE)) return true;
   if (v.survivor < k || v.survivor >= k + vectors * kLanes) return false;
   const float kept = tau[v.survivor - k];
@@ -126,13 +136,13 @@ struct Block {
     });
   }
 
-  HWY_INLINE bool general(const PathStep& step, const double* lambda, std::size_t k) {
+  HWY_INLINE bool general(const PathStep& step, const double* lambda, std::size_t k, float* aside) {
     alignas(64) float t[V * kLanes], l[V * kLanes];
     each([&](auto i) HWY_ATTR {
       hn::Store(tau[i], kTag, t + i * kLanes);
       hn::Store(radiance[i], kTag, l + i * kLanes);
     });
-    const bool goes_on = general_step(*step.general, lambda, k, V, t, l);
+    const bool goes_on = general_step(*step.general, lambda, k, V, t, l, aside);
     each([&](auto i) HWY_ATTR {
       tau[i] = hn::Load(kTag, t + i * kLanes);
       radiance[i] = hn::Load(kTag, l + i * kLanes);
@@ -159,6 +169,8 @@ struct Block {
 template <std::size_t V>
 HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* film) {
   Block<V> block;
+  alignas(64) float aside[V * kLanes];
+  if (path.gas) std::fill_n(aside, V * kLanes, 1.0f);
   block.each([&](auto i) HWY_ATTR {
     block.tau[i] = constant(1);
     block.radiance[i] = hn::Zero(kTag);
@@ -169,7 +181,7 @@ HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* fi
       block.scaled(*step, k);
     } else if (step->kind == StepKind::kEmit) {
       block.emit(*step, k);
-    } else if (!block.general(*step, path.texture_lambda, k)) {
+    } else if (!block.general(*step, path.texture_lambda, k, aside)) {
       break;
     }
   }

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "shared/records.h"
 #include "src_cpu/isa.hpp"
 
 namespace kiloband {
@@ -57,13 +59,17 @@ struct TransmissionTerms {
 /// own.
 struct GeneralVertex {
   uint32_t kind = 0;   // KbVertexKind
-  uint32_t flags = 0;  // KB_VERTEX_EMIT (textured), _NEE, _SCATTER, _DEGRADE
+  uint32_t flags = 0;  // KB_VERTEX_EMIT (textured, or gas), _NEE, _SCATTER, _DEGRADE, _DEFER
   SpectralSource a, b, emit, nee;
   float emit_weight = 0, nee0 = 0, nee1 = 0, scatter0 = 0, scatter1 = 0;
   float fdr_int = 0;
   FresnelTerms nee_fresnel, scatter_fresnel;
   TransmissionTerms transmission;  // KB_KIND_ROUGH_TRANSMISSION
   uint32_t survivor = 0;           // channel that goes on if KB_VERTEX_DEGRADE
+  // Gas, KB_KIND_MEDIUM. A plume's first cell has no column and the temperature of the near end.
+  std::span<const KbPlumeCell> cells;
+  float reference_k = 0;            // plume: where emit.row is Planck's law
+  const float* second_k = nullptr;  // plume: row of hc / (k lambda), K
 };
 
 enum class StepKind : uint32_t {
@@ -99,6 +105,7 @@ struct PathProgram {
   std::size_t channels = 0;
   const double* texture_lambda = nullptr;  // padded, nm
   const DerivedPlan* derived = nullptr;    // null: none
+  bool gas = false;                        // has vertices of gas
   const float* next_film = nullptr;        // row of the following path, to be fetched ahead; never read
 };
 

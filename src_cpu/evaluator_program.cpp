@@ -43,23 +43,30 @@ void ProgramBuilder::reserve(std::size_t slots) {
   steps_.clear();
   generals_.clear();
   textures_.clear();
-  textured_ = false;
+  textured_ = gas_ = false;
   spectral_.begin_path();
   scratch_used_ = 0;
+  cells_.clear();
   if (generals_.capacity() >= slots) return;
   slots = std::max<std::size_t>(64, 2 * slots);
   steps_.reserve(2 * slots);
   generals_.reserve(slots);
   textures_.reserve(2 * slots);
+  cells_.reserve(5 * slots);
 }
 
 PathProgram ProgramBuilder::build(std::span<const KbPathVertex> slots, DenseSpectra& spectra) {
   reserve(slots.size());
   for (std::size_t i = 0; i < slots.size();) {
     const KbPathVertex& vertex = slots[i];
+    const std::size_t next = i + 1 + kb_vertex_extensions(vertex.head);
+    if (next > slots.size()) throw std::logic_error("saved path: texture samples or cells are missing");
+    if ((vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_MEDIUM) {
+      add_medium(vertex, &slots[i] + 1, spectra);
+      i = next;
+      continue;
+    }
     const std::size_t samples = static_cast<std::size_t>(std::popcount(vertex.head & KB_VERTEX_TEX_MASK));
-    const std::size_t next = i + 1 + (samples + 1) / 2;
-    if (next > slots.size()) throw std::logic_error("saved path: texture samples are missing");
     KbTextureSample copies[4];
     if (samples > 0) std::memcpy(copies, &slots[i] + 1, samples * sizeof(KbTextureSample));
     add_vertex(vertex, sources(vertex, copies, spectra), next == slots.size(), spectra);
@@ -69,6 +76,7 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> slots, DenseSpec
   program.steps = steps_.data();
   program.step_count = steps_.size();
   program.channels = spectra.channels();
+  program.gas = gas_;
   program.texture_lambda = textured_ ? spectra.texture_lambda() : nullptr;
   return program;
 }
@@ -97,7 +105,7 @@ void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const Sources& from,
     steps_.push_back({StepKind::kEmit, vertex.emit_weight, 0, nullptr, from.emit.row, nullptr});
   const bool nee = head & KB_VERTEX_NEE;
   const bool scatter = head & KB_VERTEX_SCATTER;
-  if ((head & KB_VERTEX_DEGRADE) || from.any_colour() || (head & KB_VERTEX_KIND_MASK) != KB_KIND_SCALED ||
+  if ((head & (KB_VERTEX_DEGRADE | KB_VERTEX_DEFER)) || from.any_colour() || (head & KB_VERTEX_KIND_MASK) != KB_KIND_SCALED ||
       (nee && !scatter && !last)) {
     add_general(vertex, from, spectra);
     return;
@@ -114,7 +122,7 @@ void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from
   const uint32_t material = head >> KB_VERTEX_MATERIAL_SHIFT;
   GeneralVertex& out = generals_.emplace_back();
   out.kind = head & KB_VERTEX_KIND_MASK;
-  out.flags = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
+  out.flags = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE | KB_VERTEX_DEFER);
   if (from.emit.texture) out.flags |= head & KB_VERTEX_EMIT;
   out.emit_weight = vertex.emit_weight;
   out.nee0 = vertex.nee0;
@@ -135,6 +143,32 @@ void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from
   if (reflects && (out.kind == KB_KIND_CONDUCTOR || out.kind == KB_KIND_DISPERSIVE))
     add_fresnel(out, material, spectra);
   if (reflects && out.kind == KB_KIND_ROUGH_TRANSMISSION) add_transmission(out, vertex, spectra);
+  steps_.push_back({StepKind::kGeneral, 0, 0, nullptr, nullptr, &out});
+}
+
+/// Gas along a ray. The cells get the near end's temperature in front.
+void ProgramBuilder::add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions,
+                                DenseSpectra& spectra) {
+  GeneralVertex& out = generals_.emplace_back();
+  out.kind = KB_KIND_MEDIUM;
+  out.flags = vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEFER);
+  out.a.row = spectra.spectrum(vertex.row_a);
+  if (out.flags & KB_VERTEX_EMIT) out.emit.row = spectra.spectrum(vertex.emit_row);
+  out.emit_weight = vertex.emit_weight;
+  out.nee0 = vertex.nee0;
+  out.scatter0 = vertex.scatter0;
+  gas_ = true;
+  const std::size_t count = vertex.head >> KB_VERTEX_MATERIAL_SHIFT;
+  if (count > 0) {
+    if (!(out.flags & KB_VERTEX_EMIT)) throw std::logic_error("saved path: a plume that does not emit");
+    const std::size_t first = cells_.size();
+    cells_.push_back({0, vertex.nee0});
+    cells_.resize(first + 1 + count);
+    std::memcpy(&cells_[first + 1], extensions, count * sizeof(KbPlumeCell));
+    out.cells = std::span(cells_).subspan(first, count + 1);
+    out.reference_k = vertex.nee1;
+    out.second_k = spectra.planck_second();
+  }
   steps_.push_back({StepKind::kGeneral, 0, 0, nullptr, nullptr, &out});
 }
 

@@ -34,6 +34,7 @@ class ProgramBuilder {
   Sources sources(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
   void add_vertex(const KbPathVertex& vertex, const Sources& from, bool last, DenseSpectra& spectra);
   void add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra);
+  void add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions, DenseSpectra& spectra);
   void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
   void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) const;
   SpectralSource texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
@@ -49,7 +50,8 @@ class ProgramBuilder {
   std::vector<hwy::AlignedFreeUniquePtr<float[]>>
       scratch_;  // rows of this path; the first scratch_used_ are taken
   std::size_t scratch_used_ = 0;
-  bool textured_ = false;
+  std::vector<KbPlumeCell> cells_;       // reserved: generals point into it
+  bool textured_ = false, gas_ = false;
 };
 
 }  // namespace kiloband

@@ -12,8 +12,7 @@
 namespace kiloband {
 namespace {
 
-constexpr uint32_t kWavefront = 16;        // paths that advance together
-constexpr uint32_t kMaxVertices = 100000;  // a longer path counts as invalid and is reported
+constexpr uint32_t kWavefront = 16;  // paths that advance together
 /// Tables are finite and of order 1 (emission in film units), so a path's value is finite if its weights stay
 /// below this.
 constexpr float kLargestWeight = 1e34f;
@@ -23,6 +22,7 @@ constexpr float kLargestWeight = 1e34f;
 bool stays_finite(const KbPathVertex& v, float scale, float& magnitude) {
   const float emitted = v.head & KB_VERTEX_EMIT ? v.emit_weight : 0.0f;
   const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
+  if (kind == KB_KIND_MEDIUM) return std::isfinite(v.nee0) && std::isfinite(v.scatter0);  // columns
   const bool two =
       kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;  // else the second number is no weight
   const float lit = v.head & KB_VERTEX_NEE ? std::fabs(v.nee0) + (two ? std::fabs(v.nee1) : 0.0f) : 0.0f;
@@ -90,6 +90,7 @@ void PathTracer::run_wavefront(const SampleId& id, std::span<const float> mu) {
 
 void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id) {
   paths_.clear();
+  gas_.clear();
   slots_.clear();
   active_.clear();
   rays_queue_.clear();
@@ -109,6 +110,7 @@ void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t co
     const CameraRay ray = sample_camera_ray(flat_.camera, x, y, kb_sampler_block(path.key, KB_BLOCK_CAMERA));
     path.previous_point = ray.origin;
     paths_.push_back(path);
+    if (flat_.features.gas) gas_.push_back({MediumStack(flat_.camera_media), 0, ray.t_min, ray.t_max});
     active_.push_back(i - first);
     rays_queue_.emplace_back(ray.origin, ray.direction, ray.t_min, ray.t_max);
   }
@@ -130,9 +132,11 @@ void PathTracer::trace_closest(bool coherent) {
   scene_.embree->closest_hits(rays_queue_, coherent);
   if (recording_)
     recording_->answers.insert(recording_->answers.end(), rays_queue_.begin(), rays_queue_.end());
+  if (flat_.features.gas) walk_boundaries();
 }
 
 void PathTracer::trace_shadows() {
+  if (flat_.features.gas) return trace_shadows_through_gas();
   rays_ += shadow_rays_.size();
   if (recording_) record_shadows();
   scene_.embree->occlusions(shadow_rays_);
@@ -163,6 +167,7 @@ void PathTracer::shade_all(const SampleId& id, uint32_t bounce, std::span<const 
   for (std::size_t i = 0; i < active_.size(); ++i) {
     Path& path = paths_[active_[i]];
     const TraceRay& ray = rays_queue_[i];
+    if (flat_.features.gas) append_gas(path, ray.shape == KB_NONE);
     if (ray.shape == KB_NONE) {
       add_escaped(path, ray, bounce);
     } else if (shade(path, ray, id, bounce, mu)) {
@@ -267,15 +272,12 @@ void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) {
     const auto first = static_cast<uint32_t>(out.slots.size());
     for (uint32_t s = path.first_slot;; s = slots_[s].next) {
       KbPathVertex vertex = slots_[s].vertex;
-      const auto samples = static_cast<uint32_t>(__builtin_popcount(vertex.head & KB_VERTEX_TEX_MASK));
       if (!(vertex.head & KB_VERTEX_NEE))
         vertex.head &= ~KB_VERTEX_TEX_NEE;  // its sample comes last: drop it
       if (s == last_lit) vertex.head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
       out.slots.push_back(vertex);
-      const auto kept = static_cast<uint32_t>(__builtin_popcount(vertex.head & KB_VERTEX_TEX_MASK));
-      for (uint32_t i = 0; i < (kept + 1) / 2 && i < (samples + 1) / 2; ++i) {
+      for (uint32_t i = 0; i < kb_vertex_extensions(vertex.head); ++i)
         out.slots.push_back(slots_[s + 1 + i].vertex);
-      }
       if (s == last_lit) break;
     }
     out.paths.push_back({first, static_cast<uint32_t>(out.slots.size()) - first, path.pixel});

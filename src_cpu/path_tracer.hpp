@@ -24,6 +24,7 @@
 #include "src_cpu/conductor_bound.hpp"
 #include "src_cpu/embree_scene.hpp"
 #include "src_cpu/emitter.hpp"
+#include "src_cpu/medium_stack.hpp"
 #include "src_cpu/path_buffer.hpp"
 #include "src_cpu/spectral_mis.hpp"
 #include "src_cpu/surface_hit.hpp"
@@ -101,6 +102,31 @@ class PathTracer {
     float scale = 1;  // largest spectral factor of its weights, where that is not of order 1
   };
 
+  /// Where a path is in a scene with gas, and the segments of the ray at hand.
+  struct GasPath {
+    MediumStack media;
+    uint32_t crossings = 0;  // null boundaries passed
+    float begin, far;  // where the ray at hand begins (on the surface that it left) and ends: ray parameters
+    uint32_t first_segment = 0, segments = 0;
+  };
+  /// A part of a ray in one medium (KB_NONE: in none).
+  struct Segment {
+    uint32_t medium;
+    glm::vec3 origin, direction;
+    float t_min, t_max;
+  };
+  /// The gases that a shadow ray passes.
+  struct Columns {
+    uint32_t count = 0;
+    uint32_t medium[KB_SHADOW_MEDIA];
+    float column[KB_SHADOW_MEDIA];  // m
+  };
+  struct ShadowOwner {
+    uint32_t path;
+    float begin;
+    MediumStack media;
+  };
+
   void start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id);
   void run_wavefront(const SampleId& id, std::span<const float> mu);
   void record_closest();
@@ -137,6 +163,7 @@ class PathTracer {
     uint32_t side;  // its index
     glm::vec3 wi;
     float opacity;
+    glm::vec3 direction;  // of the ray that arrived
   };
   HeroSet choose_heroes(Path& path, const KbMaterial& material, const SampleId& id, float mu) const;
   bool add_hero_light(Path& path, const Boundary& at, const HeroSet& heroes, const SampleId& id,
@@ -151,6 +178,21 @@ class PathTracer {
   void resolve_spectra(Draft& draft, const KbMaterial& material, const SurfaceHit& hit, bool use_b_for_a);
   const KbMaterial& with_local_bounds(const KbMaterial& material, const SurfaceHit& hit,
                                       KbMaterial& local) const;
+  // path_tracer_gas.cpp
+  GasPath& gas_of(const Path& path) { return gas_[static_cast<std::size_t>(&path - paths_.data())]; }
+  void cross(Path& path, MediumStack& media, uint32_t shape, bool outwards);
+  MediumStack media_towards(Path& path, const SurfaceHit& hit, glm::vec3 from, glm::vec3 direction);
+  void walk_boundaries();
+  void pass_boundary(Path& path, GasPath& gas, TraceRay& ray);
+  void append_gas(Path& path, bool escapes);
+  void append_segment(Path& path, const KbMedium& medium, const Segment& segment);
+  void append_medium(Path& path, const KbPathVertex& vertex, std::span<const KbPlumeCell> cells);
+  void follow_gas(Path& path, const SurfaceHit& hit, glm::vec3 from);
+  void note_shadow(Path& path, const SurfaceHit& hit, glm::vec3 from);
+  void trace_shadows_through_gas();
+  bool walk_shadow(Path& path, ShadowOwner begin, const ShadowRay& shadow, Columns& columns);
+  void add_column(Path& path, Columns& columns, uint32_t medium, const TraceRay& ray, float begin);
+  void append_columns(Path& path, uint32_t slot, const Columns& columns);
   void gather(PathBuffer& out, std::vector<uint32_t>& invalid);
   float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
   bool wants_bounce(uint32_t bounce) const;
@@ -165,6 +207,9 @@ class PathTracer {
   std::vector<uint32_t> shadow_slot_;  // vertex of each shadow ray
   std::vector<uint32_t> shadow_path_;  // while recording: its path
   std::vector<Slot> slots_;
+  std::vector<GasPath> gas_;  // as paths_; this and the next two are empty in scenes without gas
+  std::vector<Segment> segments_;
+  std::vector<ShadowOwner> shadow_owner_;  // as shadow_rays_
   Recording* recording_ = nullptr;
   uint64_t rays_ = 0, vertices_ = 0;
 };

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "shared/sampler.h"
+#include "src_cpu/boundary.hpp"
 #include "src_cpu/path_tracer.hpp"
 #include "src_cpu/path_tracer_detail.hpp"
-#include "src_cpu/ray_offset.hpp"
 #include "src_cpu/texture_lookup.hpp"
 
 namespace kiloband {
@@ -14,13 +14,6 @@ namespace {
 /// Light that a BSDF scales by less is none. Far tails of normal distributions would otherwise be light or
 /// not by whether a device flushes denormals; both backends use this limit. [1/sr]
 constexpr float kLeastBsdfValue = 1e-30f;
-
-/// The point from which a ray towards `direction` leaves the surface: off it, on the side that the ray goes
-/// to.
-glm::vec3 leave_surface(const SurfaceHit& hit, glm::vec3 direction) {
-  const glm::vec3 n = hit.geometric_normal;
-  return offset_ray_origin(hit.point, glm::dot(n, direction) >= 0 ? n : -n);
-}
 
 bool is_black(const KbMaterial& material) {
   return material.bound_a == 0 && material.bound_b == 0;
@@ -83,6 +76,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
     if (!passes) return finish(false);
     finish(true);
     pass_through(path, hit, direction);
+    if (flat_.features.gas) follow_gas(path, hit, direction);
     return true;
   }
   if (record.alpha_u != record.alpha_v) frame = ShadingFrame(hit.shading_normal, hit.tangent);
@@ -113,11 +107,12 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
                                  ? choose_heroes(path, record, id, offset)
                                  : HeroSet{};
       if (heroes.count > 0) {
-        const Boundary at{hit, frame, record, side, wi, opacity};
+        const Boundary at{hit, frame, record, side, wi, opacity, direction};
         add_hero_light(path, at, heroes, id, bounce);
-        if (!passes) return scatter_heroes(path, at, heroes, u, id, bounce);
-        pass_through(path, hit, direction);
-        return true;
+        const bool goes_on = passes || scatter_heroes(path, at, heroes, u, id, bounce);
+        if (passes) pass_through(path, hit, direction);
+        if (goes_on && flat_.features.gas) follow_gas(path, hit, direction);
+        return goes_on;
       }
       degrade(path, id, bounce);
     }
@@ -126,6 +121,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   draft.vertex.head |= eval_kind(record) | side << KB_VERTEX_MATERIAL_SHIFT;
   const bool lit =
       has_smooth_lobe(record) && add_light_sample(draft, path, hit, frame, material, wi, opacity, id, bounce);
+  if (lit && flat_.features.gas) note_shadow(path, hit, direction);
   bool goes_on = false;
   if (passes) {
     if (draft.vertex.head & KB_VERTEX_NEE) resolve_spectra(draft, *material.material, hit, false);
@@ -135,6 +131,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
     goes_on = scatter(draft, path, hit, frame, material, wi, u, opacity, id, bounce,
                       mu[mu.size() == 1 ? 0 : path.pixel]);
   }
+  if (goes_on && flat_.features.gas) follow_gas(path, hit, direction);
   finish(goes_on);
   if (lit) shadow_slot_.push_back(path.last_slot);
   if (lit && recording_) shadow_path_.push_back(path.pixel);

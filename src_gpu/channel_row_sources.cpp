@@ -1,6 +1,7 @@
 #include "src_gpu/channel_row_sources.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "shared/spectra_layout.h"
 #include "spectral/planck.hpp"
@@ -33,6 +34,14 @@ RowFunction wavelength_row() {
   f.value = [](double lambda_nm) { return std::clamp(lambda_nm, 360.0, 830.0) - KB_TEXTURE_CENTRE_NM; };
   f.kinks_nm = {360, 830};
   return f;
+}
+
+/// The last entry's wavelength may round to a hair beyond it.
+Channel support(const RegularTable& table) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (table.extrapolate) return {-kInfinity, kInfinity, {}};
+  const double last = static_cast<double>(table.values.size() - 1);
+  return {table.min_nm, table.min_nm + table.step_nm * last * (1 + 1e-11), {}};
 }
 
 }  // namespace kiloband::gpu

@@ -11,4 +11,7 @@ RowFunction spectrum_row(const SpectrumRow& row);
 /// Where textures are evaluated: clamp(lambda, 360, 830) - KB_TEXTURE_CENTRE_NM, nm.
 RowFunction wavelength_row();
 
+/// Where a response can be other than 0, nm.
+Channel support(const RegularTable& table);
+
 }  // namespace kiloband::gpu

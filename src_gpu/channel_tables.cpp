@@ -7,6 +7,7 @@
 
 #include "scene/band_set.hpp"
 #include "src_gpu/channel_cover.hpp"
+#include "src_gpu/channel_lines.hpp"
 #include "src_gpu/channel_row.hpp"
 #include "src_gpu/channel_row_sources.hpp"
 
@@ -38,6 +39,7 @@ class TableMaker {
     double precision = 1;  // the error bound is divided by it
     std::vector<std::pair<double, double>> ends =
         {};  // by channel, at mu 0 and 1; if not empty, nothing else counts
+    const ChannelKnots* lines = nullptr;  // a gas's: then there is no function
   };
 
   void add_spectra();
@@ -68,8 +70,13 @@ const SpectrumRow& TableMaker::spectrum(uint32_t row) const {
 }
 
 void TableMaker::add_spectra() {
-  for (const SpectrumRow& row : scene_.spectra)
+  for (const SpectrumRow& row : scene_.spectra) {
+    if (row.absorption) {
+      rows_.emplace_back().lines = row.absorption.get();
+      continue;
+    }
     rows_.push_back({spectrum_row(row), {row.is_emission ? emission_factor_ : std::vector<double>(), {}}});
+  }
   for (const KbTexture& texture : scene_.textures)
     if (texture.illuminant_row != KB_NONE) rows_.at(texture.illuminant_row).units.factor = emission_factor_;
 }
@@ -81,6 +88,12 @@ void TableMaker::add_unit_rows() {
   rows_.push_back({one, {emission_factor_, {}}});
   out_.layout.wavelength_row = static_cast<uint32_t>(rows_.size());
   rows_.push_back({wavelength_row(), {}});
+  out_.layout.lambda_row = KB_NONE;
+  if (!scene_.features.plume) return;
+  out_.layout.lambda_row = static_cast<uint32_t>(rows_.size());
+  RowFunction lambda;
+  lambda.value = [](double lambda_nm) { return lambda_nm; };
+  rows_.push_back({lambda, {}});
 }
 
 void TableMaker::add_planck_rows() {
@@ -171,14 +184,6 @@ void TableMaker::add_band_sets() {
   }
 }
 
-/// Where a response can be other than 0, nm. The last entry's wavelength may round to a hair beyond it.
-Channel support(const RegularTable& table) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (table.extrapolate) return {-kInfinity, kInfinity, {}};
-  const double last = static_cast<double>(table.values.size() - 1);
-  return {table.min_nm, table.min_nm + table.step_nm * last * (1 + 1e-11), {}};
-}
-
 /// Responses in the unit of the brightest channel that they meet.
 void TableMaker::add_derived() {
   out_.layout.derived_row = static_cast<uint32_t>(rows_.size());
@@ -202,6 +207,10 @@ void TableMaker::add_derived() {
 std::vector<RowCells> TableMaker::choose() const {
   std::vector<RowCells> cells;
   for (const Row& row : rows_) {
+    if (row.lines) {
+      cells.push_back({0, 0, false});
+      continue;
+    }
     if (!row.ends.empty()) {
       cells.push_back({});
       continue;
@@ -223,7 +232,7 @@ void TableMaker::fit(std::vector<RowCells>& cells) const {
   };
   while (bytes() > options_.max_bytes) {
     const auto largest = std::ranges::max_element(cells, {}, &RowCells::cells);
-    if (largest->cells == 1) return;
+    if (largest->cells <= 1) return;
     largest->cells /= 2;
     const auto row = static_cast<std::size_t>(largest - cells.begin());
     largest->error = error_of_cells(rows_[row].function, scene_.channels, largest->cells);
@@ -237,13 +246,18 @@ void TableMaker::fill(const std::vector<RowCells>& cells) {
     out_.tables.push_back({static_cast<uint32_t>(size), row.cells});
     out_.error.push_back(row.error);
     out_.has_jump.push_back(row.has_jump);
-    size += (std::size_t{row.cells} + 1) * stride;
+    const ChannelKnots* lines = rows_[out_.tables.size() - 1].lines;
+    size += lines ? line_floats(*lines) : (std::size_t{row.cells} + 1) * stride;
     if (size > std::numeric_limits<uint32_t>::max())
       throw std::logic_error("channel tables: more nodes than 32 bits count");
   }
   out_.nodes.assign(size, 0.0f);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     float* nodes = out_.nodes.data() + out_.tables[r].first;
+    if (rows_[r].lines) {
+      fill_lines(*rows_[r].lines, nodes);
+      continue;
+    }
     for (std::size_t k = 0; k < rows_[r].ends.size(); ++k) {
       nodes[k] = static_cast<float>(rows_[r].ends[k].first);
       nodes[stride + k] = static_cast<float>(rows_[r].ends[k].second);

@@ -22,7 +22,8 @@ struct ChannelTableOptions {
 ///
 /// Between nodes rows are linear in mu. Tabulated spectra are piecewise linear: where nodes meet their kinks,
 /// as with equal channels on a table's grid, interpolation is exact. A jump (an end of data inside a channel)
-/// is a ramp over one cell.
+/// is a ramp over one cell. Absorption coefficients of gases keep the very knots of their data instead (cells
+/// = 0).
 struct ChannelTables {
   KbSpectraLayout layout{};
   std::vector<KbChannelTable> tables;   // by row

@@ -63,6 +63,8 @@ std::vector<std::string> scene_defines(const SceneFeatures& f, bool specialised)
       {"THERMAL", f.thermal},
       {"COMPENSATION", f.compensation},
       {"TEMPERATURE_FIELD", f.temperature_field},
+      {"GAS", f.gas},
+      {"PLUME", f.plume},
   };
   std::vector<std::string> defines{"KB_SPECIALISED"};
   for (const auto& [name, present] : features) {
@@ -83,6 +85,9 @@ KbSceneConstants scene_constants(const FlatScene& scene) {
   c.unit_row = scene.unit_row;
   c.envmap_width = scene.envmap.width;
   c.envmap_height = scene.envmap.height;
+  c.atmosphere = scene.atmosphere;
+  std::ranges::copy(scene.camera_media, c.camera_media);
+  c.gas = scene.features.gas ? 1 : 0;
   if (scene.camera.filter == KB_FILTER_GAUSSIAN)
     c.filter_ratio = scene.camera.filter_radius / scene.camera.filter_stddev;
   return c;
@@ -110,6 +115,9 @@ DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
       emitter_cdf_(memory.upload("emitter distribution", scene.emitter_cdf)),
       envmap_marginal_(memory.upload("environment rows", scene.envmap.marginal_cdf)),
       envmap_rows_(memory.upload("environment distribution", scene.envmap.row_cdf)),
+      media_(memory.upload("media", scene.media)),
+      plume_nodes_(memory.upload("plumes", scene.plume_nodes)),
+      interiors_(memory.upload("interiors", scene.interiors)),
       filter_table_(memory.upload("filter table", filter_nodes(scene.camera))),
       channel_bins_(memory.upload("reflectances by channel bins", scene.channel_bins)),
       thermals_(memory.upload("thermal emission", scene.thermals)) {}
@@ -117,8 +125,8 @@ DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
 void DeviceScene::bind(Kernel& kernel, uint32_t first) const {
   kernel.set_from(first, constants_, materials_, material_tables_, surfaces_, shapes_, textures_,
                   checkerboards_, texels_, texel_bounds_, spectrum_bounds_, normals_, uvs_, positions_,
-                  triangles_, area_cdf_, emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_,
-                  filter_table_, thermals_);
+                  triangles_, area_cdf_, emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_, media_,
+                  plume_nodes_, interiors_, filter_table_, thermals_);
 }
 
 DeviceBvh::DeviceBvh(DeviceMemory& memory, const Bvh& bvh)

@@ -25,7 +25,7 @@ KbSceneConstants scene_constants(const FlatScene& scene);
 /// The scene's arrays in device memory.
 class DeviceScene {
  public:
-  static constexpr uint32_t kArguments = 21;
+  static constexpr uint32_t kArguments = 24;
 
   /// material_tables  of make_material_tables(), which must have completed scene.materials before
   /// throws DeviceOutOfMemory naming the array that does not fit; DeviceLost, DeviceError
@@ -60,6 +60,9 @@ class DeviceScene {
   DeviceBuffer<float> area_cdf_;
   DeviceBuffer<KbEmitter> emitters_;
   DeviceBuffer<float> emitter_cdf_, envmap_marginal_, envmap_rows_;
+  DeviceBuffer<KbMedium> media_;
+  DeviceBuffer<KbFloat2> plume_nodes_;
+  DeviceBuffer<uint32_t> interiors_;
   DeviceBuffer<KbFloat2> filter_table_;
   DeviceBuffer<float> channel_bins_;
   DeviceBuffer<KbThermal> thermals_;

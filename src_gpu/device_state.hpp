@@ -54,6 +54,7 @@ class DeviceState {
   uint64_t slot_bytes() const;
   bool has_dispersion() const { return host_.scene.features.dispersion; }
   uint32_t chunk_slots() const { return gpu::chunk_slots(method, host_.scene.features); }
+  bool has_gas() const { return host_.scene.features.gas; }
 
   void clear_film(uint64_t pixels);
   /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's

@@ -69,6 +69,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels) const {
   r.chunks_per_path = chunks_per_path_;
   r.dispersion = device_.has_dispersion();
   r.chunk_slots = device_.chunk_slots();
+  r.gas = device_.has_gas();
   return r;
 }
 

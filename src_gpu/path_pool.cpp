@@ -11,12 +11,13 @@ constexpr uint64_t kLocalSize = 64;
 constexpr uint32_t kIterationsPerLook = 8;
 
 /// Where the queue stands among a kernel's arguments (the count follows).
-constexpr uint32_t kPoolArguments = 12;
+constexpr uint32_t kPoolArguments = 13;
 constexpr uint32_t kTableArguments = 3;
 constexpr uint32_t kGenerateQueue = DeviceScene::kArguments + kPoolArguments;
-constexpr uint32_t kShadeQueue = DeviceScene::kArguments + kPoolArguments + kTableArguments + 3;
+constexpr uint32_t kShadeQueue = DeviceScene::kArguments + kPoolArguments + kTableArguments + 4;
 constexpr uint32_t kClosestQueue = 8;
 constexpr uint32_t kAnyQueue = 8;
+constexpr uint32_t kWalkQueue = DeviceScene::kArguments + kPoolArguments + 3;
 
 }  // namespace
 
@@ -29,7 +30,8 @@ void throw_for_bugs(const KbFaults& faults) {
 uint64_t path_pool_bytes(const PoolSize& size) {
   const uint64_t per_slot = sizeof(KbPathState) + sizeof(KbRay) + sizeof(KbHit) + sizeof(KbShadowRay) +
                             sizeof(uint64_t) + 2 * sizeof(uint32_t) +
-                            (size.dispersion ? sizeof(KbDispersionState) : 0);
+                            (size.dispersion ? sizeof(KbDispersionState) : 0) +
+                            (size.gas ? sizeof(KbGasState) : 0);
   const uint64_t per_chunk = size.chunk_slots * sizeof(KbPathVertex) + sizeof(uint32_t);
   return size.slots * per_slot + size.arena_chunks * per_chunk + uint64_t{size.jobs} * sizeof(KbSavedPath) +
          uint64_t{size.pixels} * sizeof(KbRoundPixel) + uint64_t{size.tables} * sizeof(float);
@@ -52,6 +54,7 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
       saved_(memory.allocate<KbSavedPath>("saved paths", size.jobs)),
       faults_(memory.allocate<KbFaults>("faults", 1)),
       dispersion_(memory.allocate<KbDispersionState>("dispersion states", size.dispersion ? size.slots : 1)),
+      gas_(memory.allocate<KbGasState>("media of paths", size.gas ? size.slots : 0)),
       tallies_(memory.allocate<uint64_t>("tallies", size.slots)),
       queue_(memory.allocate<uint32_t>("queue", size.slots)),
       packed_(memory.allocate<uint32_t>("queue", size.slots)),
@@ -59,7 +62,7 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
       generate_(program.kernel("generate")),
       closest_(program.kernel("closest_hits")),
       shade_(program.kernel("shade")),
-      any_(program.kernel("any_hits")),
+      any_(program.kernel(size.gas ? "shadow_walks" : "any_hits")),
       compact_(program.kernel("compact")) {
   for (Kernel* kernel : {&reset_, &generate_, &closest_, &shade_, &any_, &compact_})
     kernel->set_scale(LaunchScale::kSlots);
@@ -70,15 +73,21 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
 void PathPool::bind(const DeviceScene& scene, const DeviceBvh& bvh, const DeviceSpectra& spectra) {
   const auto bind_pool = [this, &scene](Kernel& kernel, uint32_t first) {
     kernel.set_from(first, round_, pixels_, mu_, states_, rays_, shadows_, arena_, chunk_next_, saved_,
-                    faults_, dispersion_, scene.channel_bins());
+                    faults_, dispersion_, scene.channel_bins(), gas_);
   };
   scene.bind(generate_, 0);
   bind_pool(generate_, DeviceScene::kArguments);
   scene.bind(shade_, 0);
   bind_pool(shade_, DeviceScene::kArguments);
   shade_.set_from(DeviceScene::kArguments + kPoolArguments, spectra.nodes, spectra.tables, spectra.materials,
-                  bvh.primitives, hits_, tallies_);
+                  bvh.nodes, bvh.primitives, hits_, tallies_);
   closest_.set_from(0, scene.shapes(), bvh.nodes, bvh.primitives, states_, rays_, hits_, faults_, tallies_);
+  if (size_.gas) {
+    scene.bind(any_, 0);
+    bind_pool(any_, DeviceScene::kArguments);
+    any_.set_from(DeviceScene::kArguments + kPoolArguments, bvh.nodes, bvh.primitives, tallies_);
+    return;
+  }
   any_.set_from(0, scene.shapes(), bvh.nodes, bvh.primitives, states_, shadows_, arena_, faults_, tallies_);
 }
 
@@ -92,7 +101,7 @@ void PathPool::iterate(const AfterBounce& after_bounce) {
   launch(closest_, kClosestQueue);
   if (on_hits_) on_hits_(queue_, count_);
   launch(shade_, kShadeQueue);
-  launch(any_, kAnyQueue);
+  launch(any_, size_.gas ? kWalkQueue : kAnyQueue);
   if (after_bounce) after_bounce(queue_, count_);
 }
 

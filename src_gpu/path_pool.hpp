@@ -21,6 +21,7 @@ struct PoolSize {
   uint32_t tables = 0;                    // largest blocks * samples of a round
   uint32_t chunk_slots = KB_CHUNK_SLOTS;  // vertices of a chunk
   bool dispersion = false;                // the scene has boundaries whose index depends on wavelength
+  bool gas = false;                       // the scene has gas
 };
 
 uint64_t path_pool_bytes(const PoolSize& size);
@@ -88,7 +89,8 @@ class PathPool {
   DeviceBuffer<KbSavedPath> saved_;
   DeviceBuffer<KbFaults> faults_;
   DeviceBuffer<KbDispersionState> dispersion_;  // by slot
-  DeviceBuffer<uint64_t> tallies_;              // by slot: rays in the low word, vertices in the high one
+  DeviceBuffer<KbGasState> gas_;
+  DeviceBuffer<uint64_t> tallies_;  // by slot: rays in the low word, vertices in the high one
   DeviceBuffer<uint32_t> queue_, packed_;
   Kernel reset_, generate_, closest_, shade_, any_, compact_;
   AfterBounce on_hits_;

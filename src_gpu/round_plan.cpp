@@ -39,6 +39,7 @@ uint64_t expected_chunks(const PlanRequest& r, uint64_t jobs) {
 uint64_t bytes_of_jobs(const PlanRequest& r, uint64_t jobs, uint64_t slots) {
   PoolSize size;
   size.dispersion = r.dispersion;
+  size.gas = r.gas;
   size.slots = to_u32(slots);
   size.jobs = to_u32(jobs);
   size.pixels = to_u32(jobs);
@@ -86,7 +87,9 @@ uint64_t arena_chunks(const PlanRequest& r, const PoolSize& others, uint64_t job
 }  // namespace
 
 uint32_t chunk_slots(Method method, const SceneFeatures& features) {
-  return method == Method::kPt && features.dispersion ? KB_PT_DISPERSION_CHUNK_SLOTS : KB_CHUNK_SLOTS;
+  if (method != Method::kPt) return KB_CHUNK_SLOTS;
+  if (features.gas) return KB_PT_GAS_CHUNK_SLOTS;
+  return features.dispersion ? KB_PT_DISPERSION_CHUNK_SLOTS : KB_CHUNK_SLOTS;
 }
 
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {
@@ -110,6 +113,7 @@ RoundPlan plan_rounds(const PlanRequest& r) {
     plan.pool.slots /= 2;
   plan.pool.pixels = plan.round_pixels + (pt ? plan.pool.slots : 0);
   plan.pool.jobs = pt ? 1 : to_u32(plan.round_jobs);
+  plan.pool.gas = r.gas;
   plan.pool.arena_chunks = pt ? plan.pool.slots : to_u32(arena_chunks(r, plan.pool, plan.round_jobs));
   return plan;
 }

@@ -28,6 +28,7 @@ struct PlanRequest {
   double chunks_per_path = 3;  // expected
   bool dispersion = false;     // PoolSize::dispersion
   uint32_t chunk_slots = KB_CHUNK_SLOTS;
+  bool gas = false;            // the scene has gas
 };
 
 struct RoundPlan {

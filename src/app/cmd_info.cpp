@@ -40,6 +40,23 @@ void print_channels(const LoadedScene& loaded) {
     fmt::print("response     {}\n", name);
 }
 
+const char* name_of_medium(uint32_t type) {
+  static constexpr const char* kNames[] = {"no gas", "absorbing", "plume (grid)", "plume (jet)"};
+  return kNames[type];
+}
+
+void print_media(const FlatScene& scene) {
+  fmt::print("media        {}\n", scene.media.size());
+  for (std::size_t m = 0; m < scene.media.size(); ++m) {
+    const KbMedium& medium = scene.media[m];
+    std::size_t knots = 0;
+    if (medium.row != KB_NONE) knots = scene.spectra[medium.row].absorption->mu.size();
+    fmt::print("  {:<16} {}{}{}, {} points of absorption in all channels\n", name_of_medium(medium.type),
+               scene.medium_names[m], m == scene.atmosphere ? ", the atmosphere" : "",
+               medium.emit_row == KB_NONE ? "" : fmt::format(", up to {:g} K", medium.reference_k), knots);
+  }
+}
+
 void print_contents(const FlatScene& scene) {
   fmt::print("shapes       {} ({} triangles, {} vertices)\n", scene.shapes.size(), scene.triangles.size() / 3,
              scene.positions.size() - 1);
@@ -56,6 +73,7 @@ void print_contents(const FlatScene& scene) {
   std::size_t entries = 0;
   for (const SpectrumRow& row : scene.spectra) entries += row.table.values.size();
   fmt::print("spectra      {} ({} table entries)\n", scene.spectra.size(), entries);
+  if (scene.features.gas) print_media(scene);
   fmt::print("textures     {} ({} texels)\n", scene.textures.size(), scene.texel_bounds.size());
   std::size_t values = 0;
   for (const SpectralTexels& texels : scene.spectral_texels) values += texels ? texels->size() : 0;
@@ -93,7 +111,7 @@ void print_path_memory(const FlatScene& scene) {
   const uint64_t vertices = longest_path(scene.integrator);
   const bool textured =
       scene.features.bitmap || scene.features.envmap_light || scene.features.temperature_field;
-  const uint64_t slots = textured ? 2 : 1;
+  const uint64_t slots = (textured ? 2 : 1) + (scene.features.gas ? 2 : 0);  // gas: a vertex on the way, one for its light
   const uint64_t pt =
       gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots, scene.features);
   const uint64_t dpept =

@@ -1,8 +1,8 @@
 // kiloband trace SCENE.xml --pixel X,Y --sample N: one path, vertex by vertex.
 #include <fmt/core.h>
 
-#include <bit>
 #include <charconv>
+#include <cstring>
 #include <iterator>
 #include <memory>
 
@@ -41,7 +41,7 @@ Pixel parse_pixel(const std::string& text) {
 
 const char* name_of_kind(uint32_t kind) {
   static constexpr const char* kNames[] = {"scaled",     "two-term", "nonlinear",         "conductor",
-                                           "dispersive", "?",        "rough transmission"};
+                                           "dispersive", "gas",      "rough transmission"};
   return kind < std::size(kNames) ? kNames[kind] : "?";
 }
 
@@ -59,8 +59,32 @@ void print_hit(const FlatScene& scene, std::size_t bounce, const TracedHit& hit)
              scene.shape_names[hit.shape], hit.primitive, hit.t, hit.u, hit.v);
 }
 
+void print_gas(const FlatScene& scene, const KbPathVertex& v) {
+  fmt::print("vertex     gas, {}\n", spectrum_name(scene, v.row_a, false));
+  if (v.head & KB_VERTEX_NEE) {
+    fmt::print("  light    through a column of {:.9g} m\n", v.nee0);
+    return;
+  }
+  if (v.head & KB_VERTEX_DEFER) {
+    fmt::print("  column   {:.9g} m in front of the next vertex's emission\n", v.scatter0);
+    return;
+  }
+  fmt::print("  column   {:.9g} m\n", v.scatter0);
+  const uint32_t cells = v.head >> KB_VERTEX_MATERIAL_SHIFT;
+  if (v.head & KB_VERTEX_EMIT) fmt::print("  emission of {}\n", spectrum_name(scene, v.emit_row, false));
+  if (cells == 0) return;
+  fmt::print("  cells    {}, from {:.9g} K\n", cells, v.nee0);
+  for (uint32_t i = 0; i < cells; ++i) {
+    KbPlumeCell cell;
+    std::memcpy(&cell, reinterpret_cast<const char*>(&v + 1) + i * sizeof cell, sizeof cell);
+    fmt::print("    {:.9g} m to {:.9g} K\n", cell.column, cell.temperature_k);
+  }
+}
+
+/// With the slots that follow it.
 void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
   const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
+  if (kind == KB_KIND_MEDIUM) return print_gas(scene, v);
   const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
   fmt::print("vertex     {}", name_of_kind(kind));
   const uint32_t material = v.head >> KB_VERTEX_MATERIAL_SHIFT;
@@ -76,8 +100,9 @@ void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
                two ? ", " + spectrum_name(scene, v.row_b, v.head & KB_VERTEX_TEX_B) : "");
   }
   if (v.head & KB_VERTEX_NEE) {
-    fmt::print("  light    weights {:.9g} {:.9g} of {}\n", v.nee0, v.nee1,
-               spectrum_name(scene, v.nee_row, v.head & KB_VERTEX_TEX_NEE));
+    fmt::print("  light    weights {:.9g} {:.9g} of {}{}\n", v.nee0, v.nee1,
+               spectrum_name(scene, v.nee_row, v.head & KB_VERTEX_TEX_NEE),
+               v.head & KB_VERTEX_DEFER ? ", through gas" : "");
   }
   if (v.head & KB_VERTEX_DEGRADE) {
     fmt::print("  scatter  weight {:.9g}, only channel {} goes on\n", v.scatter0, kb_as_u32(v.scatter1));
@@ -93,7 +118,7 @@ void print_path(const FlatScene& scene, const TracedPath& path) {
   if (path.slots.empty() && !path.invalid) fmt::print("no vertex contributes\n");
   for (std::size_t i = 0; i < path.slots.size();) {
     print_vertex(scene, path.slots[i]);
-    i += 1 + (static_cast<std::size_t>(std::popcount(path.slots[i].head & KB_VERTEX_TEX_MASK)) + 1) / 2;
+    i += 1 + kb_vertex_extensions(path.slots[i].head);
   }
 }
 

@@ -2,6 +2,7 @@
 // flattening reads.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
@@ -100,6 +101,9 @@ struct PlasticBsdf {
   std::optional<Roughness> roughness;
 };
 
+/// Nothing but a boundary between media: rays go on as if it were not there.
+struct NullBsdf {};
+
 struct Bsdf;
 /// back absent: the front is used on both sides.
 struct TwoSidedBsdf {
@@ -115,7 +119,46 @@ struct MaskBsdf {
 struct Bsdf {
   std::string id;  // for messages; empty if unnamed
   SourcePosition position;
-  std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf> model;
+  std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf, NullBsdf>
+      model;
+};
+
+// ---- media ----
+/// Temperature and scale at the nodes of a lattice that spans [0, 1]^3 of the local coordinates; linear
+/// between.
+struct GridField {
+  std::array<uint32_t, 3> nodes{};  // along x, y, z, at least 2 each
+  struct Node {
+    float temperature_k, scale;
+  };
+  std::vector<Node> values;  // x varies fastest
+  Transform to_world{1.0};
+};
+/// A round jet along local +Z from z = 0 to z = length; see shared/plume.h.
+struct JetField {
+  double temperature_k = 0;  // on the axis at z = 0
+  double ambient_k = 0;
+  double radius = 0;  // width at z = 0, m
+  double spread = 0;  // growth of the width per metre
+  double length = 0;  // m
+  Transform to_world{1.0};
+};
+
+/// How the lines of a gas are met by the wavelength that a channel has on a path.
+enum class GasSpectrum {
+  kSampled,     // the coefficient at that very wavelength
+  kCorrelatedK  // the coefficients of a channel in ascending order over mu
+};
+
+/// A gas: absorbs and emits, does not scatter.
+struct Medium {
+  std::string id;
+  SourcePosition position;
+  Spectrum absorption;  // 1/m at scale 1
+  double scale = 1;
+  std::optional<double> temperature_k;  // homogeneous; absent: does not emit
+  GasSpectrum spectrum = GasSpectrum::kSampled;
+  std::variant<std::monostate, GridField, JetField> field;  // none: homogeneous
 };
 
 // ---- emitters ----
@@ -186,6 +229,7 @@ struct Shape {
   std::optional<AreaEmitter> emitter;
   std::optional<ThermalEmitter> thermal;  // never together with `emitter`
   SourcePosition emitter_position;        // of either
+  std::shared_ptr<const Medium> interior;  // null: none
   std::variant<MeshShape, SphereShape, DiskShape, CylinderShape> geometry;
 };
 
@@ -243,6 +287,7 @@ struct SceneDescription {
   /// environment.
   std::optional<double> ambient_temperature_k;
   SourcePosition ambient_position;
+  std::shared_ptr<const Medium> atmosphere;  // outside all shapes; null: none
   Sensor sensor;
   Integrator integrator;
 };

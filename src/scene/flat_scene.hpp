@@ -1,14 +1,17 @@
 // FlatScene: the scene as plain arrays of the records in shared/records.h; what every backend renders.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "scene/description.hpp"
+#include "shared/pipeline.h"
 #include "shared/records.h"
 #include "shared/thermal.h"
+#include "spectral/channel_knots.hpp"
 #include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 
@@ -25,6 +28,8 @@ struct SceneFeatures {
   bool thermal = false;            // surfaces emit by Kirchhoff's law
   bool compensation = false;       // rough ones among them
   bool temperature_field = false;  // and their temperature depends on the place
+  bool gas = false;    // media or null boundaries
+  bool plume = false;  // media that vary in space
 
   /// Names of the features that are present, for `info` and the statistics.
   std::vector<std::string> names() const;
@@ -37,8 +42,9 @@ struct SpectrumRow {
   bool is_planck = false;  // then: planck_scale * planck_radiance(lambda, temperature_k) on [min_nm, max_nm],
                            // times the table if that is not empty (an emissivity)
   double temperature_k = 0, planck_scale = 1, planck_min_nm = 0, planck_max_nm = 1e300;
-  bool is_emission = false;  // values are divided by the channel's scale
-  float bound = 0;           // upper bound over guide bands and rendered channels
+  std::shared_ptr<const ChannelKnots> absorption;  // a gas's, 1/m: then `table` is empty
+  bool is_emission = false;                        // values are divided by the channel's scale
+  float bound = 0;                                 // upper bound over guide bands and rendered channels
 };
 
 /// Importance sampling of an environment map over its texels: piecewise constant in (u, v).
@@ -93,6 +99,13 @@ struct FlatScene {
   std::vector<KbFloat2> uvs;        // empty if no shape has
   std::vector<uint32_t> triangles;  // 3 absolute vertex indices each
   std::vector<float> area_cdf;      // see KbShape::first_cdf, lattice_cdf.hpp
+
+  std::vector<KbMedium> media;
+  std::vector<std::string> medium_names;
+  std::vector<KbFloat2> plume_nodes;  // temperature (K) and scale, see KbMedium::first_node
+  std::vector<uint32_t> interiors;    // by shape: the medium inside, or KB_NONE; empty without gas
+  uint32_t atmosphere = KB_NONE;      // the medium outside all interiors
+  std::array<uint16_t, KB_MEDIUM_DEPTH> camera_media{};  // where rays begin: as KbGasState::inside
 
   std::vector<KbEmitter> emitters;
   std::vector<std::string> emitter_names;  // an area light's is its shape's; empty: without id

@@ -32,6 +32,7 @@ FlatScene Flattener::run() {
   compute_bounds();
   add_emitters();
   select_emitters();
+  add_media();
   set_channel_scales();
   set_camera();
   set_channel_bins();
@@ -65,7 +66,9 @@ std::vector<std::string> SceneFeatures::names() const {
                                               {"analytic shapes", analytic_shapes},
                                               {"thermal emission", thermal},
                                               {"energy compensation", compensation},
-                                              {"temperature field", temperature_field}};
+                                              {"temperature field", temperature_field},
+                                              {"gas", gas},
+                                              {"plume", plume}};
   std::vector<std::string> present;
   for (const auto& [name, is_present] : all) {
     if (is_present) present.emplace_back(name);

@@ -151,8 +151,9 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
   KbMaterial record = std::visit(
       [&](const auto& model) -> KbMaterial {
         using Model = std::decay_t<decltype(model)>;
-        if constexpr (std::is_same_v<Model, TwoSidedBsdf> || std::is_same_v<Model, MaskBsdf>) {
-          throw InputError(bsdf->position, name + ": a twosided or mask bsdf cannot be nested here");
+        if constexpr (std::is_same_v<Model, TwoSidedBsdf> || std::is_same_v<Model, MaskBsdf> ||
+                      std::is_same_v<Model, NullBsdf>) {
+          throw InputError(bsdf->position, name + ": a twosided, mask or null bsdf cannot be nested here");
         } else {
           return make(model, name, bsdf->position);
         }
@@ -197,6 +198,12 @@ uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t he
   if (const auto* mask = std::get_if<MaskBsdf>(&inner->model)) {
     set_opacity(record, *mask, {describe(*bsdf) + ": opacity", bsdf->position, false});
     inner = mask->nested;
+  }
+  if (std::holds_alternative<NullBsdf>(inner->model)) {  // nothing is there that could emit
+    record.front = KB_NONE;
+    record.flags |= KB_SURFACE_NULL;
+    out_.surfaces.push_back(record);
+    return surfaces_[{bsdf.get(), heat}] = static_cast<uint32_t>(out_.surfaces.size() - 1);
   }
   std::shared_ptr<const Bsdf> front = inner, back;
   if (const auto* two_sided = std::get_if<TwoSidedBsdf>(&inner->model)) {

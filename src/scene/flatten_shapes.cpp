@@ -53,6 +53,7 @@ void Flattener::add_shapes() {
     record.surface = surface(shape.bsdf, heat_of_shape_.back());
     record.emitter = record.first_cdf = KB_NONE;
     record.flags = shape.flip_normals ? KB_SHAPE_FLIP_NORMALS : 0;
+    if (out_.surfaces[record.surface].flags & KB_SURFACE_NULL) record.flags |= KB_SHAPE_NULL;
     store_transform(shape.to_world, record.to_world);
     store_transform(glm::inverse(shape.to_world), record.to_object);
     if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry)) {

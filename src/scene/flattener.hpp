@@ -90,6 +90,15 @@ class Flattener {
   void add_areas(KbShape& record, const Shape& shape);
   void compute_bounds();
 
+  // flatten_media.cpp
+  void add_media();
+  uint32_t medium(const std::shared_ptr<const Medium>& medium);
+  uint32_t add_medium(const KbMedium& record, const std::string& name, const SourcePosition& position);
+  uint32_t interior(uint32_t shape_index);
+  void set_grid(KbMedium& record, const GridField& grid);
+  void set_jet(KbMedium& record, const JetField& jet);
+  void set_ladder(KbMedium& record) const;
+
   // flatten_emitters.cpp
   void add_emitters();
   void add_ambient_environment();
@@ -111,7 +120,7 @@ class Flattener {
   SpectrumTableBuilder spectra_;
   std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;  // by bsdf and heat
   std::map<std::pair<const void*, bool>, uint32_t> materials_;     // by bsdf and compensation
-  std::map<const void*, uint32_t> checkerboards_;
+  std::map<const void*, uint32_t> checkerboards_, media_;
   std::vector<Heat> heats_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> emission_rows_, complements_,
       thermals_;                                    // by what and heat

@@ -108,7 +108,8 @@ Model read_plastic(ReadContext& context, const ObjectReader& object, bool rough)
 }
 
 bool transmits(const Bsdf& bsdf) {
-  return std::holds_alternative<DielectricBsdf>(bsdf.model) || std::holds_alternative<MaskBsdf>(bsdf.model);
+  return std::holds_alternative<DielectricBsdf>(bsdf.model) || std::holds_alternative<MaskBsdf>(bsdf.model) ||
+         std::holds_alternative<NullBsdf>(bsdf.model);
 }
 
 Model read_two_sided(ReadContext& context, const ObjectReader& object) {
@@ -142,6 +143,7 @@ Model read_mask(ReadContext& context, const ObjectReader& object) {
   bsdf.nested = read_bsdf(context, *nested);
   if (std::holds_alternative<MaskBsdf>(bsdf.nested->model))
     object.fail_here("the nested bsdf is a mask itself");
+  if (std::holds_alternative<NullBsdf>(bsdf.nested->model)) object.fail_here("the nested bsdf is null");
   return bsdf;
 }
 
@@ -164,6 +166,10 @@ Model read_plastic_rough(ReadContext& c, const ObjectReader& o) {
   return read_plastic(c, o, true);
 }
 
+Model read_null(ReadContext&, const ObjectReader&) {
+  return NullBsdf{};
+}
+
 struct BsdfType {
   std::string_view name;
   Model (*read)(ReadContext&, const ObjectReader&);
@@ -179,6 +185,7 @@ constexpr BsdfType kTypes[] = {
     {"roughplastic", read_plastic_rough},
     {"twosided", read_two_sided},
     {"mask", read_mask},
+    {"null", read_null},
 };
 
 }  // namespace

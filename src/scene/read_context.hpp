@@ -23,6 +23,7 @@ struct ReadContext {
   std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const Image>> images;  // by file and raw
   /// By file and whether its values are weights.
   std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const SpectralImage>> spectral_images;
+  std::map<const Node*, std::shared_ptr<const Medium>> media;
 
   /// The existing file that a parameter names. throws InputError at its value
   std::filesystem::path file(const ObjectReader& object, std::string_view parameter);
@@ -45,7 +46,8 @@ auto load_at(const Place& place, Loader&& loader) {
 enum class SpectrumUse {
   kReflectance,  // numbers flat, colours upsampled, all in [0, 1]
   kEmission,     // numbers and colours times D65, all >= 0
-  kQuantity      // numbers flat, colours upsampled, all >= 0: indices, absorption, sensor responses
+  kQuantity,     // numbers flat, colours upsampled, all >= 0: indices, sensor responses
+  kAbsorption    // the same in 1/m; files may be in 1/cm
 };
 
 /// A spectral parameter; `fallback` where the file has none.
@@ -73,6 +75,9 @@ void check_spectral_reflectance(const SpectralBitmapTexture& texture, const std:
 void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place);
 
 std::shared_ptr<const Bsdf> read_bsdf(ReadContext& context, Node& node);
+std::shared_ptr<const Medium> read_medium(ReadContext& context, Node& node);
+/// The medium inside a shape, or null. throws InputError  a medium that is not named "interior"
+std::shared_ptr<const Medium> read_interior(ReadContext& context, const ObjectReader& shape);
 Shape read_shape(ReadContext& context, Node& node);
 AreaEmitter read_area_emitter(ReadContext& context, Node& node);
 ThermalEmitter read_thermal_emitter(ReadContext& context, Node& node);

@@ -150,6 +150,11 @@ std::shared_ptr<const Bsdf> default_bsdf(const Shape& shape) {
       Bsdf{"", shape.position, DiffuseBsdf{Spectrum::constant(shape.emitter || shape.thermal ? 0.0 : 0.5)}});
 }
 
+bool lets_light_in(const Bsdf& bsdf) {
+  return std::holds_alternative<NullBsdf>(bsdf.model) || std::holds_alternative<DielectricBsdf>(bsdf.model) ||
+         std::holds_alternative<MaskBsdf>(bsdf.model);
+}
+
 }  // namespace
 
 Shape read_shape(ReadContext& context, Node& node) {
@@ -160,9 +165,6 @@ Shape read_shape(ReadContext& context, Node& node) {
   shape.position = node.place.position();
   shape.to_world = object.get_transform("to_world");
   shape.flip_normals = object.get_bool("flip_normals", false);
-  for (const auto& child : node.children) {
-    if (child->resolved().tag == "medium") fail(child->place, object.label() + ": media are not supported");
-  }
   shape.geometry = type.read(context, object, shape);
   if (Node* emitter = object.nested_one("emitter")) {
     shape.emitter_position = emitter->place.position();
@@ -175,6 +177,13 @@ Shape read_shape(ReadContext& context, Node& node) {
   }
   Node* bsdf = object.nested_one("bsdf");
   shape.bsdf = bsdf ? read_bsdf(context, *bsdf) : default_bsdf(shape);
+  const bool boundary = std::holds_alternative<NullBsdf>(shape.bsdf->model);
+  if (boundary && shape.emitter) object.fail_here("a shape with a null bsdf cannot emit");
+  shape.interior = read_interior(context, object);
+  if (shape.interior && !lets_light_in(*shape.bsdf)) {
+    warn(context.sink, shape.position,
+         object.label() + ": its bsdf is opaque, so that its interior medium has no effect");
+  }
   object.finish();
   return shape;
 }

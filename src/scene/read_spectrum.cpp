@@ -73,11 +73,15 @@ Spectrum from_pairs(const XmlAttribute& value, const std::string& context) {
   return Spectrum::tabulated(std::move(lambda), std::move(values));
 }
 
+Spectrum read_file(const std::filesystem::path& file, SpectrumUse use, const DiagnosticSink& sink) {
+  return use == SpectrumUse::kAbsorption ? read_absorption_file(file, sink) : read_spectrum_file(file, sink);
+}
+
 /// <spectrum value= | filename=>. A single number is flat, on emitters too.
-Spectrum from_spectrum(ReadContext& context, const Node& node, const std::string& label) {
+Spectrum from_spectrum(ReadContext& context, const Node& node, const std::string& label, SpectrumUse use) {
   if (const XmlAttribute* filename = node.find("filename")) {
     const std::filesystem::path file = find_file(context.tree, filename->value, filename->value_place);
-    return load_at(filename->value_place, [&] { return read_spectrum_file(file, context.sink); });
+    return load_at(filename->value_place, [&] { return read_file(file, use, context.sink); });
   }
   const XmlAttribute& value = *node.find("value");
   if (value.value.find(':') != std::string::npos) return from_pairs(value, label + ": ");
@@ -87,7 +91,8 @@ Spectrum from_spectrum(ReadContext& context, const Node& node, const std::string
 Texture from_object(ReadContext& context, Node& node, const std::string& label, SpectrumUse use) {
   if (auto spectrum = read_spectrum_object(context, node, use)) return *spectrum;
   Texture texture = read_texture_object(context, node);
-  if (use == SpectrumUse::kQuantity) fail(node.type_place, label + ": a texture is not supported here");
+  if (use == SpectrumUse::kQuantity || use == SpectrumUse::kAbsorption)
+    fail(node.type_place, label + ": a texture is not supported here");
   return texture;
 }
 
@@ -126,7 +131,7 @@ Texture read_texture_node(ReadContext& context, Node& parameter, const std::stri
     fail(place, label + ": expected a spectrum, found " + describe_kind(parameter));
   }
   const Texture texture =
-      is_object ? from_object(context, node, label, use) : Texture(from_spectrum(context, node, label));
+      is_object ? from_object(context, node, label, use) : Texture(from_spectrum(context, node, label, use));
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) {
     check_spectrum(*spectrum, label, use, place);
   } else if (use == SpectrumUse::kReflectance) {

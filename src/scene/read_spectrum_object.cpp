@@ -78,10 +78,12 @@ Spectrum read_planck(ReadContext&, const ObjectReader& object, SpectrumUse) {
 }
 
 /// Our own: a spectrum file as an object, so that `extrapolate` can be stated.
-Spectrum read_file(ReadContext& context, const ObjectReader& object, SpectrumUse) {
+Spectrum read_file(ReadContext& context, const ObjectReader& object, SpectrumUse use) {
   const std::filesystem::path file = context.file(object, "filename");
-  const Spectrum spectrum =
-      load_at(object.value_place("filename"), [&] { return read_spectrum_file(file, context.sink); });
+  const Spectrum spectrum = load_at(object.value_place("filename"), [&] {
+    return use == SpectrumUse::kAbsorption ? read_absorption_file(file, context.sink)
+                                           : read_spectrum_file(file, context.sink);
+  });
   return object.get_bool("extrapolate", false) ? spectrum.extrapolated() : spectrum;
 }
 
@@ -146,9 +148,10 @@ std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, Sp
   for (const SpectrumType& type : kTypes) {
     known.push_back(type.name);
     if (object.type() != type.name) continue;
-    if (type.emission_only && use == SpectrumUse::kReflectance) {
+    if (type.emission_only && use == SpectrumUse::kReflectance)
       fail(node.type_place, object.label() + " describes emission: not allowed as a reflectance");
-    }
+    if (type.emission_only && use == SpectrumUse::kAbsorption)
+      fail(node.type_place, object.label() + " describes emission: not allowed as an absorption");
     const Texture result = type.read ? Texture(type.read(context, object, use)) : read_d65(context, object);
     object.finish();
     return result;

@@ -51,8 +51,21 @@ class SceneReader {
     } else if (tag == "integrator") {
       if (++integrators_ > 1) fail(child.place, scene.label() + ": a second integrator");
       std::tie(integrator_, splitting_) = read_integrator(context_, node);
-    } else if (tag == "medium" || tag == "phase" || tag == "volume") {
-      fail(child.place, "<" + tag + "> is not supported: media are not supported");
+    } else if (tag == "medium") {
+      add_medium(child, node);
+    } else if (tag == "phase" || tag == "volume") {
+      fail(child.place, "<" + tag + "> is not supported: gases do not scatter");
+    }
+  }
+
+  /// Named "atmosphere" it fills the space outside all shapes; else it is there to be referred to.
+  void add_medium(const Node& child, Node& node) {
+    const std::shared_ptr<const Medium> medium = read_medium(context_, node);
+    if (child.name == "atmosphere") {
+      scene_.atmosphere = medium;
+      node.used_as_part = true;
+    } else if (child.is_named()) {
+      fail(child.name_place, "a medium of the scene must be named 'atmosphere', not '" + child.name + "'");
     }
   }
 
@@ -91,6 +104,9 @@ class SceneReader {
   void check_parts() {
     for (const auto& child : tree_.root->children) {
       Node& node = child->resolved();
+      if (node.kind == TagKind::kObject && node.tag == "medium" && !node.used_as_part)
+        warn(context_.sink, node.place.position(),
+             ObjectReader(node).label() + ": is not part of a shape and has no effect");
       if (node.kind != TagKind::kObject || !is_part(node)) continue;
       child->used = true;
       if (node.used_as_part) continue;
@@ -106,8 +122,13 @@ class SceneReader {
     if (scene_.shapes.empty() && environments_ == 0 && !scene_.ambient_temperature_k)
       scene.fail_here("has neither a shape nor an environment");
     bool lit = !scene_.emitters.empty() || scene_.ambient_temperature_k;
-    for (const Shape& shape : scene_.shapes) lit = lit || shape.emitter || shape.thermal;
+    for (const Shape& shape : scene_.shapes) lit = lit || shape.emitter || shape.thermal || emits(shape.interior);
+    lit = lit || emits(scene_.atmosphere);
     if (!lit) scene.fail_here("has no emitter");
+  }
+
+  static bool emits(const std::shared_ptr<const Medium>& medium) {
+    return medium && (medium->temperature_k || !std::holds_alternative<std::monostate>(medium->field));
   }
 
   SceneTree& tree_;

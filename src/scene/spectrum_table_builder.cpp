@@ -40,6 +40,18 @@ uint32_t SpectrumTableBuilder::new_row(const Spectrum& spectrum, const SpectrumS
   return add(std::move(made), use.position);
 }
 
+uint32_t SpectrumTableBuilder::absorption_row(const Spectrum& spectrum, GasSpectrum treatment,
+                                              const SpectrumSource& use) {
+  check_range(spectrum.data_range(), spectrum.extrapolates(), use);
+  SpectrumRow row;
+  row.name = use.name;
+  ChannelKnots knots = sampled_knots(spectrum, scene_.channels, use.name);
+  if (treatment == GasSpectrum::kCorrelatedK) knots = sorted_knots(knots);
+  row.absorption = std::make_shared<const ChannelKnots>(std::move(knots));
+  row.bound = static_cast<float>(bound(spectrum));
+  return add(std::move(row), use.position);
+}
+
 uint32_t SpectrumTableBuilder::add(SpectrumRow row, const SourcePosition& position) {
   if (scene_.spectra.size() >= kMaxRows)
     throw InputError(position, fmt::format("{}: more than {} different spectra", row.name, kMaxRows));

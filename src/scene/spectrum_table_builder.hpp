@@ -35,6 +35,9 @@ class SpectrumTableBuilder {
   uint32_t add(SpectrumRow row, const SourcePosition& position = {});
   /// All wavelengths that rows must reach.
   const Channel& range() const { return range_; }
+  /// Row of a gas's absorption coefficient, by its very knots (SpectrumRow::absorption).
+  /// throws InputError  as row()
+  uint32_t absorption_row(const Spectrum& spectrum, GasSpectrum treatment, const SpectrumSource& use);
 
   /// Mean over the guide bands (each band one vote).
   double guide_mean(const Spectrum& spectrum) const;

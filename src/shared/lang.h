@@ -35,6 +35,7 @@ typedef ushort kb_u16;
 #define kb_log(x) log(x)
 #define kb_erf(x) erf(x)
 #define kb_mul_hi(a, b) mul_hi(a, b)
+#define kb_popcount(x) popcount(x)
 #define kb_as_u32(x) as_uint(x)
 #define kb_as_f32(x) as_float(x)
 /* Four u32 in one register, for local variables only: + - * & | ^ << >> work by element, also with a scalar.
@@ -77,6 +78,9 @@ typedef uint16_t kb_u16;
 #define kb_erf(x) std::erf(x)
 KB_FN kb_u32 kb_mul_hi(kb_u32 a, kb_u32 b) {
   return (kb_u32)(((kb_u64)a * (kb_u64)b) >> 32);
+}
+KB_FN kb_u32 kb_popcount(kb_u32 x) {
+  return (kb_u32)__builtin_popcount(x);
 }
 KB_FN kb_u32 kb_as_u32(float x) {
   kb_u32 bits;

@@ -15,9 +15,15 @@
 #ifndef KB_CHUNK_SLOTS
 #define KB_CHUNK_SLOTS 4u
 #endif
-/* With the method pt a slot's chunk holds what a path appends between two updates; with dispersion that is up to three
-   vertices and three slots of samples. */
+/* With the method pt a slot's chunk holds what a path appends between two updates: with dispersion up to three vertices and
+   three slots of samples, with gas the cells of plumes. */
 #define KB_PT_DISPERSION_CHUNK_SLOTS 8u
+#define KB_PT_GAS_CHUNK_SLOTS 48u
+
+/* Interiors that a path may be in at a time; a sample that is in more of them is invalid. */
+#define KB_MEDIUM_DEPTH 4
+/* Gases that a shadow ray may pass; one that passes more makes its sample invalid. */
+#define KB_SHADOW_MEDIA 8u
 
 /* ---- the scene beside its arrays
  * --------------------------------------------------------------------------------- */
@@ -32,8 +38,11 @@ typedef struct {
   kb_u32 unit_row;     /* a reflectance of 1, or KB_NONE */
   kb_u32 envmap_width; /* cells of the environment map's distribution */
   kb_u32 envmap_height;
-  float filter_ratio; /* gaussian: radius / stddev of the table */
-  kb_u32 reserved[6];
+  float filter_ratio;                   /* gaussian: radius / stddev of the table */
+  kb_u32 atmosphere;                    /* medium outside all interiors, or KB_NONE */
+  kb_u16 camera_media[KB_MEDIUM_DEPTH]; /* where rays begin: as KbGasState::inside */
+  kb_u32 gas;         /* 1: the scene has media or null boundaries */
+  kb_u32 reserved[2];
 } KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
 
@@ -127,6 +136,20 @@ typedef struct {
 } KbPathState;
 KB_STATIC_ASSERT(sizeof(KbPathState) == 32, path_state_size);
 
+/* In scenes with gas: where a path is. */
+#define KB_ESCAPE_UNKNOWN 0u
+#define KB_ESCAPE_YES 1u
+#define KB_ESCAPE_NO 2u
+typedef struct {
+  kb_u16 inside[KB_MEDIUM_DEPTH]; /* medium + 1 of the interiors entered and not left, in order; 0: none */
+  kb_u16 shadow_inside[KB_MEDIUM_DEPTH]; /* the same where the shadow ray begins */
+  kb_u32 crossings;                      /* null boundaries passed */
+  kb_u32 escape;                         /* KB_ESCAPE_*: whether the ray at hand leaves the scene */
+  float atmosphere_column;               /* m, passed on a ray that leaves the scene */
+  float begin, shadow_begin; /* ray parameter of the surface that the ray left: its origin is off it */
+} KbGasState;
+KB_STATIC_ASSERT(sizeof(KbGasState) == 36, gas_state_size);
+
 /* A pixel of the round. */
 typedef struct {
   kb_u32 x, y;  /* in the full film */
@@ -198,7 +221,7 @@ KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
    at nodes[first + j * stride + k], j = 0 .. cells. */
 typedef struct {
   kb_u32 first;
-  kb_u32 cells; /* at least 1 */
+  kb_u32 cells; /* at least 1; 0: a gas's row, kernels/spectral_row.clh has its layout */
 } KbChannelTable;
 KB_STATIC_ASSERT(sizeof(KbChannelTable) == 8, channel_table_size);
 

@@ -63,10 +63,11 @@ KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 #define KB_SURFACE_TRANSMISSIVE 1u /* one material, both sides, not flipped */
 #define KB_SURFACE_TWO_SIDED 2u    /* back != KB_NONE: the frame is flipped for directions below the surface */
 #define KB_SURFACE_THERMAL 4u      /* emits by Kirchhoff's law: front_thermal, back_thermal */
+#define KB_SURFACE_NULL 8u         /* nothing but the boundary of a medium: rays go on; no materials */
 
 /* What a shape's bsdf comes to: the materials of its two sides and its opacity. */
 typedef struct {
-  kb_u32 front;   /* material index */
+  kb_u32 front;   /* material index; null surfaces: KB_NONE */
   kb_u32 back;    /* material index, or KB_NONE: black from behind */
   kb_u32 flags;   /* KB_SURFACE_* */
   kb_u32 opacity_ref; /* bitmap reference, or KB_NONE for the constant */
@@ -121,6 +122,7 @@ enum KbShapeType { KB_SHAPE_MESH = 0, KB_SHAPE_SPHERE = 1, KB_SHAPE_DISK = 2, KB
 #define KB_SHAPE_HAS_NORMALS 2u /* mesh: interpolated normals */
 #define KB_SHAPE_HAS_UVS 4u
 #define KB_SHAPE_LIT_BOTH_SIDES 8u /* as a light: both sides are sampled */
+#define KB_SHAPE_NULL 16u /* its surface is KB_SURFACE_NULL */
 
 /* Rectangles and cubes are meshes. For sphere, disk and cylinder, to_world maps the canonical shape (unit sphere;
    unit disk in z = 0; unit-radius cylinder along z in [0, 1]) to the world. */
@@ -162,6 +164,34 @@ typedef struct {
   float to_object[12];
 } KbEmitter;
 KB_STATIC_ASSERT(sizeof(KbEmitter) == 128, emitter_size);
+
+/* ---- media ------------------------------------------------------------------------------------------------------
+   Gases: they absorb and emit, and do not scatter. The absorption coefficient at wavelength lambda is
+   S[row](lambda) times the local scale; a column is the integral of the scale along a ray, in m. */
+enum KbMediumType {
+  KB_MEDIUM_EMPTY = 0, /* no gas: the inside of a glass body in an atmosphere */
+  KB_MEDIUM_HOMOGENEOUS = 1,
+  KB_MEDIUM_GRID = 2, /* plume: temperature and scale at the nodes of a lattice */
+  KB_MEDIUM_JET = 3   /* plume: an analytic jet, see shared/plume.h */
+};
+
+#define KB_PLUME_LADDER 4
+
+typedef struct {
+  kb_u32 type;       /* KbMediumType */
+  kb_u32 row;        /* absorption at scale 1, 1/m */
+  kb_u32 emit_row;   /* Planck's law at reference_k, or KB_NONE: does not emit */
+  float scale;       /* of all columns */
+  float reference_k; /* temperature of emit_row; the hottest of a plume */
+  kb_u32 first_node; /* grid: into the node array */
+  kb_u32 nodes[3];   /* grid: along x, y, z; x varies fastest */
+  float temperature_k, ambient_k; /* jet: on the axis at its beginning, and around it */
+  float radius, spread, length;   /* jet: in its own coordinates */
+  float second[KB_PLUME_LADDER];  /* plume: hc / (k lambda reference_k) at the wavelengths that cells follow */
+  kb_u32 reserved[2];
+  float to_local[12]; /* world to the jet's coordinates, or to node numbers */
+} KbMedium;
+KB_STATIC_ASSERT(sizeof(KbMedium) == 128, medium_size);
 
 /* ---- camera ----------------------------------------------------------------------------------------------------- */
 #define KB_CAMERA_PERSPECTIVE 0u
@@ -211,13 +241,33 @@ KB_STATIC_ASSERT(sizeof(KbCamera) == 128, camera_size);
                             what these would need holds the directions
 
    KB_VERTEX_DEGRADE: after B is applied only channel kb_as_u32(scatter1) goes on, tau of the others becomes 0
-   (its kind is SCALED; scatter0 includes 1 / probability of the channel). */
+   (its kind is SCALED; scatter0 includes 1 / probability of the channel).
+
+   Gas along a ray is a vertex of kind KB_KIND_MEDIUM. It works with a third register q, which is 1 at the path's
+   begin; d, in m, is a column and kappa = S[row_a] in 1/m:
+
+     q    = exp(-kappa scatter0)                                             if DEFER alone: gas in front of the next
+                                                                             vertex's emission that the path itself
+                                                                             does not pass (docs/gases.md)
+     L   += tau * q * emit_weight * (1 - exp(-kappa scatter0)) * E[emit_row];  q = 1       if KB_VERTEX_EMIT
+     tau *= exp(-kappa scatter0)                                             if KB_VERTEX_SCATTER
+     q   *= exp(-kappa nee0);  without DEFER: L += q, q = 1                  if KB_VERTEX_NEE
+
+   The last stands behind a vertex of another kind that has KB_VERTEX_NEE and KB_VERTEX_DEFER: its light goes into q
+   instead of L, and a medium vertex follows for every gas along the shadow ray, the last one without DEFER.
+
+   A plume's vertex has n = head >> KB_VERTEX_MATERIAL_SHIFT cells, from near to far: KbPlumeCell records follow, four
+   to a slot. Column d_i and temperature T_i at its far end; T_0 = nee0 at the near end of the first; E[emit_row] is
+   Planck's law at nee1 kelvin, B(T) the same at T. Within a cell B is linear in the column:
+
+     x = kappa d_i, e = exp(-x);  L += tau q ((1 - e) B(T_(i-1)) + (1 - e (1 + x)) / x (B(T_i) - B(T_(i-1))));  tau *= e */
 enum KbVertexKind {
   KB_KIND_SCALED = 0,
   KB_KIND_TWO_TERM = 1,
   KB_KIND_NONLINEAR = 2,
   KB_KIND_CONDUCTOR = 3,
   KB_KIND_DISPERSIVE = 4,
+  KB_KIND_MEDIUM = 5,
   KB_KIND_ROUGH_TRANSMISSION = 6
 };
 
@@ -232,6 +282,7 @@ enum KbVertexKind {
 #define KB_VERTEX_TEX_EMIT 0x200u
 #define KB_VERTEX_TEX_NEE 0x400u
 #define KB_VERTEX_TEX_MASK 0x780u
+#define KB_VERTEX_DEFER 0x800u
 #define KB_VERTEX_MATERIAL_SHIFT 12
 
 typedef struct {
@@ -252,5 +303,17 @@ typedef struct {
   float fx, fy;
 } KbTextureSample;
 KB_STATIC_ASSERT(sizeof(KbTextureSample) == 16, texture_sample_size);
+
+typedef struct {
+  float column;        /* m */
+  float temperature_k; /* at the far end */
+} KbPlumeCell;
+KB_STATIC_ASSERT(sizeof(KbPlumeCell) == 8, plume_cell_size);
+
+/* 32-byte slots that follow the vertex. */
+KB_FN kb_u32 kb_vertex_extensions(kb_u32 head) {
+  if ((head & KB_VERTEX_KIND_MASK) == KB_KIND_MEDIUM) return ((head >> KB_VERTEX_MATERIAL_SHIFT) + 3u) / 4u;
+  return (kb_popcount(head & KB_VERTEX_TEX_MASK) + 1u) / 2u;
+}
 
 #endif

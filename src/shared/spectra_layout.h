@@ -19,8 +19,10 @@ typedef struct {
   kb_u32 film_columns;   /* floats of a film pixel: stride, and D rounded up to a multiple of 16 */
   kb_u32 band_row;       /* three rows for each band set: a band's number, bands from there on, unit (0 outside) */
   kb_u32 planck_row;     /* five rows for Planck's law at any temperature (KB_PLANCK_*), or KB_NONE as 0xffffffff */
+  kb_u32 lambda_row;     /* lambda_k, nm; 0xffffffff where the scene has no plume */
+  kb_u32 reserved[3];
 } KbSpectraLayout;
-KB_STATIC_ASSERT(sizeof(KbSpectraLayout) == 48, spectra_layout_size);
+KB_STATIC_ASSERT(sizeof(KbSpectraLayout) == 64, spectra_layout_size);
 
 /* Rows of channels that do not depend on mu, but for one: lowest wavelength as a sum of two floats and width, nm;
    mu itself; log2 of channel_scale, an integer. */

@@ -11,11 +11,9 @@ namespace {
 // CODATA 2018; h, c and k are exact in the SI.
 constexpr double kPlanck = 6.62607015e-34;   // J s
 constexpr double kLightSpeed = 299792458.0;  // m/s
-constexpr double kBoltzmann = 1.380649e-23;  // J/K
 /// 2 h c^2 in W m^-2 sr^-1 nm^-1 nm^5: 1e-9 per nm, (1e9)^5 from the metres of lambda^5.
 constexpr double kFirst = 2.0 * kPlanck * kLightSpeed * kLightSpeed * 1e36;
-/// h c / k in nm K.
-constexpr double kSecond_nm_k = kPlanck * kLightSpeed / kBoltzmann * 1e9;
+constexpr double kSecond_nm_k = kPlanckSecond_nm_k;
 /// exp(-x) is 0 in double from here on.
 constexpr double kLargestExponent = 745.2;
 

@@ -2,6 +2,9 @@
 
 namespace kiloband {
 
+/// h c / k in nm K: Planck's law has the exponent kPlanckSecond_nm_k / (lambda T). CODATA 2018, exact.
+inline constexpr double kPlanckSecond_nm_k = 6.62607015e-34 * 299792458.0 / 1.380649e-23 * 1e9;
+
 /// Planck's law: spectral radiance of a blackbody, W m^-2 sr^-1 nm^-1. CODATA 2018 (exact) constants.
 /// lambda_nm > 0, temperature_k >= 0 (0 gives 0). Accurate (relative error < 1e-13) from 0.3 um at 200 K
 /// (about 1e-96) to 20 um at 6000 K and in the Rayleigh-Jeans limit; underflows to 0 in double only below

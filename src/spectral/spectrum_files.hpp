@@ -19,6 +19,11 @@ namespace kiloband {
 /// InputError  "file:line: ..." (not a number, not finite, duplicate wavelength, order changes, no data ...)
 Spectrum read_spectrum_file(const std::filesystem::path& file, const DiagnosticSink& sink = {});
 
+/// Reads an absorption coefficient in 1/m: two columns as read_spectrum_file, the second in 1/m unless the
+/// file states 1/cm ("cm-1" in the column's name, or in a comment behind "abscoeff" or "absorption") or was
+/// written by RADIS, whose unit is 1/cm. throws InputError  as read_spectrum_file
+Spectrum read_absorption_file(const std::filesystem::path& file, const DiagnosticSink& sink = {});
+
 /// n and k of a material; k is absent where the file gives none.
 struct OpticalConstants {
   Spectrum n;

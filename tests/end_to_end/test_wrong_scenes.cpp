@@ -170,7 +170,7 @@ TEST(WrongScene, WholeScene) {
                kLight + kSphere),
            "broken.xml:2:92: error: independent sampler: sample_count 0: must be >= 1"},
           {"medium", complete_scene(R"xml(<medium type="homogeneous"/>)xml"),
-           "broken.xml:2:2: error: <medium> is not supported: media are not supported"},
+           "broken.xml:2:15: error: medium type 'homogeneous' is not supported"},
       });
 }
 

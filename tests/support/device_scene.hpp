@@ -23,6 +23,7 @@ inline KbSceneConstants probe_constants(const FlatScene& scene) {
   c.unit_row = scene.unit_row;
   c.envmap_width = scene.envmap.width;
   c.envmap_height = scene.envmap.height;
+  c.atmosphere = scene.atmosphere;
   if (scene.camera.filter == KB_FILTER_GAUSSIAN)
     c.filter_ratio = scene.camera.filter_radius / scene.camera.filter_stddev;
   return c;
@@ -61,6 +62,9 @@ class DeviceScene {
                 up(scene.emitter_cdf),
                 up(scene.envmap.marginal_cdf),
                 up(scene.envmap.row_cdf),
+                up(scene.media),
+                up(scene.plume_nodes),
+                up(scene.interiors),
                 up(filter),
                 up(scene.thermals)};
   }
@@ -72,7 +76,7 @@ class DeviceScene {
 
  private:
   Probe& probe_;
-  std::array<cl::Buffer, 21> buffers_;
+  std::array<cl::Buffer, 24> buffers_;
 };
 
 /// One KbPrimitive per triangle of a mesh and per analytic shape, in the order of the shapes.

@@ -56,6 +56,15 @@ inline Text checkerboard(const Text& name, const Text& to_uv) {
          spectrum("color1", "450:0.1, 650:0.5") + "<transform name='to_uv'>" + to_uv +
          "</transform></texture>";
 }
+/// A gas named `name`, which emits at a temperature in K.
+inline Text gas(const Text& name, const Text& absorption, const Text& temperature = "") {
+  return "<medium type='absorbing' name='" + name + "'>" + spectrum("absorption", absorption) +
+         (temperature.empty() ? "" : real("temperature", temperature)) + "</medium>";
+}
+inline Text plume(const Text& field) {
+  return "<medium type='plume' name='interior'>" + spectrum("absorption", "450:0.8, 550:3, 650:0.3") + field +
+         "</medium>";
+}
 inline Text lamp(const Text& radiance) {
   return "<emitter type='area'>" + spectrum("radiance", radiance) + "</emitter>";
 }

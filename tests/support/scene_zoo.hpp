@@ -13,9 +13,10 @@ namespace kiloband::test {
 
 /// How much of a rounding error is left at a path's end: what parity can ask for.
 enum class Chains {
-  kRough,    // diffuse and rough surfaces: errors stay small
-  kCurved,   // some balls or prisms that reflect or refract sharply: each multiplies an error by ten and more
-  kSpecular  // long specular chains
+  kRough,   // diffuse and rough surfaces: errors stay small
+  kCurved,  // some balls or prisms that reflect or refract sharply: each multiplies an error by ten and more
+  kSpecular,  // long specular chains
+  kPlume      // segments whose cells end where a threshold says: a hundred such decisions each
 };
 
 struct ZooScene {

@@ -93,6 +93,14 @@ void write_text(const fs::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
 
+/// Nodes of a plume, 4 x 3 x 5: temperature and scale.
+std::string plume_nodes() {
+  std::string text;
+  for (int i = 0; i < 60; ++i)
+    text += std::to_string(900 + i * 397 % 1300) + " " + std::to_string(i * 7 % 11) + "\n";
+  return text;
+}
+
 }  // namespace
 
 ZooFolder::ZooFolder() {
@@ -108,6 +116,7 @@ ZooFolder::ZooFolder() {
   write_text(path_ / "hot.ply", kHotPly);
   write_text(path_ / "gem.obj", kGem);
   write_text(path_ / "prism.obj", kPrism);
+  write_text(path_ / "plume.txt", plume_nodes());
   write_text(path_ / "glass.txt", "380 1.60\n500 1.545\n600 1.525\n720 1.51\n");
 }
 

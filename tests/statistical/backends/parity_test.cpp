@@ -4,12 +4,16 @@
 // paths a scene. A path has parted if its triangles, lobes, lights, rows or texels differ anywhere, or if its
 // value in a channel differs by more than 1e-4 of its largest channel (values_agree() says what is asked of
 // paths near 0).
-//   decisions     at most 0.1 % of a scene's paths may differ, 2 % with long specular chains
+//   decisions     at most 0.1 % of a scene's paths may differ, 2 % with long specular chains, 0.5 % with
+//   plumes: where
+//                 the cells of a segment end follows about a hundred comparisons, each of which falls
+//                 otherwise if it lies within the rounding of the ray's two ends
 //   with values   0.1 % on rough scenes, 2 % with long specular chains, and 0.5 % with curved reflectors: a
 //   ball of
 //                 radius r that is hit from d metres under cos multiplies an error of the hit point by
 //                 2 d / (r cos). With 5e-7 m, a unit in the last place at the camera's 4 m, two balls are
-//                 enough for 1e-4; neither backend is nearer to the truth.
+//                 enough for 1e-4; neither backend is nearer to the truth. 1 % with plumes: other cells are
+//                 other approximations, within the tolerance of shared/plume.h.
 // These are limits on counts, not estimates.
 //
 // Paths that part do so because rays graze edges or numbers fall on a threshold; that must not favour a
@@ -110,7 +114,14 @@ class Parity : public testing::TestWithParam<std::string> {
 /// The part of a scene's paths that may part.
 double budget_of(Chains chains) {
   if (chains == Chains::kSpecular) return 0.02;
+  if (chains == Chains::kPlume) return 0.01;
   return chains == Chains::kCurved ? 0.005 : 0.001;
+}
+
+/// The part of it that may differ by decisions.
+double decision_budget_of(Chains chains) {
+  if (chains == Chains::kSpecular) return 0.02;
+  return chains == Chains::kPlume ? 0.005 : 0.001;
 }
 
 /// Mean and its standard error.
@@ -136,7 +147,7 @@ TEST_P(Parity, PathsTakeTheSameDecisionsAndWeights) {
               zoo.name.c_str(), tally_.paths, 100 * fraction, tally_.parted[1], tally_.parted[2],
               tally_.parted[3]);
   EXPECT_GT(tally_.mean(), 0);
-  EXPECT_LE(decisions, zoo.chains == Chains::kSpecular ? 0.02 : 0.001);
+  EXPECT_LE(decisions, decision_budget_of(zoo.chains));
   EXPECT_LE(fraction, budget);
   if (tally_.differences.size() < 2) return;  // nothing to take a mean of
   const Estimate d = estimate(tally_.differences);

@@ -50,7 +50,7 @@ KbTextureSample texture_sample(const TracedPath& path, std::size_t vertex, std::
 /// Indices of the vertices among the slots.
 std::vector<std::size_t> vertices_of(const TracedPath& path) {
   std::vector<std::size_t> vertices;
-  for (std::size_t i = 0; i < path.slots.size(); i += 1 + (sample_count(path.slots[i].head) + 1) / 2)
+  for (std::size_t i = 0; i < path.slots.size(); i += 1 + kb_vertex_extensions(path.slots[i].head))
     vertices.push_back(i);
   return vertices;
 }

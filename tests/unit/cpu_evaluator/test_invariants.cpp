@@ -23,7 +23,7 @@ std::pair<FlatScene, PathBuffer> channel_alone(const FlatScene& scene, const Pat
     for (uint32_t i = path.first; i < path.first + path.count; ++i) {
       KbPathVertex& v = changed.slots[i];
       if (v.head & KB_VERTEX_DEGRADE) v.scatter1 = kb_as_f32(kb_as_u32(v.scatter1) == k ? 0 : 1);
-      i += (static_cast<uint32_t>(__builtin_popcount(v.head & KB_VERTEX_TEX_MASK)) + 1) / 2;
+      i += kb_vertex_extensions(v.head);
     }
   }
   return {one, changed};

@@ -1,6 +1,5 @@
 #include "device_evaluator.hpp"
 
-#include <bit>
 #include <numeric>
 #include <random>
 
@@ -69,7 +68,7 @@ std::vector<float> texel_values(const FlatScene& scene) {
 }  // namespace
 
 uint32_t slots_of(const KbPathVertex& vertex) {
-  return 1 + (static_cast<uint32_t>(std::popcount(vertex.head & KB_VERTEX_TEX_MASK)) + 1) / 2;
+  return 1 + kb_vertex_extensions(vertex.head);
 }
 
 std::string EvaluatorBuild::options() const {

@@ -33,7 +33,12 @@ bool next_bounce(Slot& slot, uint32_t number, uint32_t slots, const RoundOfPaths
   const bool nothing = p == RoundOfPaths::kEmpty || p == RoundOfPaths::kInvalid || paths.paths[p].count == 0;
   if (!nothing) {
     const SavedPath& path = paths.paths[p];
-    state.length = slots_of(paths.slots[path.first + slot.at]);
+    const KbPathVertex* vertices = &paths.slots[path.first + slot.at];
+    // What a deferred vertex waits for comes with it.
+    for (bool more = true; more;) {
+      more = vertices[state.length].head & KB_VERTEX_DEFER;
+      state.length += slots_of(vertices[state.length]);
+    }
     std::copy_n(&paths.slots[path.first + slot.at], state.length, chunk);
     slot.at += state.length;
   }

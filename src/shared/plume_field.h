@@ -1,0 +1,93 @@
+// Temperature and scale of a plume at a point: a lattice of nodes, or an analytic jet.
+#ifndef KILOBAND_SHARED_PLUME_FIELD_H
+#define KILOBAND_SHARED_PLUME_FIELD_H
+
+#include "shared/records.h"
+
+/* Temperature and scale at a point. */
+typedef struct {
+  float temperature_k, scale;
+} KbGasPoint;
+
+/* exp(x) for x <= 0 to 2e-7, 0 below -87: the same bits on host and device, so that both cut a ray into the
+   same cells. x = n ln 2 + r, |r| <= ln 2 / 2, and the series of exp(r) to the sixth power. */
+KB_FN float kb_plume_exp(float x) {
+  if (!(x > -87.0f)) return 0.0f;
+  const float n = kb_floor(x * 1.44269504f + 0.5f);
+  const float r = (x - n * 0.693359375f) + n * 2.12194440e-4f; /* ln 2 in two parts */
+  float sum = 1.0f / 720.0f;
+  sum = sum * r + 1.0f / 120.0f;
+  sum = sum * r + 1.0f / 24.0f;
+  sum = sum * r + 1.0f / 6.0f;
+  sum = sum * r + 0.5f;
+  sum = (sum * r + 1.0f) * r + 1.0f;
+  return sum * kb_as_f32((kb_u32)((kb_i32)n + 127) << 23);
+}
+
+KB_FN float kb_plume_mix(float a, float b, float t) {
+  return a + t * (b - a);
+}
+
+/* The box of four nodes at (x, y) in the plane z, bilinear. */
+KB_FN KbFloat2 kb_grid_plane(KB_GLOBAL const KbMedium* m, KB_GLOBAL const KbFloat2* nodes, kb_u32 x, kb_u32 y,
+                             kb_u32 z, float fx, float fy) {
+  const kb_u32 row = m->nodes[0];
+  KB_GLOBAL const KbFloat2* n = nodes + m->first_node + (z * m->nodes[1] + y) * row + x;
+  KbFloat2 r;
+  r.x = kb_plume_mix(kb_plume_mix(n[0].x, n[1].x, fx), kb_plume_mix(n[row].x, n[row + 1u].x, fx), fy);
+  r.y = kb_plume_mix(kb_plume_mix(n[0].y, n[1].y, fx), kb_plume_mix(n[row].y, n[row + 1u].y, fx), fy);
+  return r;
+}
+
+/* p: node numbers, clamped to the lattice. */
+KB_FN KbGasPoint kb_grid_at(KB_GLOBAL const KbMedium* m, KB_GLOBAL const KbFloat2* nodes, KbFloat3 p) {
+  const float x = kb_fmin(kb_fmax(p.x, 0.0f), (float)(m->nodes[0] - 1u));
+  const float y = kb_fmin(kb_fmax(p.y, 0.0f), (float)(m->nodes[1] - 1u));
+  const float z = kb_fmin(kb_fmax(p.z, 0.0f), (float)(m->nodes[2] - 1u));
+  kb_u32 i = (kb_u32)x, j = (kb_u32)y, k = (kb_u32)z;
+  if (i > m->nodes[0] - 2u) i = m->nodes[0] - 2u;
+  if (j > m->nodes[1] - 2u) j = m->nodes[1] - 2u;
+  if (k > m->nodes[2] - 2u) k = m->nodes[2] - 2u;
+  const KbFloat2 low = kb_grid_plane(m, nodes, i, j, k, x - (float)i, y - (float)j);
+  const KbFloat2 high = kb_grid_plane(m, nodes, i, j, k + 1u, x - (float)i, y - (float)j);
+  KbGasPoint gas;
+  gas.temperature_k = kb_plume_mix(low.x, high.x, z - (float)k);
+  gas.scale = kb_plume_mix(low.y, high.y, z - (float)k);
+  return gas;
+}
+
+/* A round jet far from its nozzle: width w = radius + spread z; with the excess c = radius / w exp(-(r /
+   w)^2) the scale is c and the temperature ambient + c (temperature - ambient). */
+KB_FN KbGasPoint kb_jet_at(KB_GLOBAL const KbMedium* m, KbFloat3 p) {
+  const float w = m->radius + m->spread * p.z;
+  const float excess = m->radius / w * kb_plume_exp(-(p.x * p.x + p.y * p.y) / (w * w));
+  KbGasPoint gas;
+  gas.temperature_k = m->ambient_k + excess * (m->temperature_k - m->ambient_k);
+  gas.scale = excess;
+  return gas;
+}
+
+/* Planck's law at temperature_k <= reference_k over that at reference_k; x: hc / (k lambda reference_k). */
+KB_FN float kb_planck_below(float x, float reference_k, float temperature_k) {
+  const float ratio = reference_k / temperature_k;
+  return kb_plume_exp(-x * (ratio - 1.0f)) * (1.0f - kb_plume_exp(-x)) / (1.0f - kb_plume_exp(-x * ratio));
+}
+
+/* Row-major 3x4 matrices. */
+KB_FN KbFloat3 kb_affine_point(KB_GLOBAL const float* m, KbFloat3 p) {
+  KbFloat3 r;
+  r.x = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
+  r.y = m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7];
+  r.z = m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11];
+  return r;
+}
+
+KB_FN KbFloat3 kb_affine_vector(KB_GLOBAL const float* m, KbFloat3 v) {
+  KbFloat3 r;
+  r.x = m[0] * v.x + m[1] * v.y + m[2] * v.z;
+  r.y = m[4] * v.x + m[5] * v.y + m[6] * v.z;
+  r.z = m[8] * v.x + m[9] * v.y + m[10] * v.z;
+  return r;
+}
+
+#endif
