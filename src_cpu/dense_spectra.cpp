@@ -95,11 +95,11 @@ const double* DenseSpectra::texture_lambda() {
 
 const float* DenseSpectra::planck_second() {
   if (!planck_second_) planck_second_ = aligned_zeros<float>(padded_);
-  if (planck_generation_ != generation_) {
+  if (planck_second_generation_ != generation_) {
     std::fill_n(planck_second_.get(), padded_, 1.0f);
     for (std::size_t k = 0; k < channels_; ++k)
       planck_second_[k] = static_cast<float>(kPlanckSecond_nm_k / lambda_[k]);
-    planck_generation_ = generation_;
+    planck_second_generation_ = generation_;
   }
   return planck_second_.get();
 }

@@ -106,7 +106,7 @@ struct DenseSpectra {
   std::vector<double> min_nm_, max_nm_, emission_factor_;  // emission_factor: width_k / channel_scale_k
   std::vector<bool> is_emission_;                          // of a spectrum
   hwy::AlignedFreeUniquePtr<double[]> lambda_, texture_lambda_;
-  uint64_t planck_generation_ = 0;
+  uint64_t planck_second_generation_ = 0;
   hwy::AlignedFreeUniquePtr<float[]> unit_emission_, zeros_, planck_second_;
   std::vector<Row> rows_;                                 // by spectrum
   std::vector<MaterialRows> material_rows_;               // by material
