@@ -87,6 +87,12 @@ Render render_with(const FlatScene& scene, OpenclOptions options, uint32_t sampl
   return result;
 }
 
+/// Of two renders of one image, the one whose longest launch is shorter.
+void keep_shorter(Render& best, Render other) {
+  if (best.image.empty() || other.longest_launch_seconds < best.longest_launch_seconds)
+    best = std::move(other);
+}
+
 /// Paths of a hundred vertices and more: with little memory a round's arena is full again and again.
 TEST(OpenclLimits, LongPathsInLittleMemory) {
   const FlatScene scene = closed_room(16, 100, "400:700:8");
@@ -103,18 +109,23 @@ TEST(OpenclLimits, LongPathsInLittleMemory) {
   }
 }
 
-/// Launches aim at half of the given time. How long one takes on a busy machine is not ours to say, so those
-/// over all paths of a round (dpept) are held against those without a limit, which are ten times as long as
-/// the given time.
+/// Launches aim at half of the given time. How long one takes on a busy machine is not ours to say: other
+/// work only lengthens it. So of several renders the one with the shortest longest launch counts, and those
+/// over all paths of a round (dpept) are held against the same without a limit, which is several times the
+/// given time.
 TEST(OpenclLimits, LaunchesAreShort) {
-  const FlatScene scene = closed_room(64, 12, "400:700:1600");
+  const FlatScene scene = closed_room(96, 12, "400:700:1600");
   for (const gpu::Method method : {gpu::Method::kDpeptBatch, gpu::Method::kDpeptPath}) {
     OpenclOptions options;
     options.method = method;
-    options.launch_seconds = 0.005;
-    const Render quick = render_with(scene, options, 8);
-    options.launch_seconds = 100;
-    const Render free = render_with(scene, options, 8);
+    Render quick, free;
+    for (int attempt = 0; attempt < 8; ++attempt) {
+      options.launch_seconds = 0.005;
+      keep_shorter(quick, render_with(scene, options, 8));
+      options.launch_seconds = 100;
+      keep_shorter(free, render_with(scene, options, 8));
+      if (quick.longest_launch_seconds < free.longest_launch_seconds / 2) break;
+    }
     const std::string found =
         fmt::format("{}: longest launch {:.4f} s, without a limit {:.4f} s", gpu::to_string(method),
                     quick.longest_launch_seconds, free.longest_launch_seconds);
