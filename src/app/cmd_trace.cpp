@@ -50,12 +50,12 @@ std::string spectrum_name(const FlatScene& scene, uint32_t row, bool textured) {
   return row < scene.spectra.size() ? scene.spectra[row].name : "?";
 }
 
-void print_hit(const FlatScene& scene, std::size_t bounce, const TracedHit& hit) {
+void print_hit(const FlatScene& scene, const std::string& what, const TracedHit& hit) {
   if (hit.shape == KB_NONE) {
-    fmt::print("bounce {:<3} leaves the scene\n", bounce);
+    fmt::print("{:<10} leaves the scene\n", what);
     return;
   }
-  fmt::print("bounce {:<3} shape {} ({}) triangle {}  t {:.9g}  u {:.9g}  v {:.9g}\n", bounce, hit.shape,
+  fmt::print("{:<10} shape {} ({}) triangle {}  t {:.9g}  u {:.9g}  v {:.9g}\n", what, hit.shape,
              scene.shape_names[hit.shape], hit.primitive, hit.t, hit.u, hit.v);
 }
 
@@ -112,7 +112,12 @@ void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
 }
 
 void print_path(const FlatScene& scene, const TracedPath& path) {
-  for (std::size_t b = 0; b < path.hits.size(); ++b) print_hit(scene, b, path.hits[b]);
+  std::size_t bounce = 0;
+  for (const TracedHit& hit : path.hits) {
+    const bool boundary = hit.shape != KB_NONE && (scene.shapes[hit.shape].flags & KB_SHAPE_NULL);
+    print_hit(scene, boundary ? "boundary" : fmt::format("bounce {}", bounce), hit);
+    bounce += boundary ? 0 : 1;
+  }
   if (path.invalid)
     fmt::print("invalid: a weight is not finite, or the path is endless; it leaves the mean\n");
   if (path.slots.empty() && !path.invalid) fmt::print("no vertex contributes\n");

@@ -51,6 +51,32 @@ TEST(Trace, BackendsAgree) {
   }
 }
 
+/// Gas: null boundaries are no bounces, and every segment in a gas is a vertex, a plume's with its cells.
+TEST(Trace, GasAlongThePath) {
+  const TemporaryFolder folder;
+  folder.write("gas.xml", R"(<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="1"/>
+<transform name="to_world"><lookat origin="0, 0, 9" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
+<medium type="absorbing" name="atmosphere" id="air"><spectrum name="absorption" value="0.1"/></medium>
+<shape type="cube"><bsdf type="null"/><medium type="plume" name="interior" id="smoke">
+<spectrum name="absorption" value="2"/><float name="temperature" value="2000"/><float name="ambient" value="300"/>
+<float name="radius" value="0.3"/><float name="length" value="2"/></medium></shape>
+<shape type="rectangle"><transform name="to_world"><translate z="-3"/></transform></shape>
+<emitter type="point"><point name="position" value="0, 0, -1.5"/></emitter></scene>)");
+  std::vector<std::string> outputs;
+  for (const std::string backend : {"cpu", "opencl"}) {
+    const Outcome outcome = run_program(folder, {"trace", "gas.xml", "--size", "16x16", "--bands",
+                                                 "3000:5000:4", "--pixel", "8,8", "--backend", backend});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    for (const std::string text : {"\nboundary   shape 0 ", "\nbounce 0   shape 1 ",
+                                   "\nvertex     gas, medium 'air': absorption\n  column   ",
+                                   "\nvertex     gas, medium 'smoke': absorption\n  column   ",
+                                   "\n  cells    ", ", through gas\n", "\n  light    through a column of "})
+      EXPECT_NE(outcome.out.find(text), std::string::npos) << text << outcome.out;
+    outputs.push_back(skeleton(outcome.out));
+  }
+  EXPECT_EQ(outputs[0], outputs[1]);
+}
+
 TEST(Trace, WrongPixels) {
   const TemporaryFolder folder;
   std::vector<WrongCommand> cases;
