@@ -1,4 +1,4 @@
-// The oracle of deferred evaluation: scalar, double, the formulas of shared/records.h written down one by
+// The oracle of deferred evaluation: scalar, double, the formulas of shared/path_vertex.h written down one by
 // one. It shares records and spectral tables with the fast code and nothing else.
 #include <algorithm>
 #include <cmath>
@@ -169,7 +169,7 @@ double scattering(const Point& at, const KbPathVertex& vertex, double a, double 
 /// tau and L of one channel along the path.
 struct State {
   double tau = 1, radiance = 0;
-  double aside = 1;  // q of records.h
+  double aside = 1;  // q of path_vertex.h
 };
 
 /// samples: the vertex's texture samples, in order. k: the channel.

@@ -22,6 +22,7 @@
 
 #include "src_cpu/evaluator_gas-inl.hpp"
 #include "src_cpu/evaluator_optics-inl.hpp"
+#include "src_cpu/evaluator_tables-inl.hpp"
 #include "src_cpu/evaluator_transmission-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,18 +31,13 @@ namespace HWY_NAMESPACE {
 
 /// Vectors of a full block: tau and L take 8 of the 16 (SSE4, AVX2) or 32 registers.
 inline constexpr std::size_t kBlockVectors = 4;
-inline constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 static_assert(kBlockVectors * kLanes <= kRowPadding && kLanes <= kMaxLanes);
-
-HWY_INLINE Floats load(const float* row, std::size_t k) {
-  return hn::LoadU(kTag, row + k);
-}
 
 HWY_INLINE Floats source(const SpectralSource& s, const double* lambda, std::size_t k) {
   return s.texture ? texture_value(*s.texture, lambda, k) : load(s.row, k);
 }
 
-/// B(w0, w1) of records.h from S_a and the second factor (S_b, or S_b / (1 - S_b fdr_int)).
+/// B(w0, w1) of path_vertex.h from S_a and the second factor (S_b, or S_b / (1 - S_b fdr_int)).
 HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, float w1,
                           const FresnelTerms& f, std::size_t k) {
   const Floats scaled = hn::Mul(constant(w0), a);
@@ -59,7 +55,8 @@ HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, 
   }
 }
 
-/// One vertex for the vector of channels at k. aside: the third register of scenes with gas, see records.h.
+/// One vertex for the vector of channels at k. aside: the third register of scenes with gas, see
+/// path_vertex.h.
 HWY_INLINE void general_vector(const GeneralVertex& v, const double* lambda, std::size_t k, float* tau,
                                float* radiance, float* aside) {
   Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance);
@@ -215,69 +212,6 @@ void evaluate_path(const PathProgram& path, float* film) {
     evaluate_block<1>(path, k, film);
   }
   if (path.derived) finish_derived(*path.derived, film);
-}
-
-/// Positions in a table, as half vectors: entry, and the weights of it and the next. Both weights are 0
-/// outside.
-struct Position {
-  hn::Vec<hn::Rebind<int32_t, DoubleTag>> index;
-  hn::Vec<HalfTag> first, second;
-};
-
-HWY_INLINE Position locate(const FloatTable& table, const double* lambda_nm) {
-  const double last = static_cast<double>(table.size - 1);
-  const Doubles raw = hn::Mul(hn::Sub(hn::LoadU(kDoubleTag, lambda_nm), hn::Set(kDoubleTag, table.min_nm)),
-                              hn::Set(kDoubleTag, 1 / table.step_nm));
-  const Doubles zero = hn::Zero(kDoubleTag);
-  // The last entry's wavelength may round to a hair beyond it.
-  const auto within = hn::And(hn::Ge(raw, zero), hn::Le(raw, hn::Set(kDoubleTag, last * (1 + 1e-12))));
-  const Doubles position = hn::Min(hn::Max(raw, zero), hn::Set(kDoubleTag, last));
-  const Doubles index = hn::Min(hn::Floor(position), hn::Set(kDoubleTag, last - 1));
-  const Doubles one = hn::Set(kDoubleTag, 1.0);
-  const Doubles inside = table.extrapolate ? one : hn::IfThenElseZero(within, one);
-  // Both weights are rounded from double: a steep spectrum keeps its relative precision near zero.
-  const Doubles second = hn::Mul(hn::Sub(position, index), inside);
-  return {hn::DemoteTo(hn::Rebind<int32_t, DoubleTag>(), index),
-          hn::DemoteTo(HalfTag(), hn::Sub(inside, second)), hn::DemoteTo(HalfTag(), second)};
-}
-
-void sample_table(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out) {
-  const hn::RebindToSigned<Tag> index_tag;
-  for (std::size_t k = 0; k < count; k += kLanes) {
-    const Position low = locate(table, lambda_nm + k);
-    const Position high = locate(table, lambda_nm + k + kLanes / 2);
-    const auto index = hn::Combine(index_tag, high.index, low.index);
-    const Floats a = hn::GatherIndex(kTag, table.values, index);
-    const Floats b = hn::GatherIndex(kTag, table.values + 1, index);
-    const Floats value = hn::MulAdd(hn::Combine(kTag, high.second, low.second), b,
-                                    hn::Mul(hn::Combine(kTag, high.first, low.first), a));
-    hn::StoreU(value, kTag, out + k);
-  }
-}
-
-void weighted_sum(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
-                  float* out) {
-  std::size_t i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    Floats sum = hn::Zero(kTag);
-    for (std::size_t r = 0; r < rows; ++r) sum = hn::MulAdd(constant(weights[r]), load(row[r], i), sum);
-    hn::StoreU(sum, kTag, out + i);
-  }
-  for (; i < count; ++i) {
-    float sum = 0;
-    for (std::size_t r = 0; r < rows; ++r) sum += weights[r] * row[r][i];
-    out[i] = sum;
-  }
-}
-
-void mix_bands(const float* values, const int32_t* index, const float* first, const float* second,
-               std::size_t count, float* out) {
-  const hn::RebindToSigned<Tag> index_tag;
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    const auto at = hn::LoadU(index_tag, index + i);
-    const Floats a = hn::GatherIndex(kTag, values, at), b = hn::GatherIndex(kTag, values + 1, at);
-    hn::StoreU(hn::MulAdd(load(second, i), b, hn::Mul(load(first, i), a)), kTag, out + i);
-  }
 }
 
 inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, weighted_sum, mix_bands};

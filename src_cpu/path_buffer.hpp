@@ -9,7 +9,7 @@
 namespace kiloband {
 
 /// Vertices of path p are slots[first[p]] .. slots[first[p] + count[p]): KbPathVertex records, each followed
-/// by the slots of its texture samples (two KbTextureSample per 32-byte slot, see records.h).
+/// by the slots of its texture samples (two KbTextureSample per 32-byte slot, see path_vertex.h).
 struct SavedPath {
   uint32_t first = 0;
   uint32_t count = 0;  // slots

@@ -1,8 +1,10 @@
 #include "src_gpu/channel_row_sources.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "scene/band_set.hpp"
 #include "shared/spectra_layout.h"
 #include "spectral/planck.hpp"
 
@@ -33,6 +35,20 @@ RowFunction wavelength_row() {
   RowFunction f;
   f.value = [](double lambda_nm) { return std::clamp(lambda_nm, 360.0, 830.0) - KB_TEXTURE_CENTRE_NM; };
   f.kinks_nm = {360, 830};
+  return f;
+}
+
+RowFunction band_position_row(const BandSet& set) {
+  RowFunction f;
+  f.value = [&set](double lambda_nm) {
+    const BandPosition position = band_position(set, lambda_nm);
+    return position.index + position.fraction;
+  };
+  const std::vector<double>& c = set.centres_nm;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const bool inner = i > 0 && i + 1 < c.size();
+    if (!inner || std::abs((c[i + 1] - c[i]) / (c[i] - c[i - 1]) - 1) > 1e-9) f.kinks_nm.push_back(c[i]);
+  }
   return f;
 }
 

@@ -10,6 +10,8 @@ namespace kiloband::gpu {
 RowFunction spectrum_row(const SpectrumRow& row);
 /// Where textures are evaluated: clamp(lambda, 360, 830) - KB_TEXTURE_CENTRE_NM, nm.
 RowFunction wavelength_row();
+/// Position in bands: linear between centres, constant outside. `set` must outlive the function.
+RowFunction band_position_row(const BandSet& set);
 
 /// Where a response can be other than 0, nm.
 Channel support(const RegularTable& table);

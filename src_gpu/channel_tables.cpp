@@ -38,7 +38,7 @@ class TableMaker {
     RowUnits units;
     double precision = 1;  // the error bound is divided by it
     std::vector<std::pair<double, double>> ends =
-        {};  // by channel, at mu 0 and 1; if not empty, nothing else counts
+        {};                               // by channel, at mu 0 and 1; if not empty, nothing else counts
     const ChannelKnots* lines = nullptr;  // a gas's: then there is no function
   };
 
@@ -149,21 +149,6 @@ void TableMaker::add_materials() {
     if (metal && !mirror) add_conductor(material);
     if (dispersive) add_dispersive(material);
   }
-}
-
-/// Position in bands as a function of wavelength: linear between centres, constant outside.
-RowFunction band_position_row(const BandSet& set) {
-  RowFunction f;
-  f.value = [&set](double lambda_nm) {
-    const BandPosition position = band_position(set, lambda_nm);
-    return position.index + position.fraction;
-  };
-  const std::vector<double>& c = set.centres_nm;
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    const bool inner = i > 0 && i + 1 < c.size();
-    if (!inner || std::abs((c[i + 1] - c[i]) / (c[i] - c[i - 1]) - 1) > 1e-9) f.kinks_nm.push_back(c[i]);
-  }
-  return f;
 }
 
 /// The number of a channel's first band, the distance from there, and the unit of values. A position's error

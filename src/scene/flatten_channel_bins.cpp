@@ -24,7 +24,7 @@ void Flattener::set_channel_bins() {
   out_.channel_bins.assign(out_.spectra.size() * KB_CHANNEL_BINS, 1.0f);
   for (std::size_t row = 0; row < out_.spectra.size(); ++row) {
     const SpectrumRow& spectrum = out_.spectra[row];
-    if (spectrum.is_planck || spectrum.is_emission) continue;
+    if (spectrum.is_planck || spectrum.is_emission || spectrum.absorption) continue;
     for (uint32_t bin = 0; bin < KB_CHANNEL_BINS; ++bin)
       out_.channel_bins[row * KB_CHANNEL_BINS + bin] = bin_mean(spectrum.table, out_.channels, bin);
   }

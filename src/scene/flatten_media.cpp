@@ -71,8 +71,32 @@ uint32_t Flattener::add_medium(const KbMedium& record, const std::string& name,
   return static_cast<uint32_t>(out_.media.size() - 1);
 }
 
-uint32_t Flattener::medium(const std::shared_ptr<const Medium>& medium) {
-  if (const auto found = media_.find(medium.get()); found != media_.end()) return found->second;
+/// In a body of relative index n the radiance of equilibrium is n^2 B: what refraction into it multiplies by
+/// n^2, its gas has to add. `boundary`: the body's material, KB_NONE for a null boundary or the atmosphere.
+uint32_t Flattener::gas_emission_row(double temperature_k, uint32_t boundary, const std::string& name) {
+  SpectrumRow row;
+  row.name = name + ": temperature";
+  row.is_planck = row.is_emission = true;
+  row.temperature_k = temperature_k;
+  row.bound = 1;
+  if (boundary != KB_NONE && (out_.materials[boundary].flags & KB_MATERIAL_DISPERSIVE)) {
+    const KbMaterial& glass = out_.materials[boundary];
+    row.table = out_.spectra[glass.eta_row].table;
+    for (std::size_t i = 0; i < row.table.values.size(); ++i) {
+      const double lambda_nm = row.table.min_nm + static_cast<double>(i) * row.table.step_nm;
+      const double outside =
+          glass.k_row == KB_NONE ? glass.eta_ext : out_.spectra[glass.k_row].table(lambda_nm);
+      row.table.values[i] = std::pow(row.table.values[i] / outside, 2);
+    }
+  } else if (boundary != KB_NONE) {
+    row.planck_scale = std::pow(double{out_.materials[boundary].eta}, 2);
+  }
+  return spectra_.add(std::move(row));
+}
+
+uint32_t Flattener::medium(const std::shared_ptr<const Medium>& medium, uint32_t boundary) {
+  const auto [place, is_new] = media_.try_emplace({medium.get(), boundary}, KB_NONE);
+  if (!is_new) return place->second;
   const std::string name = describe(*medium);
   KbMedium record = empty_medium(KB_MEDIUM_HOMOGENEOUS);
   record.scale = static_cast<float>(medium->scale);
@@ -85,19 +109,18 @@ uint32_t Flattener::medium(const std::shared_ptr<const Medium>& medium) {
     out_.features.plume = true;
     set_ladder(record);
   }
-  if (record.reference_k > 0) {
-    record.emit_row = spectra_.row(Spectrum::planck(record.reference_k, 1),
-                                   {name + ": temperature", medium->position, true});
-  }
+  if (record.reference_k > 0) record.emit_row = gas_emission_row(record.reference_k, boundary, name);
   const std::string label = medium->id.empty() ? fmt::format("medium {}", out_.media.size()) : medium->id;
-  return media_[medium.get()] = add_medium(record, label, medium->position);
+  return place->second = add_medium(record, label, medium->position);
 }
 
 /// What is inside a shape: its medium; nothing, where light enters a body without one.
 uint32_t Flattener::interior(uint32_t shape_index) {
   const Shape& shape = in_.shapes[shape_index];
-  if (shape.interior) return medium(shape.interior);
-  if (!(out_.surfaces[out_.shapes[shape_index].surface].flags & KB_SURFACE_TRANSMISSIVE)) return KB_NONE;
+  const KbSurface& surface = out_.surfaces[out_.shapes[shape_index].surface];
+  const bool refracts = surface.flags & KB_SURFACE_TRANSMISSIVE;
+  if (shape.interior) return medium(shape.interior, refracts ? surface.front : KB_NONE);
+  if (!refracts) return KB_NONE;
   return add_medium(empty_medium(KB_MEDIUM_EMPTY), "inside of " + out_.shape_names[shape_index],
                     shape.position);
 }
@@ -109,7 +132,7 @@ void Flattener::add_media() {
   const bool filled = std::ranges::any_of(in_.shapes, [](const Shape& s) { return s.interior != nullptr; });
   if (!bounded && !filled && !in_.atmosphere) return;
   out_.features.gas = true;
-  if (in_.atmosphere) out_.atmosphere = medium(in_.atmosphere);
+  if (in_.atmosphere) out_.atmosphere = medium(in_.atmosphere, KB_NONE);
   for (uint32_t i = 0; i < out_.shapes.size(); ++i) out_.interiors.push_back(interior(i));
   out_.camera_media = media_at_camera(out_, in_.sensor);
 }

@@ -92,7 +92,8 @@ class Flattener {
 
   // flatten_media.cpp
   void add_media();
-  uint32_t medium(const std::shared_ptr<const Medium>& medium);
+  uint32_t medium(const std::shared_ptr<const Medium>& medium, uint32_t boundary);
+  uint32_t gas_emission_row(double temperature_k, uint32_t boundary, const std::string& name);
   uint32_t add_medium(const KbMedium& record, const std::string& name, const SourcePosition& position);
   uint32_t interior(uint32_t shape_index);
   void set_grid(KbMedium& record, const GridField& grid);
@@ -120,7 +121,8 @@ class Flattener {
   SpectrumTableBuilder spectra_;
   std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;  // by bsdf and heat
   std::map<std::pair<const void*, bool>, uint32_t> materials_;     // by bsdf and compensation
-  std::map<const void*, uint32_t> checkerboards_, media_;
+  std::map<const void*, uint32_t> checkerboards_;
+  std::map<std::pair<const void*, uint32_t>, uint32_t> media_;  // by medium and the boundary's material
   std::vector<Heat> heats_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> emission_rows_, complements_,
       thermals_;                                    // by what and heat

@@ -178,7 +178,7 @@ Shape read_shape(ReadContext& context, Node& node) {
   Node* bsdf = object.nested_one("bsdf");
   shape.bsdf = bsdf ? read_bsdf(context, *bsdf) : default_bsdf(shape);
   const bool boundary = std::holds_alternative<NullBsdf>(shape.bsdf->model);
-  if (boundary && shape.emitter) object.fail_here("a shape with a null bsdf cannot emit");
+  if (boundary && (shape.emitter || shape.thermal)) object.fail_here("a shape with a null bsdf cannot emit");
   shape.interior = read_interior(context, object);
   if (shape.interior && !lets_light_in(*shape.bsdf)) {
     warn(context.sink, shape.position,

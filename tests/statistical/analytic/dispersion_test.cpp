@@ -11,6 +11,7 @@
 
 #include "tests/statistical/analytic/dispersive_glass.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
+#include "tests/statistical/analytic/gas_scenes.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -42,14 +43,14 @@ TEST(Dispersion, PlaneBoundaryPerWavelength) {
   }
 }
 
-/// A ball of glass before a coloured square and a dim sky. `material`: the ball's.
-std::string ball_scene(const std::string& material) {
+/// A ball of glass before a coloured square and a dim sky. `material`: the ball's; more: of the scene.
+std::string ball_scene(const std::string& material, const std::string& more = "") {
   const Knots colour{{{380, 2}, {500, 4}, {600, 2}, {720, 3}}};
   const std::string square =
       shape("rectangle", to_world("<scale value=\"1, 1, 1\"/>" + lookat("0.5, 1, -4", "0, 0, 0")) +
                              area_light(colour.text("radiance")));
   return scene(-1, perspective_sensor("0, 0, 4", "0, 0, 0", 30, 16) + shape("sphere", material) + square +
-                       constant_environment(1));
+                       constant_environment(1) + more);
 }
 
 /// Image means of all channels together against each channel alone (other seeds). Detectable bias: 2 %.
@@ -96,6 +97,17 @@ TEST_P(DegradationTest, RoughBall) {
     mode.rough_dispersion = how;
     expect_channels_as_alone(xml, mode, folder.path());
   }
+}
+
+/// A rough ball of glass with gas in it, in an atmosphere: what every hero's ray passes follows its light.
+TEST_P(DegradationTest, RoughBallOfGas) {
+  const TemporaryFolder folder;
+  folder.write("glass.txt", index_columns());
+  const Knots smoke{{{380, 0.2}, {500, 0.9}, {600, 0.3}, {720, 0.1}}}, haze{{{380, 0.1}, {720, 0.02}}};
+  const std::string ball = glass("roughdielectric", number("float", "alpha", 0.2)) +
+                           gas("interior", smoke.text("absorption"), 2500);
+  expect_channels_as_alone(ball_scene(ball, gas("atmosphere", haze.text("absorption"))), GetParam(),
+                           folder.path());
 }
 
 /// A channel among 32 of a narrow lobe, which the heroes of most paths do not hit, against the channel alone.

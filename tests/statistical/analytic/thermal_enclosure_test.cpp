@@ -10,6 +10,7 @@
 
 #include "spectral/planck.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
+#include "tests/statistical/analytic/gas_scenes.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -101,10 +102,11 @@ std::string camera() {
   return perspective_sensor("0.3, -0.2, 0.9", "-0.2, 0.1, -0.9", 60, 8);
 }
 
-std::string isothermal(const Enclosure& e, bool ambient) {
+/// interior: what is in the object, which has none if it is a sheet.
+std::string isothermal(const Enclosure& e, bool ambient, const std::string& interior = "") {
   const std::string own = ambient ? "" : thermal(kTemperature);
   std::string body = box(e.wall + own);
-  if (!e.object.empty()) body += e.is_sheet ? sheet(e.object + own) : ball(e.object + own);
+  if (!e.object.empty()) body += e.is_sheet ? sheet(e.object + own) : ball(e.object + own + interior);
   return scene(-1, camera() + body + (ambient ? thermal(kTemperature) : ""));
 }
 
@@ -122,6 +124,20 @@ TEST_P(Isothermal, AmbientTemperatureGivesPlancksLaw) {
 TEST_P(Isothermal, LightsGivePlancksLaw) {
   const Enclosure e = enclosures()[GetParam()];
   const RenderResult result = render_valid(isothermal(e, false), kBands, {}, {32, 52});
+  expect_image_mean(result, planck_integrals(result, kTemperature), 0.02);
+}
+
+/// The same full of gas, and another gas in the object: nothing changes. Detectable bias: 2 %.
+TEST_P(Isothermal, GasGivesPlancksLaw) {
+  const Enclosure e = enclosures()[GetParam()];
+  const std::string air = "<spectrum name=\"absorption\" value=\"380:0.1, 4000:3, 10000:0.01, 20000:0.5\"/>";
+  const std::string inside = "<spectrum name=\"absorption\" value=\"380:2, 4000:0.1, 20000:8\"/>";
+  const bool lets_light_in = e.object.find("dielectric") != std::string::npos;
+  const std::string xml =
+      isothermal(e, true, lets_light_in ? gas("interior", inside, kTemperature) : std::string());
+  const std::string end = "</scene>";
+  const RenderResult result = render_valid(
+      xml.substr(0, xml.rfind(end)) + gas("atmosphere", air, kTemperature) + end, kBands, {}, {32, 57});
   expect_image_mean(result, planck_integrals(result, kTemperature), 0.02);
 }
 
