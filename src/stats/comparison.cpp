@@ -49,7 +49,9 @@ struct StripComparison::State {
         tails_a(shape.channels),
         tails_b(shape.channels) {}
 
-  bool has_variances() const { return kind == Kind::kIndependent && options.variances && same_sizes; }
+  bool has_variances() const {
+    return kind == Kind::kIndependent && options.variances && same_sizes && replicates_b == shape_.replicates;
+  }
 
   void add_rows(const PixelSource& source);
   void add_pixel(const PixelSource& source, std::size_t in_strip, uint32_t x, uint32_t y);
@@ -201,7 +203,8 @@ Comparison StripComparison::finish() {
     if (s.has_variances()) {
       c.variances.push_back(s.pixels.variances.finish());
       c.variances.push_back(s.tiles.variances.finish());
-      c.pooled_variance = s.pooled.finish(mix_seed(s.options.seed, 4));
+      c.pooled_scatter = s.pooled.scatter(mix_seed(s.options.seed, 4));
+      c.pooled_variance = s.pooled.variance(mix_seed(s.options.seed, 5));
     }
     c.uniform_pixels = s.pixels.uniformity.finish();
     c.uniform_tiles = s.tiles.uniformity.finish();

@@ -43,11 +43,11 @@ struct Truth {
 
 /// One test's part in the verdict.
 struct TestVerdict {
-  std::string
-      name;  // "mean/pixel", "mean/tile", "mean/image", "variance/pixel" ..., "uniform/pixel", "finite"
+  std::string name;  // "mean/pixel", "mean/tile", "mean/image", "variance/pixel", "variance/tile",
+                     // "scatter/image", "variance/image", "uniform/pixel", "uniform/tile", "finite"
   double p = 1, level = 0;
   bool passed = true;
-  Detectable detectable;           // of means: relative bias; of variance/image: relative change; else NaN
+  Detectable detectable;  // of means: relative bias; of variances over the image: relative change; else NaN
   std::optional<WorstUnit> worst;  // of tests over units
 };
 
@@ -60,7 +60,7 @@ struct Comparison {
   std::vector<TestVerdict> tests;
   std::vector<ScaleResult> means;      // pixel, tile, image; the image alone without fine scales
   std::vector<ScaleResult> variances;  // pixel, tile; may be empty
-  std::optional<PooledVariance> pooled_variance;
+  std::optional<PooledVariance> pooled_scatter, pooled_variance;
   std::optional<UniformityResult> uniform_pixels, uniform_tiles;
   std::vector<TailWeight> tails_a, tails_b;           // [channel]; b empty for a truth
   std::vector<double> image_a, image_b, image_error;  // [channel] means and the difference's standard error

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace kiloband::stats {
 namespace {
@@ -33,10 +34,13 @@ void add_means(Comparison& c) {
 void add_variances(Comparison& c) {
   for (std::size_t i = 0; i < c.variances.size(); ++i)
     c.tests.push_back(of_units(std::string("variance/") + name_of(static_cast<Scale>(i)), c.variances[i]));
-  if (!c.pooled_variance) return;
-  TestVerdict pooled{"variance/image", c.pooled_variance->p};
-  pooled.detectable = {kNone, kNone, kNone, 0};
-  c.tests.push_back(pooled);
+  for (const auto& [name, result] :
+       {std::pair{"scatter/image", &c.pooled_scatter}, std::pair{"variance/image", &c.pooled_variance}}) {
+    if (!*result) continue;
+    TestVerdict pooled{name, (*result)->p};
+    pooled.detectable = {kNone, kNone, kNone, 0};
+    c.tests.push_back(pooled);
+  }
 }
 
 void add_uniformity(Comparison& c, std::optional<UniformityResult>& result, Scale scale) {
@@ -52,8 +56,9 @@ void add_detectable(Comparison& c) {
   for (std::size_t i = 0; i < c.means.size(); ++i)
     c.tests[i].detectable = c.means[i].errors.at(c.tests[i].level, test_count(c.means[i]));
   for (TestVerdict& test : c.tests) {
-    if (test.name == "variance/image")
-      test.detectable = c.pooled_variance->errors.at(test.level, static_cast<double>(c.channels));
+    const auto tests = static_cast<double>(c.channels + 1);
+    if (test.name == "scatter/image") test.detectable = c.pooled_scatter->errors.at(test.level, tests);
+    if (test.name == "variance/image") test.detectable = c.pooled_variance->errors.at(test.level, tests);
   }
 }
 
@@ -63,7 +68,10 @@ void add_notes(Comparison& c, const ComparisonOptions& options, bool same_sizes)
   if (fewest < kWantedReplicates)
     say(std::to_string(fewest) + " replicates on a side: " + std::to_string(kWantedReplicates) +
         " or more are wanted; the tests hold but see less");
-  if (c.kind == Kind::kIndependent && options.variances && !same_sizes)
+  const bool variances = c.kind == Kind::kIndependent && options.variances;
+  if (variances && c.replicates_a != c.replicates_b)
+    say("variances were not compared: the sides have different numbers of replicates");
+  else if (variances && !same_sizes)
     say("variances were not compared: the replicates of the two sides have different numbers of samples");
   if (c.kind == Kind::kPaired) say("variances were not compared: the sides are paired");
   const char* scales[] = {"pixel", "tile"};

@@ -15,7 +15,7 @@ struct TailWeight {
   double top_variance = 0;  // largest d^2 / sum d^2
   double top_sum = 0;       // largest d / sum of the means: what one replicate mean adds to the image
   double hill_index = 0;    // tail index of d from the largest 0.1 % (at least 20); 2 or less: no finite
-                          // variance in sight. NaN with fewer than 200 values or where hardly any varies
+                            // variance in sight. NaN with fewer than 200 values or where hardly any varies
 };
 
 class Tails {

@@ -19,22 +19,42 @@ double median_of(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
+/// Means per replicate, and the mean over the channels that have any as the last channel.
 UnitSample per_replicate(const std::vector<double>& sums, const std::vector<std::size_t>& counts) {
-  UnitSample sample{counts.size(), sums, std::vector<double>(sums.size() / counts.size(), 1.0)};
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const std::size_t n = counts[i % counts.size()];
-    sample.means[i] = n > 0 ? sums[i] / static_cast<double>(n) : 0;
+  const std::size_t channels = counts.size(), replicates = sums.size() / channels;
+  const auto used = static_cast<double>(std::ranges::count_if(counts, [](std::size_t n) { return n > 0; }));
+  UnitSample sample{channels + 1, {}, std::vector<double>(replicates, 1.0)};
+  for (std::size_t r = 0; r < replicates; ++r) {
+    double total = 0;
+    for (std::size_t c = 0; c < channels; ++c) {
+      const auto n = static_cast<double>(counts[c]);
+      sample.means.push_back(n > 0 ? sums[r * channels + c] / n : 0);
+      total += sample.means.back();
+    }
+    sample.means.push_back(total / used);
   }
   return sample;
 }
 
-/// One number per replicate: the mean over the channels that have any.
-UnitSample mean_over_channels(const UnitSample& sample, const std::vector<std::size_t>& counts) {
-  UnitSample one{1, std::vector<double>(sample.replicates()), sample.weights};
-  const auto used = static_cast<double>(std::ranges::count_if(counts, [](std::size_t n) { return n > 0; }));
-  for (std::size_t i = 0; i < sample.means.size(); ++i)
-    one.means[i / sample.channels] += sample.means[i] / used;
-  return one;
+/// 2 d_r / s of both sides, large d_r cut; false if nothing scatters beyond `floor`.
+bool relative_scatter(const UnitSample& da, const UnitSample& db, std::size_t channel, double floor,
+                      std::vector<double>& a, std::vector<double>& b) {
+  a.clear();
+  b.clear();
+  for (std::size_t r = 0; r < da.replicates(); ++r) a.push_back(da.mean_at(r, channel));
+  for (std::size_t r = 0; r < db.replicates(); ++r) b.push_back(db.mean_at(r, channel));
+  std::vector<double> both = a;
+  both.insert(both.end(), b.begin(), b.end());
+  const double most = kScatterCut * median_of(std::move(both));
+  double s = 0;
+  for (std::vector<double>* side : {&a, &b}) {
+    for (double& d : *side) s += (d = std::min(d, most)) / (2 * static_cast<double>(side->size()));
+  }
+  if (!(s > floor)) return false;
+  for (std::vector<double>* side : {&a, &b}) {
+    for (double& d : *side) d *= 2 / s;
+  }
+  return true;
 }
 
 }  // namespace
@@ -87,32 +107,19 @@ bool variance_pseudo_values(const UnitSample& sample, std::size_t channel, doubl
   return true;
 }
 
-PooledVarianceTest::PooledVarianceTest(std::size_t channels, std::size_t replicates_a,
-                                       std::size_t replicates_b)
+PooledReplicates::PooledReplicates(std::size_t channels, std::size_t replicates_a, std::size_t replicates_b)
     : channels_(channels),
       sums_a_(channels * replicates_a),
       sums_b_(channels * replicates_b),
       counts_(channels) {}
 
-void PooledVarianceTest::add(const UnitSample& a, const UnitSample& b, const std::vector<bool>& wanted,
-                             double rounding) {
-  std::vector<double> qa, qb;
-  for (std::size_t c = 0; c < channels_; ++c) {
-    if (!wanted.empty() && !wanted[c]) continue;
-    double level = 0;
-    for (std::size_t r = 0; r < a.replicates(); ++r) level = std::max(level, std::abs(a.mean_at(r, c)));
-    if (!variance_pseudo_values(a, c, rounding * level, qa) ||
-        !variance_pseudo_values(b, c, rounding * level, qb)) {
-      ++skipped_;
-      continue;
-    }
-    ++counts_[c];
-    for (std::size_t r = 0; r < qa.size(); ++r) sums_a_[r * channels_ + c] += qa[r];
-    for (std::size_t r = 0; r < qb.size(); ++r) sums_b_[r * channels_ + c] += qb[r];
-  }
+void PooledReplicates::add(std::size_t channel, const std::vector<double>& a, const std::vector<double>& b) {
+  ++counts_[channel];
+  for (std::size_t r = 0; r < a.size(); ++r) sums_a_[r * channels_ + channel] += a[r];
+  for (std::size_t r = 0; r < b.size(); ++r) sums_b_[r * channels_ + channel] += b[r];
 }
 
-PooledVariance PooledVarianceTest::finish(uint64_t seed) const {
+PooledVariance PooledReplicates::finish(uint64_t seed) const {
   PooledVariance result;
   result.skipped = skipped_;
   std::vector<bool> used;
@@ -121,25 +128,52 @@ PooledVariance PooledVarianceTest::finish(uint64_t seed) const {
     used.push_back(n > 0);
   }
   if (result.entries == 0) return result;
-  const UnitSample a = per_replicate(sums_a_, counts_), b = per_replicate(sums_b_, counts_);
-  const Contrast contrast = independent_contrast(a, b, 0);
+  used.push_back(true);
+  const Contrast contrast =
+      independent_contrast(per_replicate(sums_a_, counts_), per_replicate(sums_b_, counts_), 0);
   const Strongest strongest = strongest_channel(contrast, used);
-  const std::size_t c = result.channel = strongest.channel;
+  const std::size_t c = strongest.channel;
+  result.channel = c == channels_ ? kAllChannels : c;
   result.p = max_t_p(contrast, used, strongest, seed);
   result.ratio = std::exp(contrast.difference[c]);
   result.log_error = std::sqrt(contrast.variance[c]);
   result.t = strongest.t;
   result.dof = contrast.dof[c];
-  const Contrast all =
-      independent_contrast(mean_over_channels(a, counts_), mean_over_channels(b, counts_), 0);
-  result.ratio_all = std::exp(all.difference[0]);
-  result.log_error_all = std::sqrt(all.variance[0]);
-  for (std::size_t k = 0; k < channels_; ++k) {
+  result.ratio_all = std::exp(contrast.difference[channels_]);
+  result.log_error_all = std::sqrt(contrast.variance[channels_]);
+  for (std::size_t k = 0; k <= channels_; ++k) {
     const RelativeError e{static_cast<float>(std::sqrt(contrast.variance[k])), 0,
                           static_cast<float>(contrast.dof[k]), static_cast<uint32_t>(k)};
     if (used[k]) result.errors.add(e, e);
   }
   return result;
+}
+
+PooledVarianceTest::PooledVarianceTest(std::size_t channels, std::size_t replicates_a,
+                                       std::size_t replicates_b)
+    : channels_(channels),
+      scatter_(channels, replicates_a, replicates_b),
+      variance_(channels, replicates_a, replicates_b) {}
+
+void PooledVarianceTest::add(const UnitSample& a, const UnitSample& b, const std::vector<bool>& wanted,
+                             double rounding) {
+  if (a.sampled() < a.replicates() || b.sampled() < b.replicates()) return;
+  const UnitSample da = deviations_from_median(a), db = deviations_from_median(b);
+  std::vector<double> qa, qb;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    if (!wanted.empty() && !wanted[c]) continue;
+    double level = 0;
+    for (std::size_t r = 0; r < a.replicates(); ++r) level = std::max(level, std::abs(a.mean_at(r, c)));
+    const double floor = rounding * level;
+    if (relative_scatter(da, db, c, floor, qa, qb))
+      scatter_.add(c, qa, qb);
+    else
+      scatter_.skip();
+    if (variance_pseudo_values(a, c, floor, qa) && variance_pseudo_values(b, c, floor, qb))
+      variance_.add(c, qa, qb);
+    else
+      variance_.skip();
+  }
 }
 
 }  // namespace kiloband::stats
