@@ -15,8 +15,8 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+find_package(Boost REQUIRED)  # boost::math: distributions
 if(KILOBAND_TESTS)
-  find_package(Boost REQUIRED)  # reference values of boost::math
   find_package(GTest REQUIRED)
 endif()
 if(KILOBAND_BENCH)

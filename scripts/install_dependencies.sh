@@ -7,9 +7,9 @@ set -euo pipefail
 # openimageio-tools: CMake's description of libopenimageio-dev insists on its programs, without depending on them.
 build=(g++ cmake ninja-build pkg-config git ca-certificates
   libembree-dev libtbb-dev libopenexr-dev libopenimageio-dev openimageio-tools libglm-dev libpugixml-dev zlib1g-dev libyaml-cpp-dev
-  libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev
+  libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev libboost-dev libboost-math-dev
   opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev)
-tests=(libgtest-dev libboost-dev libboost-math-dev libbenchmark-dev clang pocl-opencl-icd oclgrind gdal-bin)
+tests=(libgtest-dev libbenchmark-dev clang pocl-opencl-icd oclgrind gdal-bin)
 
 packages=("${build[@]}")
 case "${1:-test}" in

@@ -28,7 +28,8 @@ LightSample sample_area(const FlatScene& scene, const KbEmitter& emitter, glm::v
   LightSample sample;
   if (!(on_light.pdf > 0)) return sample;
   sample.direction = on_light.direction;
-  sample.target = offset_ray_origin(on_light.position, on_light.normal);
+  sample.target = offset_ray_origin(
+      on_light.position, on_light.normal, target_offset(on_light.offset, on_light.position - point));
   sample.pdf = on_light.pdf * emitter.select_pdf;
   sample.factor = on_light.factor;
   if (!thermal) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src_cpu/ray_offset.hpp"
 #include "src_cpu/shape_geometry.hpp"
 #include "src_cpu/shape_geometry_warp.hpp"
 
@@ -84,6 +85,7 @@ AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::v
   sample.position = p0 + b.x * e1 + b.y * e2;
   sample.normal = glm::normalize(glm::cross(e1, e2));
   if (shape.flags & KB_SHAPE_FLIP_NORMALS) sample.normal = -sample.normal;
+  sample.offset = surface_offset(largest_coordinates(p0, p1, p2), sample.normal);
   finish_by_area(sample, shape, point);
   sample.triangle = triangle;
   sample.barycentric = b;
@@ -97,6 +99,7 @@ AreaLightSample sample_by_area(const KbShape& shape, glm::vec3 point, glm::vec2 
   AreaLightSample sample;
   sample.position = on_light.position;
   sample.normal = on_light.normal;
+  sample.offset = surface_offset(largest_coordinates(shape), sample.normal);
   finish_by_area(sample, shape, point);
   if (need_uv && sample.pdf > 0) sample.uv = analytic_uv(shape.type, on_light.local);
   return sample;
@@ -161,6 +164,7 @@ AreaLightSample sample_sphere_cone(const KbShape& shape, const SphereView& view,
   sample.direction = glm::vec3(w);
   sample.position = glm::vec3(glm::dvec3(point) + view.to_centre + view.radius * n);
   sample.normal = glm::vec3(n);
+  sample.offset = surface_offset(largest_coordinates(shape), sample.normal);
   if (need_uv) sample.uv = analytic_surface(shape, glm::dvec3(sample.position)).uv;
   return sample;
 }

@@ -28,6 +28,7 @@ struct AreaLightSample {
   glm::vec3 direction{0};  // unit, towards the light
   glm::vec3 position{0};   // on the light
   glm::vec3 normal{0};     // unit, of the side that is seen: of the light's front, unless both sides are lit
+  float offset = 0;        // m, of rays that leave the light there (ray_offset.hpp)
   glm::vec2 uv{0};         // filled in if asked for
   uint32_t triangle = 0;   // meshes: in the shape, and the point's barycentric coordinates
   glm::vec2 barycentric{0};

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "src_cpu/ray_offset.hpp"
 #include "src_cpu/shape_geometry.hpp"
 
 namespace kiloband {
@@ -42,6 +43,7 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
   hit.geometric_normal = length2 > 1e-30f
                              ? cross * (flip / std::sqrt(length2))
                              : glm::vec3(glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2)))) * flip;
+  hit.offset = surface_offset(largest_coordinates(p0, p1, p2), hit.geometric_normal);
   hit.shading_normal = hit.geometric_normal;
   if (shape.flags & KB_SHAPE_HAS_NORMALS) {
     const glm::vec3 n = w * to_glm(scene.normals[index[0]]) + u * to_glm(scene.normals[index[1]]) +
@@ -74,6 +76,7 @@ SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape_index, uint32
   const SurfacePoint surface = analytic_surface(shape, point);
   hit.point = surface.position;
   hit.geometric_normal = hit.shading_normal = surface.normal;
+  hit.offset = surface_offset(largest_coordinates(shape), hit.geometric_normal);
   hit.tangent = surface.tangent;
   hit.uv = surface.uv;
   return hit;

@@ -14,6 +14,7 @@ namespace {
 const std::map<std::string, std::set<std::string>> kAllowed{
     {"src/base", {}},
     {"src/shared", {}},
+    {"src/stats", {"src/base"}},
     {"src/spectral", {"src/base", "src/shared"}},
     {"src/scene", {"src/base", "src/shared", "src/spectral", "src/film"}},
     {"src/sky", {"src/base", "src/spectral"}},
@@ -24,8 +25,8 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"kernels", {"src/shared"}},
     {"scenes", {}},
     {"src/app",
-     {"src/base", "src/shared", "src/spectral", "src/scene", "src/sky", "src/film", "src/render", "src_cpu",
-      "src_gpu"}},
+     {"src/base", "src/shared", "src/spectral", "src/scene", "src/sky", "src/film", "src/render", "src/stats",
+      "src_cpu", "src_gpu"}},
 };
 
 /// "src/film" of "src/film/png.cpp", "src_cpu" of "src_cpu/isa.cpp".

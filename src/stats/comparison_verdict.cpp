@@ -1,0 +1,133 @@
+#include "stats/comparison_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace kiloband::stats {
+namespace {
+
+constexpr uint32_t kWantedReplicates = 32;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+TestVerdict of_units(const std::string& name, const ScaleResult& result) {
+  TestVerdict verdict{name, result.p};
+  verdict.detectable = {kNone, kNone, kNone, 0};
+  if (result.worst.p <= 1 && result.units + result.entries.constant > 0) verdict.worst = result.worst;
+  return verdict;
+}
+
+double test_count(const ScaleResult& result) {
+  return static_cast<double>(std::max<std::size_t>(1, result.entries.tested));
+}
+
+void add_means(Comparison& c) {
+  const std::size_t first = 3 - c.means.size();
+  for (std::size_t i = 0; i < c.means.size(); ++i) {
+    const auto scale = static_cast<Scale>(first + i);
+    c.tests.push_back(of_units(std::string("mean/") + name_of(scale), c.means[i]));
+  }
+}
+
+void add_variances(Comparison& c) {
+  for (std::size_t i = 0; i < c.variances.size(); ++i)
+    c.tests.push_back(of_units(std::string("variance/") + name_of(static_cast<Scale>(i)), c.variances[i]));
+  for (const auto& [name, result] :
+       {std::pair{"scatter/image", &c.pooled_scatter}, std::pair{"variance/image", &c.pooled_variance}}) {
+    if (!*result) continue;
+    TestVerdict pooled{name, (*result)->p};
+    pooled.detectable = {kNone, kNone, kNone, 0};
+    c.tests.push_back(pooled);
+  }
+}
+
+void add_uniformity(Comparison& c, std::optional<UniformityResult>& result, Scale scale) {
+  if (result && result->units < kUniformityUnits) result.reset();
+  if (!result) return;
+  TestVerdict verdict{std::string("uniform/") + name_of(scale), result->p};
+  verdict.detectable = {kNone, kNone, kNone, 0};
+  c.tests.push_back(verdict);
+}
+
+/// Detectable biases need the levels.
+void add_detectable(Comparison& c) {
+  for (std::size_t i = 0; i < c.means.size(); ++i)
+    c.tests[i].detectable = c.means[i].errors.at(c.tests[i].level, test_count(c.means[i]));
+  for (TestVerdict& test : c.tests) {
+    const auto tests = static_cast<double>(c.channels + 1);
+    if (test.name == "scatter/image") test.detectable = c.pooled_scatter->errors.at(test.level, tests);
+    if (test.name == "variance/image") test.detectable = c.pooled_variance->errors.at(test.level, tests);
+  }
+}
+
+void add_notes(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
+  const auto say = [&](std::string text) { c.notes.push_back(std::move(text)); };
+  const uint32_t fewest = c.kind == Kind::kTruth ? c.replicates_a : std::min(c.replicates_a, c.replicates_b);
+  if (fewest < kWantedReplicates)
+    say(std::to_string(fewest) + " replicates on a side: " + std::to_string(kWantedReplicates) +
+        " or more are wanted; the tests hold but see less");
+  const bool variances = c.kind == Kind::kIndependent && options.variances;
+  if (variances && c.replicates_a != c.replicates_b)
+    say("variances were not compared: the sides have different numbers of replicates");
+  else if (variances && !same_sizes)
+    say("variances were not compared: the replicates of the two sides have different numbers of samples");
+  if (c.kind == Kind::kPaired) say("variances were not compared: the sides are paired");
+  const char* scales[] = {"pixel", "tile"};
+  for (std::size_t i = 0; i + 1 < c.means.size(); ++i) {
+    const EntryCounts& n = c.means[i].entries;
+    if (n.thin > 0)
+      say(std::string(scales[i]) + "s: " + std::to_string(n.thin) + " of " +
+          std::to_string(n.thin + n.tested + n.constant) +
+          " values have too few contributions and were pooled");
+    if (n.unsampled > 0)
+      say(std::string(scales[i]) + "s: " + std::to_string(n.unsampled) +
+          " values have fewer than two replicates");
+  }
+}
+
+}  // namespace
+
+bool replicates_have_same_sizes(const UnitSample& a, const UnitSample& b) {
+  const auto [least_a, most_a] = std::ranges::minmax(a.weights);
+  const auto [least_b, most_b] = std::ranges::minmax(b.weights);
+  if (least_a == 0 || least_b == 0) return true;  // a replicate that lost its samples here says nothing
+  return std::max(most_a, most_b) - std::min(least_a, least_b) <= std::max(1.0, 0.001 * most_a);
+}
+
+void add_image_means(const Contrast& contrast, Comparison& c) {
+  c.image_a = contrast.a;
+  c.image_b = contrast.b;
+  for (const double v : contrast.variance) c.image_error.push_back(std::sqrt(v));
+}
+
+void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
+  if (c.means.back().entries.unsampled > 0)
+    throw std::logic_error("Comparison: fewer than two replicates with samples");
+  c.alpha = options.alpha;
+  add_means(c);
+  add_variances(c);
+  add_uniformity(c, c.uniform_pixels, Scale::kPixel);
+  add_uniformity(c, c.uniform_tiles, Scale::kTile);
+  const double level = options.alpha / static_cast<double>(c.tests.size());
+  for (TestVerdict& test : c.tests) {
+    test.level = level;
+    test.passed = test.p >= level;
+  }
+  add_detectable(c);
+  if (c.non_finite > 0) {
+    c.tests.push_back({"finite", 0, level, false, {kNone, kNone, kNone, 0}, std::nullopt});
+    c.notes.push_back(std::to_string(c.non_finite) + " replicate means of pixels are not finite");
+  }
+  c.passed = std::ranges::all_of(c.tests, &TestVerdict::passed);
+  add_notes(c, options, same_sizes);
+}
+
+const TestVerdict& Comparison::decisive() const {
+  return *std::ranges::min_element(tests, [](const TestVerdict& x, const TestVerdict& y) {
+    return x.passed != y.passed ? !x.passed : x.p < y.p;
+  });
+}
+
+}  // namespace kiloband::stats

@@ -1,0 +1,18 @@
+// From the results of the tests to the verdict (comparison.hpp).
+#pragma once
+
+#include "stats/comparison.hpp"
+
+namespace kiloband::stats {
+
+/// Whether the replicates of both sides hold the same number of samples (to one sample), as tests of
+/// variances need.
+bool replicates_have_same_sizes(const UnitSample& a, const UnitSample& b);
+
+/// Means of the whole image.
+void add_image_means(const Contrast& contrast, Comparison& comparison);
+
+/// Lists the tests with their levels, the notes, and whether all passed.
+void judge(Comparison& comparison, const ComparisonOptions& options, bool same_sizes);
+
+}  // namespace kiloband::stats

@@ -1,0 +1,58 @@
+// One unit's difference in every channel, its variance, and the rows of numbers that both come from.
+//
+// N samples of a unit are dealt to R replicates of n_r samples. With the replicate means m_r
+//     m = sum n_r m_r / N,   V = sum n_r (m_r - m)^2 / (N (R - 1)),
+// as film/statistics.hpp has it, V with R - 1 degrees of freedom. Two sides: D = m_A - m_B, V = V_A + V_B
+// with
+//     dof = V^2 / (V_A^2 / (R_A - 1) + V_B^2 / (R_B - 1))        (Welch 1947).
+// Pairs of equal seed: the same of the differences m_A,r - m_B,r. A known truth: D = m - truth.
+// The rows e_r = sqrt(n_r / (N (R - 1))) (m_r - m) of both sides have V as their sum of squares in each
+// channel, and their correlation between channels is that of D: max_t.hpp draws from them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stats/replicate_image.hpp"
+
+namespace kiloband::stats {
+
+/// Rows that sum to zero when weighted with `root` (of the rows' weights, normalised).
+struct RowGroup {
+  std::vector<double> root;  // [row]
+};
+
+struct Contrast {
+  std::size_t channels = 0;
+  bool valid = false;              // both sides have two replicates at least
+  std::vector<double> a, b;        // [channel] the two means; b is the truth if there is one
+  std::vector<double> difference;  // [channel] a - b
+  std::vector<double> variance;    // [channel] of the difference
+  std::vector<double> dof;         // [channel]
+  std::vector<double> slack;  // [channel] a difference that counts as none: rounding, uncertainty of a truth
+  std::vector<double> rows;   // [row][channel]; empty where only variances are known
+  std::vector<RowGroup> groups;  // in the order of the rows
+
+  /// (|D| - slack) / sqrt(V) with the sign of D, 0 within the slack. Without any variance 0 or infinite.
+  double t(std::size_t channel) const;
+  /// Neither side varies.
+  bool constant(std::size_t channel) const { return variance[channel] == 0; }
+};
+
+/// A truth per channel of a unit and how far off it may be itself.
+struct TruthValues {
+  std::vector<double> value, bound;  // [channel]; bound may be empty
+};
+
+/// rounding: relative to the larger mean; what float arithmetic may change in one of the two.
+Contrast independent_contrast(const UnitSample& a, const UnitSample& b, double rounding);
+/// throws std::logic_error  different numbers of replicates
+Contrast paired_contrast(const UnitSample& a, const UnitSample& b, double rounding);
+Contrast truth_contrast(const UnitSample& a, const TruthValues& truth, double rounding);
+
+/// Number of contributions that differ from zero, as far as replicate means tell: if a share f of them is not
+/// zero and contributions come at random (Poisson), there were -R ln(1 - f); infinite if no replicate is
+/// zero.
+double contributions(const UnitSample& sample, std::size_t channel);
+
+}  // namespace kiloband::stats

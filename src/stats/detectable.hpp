@@ -1,0 +1,42 @@
+// What a passed test would have seen: the minimum detectable bias.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace kiloband::stats {
+
+inline constexpr double kPower = 0.9;
+
+/// Of a unit and channel, relative to |mean of A|: standard error of the difference, and what counts as
+/// rounding.
+struct RelativeError {
+  float error = 0, slack = 0, dof = 0;
+  uint32_t channel = 0;
+};
+
+/// Biases relative to the channel's mean that a test detects with probability kPower:
+///     MDB = (t_{1 - level / (2 tests)} + t_{power}) SE / mean + slack,
+/// with Student's quantiles, and Bonferroni over units and channels (so it is stated too large rather than
+/// too small).
+struct Detectable {
+  double typical = 0;  // median over units of the median channel
+  double best = 0;     // smallest over units of the median channel
+  double largest = 0;  // over units and channels
+  std::size_t largest_channel = 0;
+};
+
+/// Collects units; computes when level and number of tests are known.
+class DetectableBias {
+ public:
+  void add(RelativeError median, RelativeError largest);
+  /// All NaN if nothing was added.
+  Detectable at(double level, double tests) const;
+
+ private:
+  std::vector<RelativeError> medians_;
+  RelativeError largest_;
+};
+
+}  // namespace kiloband::stats

@@ -1,0 +1,24 @@
+// Tails and quantiles that the tests need (Boost.Math).
+#pragma once
+
+namespace kiloband::stats {
+
+/// P(|T| >= |t|), Student's t; dof may be infinite (normal). 0 for infinite t.
+double student_p(double t, double dof);
+/// t with P(T >= t) = p, 0 < p < 1.
+double student_upper(double p, double dof);
+/// P(sqrt(n) D >= x) of Kolmogorov's D for large n.
+double kolmogorov_p(double x);
+/// Mean of Kolmogorov's distribution: sqrt(pi / 2) ln 2.
+inline constexpr double kKolmogorovMean = 0.86873116063615;
+
+/// P(the smallest of `tests` p-values <= p) if they are independent (Sidak 1967); an upper bound for
+/// two-sided normal tests of any correlation. Exact for tiny p.
+double sidak(double p, double tests);
+/// The level of one of `tests` tests for which sidak() gives alpha.
+double sidak_level(double alpha, double tests);
+
+/// Two-sided p that m of n or more extreme successes have under probability p0 (twice the smaller tail).
+double binomial_p(double successes, double trials, double p0);
+
+}  // namespace kiloband::stats

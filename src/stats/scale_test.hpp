@@ -1,0 +1,75 @@
+// All units of one scale, tested together.
+//
+// The p-value of a unit is that of its largest |t| over the channels (max_t.hpp). Over the units: Sidak,
+// which bounds two-sided tests of any correlation. A pixel in which hardly any path arrives has no
+// distribution to speak of: its channels with fewer than kMinContributions contributions are not tested there
+// but pooled with those of the tile, and pools that are still too thin are left to the next scale. All of it
+// is counted.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stats/contrast.hpp"
+#include "stats/detectable.hpp"
+#include "stats/max_t.hpp"
+
+namespace kiloband::stats {
+
+inline constexpr double kMinContributions = 30;
+
+/// The pixels of a unit. pooled: only the thin ones among them.
+struct UnitPlace {
+  uint32_t x = 0, y = 0, width = 1, height = 1;
+  bool pooled = false;
+};
+
+/// Channels of units: where they went.
+struct EntryCounts {
+  std::size_t tested = 0;     // Student's t
+  std::size_t constant = 0;   // no variance on either side: compared as they are
+  std::size_t thin = 0;       // too few contributions: pooled
+  std::size_t unsampled = 0;  // fewer than two replicates with samples on a side
+};
+
+struct WorstUnit {
+  UnitPlace place;
+  std::size_t channel = 0;
+  double a = 0, b = 0, difference = 0, standard_error = 0;
+  double t = 0, dof = 0;
+  double p = 1;  // of the unit, over its channels
+};
+
+struct ScaleResult {
+  uint32_t columns = 0, rows = 0;  // of the grid of units
+  std::size_t units = 0;           // that were tested, pooled ones included
+  std::size_t pooled_units = 0;
+  EntryCounts entries;
+  double p = 1;  // family-wise over units and channels
+  WorstUnit worst;
+  std::vector<float> t_map;           // [unit of the grid] t of the largest |t|; NaN where nothing was tested
+  std::vector<uint32_t> channel_map;  // its channel
+  DetectableBias errors;
+};
+
+class ScaleTest {
+ public:
+  /// columns x rows: grid of units.
+  ScaleTest(uint32_t columns, uint32_t rows, uint64_t seed);
+
+  /// index: in the grid; -1 for a pool. wanted: the channels to test (empty: all).
+  void add(std::ptrdiff_t index, const UnitPlace& place, const Contrast& contrast,
+           const std::vector<bool>& wanted);
+  void count_thin(std::size_t entries) { result_.entries.thin += entries; }
+  ScaleResult finish();
+
+ private:
+  void map(std::ptrdiff_t index, const Strongest& strongest);
+  void add_errors(const Contrast& contrast, const std::vector<bool>& wanted);
+
+  uint64_t seed_;
+  ScaleResult result_;
+  double best_p_ = 2;  // of a unit
+};
+
+}  // namespace kiloband::stats

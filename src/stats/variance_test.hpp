@@ -1,0 +1,86 @@
+// Do the two sides scatter alike? A wrong weight can leave every mean right and the variance wrong.
+//
+// F tests take the fourth moment of a normal distribution for granted and fail on renders. Here
+//  * per unit: Brown and Forsythe (J. Am. Stat. Assoc. 69, 1974): |m_r - median| of both sides compared by
+//  Welch's test;
+//    over channels and units as for means.
+//  * pooled over the image, in two ways that see different things; both estimate ln(variance A / variance B),
+//  and both are
+//    averages over the pixels, replicate by replicate, compared by Welch's test. So whatever pixels have in
+//    common (wavelength offsets, scrambles) is common to a replicate and part of its error, and bright and
+//    dark pixels count alike.
+//    - scatter: 2 d_r / s with d_r = |m_r - median| and s the mean of d_r over both sides. Hardly feels the
+//    tails, so a
+//      change of all that is usual is seen in the noisiest images.
+//    - variance: Miller's jackknife (Biometrika 55, 1968). With s^2 the variance of a pixel's R replicate
+//    means and
+//      s_(r)^2 that without replicate r, the pseudo-values are R ln s^2 - (R - 1) ln s_(r)^2. Feels the
+//      tails.
+//    The mean over the channels is tested as one channel more.
+// Replicate means scatter with 1 / n_r: both sides must have the same number of samples in a replicate. Sides
+// that are not the same estimator (other samplers, wavelength modes) may differ in variance without being
+// wrong.
+#pragma once
+
+#include "stats/scale_test.hpp"
+
+namespace kiloband::stats {
+
+/// sqrt(n_r / mean n) |m_r - median|, as means of weight 1.
+UnitSample deviations_from_median(const UnitSample& sample);
+
+/// Brown-Forsythe contrast; where scatter is below `rounding` of the mean it counts as none.
+Contrast deviation_contrast(const UnitSample& a, const UnitSample& b, double rounding);
+
+/// Where the deviations of the scatter test are cut: 2.7 standard deviations of normal noise.
+inline constexpr double kScatterCut = 4;
+
+/// Channel number of the mean over all channels.
+inline constexpr std::size_t kAllChannels = static_cast<std::size_t>(-1);
+
+/// One of the two pooled tests. Where nothing took part p is 1.
+struct PooledVariance {
+  std::size_t entries = 0;  // pixels times channels that took part
+  std::size_t skipped = 0;  // those that hardly vary, or whose scatter is that of one replicate
+  double p = 1;             // over channels
+  std::size_t channel = 0;  // the worst, or kAllChannels
+  double ratio = 1;         // of the variances there, A / B
+  double log_error = 0;     // standard error of ln ratio
+  double t = 0, dof = 0;
+  double ratio_all = 1, log_error_all = 0;  // geometric mean over the channels
+  DetectableBias errors;                    // of ln ratio: about the relative change of variance
+};
+
+/// Averages numbers of replicates over pixels.
+class PooledReplicates {
+ public:
+  PooledReplicates(std::size_t channels, std::size_t replicates_a, std::size_t replicates_b);
+  void add(std::size_t channel, const std::vector<double>& a, const std::vector<double>& b);
+  void skip() { ++skipped_; }
+  PooledVariance finish(uint64_t seed) const;
+
+ private:
+  std::size_t channels_, skipped_ = 0;
+  std::vector<double> sums_a_, sums_b_;  // [replicate][channel]
+  std::vector<std::size_t> counts_;      // [channel]
+};
+
+class PooledVarianceTest {
+ public:
+  PooledVarianceTest(std::size_t channels, std::size_t replicates_a, std::size_t replicates_b);
+  /// A pixel of both sides; wanted as in ScaleTest.
+  void add(const UnitSample& a, const UnitSample& b, const std::vector<bool>& wanted, double rounding);
+  PooledVariance scatter(uint64_t seed) const { return scatter_.finish(seed); }
+  PooledVariance variance(uint64_t seed) const { return variance_.finish(seed); }
+
+ private:
+  std::size_t channels_;
+  PooledReplicates scatter_, variance_;
+};
+
+/// Pseudo-values of one channel into q; false if there are none: fewer than 4 replicates, one without
+/// samples, or scatter below `floor` with or without any one replicate.
+bool variance_pseudo_values(const UnitSample& sample, std::size_t channel, double floor,
+                            std::vector<double>& q);
+
+}  // namespace kiloband::stats

@@ -1,0 +1,48 @@
+// Numerical stability on hard cases: scenes at the ends of what numbers, sizes and path lengths may be, each with
+// figures that say how far a backend is from a closed form or from the double-precision oracle.
+//
+// A case names no backend: the context does. Where the estimator has no variance, errors are of rounding and each
+// limit has its reason beside it; where it has, the limit is a t-quantile times the standard error of the mean over
+// replicates. All statistical figures of a run together raise a false alarm with probability kHardFamilyRate at most
+// (Bonferroni over kHardStatisticalFigures).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace kiloband::validation {
+
+inline constexpr double kHardFamilyRate = 1e-4;
+/// Upper bound of the statistical figures of a whole run (all cases, one backend).
+inline constexpr std::size_t kHardStatisticalFigures = 100;
+
+enum class HardEffort { kQuick, kStandard, kThorough };
+
+struct HardCaseContext {
+  std::string backend = "cpu";  // or "opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"
+  HardEffort effort = HardEffort::kQuick;
+  uint64_t seed = 1;
+  std::function<void(const std::string&)> progress;  // what is being done; may be empty
+};
+
+/// One number. error and limit are in `unit`, as value and reference are, unless the note says otherwise.
+struct HardFigure {
+  std::string name, unit;
+  double value = 0, reference = 0, error = 0, limit = 0;
+  bool pass = false;
+  bool statistical = false;
+  std::string note;  // standard error and detectable bias, or why the limit is what it is
+};
+
+struct HardCase {
+  std::string name, what;
+  std::function<std::vector<HardFigure>(const HardCaseContext&)> run;
+};
+
+/// All cases, in the order in which they are reported.
+const std::vector<HardCase>& hard_cases();
+
+}  // namespace kiloband::validation

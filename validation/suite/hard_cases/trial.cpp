@@ -1,0 +1,214 @@
+#include "validation/suite/hard_cases/trial.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+
+#include "scene/reader.hpp"
+#include "shared/sampler.h"
+#include "src_cpu/cpu_backend.hpp"
+#include "src_cpu/evaluator.hpp"
+#include "src_gpu/opencl_backend.hpp"
+
+namespace kiloband::validation {
+namespace {
+
+std::unique_ptr<Backend> make_backend(const std::string& name, const FlatScene& scene,
+                                      const SamplingSettings& settings) {
+  if (name == "cpu") return make_cpu_backend(scene, {}, settings, {});
+  static const std::map<std::string, std::optional<gpu::Method>> kMethods{
+      {"opencl", {}},
+      {"opencl:pt", gpu::Method::kPt},
+      {"opencl:dpept-path", gpu::Method::kDpeptPath},
+      {"opencl:dpept-batch", gpu::Method::kDpeptBatch}};
+  const auto method = kMethods.find(name);
+  if (method == kMethods.end()) throw std::logic_error("hard cases: no backend \"" + name + "\"");
+  OpenclOptions options;
+  options.method = method->second;
+  options.specialised = false;  // one program for all scenes
+  return make_opencl_backend(scene, {}, settings, options);
+}
+
+SamplingSettings sampling_of(const TrialSettings& settings, uint64_t seed, uint32_t replicates) {
+  return {settings.wavelengths, settings.sampler, seed, replicates};
+}
+
+PixelRect film_rect(const FlatScene& scene) {
+  return {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height};
+}
+
+void render_replicates(Backend& backend, SpectralFilm& film, uint32_t replicates, uint32_t samples) {
+  std::vector<uint32_t> blocks(film.blocks().size());
+  std::iota(blocks.begin(), blocks.end(), 0u);
+  const std::atomic<bool> stop{false};
+  for (uint32_t r = 0; r < replicates; ++r) backend.render(film, {r, 0, samples}, blocks, stop, {});
+}
+
+void collect_pixels(const SpectralFilm& film, const std::vector<double>& scale, TrialImage& image) {
+  std::vector<float> mean(std::size_t{image.width} * image.channels), variance(mean.size());
+  for (uint32_t y = 0; y < image.height; ++y) {
+    film.row(y, mean, variance);
+    for (std::size_t i = 0; i < mean.size(); ++i) image.mean.push_back(mean[i] * scale[i % image.channels]);
+  }
+}
+
+void collect_means(const SpectralFilm& film, const std::vector<double>& scale, TrialImage& image) {
+  const ReplicateMoments moments = film.image_moments();
+  std::vector<float> variance(image.channels);
+  moments.variance_of_mean(0, variance);
+  for (std::size_t c = 0; c < image.channels; ++c) {
+    image.image_mean.push_back(moments.mean(0)[c] * scale[c]);
+    image.image_variance.push_back(double{variance[c]} * scale[c] * scale[c]);
+  }
+}
+
+/// The offset that the first sample of the first replicate of a pixel is evaluated with.
+double offset_of(const SamplingSettings& s, const FlatScene& scene, uint32_t x, uint32_t y) {
+  if (s.wavelengths == WavelengthMode::kShared)
+    return kb_shared_mu(s.seed, 0, x / kBlockSize, y / kBlockSize, 0);
+  const uint32_t sampler = s.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  return kb_path_mu(sampler, s.seed, y * scene.camera.film_width + x, 0, 0, 0);
+}
+
+/// Two-sided critical |t| of one figure among all.
+double critical_t(uint32_t replicates) {
+  const double one = kHardFamilyRate / static_cast<double>(kHardStatisticalFigures);
+  return boost::math::quantile(boost::math::complement(boost::math::students_t(replicates - 1.0), one / 2));
+}
+
+}  // namespace
+
+uint64_t Trial::by_effort(uint64_t quick, uint64_t standard, uint64_t thorough) const {
+  if (context_.effort == HardEffort::kQuick) return quick;
+  return context_.effort == HardEffort::kStandard ? standard : thorough;
+}
+
+FlatScene Trial::flatten_text(const std::string& xml, const TrialSettings& settings) const {
+  const SceneDescription description = read_scene_text(xml, "hard_case.xml", settings.directory);
+  const ChannelList channels = parse_channels(settings.bands);
+  return flatten(description, {channels, channels, {}});
+}
+
+TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) {
+  const FlatScene scene = flatten_text(xml, settings);
+  const auto backend =
+      make_backend(context_.backend, scene, sampling_of(settings, context_.seed, settings.replicates));
+  SpectralFilm film(film_rect(scene), {scene.channels.size(), settings.replicates, true});
+  render_replicates(*backend, film, settings.replicates, settings.samples);
+  TrialImage image;
+  image.width = scene.film.crop_width;
+  image.height = scene.film.crop_height;
+  image.channels = scene.channels.size();
+  image.replicates = settings.replicates;
+  for (const Channel& channel : scene.channels) image.widths_nm.push_back(channel.width_nm());
+  collect_pixels(film, backend->film_scale(), image);
+  collect_means(film, backend->film_scale(), image);
+  image.rays = backend->counters().rays;
+  image.paths = backend->counters().paths;
+  image.vertices = backend->counters().vertices;
+  invalid_ += backend->counters().invalid_samples;
+  samples_ += image.paths;
+  not_finite_ += static_cast<uint64_t>(
+      std::ranges::count_if(image.mean, [](double value) { return !std::isfinite(value); }));
+  return image;
+}
+
+void Trial::exact(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
+                  double limit, const std::string& reason) {
+  const double expected = reference * image.widths_nm[channel];
+  double worst = expected, error = 0;
+  for (std::size_t i = channel; i < image.mean.size(); i += image.channels) {
+    const double relative = std::abs(image.mean[i] / expected - 1);
+    if (!(relative <= error)) error = relative, worst = image.mean[i];
+  }
+  figures_.push_back({name, "W m^-2 sr^-1 nm^-1", worst / image.widths_nm[channel], reference, error, limit,
+                      error <= limit, false, "relative, worst pixel; " + reason});
+}
+
+void Trial::statistical(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
+                        double rounding) {
+  const double width = image.widths_nm[channel];
+  const double value = image.image_mean[channel] / width;
+  const double standard_error = std::sqrt(image.image_variance[channel]) / width;
+  const double limit = critical_t(image.replicates) * standard_error + rounding * reference;
+  const double error = std::abs(value - reference);
+  figures_.push_back({name, "W m^-2 sr^-1 nm^-1", value, reference, error, limit, error <= limit, true,
+                      fmt::format("standard error {:.2g} of the value, t = {:.2f}", standard_error / reference,
+                                  standard_error > 0 ? (value - reference) / standard_error : 0.0)});
+}
+
+void Trial::figure(const std::string& name, const std::string& unit, double value, double reference, double limit,
+                   const std::string& note) {
+  const double error = std::abs(value - reference);
+  figures_.push_back({name, unit, value, reference, error, limit, error <= limit, false, note});
+}
+
+/// Operations round by 6e-8 each; a vertex has about 20 in other order than the oracle's, and the rounding of a
+/// reflectance to float is the same at each vertex of a path: 1e-5 + 6e-8 per vertex (as tests/unit/cpu_evaluator).
+void Trial::oracle(const std::string& name, const std::string& xml, const TrialSettings& settings) {
+  const FlatScene scene = flatten_text(xml, settings);
+  const SamplingSettings sampling = sampling_of(settings, context_.seed, 1);
+  const auto backend = make_backend(context_.backend, scene, sampling);
+  const PixelRect rect = film_rect(scene);
+  SpectralFilm film(rect, {scene.channels.size(), 1, true});
+  render_replicates(*backend, film, 1, 1);
+  TrialImage image{rect.width, rect.height, scene.channels.size()};
+  collect_pixels(film, backend->film_scale(), image);
+  const std::vector<TracedPath> paths = backend->trace(rect, {0, 0, 1});
+  double error = 0, value = 0, reference = 0;
+  std::size_t slots = 0;
+  for (uint32_t p = 0; p < paths.size(); ++p) {
+    if (paths[p].slots.empty()) continue;
+    slots = std::max(slots, paths[p].slots.size());
+    const PathBuffer buffer{paths[p].slots, {{0, static_cast<uint32_t>(paths[p].slots.size()), 0}}};
+    const double mu = offset_of(sampling, scene, p % rect.width, p / rect.width);
+    const std::vector<double> expected = evaluate_path_reference(scene, {}, buffer, 0, mu);
+    const double largest = *std::ranges::max_element(expected);
+    for (std::size_t k = 0; k < expected.size() && largest > 0; ++k) {
+      const double seen = image.mean[p * image.channels + k];
+      const double relative = std::abs(seen - expected[k]) / largest;
+      if (!(relative <= error)) error = relative, value = seen, reference = expected[k];
+    }
+  }
+  const double limit = 1e-5 + 6e-8 * static_cast<double>(slots);
+  figures_.push_back({name, "W m^-2 sr^-1", value, reference, error, limit, error <= limit && slots > 0, false,
+                      fmt::format("relative, against the double oracle; paths of up to {} records", slots)});
+}
+
+std::vector<HardFigure> Trial::finish() {
+  figure("samples that are not finite", "samples", static_cast<double>(invalid_ + not_finite_), 0, 0,
+         fmt::format("of {}", samples_));
+  return std::move(figures_);
+}
+
+ScratchFolder::ScratchFolder() {
+  static std::atomic<int> count{0};
+  path_ = std::filesystem::temp_directory_path() / fmt::format("kiloband_hard_{}_{}", ::getpid(), count++);
+  std::filesystem::create_directories(path_);
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+void ScratchFolder::write(const std::string& name, const std::string& content) const {
+  std::ofstream(path_ / name, std::ios::binary) << content;
+}
+
+double planck_per_nm(double lambda_nm, double temperature_k) {
+  constexpr double kH = 6.62607015e-34, kC = 299792458.0, kK = 1.380649e-23;
+  const double metres = lambda_nm * 1e-9;
+  return 2 * kH * kC * kC / std::pow(metres, 5) / std::expm1(kH * kC / (metres * kK * temperature_k)) * 1e-9;
+}
+
+}  // namespace kiloband::validation

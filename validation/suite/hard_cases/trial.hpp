@@ -1,0 +1,89 @@
+// One hard case being run: renders scenes on the context's backend and collects figures.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "render/backend.hpp"
+#include "scene/flat_scene.hpp"
+#include "validation/suite/hard_cases/hard_cases.hpp"
+
+namespace kiloband::validation {
+
+struct TrialSettings {
+  std::string bands = "10000-10000.001";
+  uint32_t samples = 4;  // per pixel and replicate
+  uint32_t replicates = 2;
+  WavelengthMode wavelengths = WavelengthMode::kShared;
+  SamplerType sampler = SamplerType::kSobol;
+  std::filesystem::path directory = ".";
+};
+
+/// Values are in W m^-2 sr^-1, integrals over the channel.
+struct TrialImage {
+  uint32_t width = 0, height = 0;
+  std::size_t channels = 0;
+  uint32_t replicates = 0;
+  std::vector<double> widths_nm;                   // [channel]
+  std::vector<double> mean;                        // [pixel][channel]
+  std::vector<double> image_mean, image_variance;  // [channel]; variance of the mean
+  uint64_t rays = 0, paths = 0, vertices = 0;
+
+  double at(uint32_t x, uint32_t y, std::size_t channel) const {
+    return mean[(std::size_t{y} * width + x) * channels + channel];
+  }
+};
+
+class Trial {
+ public:
+  explicit Trial(const HardCaseContext& context) : context_(context) {}
+
+  HardEffort effort() const { return context_.effort; }
+  /// The one of three that the effort chooses.
+  uint64_t by_effort(uint64_t quick, uint64_t standard, uint64_t thorough) const;
+
+  /// throws what reading, flattening and rendering throw. Invalid samples and values that are not finite are counted.
+  TrialImage render(const std::string& xml, const TrialSettings& settings);
+
+  /// The largest relative error of the pixels of a channel against `reference` > 0, which is per nm of the channel.
+  void exact(const std::string& name, const TrialImage& image, std::size_t channel, double reference, double limit,
+             const std::string& reason);
+  /// The image mean of a channel, in W m^-2 sr^-1 nm^-1, by a t-test. rounding: relative, added to the limit.
+  void statistical(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
+                   double rounding);
+  /// |value - reference| <= limit
+  void figure(const std::string& name, const std::string& unit, double value, double reference, double limit,
+              const std::string& note);
+  /// One sample of every pixel: the film against the double-precision oracle on the backend's own paths. Largest error
+  /// relative to the pixel's largest channel.
+  void oracle(const std::string& name, const std::string& xml, const TrialSettings& settings);
+
+  /// What was collected, and the count of invalid and non-finite values over all renders, which must be 0.
+  std::vector<HardFigure> finish();
+
+ private:
+  FlatScene flatten_text(const std::string& xml, const TrialSettings& settings) const;
+
+  const HardCaseContext& context_;
+  std::vector<HardFigure> figures_;
+  uint64_t invalid_ = 0, not_finite_ = 0, samples_ = 0;
+};
+
+/// A folder that is removed with the object.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  void write(const std::string& name, const std::string& content) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Planck's law in double, W m^-2 sr^-1 nm^-1, written down here once more.
+double planck_per_nm(double lambda_nm, double temperature_k);
+
+}  // namespace kiloband::validation
