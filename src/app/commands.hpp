@@ -33,5 +33,6 @@ Command add_sky(CLI::App& program);
 Command add_sensor(CLI::App& program);
 Command add_trace(CLI::App& program);
 Command add_devices(CLI::App& program);
+Command add_validate(CLI::App& program);
 
 }  // namespace kiloband

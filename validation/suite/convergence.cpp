@@ -1,0 +1,158 @@
+#include "validation/suite/convergence.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace kiloband::validation {
+namespace {
+
+constexpr uint32_t kReplicates = 16, kFirstSamples = 2, kStep = 2;
+/// Two-sided normal quantile of 1e-4 over a dozen of curves.
+constexpr double kSlopeLimit = 4.6;
+
+/// Sum over pixels and channels of the variance between the replicates, each channel relative to its mean;
+/// `left_out` is not counted (kReplicates: all are).
+double relative_variance(const stats::ReplicateImage& image, const std::vector<double>& means,
+                         uint32_t left_out) {
+  double sum = 0;
+  const double count = left_out < image.replicates ? image.replicates - 1.0 : image.replicates;
+  for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel) {
+    for (std::size_t c = 0; c < image.channels; ++c) {
+      if (means[c] == 0) continue;
+      double total = 0, squares = 0;
+      for (uint32_t r = 0; r < image.replicates; ++r) {
+        if (r == left_out) continue;
+        const double value = image.at(r, pixel, c) / means[c];
+        total += value;
+        squares += value * value;
+      }
+      sum += (squares - total * total / count) / (count - 1);
+    }
+  }
+  return std::max(0.0, sum / static_cast<double>(image.pixels() * image.channels));
+}
+
+std::vector<double> channel_means(const stats::ReplicateImage& image) {
+  std::vector<double> means(image.channels, 0.0);
+  for (std::size_t i = 0; i < image.means.size(); ++i) means[i % image.channels] += image.means[i];
+  for (double& mean : means) mean /= static_cast<double>(image.pixels()) * image.replicates;
+  return means;
+}
+
+/// Least squares of ln sqrt(variance) over ln samples.
+double slope_of(const std::vector<uint32_t>& samples, const std::vector<double>& variances) {
+  const auto n = static_cast<double>(samples.size());
+  double x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double u = std::log(samples[i]), v = 0.5 * std::log(variances[i]);
+    x += u, y += v, xx += u * u, xy += u * v;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+/// A point's variance, and without each of its replicates in turn.
+struct Scatter {
+  double all = 0;
+  std::vector<double> without;
+};
+
+Scatter scatter_of(const stats::ReplicateImage& image) {
+  const std::vector<double> means = channel_means(image);
+  Scatter scatter{relative_variance(image, means, image.replicates), {}};
+  for (uint32_t r = 0; r < image.replicates; ++r)
+    scatter.without.push_back(relative_variance(image, means, r));
+  return scatter;
+}
+
+/// Points have independent seeds, so the slope's variance is the sum over points of what each one's jackknife
+/// gives.
+void fit(ConvergenceCurve& curve, const std::vector<Scatter>& scatters) {
+  std::vector<uint32_t> samples;
+  std::vector<double> variances;
+  for (std::size_t i = 0; i < scatters.size(); ++i) {
+    samples.push_back(curve.points[i].samples);
+    variances.push_back(scatters[i].all);
+  }
+  curve.slope = slope_of(samples, variances);
+  double variance = 0;
+  for (std::size_t i = 0; i < scatters.size(); ++i) {
+    const std::vector<double> all = variances;
+    std::vector<double> slopes;
+    for (const double without : scatters[i].without) {
+      variances[i] = without;
+      slopes.push_back(slope_of(samples, variances));
+    }
+    variances = all;
+    const auto n = static_cast<double>(slopes.size());
+    double mean = 0, squares = 0;
+    for (const double s : slopes) mean += s / n;
+    for (const double s : slopes) squares += (s - mean) * (s - mean);
+    variance += (n - 1) / n * squares;
+  }
+  curve.slope_error = std::sqrt(variance);
+}
+
+ConvergenceCurve measure(const FlatScene& scene, const Configuration& configuration, uint32_t most,
+                         uint64_t seed, const Watch& watch) {
+  ConvergenceCurve curve{configuration, {}, 0, 0};
+  std::vector<Scatter> scatters;
+  for (uint32_t samples = kFirstSamples; samples <= most && !watch.stopped(); samples *= kStep) {
+    const Rendering rendering = render(scene, configuration, {seed + samples, kReplicates, samples}, watch);
+    if (rendering.stopped) break;
+    scatters.push_back(scatter_of(rendering.image));
+    curve.points.push_back({samples, std::sqrt(scatters.back().all), rendering.seconds / kReplicates});
+  }
+  if (scatters.size() >= 2) fit(curve, scatters);
+  return curve;
+}
+
+std::vector<Configuration> configurations(const std::vector<std::string>& backends, Effort effort) {
+  std::vector<Configuration> all;
+  for (const std::string& backend : backends) {
+    all.push_back({backend});
+    if (effort == Effort::kQuick && backend != backends.front()) continue;
+    all.push_back({backend, WavelengthMode::kShared, SamplerType::kIndependent});
+    all.push_back({backend, WavelengthMode::kPerPath, SamplerType::kSobol});
+    all.push_back({backend, WavelengthMode::kPerPath, SamplerType::kIndependent});
+  }
+  return all;
+}
+
+bool is_independent(const Configuration& c) {
+  return c.sampler == SamplerType::kIndependent;
+}
+
+}  // namespace
+
+std::vector<ConvergenceCase> convergence_cases(const SceneFolders& folders) {
+  return {{"convergence/cornell_box",
+           {folders.scenes / "cornell_box/cornell_box.xml", {}, "400:700:64", 32, 32},
+           {8, 128, 1024}},
+          {"convergence/flint_ball",
+           {folders.validation / "flint_ball.xml", {}, "400:700:32", 24, 24},
+           {8, 128, 1024}},
+          {"convergence/metals_and_lamps",
+           {folders.validation / "metals_and_lamps.xml", {}, "400:700:32", 32, 32},
+           {8, 128, 1024}}};
+}
+
+ConvergenceResult run_convergence(const ConvergenceCase& c, const std::vector<std::string>& backends,
+                                  Effort effort, uint64_t seed, const Watch& watch) {
+  ConvergenceResult result{c.name, {}, true, {}};
+  const FlatScene scene = load(c.scene);
+  for (const Configuration& configuration : configurations(backends, effort)) {
+    if (watch.stopped()) break;
+    ConvergenceCurve curve = measure(scene, configuration, c.most_samples.at(effort), seed, watch);
+    if (is_independent(configuration) && curve.points.size() >= 2 &&
+        std::abs(curve.slope + 0.5) > kSlopeLimit * curve.slope_error) {
+      result.passed = false;
+      result.note += fmt::format("{}: slope {:.4f} +- {:.4f} instead of -1/2; ", configuration.label(),
+                                 curve.slope, curve.slope_error);
+    }
+    result.curves.push_back(std::move(curve));
+  }
+  return result;
+}
+
+}  // namespace kiloband::validation

@@ -1,0 +1,100 @@
+#include "validation/suite/rendering.hpp"
+
+#include <chrono>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+#include "film/spectral_film.hpp"
+#include "scene/reader.hpp"
+#include "src_cpu/cpu_backend.hpp"
+#include "src_gpu/opencl_backend.hpp"
+
+namespace kiloband::validation {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+PixelRect film_rect(const FlatScene& scene) {
+  return {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height};
+}
+
+stats::ReplicateImage image_of(const SpectralFilm& film, const PixelRect& rect, uint32_t replicates,
+                               const std::vector<double>& scale) {
+  stats::ReplicateImage image{rect.width, rect.height, scale.size(), replicates, {}, {}};
+  image.means.reserve(std::size_t{replicates} * rect.pixels() * scale.size());
+  for (uint32_t r = 0; r < replicates; ++r) {
+    for (std::size_t pixel = 0; pixel < rect.pixels(); ++pixel) {
+      const std::span<const float> means = film.replicate_mean(r, pixel);
+      for (std::size_t c = 0; c < scale.size(); ++c)
+        image.means.push_back(static_cast<float>(means[c] * scale[c]));
+      image.samples.push_back(film.replicate_samples(r, pixel));
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+std::string Configuration::label() const {
+  std::string text = backend;
+  text += wavelengths == WavelengthMode::kShared ? " shared" : " per-path";
+  text += sampler == SamplerType::kSobol ? " sobol" : " independent";
+  if (rough_dispersion == RoughDispersion::kDegrade) text += " degrade";
+  return text;
+}
+
+FlatScene load(const CaseScene& scene) {
+  ReadOptions options;
+  options.defines = scene.defines;
+  if (scene.width > 0) options.film_size = {scene.width, scene.height};
+  const SceneDescription description = read_scene(scene.file, options);
+  const ChannelList& own = description.sensor.film.channels;
+  const ChannelList channels = !scene.bands.empty() || own.empty()
+                                   ? parse_channels(scene.bands.empty() ? "400:700:12" : scene.bands)
+                                   : own;
+  return flatten(description, {channels, channels, {}});
+}
+
+std::unique_ptr<Backend> make_backend(const std::string& name, const FlatScene& scene,
+                                      const SamplingSettings& settings) {
+  if (name == "cpu") return make_cpu_backend(scene, {}, settings, {});
+  static const std::map<std::string, gpu::Method> kMethods{{"opencl:pt", gpu::Method::kPt},
+                                                           {"opencl:dpept-path", gpu::Method::kDpeptPath},
+                                                           {"opencl:dpept-batch", gpu::Method::kDpeptBatch}};
+  const auto method = kMethods.find(name);
+  if (method == kMethods.end()) throw std::logic_error("validation: no backend '" + name + "'");
+  OpenclOptions options;
+  options.method = method->second;
+  return make_opencl_backend(scene, {}, settings, options);
+}
+
+Rendering render(const FlatScene& scene, const Configuration& configuration, const Sampling& sampling,
+                 const Watch& watch) {
+  const auto backend = make_backend(configuration.backend, scene,
+                                    {configuration.wavelengths, configuration.sampler, sampling.seed,
+                                     sampling.replicates, configuration.rough_dispersion});
+  const PixelRect rect = film_rect(scene);
+  const std::vector<double> scale = backend->film_scale();
+  SpectralFilm film(rect, {scale.size(), sampling.replicates, true, true});
+  std::vector<uint32_t> blocks(film.blocks().size());
+  std::iota(blocks.begin(), blocks.end(), 0u);
+  static const std::atomic<bool> never{false};
+  Rendering result;
+  const auto start = Clock::now();
+  for (uint32_t r = 0; r < sampling.replicates && !watch.stopped(); ++r) {
+    backend->render(film, {r, 0, sampling.samples}, blocks, watch.stop ? *watch.stop : never, {});
+    if (watch.progress) watch.progress((r + 1.0) / sampling.replicates);
+  }
+  result.seconds = since(start);
+  result.stopped = watch.stopped();
+  result.image = image_of(film, rect, sampling.replicates, scale);
+  result.invalid_samples = backend->counters().invalid_samples;
+  return result;
+}
+
+}  // namespace kiloband::validation

@@ -1,0 +1,37 @@
+// What a validation run writes: results.json (everything that the report shows), junit.xml, and cubes.
+//
+//   DIR/results.json
+//   DIR/junit.xml
+//   DIR/cubes/CASE/SIDE.hdr (ENVI, mean and variance of every pixel): the first side of each case, and both
+//   sides of
+//                           every comparison that failed; names in results.json
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "validation/suite/suite.hpp"
+
+namespace kiloband::validation {
+
+/// Where and with what a run was done; recorded as it is.
+struct RunRecord {
+  std::string program, processor, date;
+  std::vector<std::string> backends;  // "opencl:pt on DEVICE"
+};
+
+/// Numbers that are not finite become null.
+nlohmann::json to_json(const SuiteResult& result, const RunRecord& record);
+
+/// A test case per comparison, hard case and convergence study; failures with the deciding test.
+std::string to_junit(const SuiteResult& result);
+
+/// Writes all of it. throws DeviceError  a file cannot be written
+void write_results(const std::filesystem::path& directory, const SuiteResult& result,
+                   const RunRecord& record);
+
+/// File name of a case's side without extension, relative to the directory of the results.
+std::string cube_name(const CaseResult& c, const SideImage& side);
+
+}  // namespace kiloband::validation

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "film/atomic_file.hpp"
+#include "film/cube_io.hpp"
+#include "film/statistics.hpp"
+#include "validation/suite/results.hpp"
+
+namespace kiloband::validation {
+namespace fs = std::filesystem;
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+/// One <testcase>; failure: empty if it passed.
+std::string test_case(const std::string& group, const std::string& name, double seconds,
+                      const std::string& failure) {
+  const std::string head = fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"",
+                                       escaped(group), escaped(name), seconds);
+  if (failure.empty()) return head + "/>\n";
+  return head + fmt::format(">\n    <failure message=\"{}\"/>\n  </testcase>\n", escaped(failure));
+}
+
+std::string failure_of(const PairingResult& r) {
+  if (r.passed) return {};
+  if (r.invalid_samples > 0) return fmt::format("{} invalid samples", r.invalid_samples);
+  const stats::TestVerdict& v = r.comparison.decisive();
+  std::string text = fmt::format("{}: p {:.3g}, level {:.3g}", v.name, v.p, v.level);
+  if (v.worst) {
+    const stats::WorstUnit& w = *v.worst;
+    text += fmt::format("; {}x{} pixels at {},{}, channel {}: {:.6g} and {:.6g}, t {:.2f}", w.place.width,
+                        w.place.height, w.place.x, w.place.y, w.channel, w.a, w.b, w.t);
+  }
+  return text;
+}
+
+std::string failure_of(const HardCaseResult& h) {
+  if (!h.error.empty()) return h.error;
+  std::string text;
+  for (const HardFigure& f : h.figures) {
+    if (!f.pass)
+      text += fmt::format("{}: {:.6g} instead of {:.6g}, error {:.3g}, limit {:.3g}; ", f.name, f.value,
+                          f.reference, f.error, f.limit);
+  }
+  return text;
+}
+
+std::string pairing_name(const PairingResult& r) {
+  return r.pairing.kind == Pairing::Kind::kClosedForm
+             ? r.pairing.a.label() + " against the closed form"
+             : r.pairing.a.label() + " against " + r.pairing.b.label() +
+                   (r.pairing.kind == Pairing::Kind::kPaired ? ", equal seeds" : "");
+}
+
+std::string file_name_of(std::string text) {
+  for (char& c : text) {
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '/') c = '_';
+  }
+  return text;
+}
+
+/// Mean and variance of every pixel, as the film has them.
+void write_cube(const fs::path& file, const stats::ReplicateImage& image, const ChannelList& channels) {
+  CubeInfo info;
+  info.width = image.width;
+  info.height = image.height;
+  for (const Channel& channel : channels) info.bands.push_back({channel, false});
+  info.variance = true;
+  info.replicates = image.replicates;
+  ReplicateMoments moments(image.pixels(), image.channels, true);
+  for (uint32_t r = 0; r < image.replicates; ++r) {
+    for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel) {
+      const float* values = image.means.data() + (r * image.pixels() + pixel) * image.channels;
+      moments.add(pixel, image.samples_at(r, pixel), {values, image.channels});
+    }
+  }
+  std::vector<float> mean, variance(image.pixels() * image.channels);
+  for (std::size_t pixel = 0; pixel < image.pixels(); ++pixel) {
+    mean.insert(mean.end(), moments.mean(pixel).begin(), moments.mean(pixel).end());
+    moments.variance_of_mean(pixel, {variance.data() + pixel * image.channels, image.channels});
+  }
+  const auto writer = create_cube_writer(file, info, image.height);
+  writer->write_rows({0, image.height, mean, variance, {}});
+  writer->finish();
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw DeviceError(file.string() + ": cannot be written");
+}
+
+}  // namespace
+
+std::string cube_name(const CaseResult& c, const SideImage& side) {
+  return "cubes/" + file_name_of(c.what.name) + "/" + file_name_of(side.label);
+}
+
+std::string to_junit(const SuiteResult& result) {
+  std::string body;
+  std::size_t tests = 0, failures = 0;
+  const auto add = [&](const std::string& group, const std::string& name, double seconds,
+                       const std::string& failure) {
+    body += test_case(group, name, seconds, failure);
+    ++tests;
+    failures += !failure.empty();
+  };
+  for (const CaseResult& c : result.cases) {
+    if (!c.error.empty()) add(c.what.name, "scene", 0, c.error);
+    for (const PairingResult& r : c.pairings)
+      add(c.what.name, pairing_name(r), r.seconds_a + r.seconds_b, failure_of(r));
+  }
+  for (const HardCaseResult& h : result.hard_cases) add("hard/" + h.name, h.backend, 0, failure_of(h));
+  for (const ConvergenceResult& c : result.convergence) add(c.name, "slopes", 0, c.passed ? "" : c.note);
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"kiloband validate\" tests=\"{}\" "
+      "failures=\"{}\" time=\"{:.1f}\">\n{}</testsuite>\n",
+      tests, failures, result.seconds, body);
+}
+
+void write_results(const fs::path& directory, const SuiteResult& result, const RunRecord& record) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw DeviceError(directory.string() + ": " + error.message());
+  for (const CaseResult& c : result.cases) {
+    for (const SideImage& side : c.images) {
+      const fs::path file = directory / (cube_name(c, side) + ".hdr");
+      fs::create_directories(file.parent_path(), error);
+      if (error) throw DeviceError(file.parent_path().string() + ": " + error.message());
+      write_cube(file, side.image, c.channels);
+    }
+  }
+  write_text(directory / "results.json", to_json(result, record).dump(1) + "\n");
+  write_text(directory / "junit.xml", to_junit(result));
+}
+
+}  // namespace kiloband::validation

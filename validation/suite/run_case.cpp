@@ -1,0 +1,147 @@
+#include "validation/suite/run_case.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "base/error.hpp"
+
+namespace kiloband::validation {
+namespace {
+
+/// A seed per attempt and side: sides must be independent of each other. FNV-1a of what it belongs to.
+uint64_t seed_of(uint64_t run_seed, const std::string& case_name, const std::string& side, int attempt) {
+  uint64_t hash = 0xcbf29ce484222325u ^ run_seed * 0x9e3779b97f4a7c15u;
+  for (const char c : case_name + "\n" + side) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return attempt == 0 ? hash : stats::repeat_seed(hash);
+}
+
+class CaseRun {
+ public:
+  CaseRun(const Case& c, const CaseSettings& settings, const Watch& watch)
+      : case_(c), settings_(settings), watch_(watch), scene_(load(c.scene)) {
+    result_.what = c;
+    result_.channels = scene_.channels;
+    result_.width = scene_.film.crop_width;
+    result_.height = scene_.film.crop_height;
+    result_.triangles = scene_.triangles.size();
+    if (c.closed_form) truth_ = read_closed_form(c.scene.file, scene_.channels.size());
+  }
+
+  CaseResult run() {
+    const std::vector<Pairing> pairings = pairings_of(case_, settings_.backends, settings_.effort);
+    planned_ = pairings.size();
+    result_.passed = true;
+    for (const Pairing& pairing : pairings) {
+      if (watch_.stopped()) break;
+      result_.pairings.push_back(run(pairing));
+      result_.passed = result_.passed && result_.pairings.back().passed;
+      ++done_;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  /// Equal seeds follow from equal names of the side: pairs of equal seed share one.
+  const Rendering& side(const Configuration& configuration, const std::string& seed_name, int attempt) {
+    const std::string key = configuration.label() + "\n" + seed_name + "\n" + std::to_string(attempt);
+    if (const auto found = renderings_.find(key); found != renderings_.end()) return found->second;
+    Sampling sampling;
+    sampling.seed = seed_of(settings_.seed, case_.name, seed_name, attempt);
+    sampling.replicates = settings_.replicates;
+    sampling.samples = samples(attempt);
+    Watch watch = watch_;
+    watch.progress = [this](double fraction) { report(fraction); };
+    Rendering rendering = render(scene_, configuration, sampling, watch);
+    if (result_.images.empty()) result_.images.push_back({configuration.label(), rendering.image});
+    return renderings_.emplace(key, std::move(rendering)).first->second;
+  }
+
+  uint32_t samples(int attempt) const {
+    const uint32_t first = case_.samples.at(settings_.effort);
+    return attempt == 0 ? first : first * static_cast<uint32_t>(stats::kRepeatSamples);
+  }
+
+  void report(double fraction) const {
+    if (watch_.progress)
+      watch_.progress((static_cast<double>(done_) + 0.9 * fraction) / static_cast<double>(planned_));
+  }
+
+  PairingResult run(const Pairing& pairing) {
+    PairingResult result;
+    result.pairing = pairing;
+    for (stats::Stage stage = stats::Stage::kRepeat; stage == stats::Stage::kRepeat && !watch_.stopped();) {
+      attempt(pairing, result);
+      stage = stats::next_stage(result.passed, result.attempts - 1);
+    }
+    if (!result.passed) keep_images(pairing, result.attempts - 1);
+    return result;
+  }
+
+  void attempt(const Pairing& pairing, PairingResult& result) {
+    const int number = result.attempts++;
+    const bool truth = pairing.kind == Pairing::Kind::kClosedForm,
+               paired = pairing.kind == Pairing::Kind::kPaired;
+    result.samples = samples(number);
+    result.level =
+        stats::case_level(number == 0 ? settings_.rule.first : settings_.rule.again, settings_.family);
+    stats::ComparisonOptions options;
+    options.alpha = result.level;
+    options.variances = pairing.variances;
+    options.fine_scales = !truth;
+    options.seed = seed_of(settings_.seed, case_.name, "comparison", number);
+    const Rendering& a = side(pairing.a, "first", number);
+    result.seconds_a = a.seconds;
+    result.invalid_samples = a.invalid_samples;
+    if (truth) {
+      result.comparison = compare_truth(a.image, truth(), options);
+    } else {
+      const Rendering& b = side(pairing.b, paired ? "first" : second_name(pairing), number);
+      result.seconds_b = b.seconds;
+      result.invalid_samples += b.invalid_samples;
+      result.comparison =
+          paired ? compare_paired(a.image, b.image, options) : compare_independent(a.image, b.image, options);
+    }
+    result.passed = result.comparison.passed && result.invalid_samples == 0;
+    if (number == 0) result.first_p = result.comparison.decisive().p;
+  }
+
+  static std::string second_name(const Pairing& pairing) { return "second " + pairing.b.label(); }
+
+  stats::Truth truth() const {
+    stats::Truth truth{truth_.values, {}, false};
+    for (const double value : truth_.values) truth.bound.push_back(std::abs(value) * truth_.relative_bound);
+    return truth;
+  }
+
+  void keep_images(const Pairing& pairing, int attempt) {
+    result_.images.push_back({pairing.a.label() + " (failed)", side(pairing.a, "first", attempt).image});
+    if (pairing.kind == Pairing::Kind::kClosedForm) return;
+    const std::string seed = pairing.kind == Pairing::Kind::kPaired ? "first" : second_name(pairing);
+    result_.images.push_back({pairing.b.label() + " (failed)", side(pairing.b, seed, attempt).image});
+  }
+
+  const Case& case_;
+  const CaseSettings& settings_;
+  const Watch& watch_;
+  FlatScene scene_;
+  ClosedForm truth_;
+  CaseResult result_;
+  std::size_t planned_ = 1, done_ = 0;
+  std::map<std::string, Rendering> renderings_;
+};
+
+}  // namespace
+
+CaseResult run_case(const Case& c, const CaseSettings& settings, const Watch& watch) {
+  try {
+    return CaseRun(c, settings, watch).run();
+  } catch (const InputError& error) {
+    CaseResult result;
+    result.what = c;
+    result.error = error.what();
+    return result;
+  }
+}
+
+}  // namespace kiloband::validation

@@ -1,0 +1,138 @@
+#include "validation/suite/suite.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/error.hpp"
+
+namespace kiloband::validation {
+namespace {
+
+bool wanted(const std::string& name, const std::vector<std::string>& names) {
+  return names.empty() ||
+         std::ranges::any_of(names, [&](const std::string& n) { return name.starts_with(n); });
+}
+
+struct Plan {
+  std::vector<Case> cases;
+  std::vector<std::pair<const HardCase*, std::string>> hard_cases;  // and backend
+  std::vector<ConvergenceCase> convergence;
+
+  std::size_t parts() const { return cases.size() + hard_cases.size() + convergence.size(); }
+};
+
+Plan plan_of(const SuiteSettings& settings) {
+  Plan plan;
+  for (Case& c : all_cases(settings.folders)) {
+    if (settings.effort >= c.least && wanted(c.name, settings.names)) plan.cases.push_back(std::move(c));
+  }
+  for (const HardCase& hard : hard_cases()) {
+    if (!wanted("hard/" + hard.name, settings.names)) continue;
+    for (const std::string& backend : settings.backends) plan.hard_cases.emplace_back(&hard, backend);
+  }
+  for (ConvergenceCase& c : convergence_cases(settings.folders)) {
+    if (wanted(c.name, settings.names)) plan.convergence.push_back(std::move(c));
+  }
+  if (plan.parts() == 0)
+    throw InputError("no case of the suite has such a name (kiloband validate --list names them)");
+  return plan;
+}
+
+HardEffort hard_effort(Effort effort) {
+  return effort == Effort::kQuick      ? HardEffort::kQuick
+         : effort == Effort::kStandard ? HardEffort::kStandard
+                                       : HardEffort::kThorough;
+}
+
+HardCaseResult run_hard_case(const HardCase& hard, const std::string& backend,
+                             const SuiteSettings& settings) {
+  HardCaseResult result{hard.name, hard.what, backend, {}, false, {}};
+  try {
+    result.figures = hard.run({backend, hard_effort(settings.effort), settings.seed, {}});
+    result.passed = std::ranges::all_of(result.figures, &HardFigure::pass);
+  } catch (const InputError& error) {
+    result.error = error.what();
+  }
+  return result;
+}
+
+/// Progress of the run from that of its parts.
+class Counter {
+ public:
+  Counter(std::size_t parts, const Watch& watch) : parts_(static_cast<double>(parts)), watch_(watch) {}
+
+  Watch part() {
+    return {watch_.stop, [this](double fraction) {
+              if (watch_.progress) watch_.progress((done_ + std::min(fraction, 1.0)) / parts_);
+            }};
+  }
+  void finish_part() {
+    ++done_;
+    if (watch_.progress) watch_.progress(done_ / parts_);
+  }
+
+ private:
+  double parts_, done_ = 0;
+  const Watch& watch_;
+};
+
+std::size_t family_of(const Plan& plan, const SuiteSettings& settings) {
+  std::size_t comparisons = 0;
+  for (const Case& c : plan.cases) comparisons += pairings_of(c, settings.backends, settings.effort).size();
+  return std::max<std::size_t>(comparisons, 1);
+}
+
+}  // namespace
+
+bool SuiteResult::passed() const {
+  return std::ranges::all_of(cases, &CaseResult::passed) &&
+         std::ranges::all_of(hard_cases, &HardCaseResult::passed) &&
+         std::ranges::all_of(convergence, &ConvergenceResult::passed);
+}
+
+std::vector<std::string> planned_names(const SuiteSettings& settings) {
+  const Plan plan = plan_of(settings);
+  std::vector<std::string> names;
+  for (const Case& c : plan.cases) names.push_back(c.name);
+  for (const auto& [hard, backend] : plan.hard_cases) {
+    if (backend == settings.backends.front()) names.push_back("hard/" + hard->name);
+  }
+  for (const ConvergenceCase& c : plan.convergence) names.push_back(c.name);
+  return names;
+}
+
+SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
+                      const std::function<void(const std::string&)>& say) {
+  const auto start = std::chrono::steady_clock::now();
+  const Plan plan = plan_of(settings);
+  SuiteResult result;
+  result.settings = settings;
+  result.comparisons = family_of(plan, settings);
+  Counter counter(plan.parts(), watch);
+  CaseSettings case_settings{settings.backends, settings.effort,   settings.seed, 32,
+                             settings.rule,     result.comparisons};
+  for (const Case& c : plan.cases) {
+    if (watch.stopped()) break;
+    say(c.name);
+    result.cases.push_back(run_case(c, case_settings, counter.part()));
+    counter.finish_part();
+  }
+  for (const auto& [hard, backend] : plan.hard_cases) {
+    if (watch.stopped()) break;
+    say("hard/" + hard->name + " on " + backend);
+    result.hard_cases.push_back(run_hard_case(*hard, backend, settings));
+    counter.finish_part();
+  }
+  for (const ConvergenceCase& c : plan.convergence) {
+    if (watch.stopped()) break;
+    say(c.name);
+    result.convergence.push_back(
+        run_convergence(c, settings.backends, settings.effort, settings.seed, counter.part()));
+    counter.finish_part();
+  }
+  result.interrupted = watch.stopped();
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace kiloband::validation

@@ -1,0 +1,51 @@
+// A whole validation run: cases, hard cases, convergence; one family-wise error rate.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "validation/suite/convergence.hpp"
+#include "validation/suite/hard_cases/hard_cases.hpp"
+#include "validation/suite/run_case.hpp"
+
+namespace kiloband::validation {
+
+struct SuiteSettings {
+  std::vector<std::string> names;  // of cases and sections (beginnings do); empty: all
+  std::vector<std::string> backends{"cpu"};
+  Effort effort = Effort::kStandard;
+  uint64_t seed = 1;
+  SceneFolders folders;
+  stats::RepeatRule rule;
+};
+
+struct HardCaseResult {
+  std::string name, what, backend;
+  std::vector<HardFigure> figures;
+  bool passed = false;
+  std::string error;
+};
+
+struct SuiteResult {
+  SuiteSettings settings;
+  std::vector<CaseResult> cases;
+  std::vector<HardCaseResult> hard_cases;
+  std::vector<ConvergenceResult> convergence;
+  std::size_t comparisons = 0;  // the family
+  double seconds = 0;
+  bool interrupted = false;
+
+  bool passed() const;
+};
+
+/// What a run will do: names of cases, "hard/..." and "convergence/...".
+std::vector<std::string> planned_names(const SuiteSettings& settings);
+
+/// `say` is told when something begins; watch.progress: fraction of the whole run.
+/// throws InputError  a name that is no case; DeviceError  a backend cannot work
+SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
+                      const std::function<void(const std::string&)>& say);
+
+}  // namespace kiloband::validation
