@@ -25,10 +25,10 @@ GALLERY = [
      "statues: dispersive glass, bronze, marble, depth 17"),
     ("aircraft", "aircraft/aircraft.xml", "400:700:100", "480x270", 128, (250, 145), [],
      "aircraft, visible"),
-    ("aircraft_swir", "aircraft/aircraft_swir.xml", None, "480x270", 64, (357, 118), [],
-     "aircraft, short-wave infrared"),
-    ("aircraft_lwir", "aircraft/aircraft_lwir.xml", None, "480x270", 64, (357, 118), [],
-     "aircraft, long-wave infrared"),
+    ("aircraft_swir", "aircraft/aircraft_swir.xml", None, "480x270", 64, (400, 112), [],
+     "aircraft, 1 to 2.5 µm: the sky and sun reflected, the exhaust"),
+    ("aircraft_lwir", "aircraft/aircraft_lwir.xml", None, "480x270", 64, (258, 118), [],
+     "aircraft, 8 to 12 µm: by its own temperatures"),
 ]
 
 
@@ -80,6 +80,7 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     work.mkdir(parents=True, exist_ok=True)
     run(build / "generate_scenes", scenes)
+    run(kiloband, "sky", scenes / "aircraft/sky.exr")
     for entry in GALLERY:
         if wanted and entry[0] not in wanted:
             continue

@@ -44,5 +44,31 @@ TEST(RealScenes, MultipleImportanceSampling) {
   expect_renders("scenes/veach_mi/mi.xml", {});
 }
 
+/// Meshes, environments and measured spectra of other people in scenes of ours, in 200 channels and more.
+class RealInputs : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, RealInputs,
+                         testing::Values("f16", "conference", "dragon", "buddha", "lucy", "suzanne"),
+                         [](const auto& scene) { return scene.param; });
+
+TEST_P(RealInputs, RenderOnBothBackends) {
+  if (data_folder().empty()) GTEST_SKIP() << "no folder of public data";
+  const TemporaryFolder folder;
+  const std::string scene = KILOBAND_SOURCE_DIR "/validation/scenes/real/" + std::string(GetParam()) + ".xml";
+  for (const std::string backend : {"cpu", "opencl"}) {
+    SCOPED_TRACE(backend);
+    const Outcome outcome = run_program(
+        folder, quiet_render(scene, {"-D", "data=" + data_folder().string(), "--backend", backend, "--size",
+                                     "24x18", "--spp", "4", "-o", "a.hdr", "--stats", "a.json"}));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Cube cube = read_cube(folder / "a.hdr");
+    EXPECT_GE(cube.info.bands.size(), 200u);
+    EXPECT_EQ(read_json(folder, "a.json")["invalid_samples"], 0);
+    double sum = 0;
+    for (const float value : cube.mean) sum += value;
+    EXPECT_TRUE(std::isfinite(sum));
+    EXPECT_GT(sum, 0);
+  }
+}
+
 }  // namespace
 }  // namespace kiloband::test
