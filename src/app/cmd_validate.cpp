@@ -28,7 +28,7 @@ struct ValidateOptions {
   std::vector<std::string> names, backends;
   bool quick = false, thorough = false, list = false, quiet = false, no_report = false;
   uint64_t seed = 1;
-  std::string output = "validation_results", scenes = KILOBAND_SOURCE_DIR;
+  std::string output = "validation_results", scenes = KILOBAND_SOURCE_DIR, data;
 };
 
 Effort effort_of(const ValidateOptions& options) {
@@ -166,7 +166,8 @@ SuiteSettings settings_of(const ValidateOptions& options) {
   settings.backends = backends_of(options);
   settings.effort = effort_of(options);
   settings.seed = options.seed;
-  settings.folders = {root / "scenes", root / "validation/scenes", fs::path(options.output) / "scenes"};
+  settings.folders = {root / "scenes", root / "validation/scenes", fs::path(options.output) / "scenes",
+                      options.data};
   return settings;
 }
 
@@ -209,6 +210,8 @@ Command add_validate(CLI::App& program) {
   command.add_option("--seed", options->seed, "of all random numbers")->capture_default_str();
   command.add_option("-o,--output", options->output, "folder of the results")->capture_default_str();
   command.add_option("--root", options->scenes, "kiloband's source folder, with scenes/ and validation/");
+  command.add_option("--data", options->data, "folder of public inputs (validation/scenes/real): also the cases real/...")
+      ->check(CLI::ExistingDirectory);
   command.add_flag("--no-report", options->no_report, "results.json and junit.xml alone");
   command.add_flag("--list", options->list, "name the cases");
   command.add_flag("--quiet", options->quiet, "no progress");

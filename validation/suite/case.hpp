@@ -33,6 +33,7 @@ struct SceneFolders {
   std::filesystem::path scenes;      // of the project: analytic/, cornell_box/
   std::filesystem::path validation;  // validation/scenes
   std::filesystem::path generated;   // what generate_scenes writes; empty: the large scenes are left out
+  std::filesystem::path data;        // public meshes and spectra, see validation/scenes/real; empty: left out
 };
 
 /// All cases, in the order of the report. Every file of scenes/analytic is one.

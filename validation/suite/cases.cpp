@@ -80,6 +80,13 @@ std::vector<Case> all_cases(const SceneFolders& folders) {
       {24, 24}, {4, 32, 256});
   add("stress/red_glass_ball", "smooth dispersive, coloured glass: degradation to a chosen channel",
       stress / "red_glass_ball.xml", "400:700:16", {24, 24}, {4, 32, 256});
+  if (!folders.data.empty()) {
+    for (const char* name : {"buddha", "conference", "dragon", "f16", "lucy", "suzanne"}) {
+      add(std::string("real/") + name, "meshes, environments and spectra of other people",
+          stress / "real" / (std::string(name) + ".xml"), "", {40, 30}, {1, 8, 64}, Effort::kStandard);
+      cases.back().scene.defines = {{"data", folders.data.string()}};
+    }
+  }
   if (folders.generated.empty()) return cases;
   const fs::path large = folders.generated;
   constexpr Effort kStandard = Effort::kStandard;

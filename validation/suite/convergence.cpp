@@ -116,6 +116,7 @@ std::vector<Configuration> configurations(const std::vector<std::string>& backen
     all.push_back({backend, WavelengthMode::kPerPath, SamplerType::kSobol});
     all.push_back({backend, WavelengthMode::kPerPath, SamplerType::kIndependent});
   }
+  for (Configuration& configuration : all) configuration.specialised = effort != Effort::kQuick;
   return all;
 }
 

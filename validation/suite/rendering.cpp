@@ -60,8 +60,9 @@ FlatScene load(const CaseScene& scene) {
   return flatten(description, {channels, channels, {}});
 }
 
-std::unique_ptr<Backend> make_backend(const std::string& name, const FlatScene& scene,
+std::unique_ptr<Backend> make_backend(const Configuration& configuration, const FlatScene& scene,
                                       const SamplingSettings& settings) {
+  const std::string& name = configuration.backend;
   if (name == "cpu") return make_cpu_backend(scene, {}, settings, {});
   static const std::map<std::string, gpu::Method> kMethods{{"opencl:pt", gpu::Method::kPt},
                                                            {"opencl:dpept-path", gpu::Method::kDpeptPath},
@@ -70,12 +71,13 @@ std::unique_ptr<Backend> make_backend(const std::string& name, const FlatScene& 
   if (method == kMethods.end()) throw std::logic_error("validation: no backend '" + name + "'");
   OpenclOptions options;
   options.method = method->second;
+  options.specialised = configuration.specialised;
   return make_opencl_backend(scene, {}, settings, options);
 }
 
 Rendering render(const FlatScene& scene, const Configuration& configuration, const Sampling& sampling,
                  const Watch& watch) {
-  const auto backend = make_backend(configuration.backend, scene,
+  const auto backend = make_backend(configuration, scene,
                                     {configuration.wavelengths, configuration.sampler, sampling.seed,
                                      sampling.replicates, configuration.rough_dispersion});
   const PixelRect rect = film_rect(scene);

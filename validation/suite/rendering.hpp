@@ -21,6 +21,7 @@ struct Configuration {
   WavelengthMode wavelengths = WavelengthMode::kShared;
   SamplerType sampler = SamplerType::kSobol;
   RoughDispersion rough_dispersion = RoughDispersion::kSpectralMis;
+  bool specialised = true;  // OpenCL: kernels compiled for the scene; false: one program for all scenes
 
   /// "cpu shared sobol", with "degrade" behind it where rough dispersion degrades.
   std::string label() const;
@@ -58,7 +59,7 @@ struct Watch {
 };
 
 /// Throws what making the backend throws.
-std::unique_ptr<Backend> make_backend(const std::string& name, const FlatScene& scene,
+std::unique_ptr<Backend> make_backend(const Configuration& configuration, const FlatScene& scene,
                                       const SamplingSettings& settings);
 
 Rendering render(const FlatScene& scene, const Configuration& configuration, const Sampling& sampling,

@@ -80,7 +80,7 @@ class CaseRun {
 
   void attempt(const Pairing& pairing, PairingResult& result) {
     const int number = result.attempts++;
-    const bool truth = pairing.kind == Pairing::Kind::kClosedForm,
+    const bool closed = pairing.kind == Pairing::Kind::kClosedForm,
                paired = pairing.kind == Pairing::Kind::kPaired;
     result.samples = samples(number);
     result.level =
@@ -88,12 +88,12 @@ class CaseRun {
     stats::ComparisonOptions options;
     options.alpha = result.level;
     options.variances = pairing.variances;
-    options.fine_scales = !truth;
+    options.fine_scales = !closed;
     options.seed = seed_of(settings_.seed, case_.name, "comparison", number);
     const Rendering& a = side(pairing.a, "first", number);
     result.seconds_a = a.seconds;
     result.invalid_samples = a.invalid_samples;
-    if (truth) {
+    if (closed) {
       result.comparison = compare_truth(a.image, truth(), options);
     } else {
       const Rendering& b = side(pairing.b, paired ? "first" : second_name(pairing), number);
