@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders the pictures of docs/gallery.md: the scenes that come with the project, each beside the spectrum of a marked pixel.
+# Renders the pictures of README's gallery: the scenes that come with the project, each beside the spectrum of a marked pixel.
 # Usage: scripts/gallery.sh [OUT_DIR]   (docs/gallery by default; about 15 minutes on two cores)
 # Needs root or sudo for what is missing (python3-matplotlib besides what the program is built with).
 set -euo pipefail

@@ -29,6 +29,7 @@ using Command = std::function<int()>;
 Command add_render(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_convert(CLI::App& program);
+Command add_compare(CLI::App& program);
 Command add_sky(CLI::App& program);
 Command add_sensor(CLI::App& program);
 Command add_trace(CLI::App& program);

@@ -32,10 +32,10 @@ int fail(int code, const std::string& message, const char* hint = "") {
 /// CLI11 would call an unknown command a missing one.
 void check_command(const std::map<std::string, Command>& commands, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-' || commands.contains(argv[1])) return;
-  throw InputError(
-      fmt::format("unknown command '{}': must be render, info, convert, sensor, sky, devices, trace or validate (see "
-                  "kiloband --help)",
-                  argv[1]));
+  throw InputError(fmt::format(
+      "unknown command '{}': must be render, info, convert, sensor, compare, sky, devices, trace or "
+      "validate (see kiloband --help)",
+      argv[1]));
 }
 
 /// "; did you mean '--spp'?" for the first option among what the command could not use that has a neighbour.
@@ -63,6 +63,7 @@ int run(int argc, char** argv) {
   commands["info"] = add_info(program);
   commands["convert"] = add_convert(program);
   commands["sensor"] = add_sensor(program);
+  commands["compare"] = add_compare(program);
   commands["devices"] = add_devices(program);
   commands["sky"] = add_sky(program);
   commands["trace"] = add_trace(program);

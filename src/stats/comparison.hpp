@@ -55,9 +55,11 @@ struct Comparison {
   Kind kind = Kind::kIndependent;
   double alpha = 0;
   bool passed = true;
-  uint32_t width = 0, height = 0, replicates_a = 0, replicates_b = 0;
+  uint32_t width = 0, height = 0;
+  uint32_t replicates_a = 0, replicates_b = 0;  // 0: a truth, or variances alone
   std::size_t channels = 0;
   std::vector<TestVerdict> tests;
+  std::vector<Scale> scales;           // of `means`
   std::vector<ScaleResult> means;      // pixel, tile, image; the image alone without fine scales
   std::vector<ScaleResult> variances;  // pixel, tile; may be empty
   std::optional<PooledVariance> pooled_scatter, pooled_variance;

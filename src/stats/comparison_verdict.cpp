@@ -24,11 +24,8 @@ double test_count(const ScaleResult& result) {
 }
 
 void add_means(Comparison& c) {
-  const std::size_t first = 3 - c.means.size();
-  for (std::size_t i = 0; i < c.means.size(); ++i) {
-    const auto scale = static_cast<Scale>(first + i);
-    c.tests.push_back(of_units(std::string("mean/") + name_of(scale), c.means[i]));
-  }
+  for (std::size_t i = 0; i < c.means.size(); ++i)
+    c.tests.push_back(of_units(std::string("mean/") + name_of(c.scales[i]), c.means[i]));
 }
 
 void add_variances(Comparison& c) {
@@ -65,25 +62,26 @@ void add_detectable(Comparison& c) {
 void add_notes(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
   const auto say = [&](std::string text) { c.notes.push_back(std::move(text)); };
   const uint32_t fewest = c.kind == Kind::kTruth ? c.replicates_a : std::min(c.replicates_a, c.replicates_b);
-  if (fewest < kWantedReplicates)
+  if (fewest > 0 && fewest < kWantedReplicates)
     say(std::to_string(fewest) + " replicates on a side: " + std::to_string(kWantedReplicates) +
         " or more are wanted; the tests hold but see less");
-  const bool variances = c.kind == Kind::kIndependent && options.variances;
+  const bool variances = c.kind == Kind::kIndependent && options.variances && fewest > 0;
   if (variances && c.replicates_a != c.replicates_b)
     say("variances were not compared: the sides have different numbers of replicates");
   else if (variances && !same_sizes)
     say("variances were not compared: the replicates of the two sides have different numbers of samples");
   if (c.kind == Kind::kPaired) say("variances were not compared: the sides are paired");
-  const char* scales[] = {"pixel", "tile"};
-  for (std::size_t i = 0; i + 1 < c.means.size(); ++i) {
+  for (std::size_t i = 0; i < c.means.size(); ++i) {
+    if (c.scales[i] == Scale::kImage) continue;
+    const std::string scale = name_of(c.scales[i]);
     const EntryCounts& n = c.means[i].entries;
     if (n.thin > 0)
-      say(std::string(scales[i]) + "s: " + std::to_string(n.thin) + " of " +
-          std::to_string(n.thin + n.tested + n.constant) +
+      say(scale + "s: " + std::to_string(n.thin) + " of " +
+          std::to_string(c.means[i].t_map.size() * c.channels) +
           " values have too few contributions and were pooled");
     if (n.unsampled > 0)
-      say(std::string(scales[i]) + "s: " + std::to_string(n.unsampled) +
-          " values have fewer than two replicates");
+      say(scale + "s: " + std::to_string(n.unsampled) +
+          " values have no error on a side and were not compared");
   }
 }
 
@@ -103,8 +101,6 @@ void add_image_means(const Contrast& contrast, Comparison& c) {
 }
 
 void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
-  if (c.means.back().entries.unsampled > 0)
-    throw std::logic_error("Comparison: fewer than two replicates with samples");
   c.alpha = options.alpha;
   add_means(c);
   add_variances(c);

@@ -36,16 +36,27 @@ UnitSample per_replicate(const std::vector<double>& sums, const std::vector<std:
   return sample;
 }
 
+std::vector<double> values_of(const UnitSample& sample, std::size_t channel) {
+  std::vector<double> values;
+  for (std::size_t r = 0; r < sample.replicates(); ++r) values.push_back(sample.mean_at(r, channel));
+  return values;
+}
+
+double median_of_both(std::vector<double> a, const std::vector<double>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return median_of(std::move(a));
+}
+
 /// 2 d_r / s of both sides, large d_r cut; false if nothing scatters beyond `floor`.
-bool relative_scatter(const UnitSample& da, const UnitSample& db, std::size_t channel, double floor,
+bool relative_scatter(const UnitSample& sa, const UnitSample& sb, std::size_t channel, double floor,
                       std::vector<double>& a, std::vector<double>& b) {
-  a.clear();
-  b.clear();
-  for (std::size_t r = 0; r < da.replicates(); ++r) a.push_back(da.mean_at(r, channel));
-  for (std::size_t r = 0; r < db.replicates(); ++r) b.push_back(db.mean_at(r, channel));
-  std::vector<double> both = a;
-  both.insert(both.end(), b.begin(), b.end());
-  const double most = kScatterCut * median_of(std::move(both));
+  a = values_of(sa, channel);
+  b = values_of(sb, channel);
+  const double median = median_of_both(a, b);
+  for (std::size_t r = 0; r < a.size(); ++r) a[r] = std::sqrt(sa.weights[r]) * std::abs(a[r] - median);
+  for (std::size_t r = 0; r < b.size(); ++r) b[r] = std::sqrt(sb.weights[r]) * std::abs(b[r] - median);
+  floor *= std::sqrt(mean_weight(sa));
+  const double most = kScatterCut * median_of_both(a, b);
   double s = 0;
   for (std::vector<double>* side : {&a, &b}) {
     for (double& d : *side) s += (d = std::min(d, most)) / (2 * static_cast<double>(side->size()));
@@ -99,11 +110,14 @@ bool variance_pseudo_values(const UnitSample& sample, std::size_t channel, doubl
     squares += q[r];
   }
   const double least = std::max(n * floor * floor, 1e-9 * squares);
+  double mean_log = 0;
   for (double& value : q) {
     const double without = squares - value * n / (n - 1);
     if (!(without > least)) return false;
-    value = n * std::log(squares / (n - 1)) - (n - 1) * std::log(without / (n - 2));
+    value = -(n - 1) * std::log(without / (n - 2));
+    mean_log += value / n;
   }
+  for (double& value : q) value += std::log(squares / (n - 1)) - mean_log;
   return true;
 }
 
@@ -158,14 +172,13 @@ PooledVarianceTest::PooledVarianceTest(std::size_t channels, std::size_t replica
 void PooledVarianceTest::add(const UnitSample& a, const UnitSample& b, const std::vector<bool>& wanted,
                              double rounding) {
   if (a.sampled() < a.replicates() || b.sampled() < b.replicates()) return;
-  const UnitSample da = deviations_from_median(a), db = deviations_from_median(b);
   std::vector<double> qa, qb;
   for (std::size_t c = 0; c < channels_; ++c) {
     if (!wanted.empty() && !wanted[c]) continue;
     double level = 0;
     for (std::size_t r = 0; r < a.replicates(); ++r) level = std::max(level, std::abs(a.mean_at(r, c)));
     const double floor = rounding * level;
-    if (relative_scatter(da, db, c, floor, qa, qb))
+    if (relative_scatter(a, b, c, floor, qa, qb))
       scatter_.add(c, qa, qb);
     else
       scatter_.skip();

@@ -9,13 +9,18 @@
 //    averages over the pixels, replicate by replicate, compared by Welch's test. So whatever pixels have in
 //    common (wavelength offsets, scrambles) is common to a replicate and part of its error, and bright and
 //    dark pixels count alike.
-//    - scatter: 2 d_r / s with d_r = |m_r - median| and s the mean of d_r over both sides. Hardly feels the
-//    tails, so a
-//      change of all that is usual is seen in the noisiest images.
-//    - variance: Miller's jackknife (Biometrika 55, 1968). With s^2 the variance of a pixel's R replicate
-//    means and
-//      s_(r)^2 that without replicate r, the pseudo-values are R ln s^2 - (R - 1) ln s_(r)^2. Feels the
-//      tails.
+//    - scatter: 2 d_r / s with d_r = |m_r - median of both sides together|, cut at kScatterCut times the
+//    median d, and s their
+//      mean over both sides. Nothing in it knows the sides apart, so its level holds for any distribution
+//      that they share (medians of their own do not: 4 % instead of 1 % for lognormal noise). It does not
+//      feel the tails, so that a change of all that is usual is seen in the noisiest images. The cut pulls
+//      the ratio towards 1, by a tenth of its logarithm for normal noise.
+//    - variance: the jackknife of log variance (Miller, Biometrika 55, 1968). With s^2 the variance of a
+//    pixel's R replicate
+//      means and s_(r)^2 that without replicate r, ln s^2 has the error of the mean of the pseudo-values
+//      -(R - 1) ln s_(r)^2. Feels the tails. Miller's correction of the estimate itself is left out: it
+//      cancels between the sides, and with one replicate far out it doubles what its error does not (44 %
+//      false alarms instead of 5 %).
 //    The mean over the channels is tested as one channel more.
 // Replicate means scatter with 1 / n_r: both sides must have the same number of samples in a replicate. Sides
 // that are not the same estimator (other samplers, wavelength modes) may differ in variance without being
@@ -78,8 +83,8 @@ class PooledVarianceTest {
   PooledReplicates scatter_, variance_;
 };
 
-/// Pseudo-values of one channel into q; false if there are none: fewer than 4 replicates, one without
-/// samples, or scatter below `floor` with or without any one replicate.
+/// Pseudo-values of one channel, shifted to the mean ln s^2, into q; false if there are none: fewer than 4
+/// replicates, one without samples, or scatter below `floor` with or without any one replicate.
 bool variance_pseudo_values(const UnitSample& sample, std::size_t channel, double floor,
                             std::vector<double>& q);
 

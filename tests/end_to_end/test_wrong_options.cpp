@@ -34,9 +34,8 @@ TEST(WrongOption, Command) {
           {"no command", {}, "A subcommand is required (see kiloband --help)"},
           {"unknown command",
            {"rendr", "scene.xml"},
-           "unknown command 'rendr': must be render, info, convert, sensor, sky, devices, trace or validate (see "
-           "kiloband "
-           "--help)"},
+           "unknown command 'rendr': must be render, info, convert, sensor, compare, sky, devices, trace or "
+           "validate (see kiloband --help)"},
           {"scene missing", {"render"}, "SCENE is required (see kiloband render --help)"},
           {"scene not there", {"render", "none.xml"}, "none.xml: error: file not found"},
           {"scene is a folder", {"render", "."}, ".: error: not a regular file"},

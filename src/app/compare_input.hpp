@@ -1,0 +1,69 @@
+// The two sides of `kiloband compare`: cubes of any origin, with what they say about their errors.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.hpp"
+#include "film/cube_io.hpp"
+#include "stats/moment_comparison.hpp"
+
+namespace kiloband {
+
+/// Where a side's errors come from.
+enum class ErrorSource {
+  kRenders,     // several independent renders
+  kReplicates,  // the replicates beside a cube
+  kVariance,    // variances in the cube or beside it
+  kExact        // none: the cube is the truth
+};
+
+struct SideOptions {
+  std::string name;                     // "A" or "B"
+  std::string files;                    // FILE or FILE,FILE,...
+  std::optional<std::string> variance;  // a cube of variances of the mean
+  std::optional<double> dof;            // of variances
+  bool exact = false;
+};
+
+/// Opens a side and hands out strips of it, all values in one quantity.
+class CompareSide {
+ public:
+  /// throws InputError  files that cannot be read or do not belong together; no errors to test with
+  CompareSide(const SideOptions& options, const DiagnosticSink& sink);
+
+  const CubeInfo& info() const { return cubes_.front()->info(); }
+  ErrorSource source() const { return source_; }
+  bool has_replicates() const {
+    return source_ == ErrorSource::kRenders || source_ == ErrorSource::kReplicates;
+  }
+  uint32_t replicates() const { return has_replicates() ? static_cast<uint32_t>(cubes_.size()) : 0; }
+  /// "room.hdr, 16 replicates"
+  std::string describe() const;
+
+  stats::ReplicateImage read_replicates(uint32_t y0, uint32_t rows, Quantity quantity) const;
+  /// Of replicates their mean and its variance.
+  stats::MomentImage read_moments(uint32_t y0, uint32_t rows, Quantity quantity) const;
+  stats::Truth read_truth(uint32_t y0, uint32_t rows, Quantity quantity) const;
+
+ private:
+  void open_renders(const std::vector<std::string>& files, const DiagnosticSink& sink);
+  void open_single(const SideOptions& options, const DiagnosticSink& sink);
+  void open_variance(const SideOptions& options);
+  std::vector<float> read_mean(CubeReader& cube, uint32_t y0, uint32_t rows, Quantity quantity) const;
+
+  std::string name_, files_;
+  ErrorSource source_ = ErrorSource::kVariance;
+  std::vector<std::unique_ptr<CubeReader>> cubes_;  // replicates, renders, or one cube
+  std::unique_ptr<CubeReader> variance_;            // a cube of its own, or none: the cube's planes
+  std::vector<uint64_t> samples_;                   // of each of cubes_
+  double dof_ = 0;
+};
+
+/// throws InputError  other sizes or channels: says which
+void check_same_shape(const std::string& name_a, const CubeInfo& a, const std::string& name_b,
+                      const CubeInfo& b);
+
+}  // namespace kiloband

@@ -1,0 +1,158 @@
+#include "stats/moment_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <stdexcept>
+
+#include "stats/comparison_verdict.hpp"
+#include "stats/random.hpp"
+
+namespace kiloband::stats {
+namespace {
+
+uint32_t tiles_along(uint32_t pixels) {
+  return (pixels + kTileEdge - 1) / kTileEdge;
+}
+
+/// dof of va + vb, in shares of the sum (contrast.cpp).
+double joint_dof(double va, double dof_a, double vb, double dof_b) {
+  const double share = va + vb > 0 ? va / (va + vb) : 0.5;
+  return 1 / (share * share / dof_a + (1 - share) * (1 - share) / dof_b);
+}
+
+}  // namespace
+
+MomentImage moments_of(const ReplicateImage& image) {
+  MomentImage moments{image.width, image.height, image.channels, image.replicates - 1.0, {}, {}};
+  UnitSample pixel;
+  const TruthValues zero{std::vector<double>(image.channels), {}};
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    gather_pixel(image, p, pixel);
+    const Contrast contrast = truth_contrast(pixel, zero, 0);
+    for (std::size_t c = 0; c < image.channels; ++c) {
+      constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+      moments.mean.push_back(contrast.valid ? static_cast<float>(contrast.a[c]) : kNone);
+      moments.variance.push_back(contrast.valid ? static_cast<float>(contrast.variance[c]) : kNone);
+    }
+  }
+  return moments;
+}
+
+MomentComparison::MomentComparison(uint32_t width, uint32_t height, std::size_t channels,
+                                   bool independent_pixels, const ComparisonOptions& options)
+    : width_(width),
+      height_(height),
+      channels_(channels),
+      independent_(independent_pixels),
+      options_(options),
+      pixels_(width, height, mix_seed(options.seed, 1)),
+      tiles_(tiles_along(width), tiles_along(height), mix_seed(options.seed, 2)),
+      whole_(1, 1, mix_seed(options.seed, 3)) {}
+
+void MomentComparison::add_sums(Sums& sums, const Contrast& pixel) const {
+  for (auto* numbers : {&sums.a, &sums.b, &sums.variance, &sums.spread}) numbers->resize(channels_);
+  ++sums.pixels;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    sums.a[c] += pixel.a[c];
+    sums.b[c] += pixel.b[c];
+    sums.variance[c] += pixel.variance[c];
+    sums.spread[c] += pixel.variance[c] * pixel.variance[c] / pixel.dof[c];
+  }
+}
+
+Contrast MomentComparison::contrast_of(const Sums& sums) const {
+  Contrast contrast;
+  contrast.channels = channels_;
+  contrast.valid = sums.pixels > 0;
+  for (std::size_t c = 0; c < channels_ && contrast.valid; ++c) {
+    const double a = sums.a[c] / sums.pixels, b = sums.b[c] / sums.pixels;
+    contrast.a.push_back(a);
+    contrast.b.push_back(b);
+    contrast.difference.push_back(a - b);
+    contrast.variance.push_back(sums.variance[c] / (sums.pixels * sums.pixels));
+    const double v = sums.variance[c];
+    contrast.dof.push_back(sums.spread[c] > 0 ? v * v / sums.spread[c]
+                                              : std::numeric_limits<double>::infinity());
+    contrast.slack.push_back(options_.rounding * std::max(std::abs(a), std::abs(b)));
+  }
+  return contrast;
+}
+
+void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y) {
+  const std::size_t first = (std::size_t{y - next_row_} * width_ + x) * channels_;
+  const std::span<const float> ma(&a.mean[first], channels_), mb(&b.mean[first], channels_);
+  const auto finite = [](float v) { return std::isfinite(v); };
+  const bool has_a = std::ranges::all_of(ma, finite), has_b = std::ranges::all_of(mb, finite);
+  non_finite_ += has_a != has_b;
+  Contrast contrast;
+  contrast.channels = channels_;
+  contrast.valid = has_a && has_b;
+  for (std::size_t c = 0; c < channels_ && contrast.valid; ++c) {
+    const double va = a.variance[first + c], vb = b.variance[first + c];
+    contrast.valid = va >= 0 && vb >= 0;
+    contrast.a.push_back(ma[c]);
+    contrast.b.push_back(mb[c]);
+    contrast.difference.push_back(double{ma[c]} - mb[c]);
+    contrast.variance.push_back(va + vb);
+    contrast.dof.push_back(joint_dof(va, a.dof, vb, b.dof));
+    contrast.slack.push_back(options_.rounding * std::max(std::abs(ma[c]), std::abs(mb[c])));
+  }
+  const auto index = static_cast<std::ptrdiff_t>(std::size_t{y} * width_ + x);
+  pixels_.add(index, {x, y, 1, 1}, contrast, {});
+  if (!contrast.valid || !independent_) return;
+  add_sums(tile_, contrast);
+  add_sums(image_, contrast);
+}
+
+void MomentComparison::add(const MomentImage& a, const MomentImage& b) {
+  const std::size_t values = std::size_t{a.width} * a.height * channels_;
+  for (const MomentImage* side : {&a, &b}) {
+    if (side->width != width_ || side->height != a.height || next_row_ + side->height > height_ ||
+        side->mean.size() != values || side->variance.size() != values)
+      throw std::logic_error("MomentComparison: the strip does not fit the image");
+  }
+  for (uint32_t y0 = next_row_; y0 < next_row_ + a.height; y0 += kTileEdge) {
+    for (uint32_t x0 = 0; x0 < width_; x0 += kTileEdge) {
+      const UnitPlace place{x0, y0, std::min(kTileEdge, width_ - x0),
+                            std::min(kTileEdge, next_row_ + a.height - y0)};
+      for (uint32_t y = y0; y < y0 + place.height; ++y) {
+        for (uint32_t x = x0; x < x0 + place.width; ++x) add_pixel(a, b, x, y);
+      }
+      const std::size_t index = std::size_t{y0 / kTileEdge} * tiles_along(width_) + x0 / kTileEdge;
+      if (independent_) tiles_.add(static_cast<std::ptrdiff_t>(index), place, contrast_of(tile_), {});
+      tile_ = {};
+    }
+  }
+  next_row_ += a.height;
+}
+
+Comparison MomentComparison::finish() {
+  if (next_row_ != height_) throw std::logic_error("MomentComparison: rows are missing");
+  Comparison c;
+  c.width = width_;
+  c.height = height_;
+  c.channels = channels_;
+  c.non_finite = non_finite_;
+  c.scales = {Scale::kPixel};
+  c.means.push_back(pixels_.finish());
+  if (independent_) {
+    const Contrast contrast = contrast_of(image_);
+    whole_.add(0, {0, 0, width_, height_}, contrast, {});
+    c.scales = {Scale::kPixel, Scale::kTile, Scale::kImage};
+    c.means.push_back(tiles_.finish());
+    c.means.push_back(whole_.finish());
+    add_image_means(contrast, c);
+  } else {
+    c.notes.push_back(
+        "tiles and the image were not compared: from variances alone their errors are not known, unless "
+        "pixels are "
+        "independent");
+  }
+  c.notes.push_back("variances were not compared: that needs replicates or several renders");
+  judge(c, options_, true);
+  return c;
+}
+
+}  // namespace kiloband::stats

@@ -1,0 +1,50 @@
+// Comparison of images of which only means and their variances are known: the means alone can be tested.
+//
+// Nothing says how pixels and channels depend on each other. Channels: the Bonferroni bound. Pixels: where
+// they share random numbers (wavelength offsets, filters wider than a pixel) the variance of a tile is not
+// the sum of its pixels'; tiles and the image are tested only if the caller knows that pixels are
+// independent.
+#pragma once
+
+#include "stats/comparison.hpp"
+
+namespace kiloband::stats {
+
+/// dof: of the variances; infinite where unknown (normal). A NaN variance is none.
+struct MomentImage {
+  uint32_t width = 0, height = 0;
+  std::size_t channels = 0;
+  double dof = 0;
+  std::vector<float> mean, variance;  // [pixel][channel], variance of the mean
+};
+
+/// The moments of replicates; R - 1 degrees of freedom. NaN for pixels with fewer than two replicates.
+MomentImage moments_of(const ReplicateImage& image);
+
+/// Strips as in StripComparison. A pixel whose mean is NaN on both sides is left out.
+class MomentComparison {
+ public:
+  MomentComparison(uint32_t width, uint32_t height, std::size_t channels, bool independent_pixels,
+                   const ComparisonOptions& options);
+  void add(const MomentImage& a, const MomentImage& b);
+  Comparison finish();
+
+ private:
+  /// Sums over the pixels of a unit.
+  struct Sums {
+    double pixels = 0;
+    std::vector<double> a, b, variance, spread;  // [channel]; spread: sum of v^2 / dof
+  };
+  void add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y);
+  void add_sums(Sums& sums, const Contrast& pixel) const;
+  Contrast contrast_of(const Sums& sums) const;
+
+  uint32_t width_, height_, next_row_ = 0;
+  std::size_t channels_, non_finite_ = 0;
+  bool independent_;
+  ComparisonOptions options_;
+  ScaleTest pixels_, tiles_, whole_;
+  Sums tile_, image_;
+};
+
+}  // namespace kiloband::stats

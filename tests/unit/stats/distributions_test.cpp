@@ -1,0 +1,53 @@
+// Tails and quantiles against printed tables.
+#include "stats/distributions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace kiloband::stats {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+TEST(Distributions, StudentOfTheTables) {
+  EXPECT_NEAR(student_upper(0.025, 30), 2.042272, 1e-6);
+  EXPECT_NEAR(student_upper(0.005, 4), 4.604095, 1e-6);
+  EXPECT_NEAR(student_upper(0.025, kInfinite), 1.959964, 1e-6);
+  EXPECT_NEAR(student_p(2.042272, 30), 0.05, 1e-7);
+  EXPECT_NEAR(student_p(-2.042272, 30), 0.05, 1e-7);
+  EXPECT_EQ(student_p(0, 5), 1);
+  EXPECT_EQ(student_p(kInfinite, 5), 0);
+  EXPECT_NEAR(student_p(1, 1), 0.5, 1e-15) << "Cauchy";
+  EXPECT_NEAR(student_p(6, kInfinite) / 1.973175e-9, 1, 1e-6);
+}
+
+/// Kolmogorov's critical values (Smirnov 1948); both series meet.
+TEST(Distributions, Kolmogorov) {
+  EXPECT_NEAR(kolmogorov_p(1.3581), 0.05, 1e-5);
+  EXPECT_NEAR(kolmogorov_p(1.6276), 0.01, 2e-6);
+  EXPECT_NEAR(kolmogorov_p(0.8276), 0.5, 1e-4);
+  EXPECT_NEAR(kolmogorov_p(1 - 1e-12), kolmogorov_p(1 + 1e-12), 1e-11);
+  EXPECT_EQ(kolmogorov_p(0), 1);
+  double mean = 0;
+  for (int i = 0; i < 4000; ++i) mean += kolmogorov_p((i + 0.5) * 1e-3) * 1e-3;
+  EXPECT_NEAR(mean, kKolmogorovMean, 1e-6);
+}
+
+TEST(Distributions, SidakIsExactForTinyLevels) {
+  EXPECT_NEAR(sidak(0.01, 10), 1 - std::pow(0.99, 10), 1e-15);
+  EXPECT_NEAR(sidak(1e-20, 1e6) / 1e-14, 1, 1e-12);
+  EXPECT_EQ(sidak(0, 100), 0);
+  EXPECT_EQ(sidak(1, 100), 1);
+  EXPECT_NEAR(sidak(sidak_level(1e-4, 4096), 4096) / 1e-4, 1, 1e-12);
+}
+
+TEST(Distributions, BinomialTails) {
+  EXPECT_NEAR(binomial_p(0, 10, 0.5), 2 / 1024.0, 1e-12);
+  EXPECT_NEAR(binomial_p(9, 10, 0.5), 22 / 1024.0, 1e-12);
+  EXPECT_EQ(binomial_p(5, 10, 0.5), 1);
+}
+
+}  // namespace
+}  // namespace kiloband::stats

@@ -1,0 +1,46 @@
+#include "stats/family.hpp"
+
+#include <gtest/gtest.h>
+
+#include "stats/detectable.hpp"
+#include "stats/distributions.hpp"
+
+namespace kiloband::stats {
+namespace {
+
+TEST(Family, TheRunFailsAtTheProductOfTheStages) {
+  EXPECT_DOUBLE_EQ(RepeatRule{}.overall(), 1e-4);
+  EXPECT_DOUBLE_EQ(case_level(1e-2, 50), 2e-4);
+}
+
+TEST(Family, AFailureIsRepeatedOnce) {
+  EXPECT_EQ(next_stage(true, 0), Stage::kPassed);
+  EXPECT_EQ(next_stage(false, 0), Stage::kRepeat);
+  EXPECT_EQ(next_stage(true, 1), Stage::kPassed);
+  EXPECT_EQ(next_stage(false, 1), Stage::kFailed);
+}
+
+TEST(Family, TheRepetitionHasFreshSeeds) {
+  for (uint64_t seed = 0; seed < 1000; ++seed) {
+    EXPECT_NE(repeat_seed(seed), seed);
+    EXPECT_NE(repeat_seed(seed), repeat_seed(seed + 1));
+  }
+}
+
+/// MDB = (t(1 - level / 2 tests) + t(0.9)) SE + slack.
+TEST(Detectable, ByHand) {
+  DetectableBias errors;
+  errors.add({0.01f, 0, 30, 0}, {0.02f, 0.001f, 30, 3});
+  errors.add({0.02f, 0, 30, 1}, {0.03f, 0, 30, 2});
+  errors.add({0.04f, 0, 30, 1}, {0.05f, 0, 30, 2});
+  const Detectable d = errors.at(0.05, 1);
+  const double quantiles = 2.042272 + 1.310415;  // tables: 97.5 % and 90 %, 30 degrees of freedom
+  EXPECT_NEAR(d.best, 0.01 * quantiles, 1e-7);
+  EXPECT_NEAR(d.typical, 0.02 * quantiles, 1e-7);
+  EXPECT_NEAR(d.largest, 0.05 * quantiles, 1e-7);
+  EXPECT_EQ(d.largest_channel, 2u);
+  EXPECT_GT(errors.at(0.05, 1000).best, d.best);
+}
+
+}  // namespace
+}  // namespace kiloband::stats

@@ -1,0 +1,129 @@
+// The distribution of the largest |t| among dependent channels: limits, permutations, its own level.
+#include "stats/max_t.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/distributions.hpp"
+#include "tests/support/simulated_image.hpp"
+
+namespace kiloband::stats {
+namespace {
+
+UnitSample draw(std::size_t channels, double common, uint64_t seed, uint32_t replicates = 32,
+                const char* distribution = "normal") {
+  static const test::BatchPool normal("normal", 1), exponential("exponential", 8);
+  const test::BatchPool& pool = distribution[0] == 'n' ? normal : exponential;
+  UnitSample sample;
+  gather_pixel(simulate({1, 1, replicates, channels, common}, pool, seed), 0, sample);
+  return sample;
+}
+
+double rotation_p(const UnitSample& a, const UnitSample& b, uint64_t seed) {
+  const Contrast contrast = independent_contrast(a, b, 0);
+  return max_t_p(contrast, {}, strongest_channel(contrast, {}), seed);
+}
+
+/// Channels that are all the same are one test; independent ones are Sidak's K tests.
+TEST(MaxT, OneChannelManyTimesIsOneTest) {
+  const UnitSample a = draw(20, 1, 1), b = draw(20, 1, 2);
+  const Contrast contrast = independent_contrast(a, b, 0);
+  EXPECT_NEAR(rotation_p(a, b, 3), student_p(contrast.t(0), contrast.dof[0]), 1e-6);
+}
+
+TEST(MaxT, IndependentChannelsAreSidak) {
+  for (uint64_t seed = 0; seed < 8; ++seed) {
+    const UnitSample a = draw(10, 0, 2 * seed + 100), b = draw(10, 0, 2 * seed + 101);
+    const Contrast contrast = independent_contrast(a, b, 0);
+    const double expected = sidak(strongest_channel(contrast, {}).p, 10);
+    EXPECT_NEAR(rotation_p(a, b, seed), expected, 0.15 * expected);
+  }
+}
+
+/// 4000 label permutations have a standard error of sqrt(p (1 - p) / 4000); the rotations one of some
+/// percents of p. Both conditions at 4.5 standard errors: false alarms below 1e-4 in all.
+TEST(MaxT, AgreesWithPermutations) {
+  constexpr int kPermutations = 4000;
+  for (uint64_t seed = 0; seed < 8; ++seed) {
+    const UnitSample a = draw(12, 0.6, 2 * seed + 200), b = draw(12, 0.6, 2 * seed + 201);
+    const double exact = label_permutation_p(a, b, kPermutations, seed), rotated = rotation_p(a, b, seed);
+    const double error = std::sqrt(exact * (1 - exact) / kPermutations + std::pow(0.05 * exact, 2));
+    EXPECT_NEAR(rotated, exact, 4.5 * error) << "seed " << seed;
+  }
+}
+
+TEST(MaxT, AgreesWithSignFlips) {
+  constexpr int kFlips = 4000;
+  for (uint64_t seed = 0; seed < 6; ++seed) {
+    const UnitSample a = draw(12, 0.6, 2 * seed + 300), b = draw(12, 0.6, 2 * seed + 301);
+    const Contrast contrast = paired_contrast(a, b, 0);
+    const double rotated = max_t_p(contrast, {}, strongest_channel(contrast, {}), seed);
+    const double exact = sign_flip_p(a, b, kFlips, seed);
+    const double error = std::sqrt(exact * (1 - exact) / kFlips + std::pow(0.05 * exact, 2));
+    EXPECT_NEAR(rotated, exact, 4.5 * error) << "seed " << seed;
+  }
+}
+
+/// Between the strongest channel's own p and the Bonferroni bound, however small.
+TEST(MaxT, ResolvesTinyLevels) {
+  UnitSample a = draw(30, 0.7, 400), b = draw(30, 0.7, 401);
+  for (double& value : b.means) value += 5;
+  const Contrast contrast = independent_contrast(a, b, 0);
+  const Strongest strongest = strongest_channel(contrast, {});
+  ASSERT_LT(strongest.p, 1e-12);
+  const double p = max_t_p(contrast, {}, strongest, 1);
+  EXPECT_GE(p, strongest.p);
+  EXPECT_LT(p, 28 * strongest.p) << "of 30 channels";
+  EXPECT_EQ(p, max_t_p(contrast, {}, strongest, 1)) << "deterministic";
+}
+
+/// 3000 pairs without difference; p < 5 % and < 1 % as often as they say (binomial, two-sided 1e-4).
+/// Dependent channels, few replicates and unequal sides as well; Bonferroni would find 1.9 % instead of 5 %.
+TEST(MaxT, HoldsItsLevel) {
+  const struct {
+    uint32_t replicates_a, replicates_b;
+    const char* distribution;
+  } cases[] = {{32, 32, "normal"}, {32, 32, "exponential"}, {6, 6, "normal"}, {32, 16, "normal"}};
+  for (const auto& c : cases) {
+    constexpr int kPairs = 3000;
+    int below5 = 0, below1 = 0;
+    for (int i = 0; i < kPairs; ++i) {
+      const auto seed = static_cast<uint64_t>(1000 + 2 * i);
+      const UnitSample a = draw(6, 0.8, seed, c.replicates_a, c.distribution);
+      const UnitSample b = draw(6, 0.8, seed + 1, c.replicates_b, c.distribution);
+      const double p = rotation_p(a, b, seed);
+      below5 += p < 0.05;
+      below1 += p < 0.01;
+    }
+    EXPECT_GT(binomial_p(below5, kPairs, 0.05), 1e-4)
+        << c.distribution << " " << c.replicates_a << ": " << below5;
+    EXPECT_GT(binomial_p(below1, kPairs, 0.01), 1e-4)
+        << c.distribution << " " << c.replicates_a << ": " << below1;
+  }
+}
+
+/// Without the replicates' rows the channels' dependence is unknown.
+TEST(MaxT, VariancesAloneGiveBonferroni) {
+  Contrast contrast = independent_contrast(draw(8, 0.9, 500), draw(8, 0.9, 501), 0);
+  contrast.rows.clear();
+  const Strongest strongest = strongest_channel(contrast, {});
+  EXPECT_DOUBLE_EQ(max_t_p(contrast, {}, strongest, 1), std::min(1.0, 8 * strongest.p));
+}
+
+/// The shortcut that skips tails must find the smallest p.
+TEST(MaxT, TheStrongestChannelHasTheSmallestP) {
+  for (uint64_t seed = 0; seed < 50; ++seed) {
+    UnitSample a = draw(9, 0.1, 2 * seed + 600), b = draw(9, 0.1, 2 * seed + 601, 8);
+    for (std::size_t i = 0; i < b.means.size(); ++i) b.means[i] *= 1 + 3.0 * static_cast<double>(i % 9 % 2);
+    const Contrast contrast = independent_contrast(a, b, 0);
+    double smallest = 1;
+    for (std::size_t c = 0; c < 9; ++c)
+      smallest = std::min(smallest, student_p(contrast.t(c), contrast.dof[c]));
+    EXPECT_EQ(strongest_channel(contrast, {}).p, smallest);
+  }
+}
+
+}  // namespace
+}  // namespace kiloband::stats

@@ -1,0 +1,112 @@
+// Power: the biases that each scale is there for, 64x64 pixels, 32 replicates, alpha = 1e-4 for the whole.
+// Ten seeds each; "found" means all ten, so a test that finds 80 % fails with probability 0.9.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "stats/comparison.hpp"
+#include "tests/support/simulated_image.hpp"
+
+namespace kiloband::stats {
+namespace {
+
+using test::BatchPool;
+using test::SimulatedImage;
+
+constexpr int kSeeds = 6;
+using Factor = std::function<double(uint32_t, uint32_t, std::size_t)>;
+
+/// How many of kSeeds comparisons each test fails; "any": the comparison.
+std::map<std::string, int> found(const BatchPool& pool, const Factor& mean, const Factor& spread) {
+  std::map<std::string, int> count;
+  for (uint64_t i = 0; i < kSeeds; ++i) {
+    const SimulatedImage shape{64, 64, 32, 2};
+    SimulatedImage other = shape;
+    other.mean = mean;
+    other.spread = spread;
+    const Comparison c = compare_independent(simulate(shape, pool, 2 * i), simulate(other, pool, 2 * i + 1),
+                                             {.alpha = 1e-4, .seed = i});
+    count["any"] += !c.passed;
+    for (const TestVerdict& test : c.tests) count[test.name] += !test.passed;
+  }
+  return count;
+}
+
+/// `factor` on one pixel of `every`, scattered.
+Factor scattered(double factor, uint32_t every) {
+  return [=](uint32_t x, uint32_t y, std::size_t) {
+    return (y * 64 + x) * 2654435761u % every == 0 ? factor : 1.0;
+  };
+}
+
+TEST(Power, OnePercentEverywhere) {
+  for (const uint32_t samples : {8u, 64u})
+    EXPECT_EQ(found(BatchPool("exponential", samples), scattered(1.01, 1), {})["mean/image"], kSeeds)
+        << samples;
+}
+
+TEST(Power, TwoPerMilleEverywhere) {
+  EXPECT_EQ(found(BatchPool("exponential", 64), scattered(1.002, 1), {})["mean/image"], kSeeds);
+}
+
+TEST(Power, TenPercentOfOnePercentOfThePixels) {
+  auto few = found(BatchPool("exponential", 64), scattered(1.1, 100), {});
+  EXPECT_GE(few["any"], 1) << "2048 samples per pixel";
+  EXPECT_EQ(found(BatchPool("exponential", 256), scattered(1.1, 100), {})["mean/pixel"], kSeeds);
+}
+
+TEST(Power, HalfAsMuchAgainOfTwoPerMilleOfThePixels) {
+  auto count = found(BatchPool("exponential", 8), scattered(1.5, 500), {});
+  EXPECT_EQ(count["mean/pixel"], kSeeds);
+  EXPECT_EQ(count["mean/image"], 0) << "only pixels can see it";
+}
+
+TEST(Power, ATile) {
+  const Factor tile = [](uint32_t x, uint32_t y, std::size_t) {
+    return x / 8 == 3 && y / 8 == 5 ? 1.06 : 1.0;
+  };
+  auto count = found(BatchPool("exponential", 64), tile, {});
+  EXPECT_EQ(count["mean/tile"], kSeeds);
+  EXPECT_EQ(count["mean/image"], 0);
+}
+
+/// Variance ratio 1.05 with unchanged mean, light and heavy tails.
+TEST(Power, VarianceRatioOfFivePercent) {
+  const Factor spread = [](uint32_t, uint32_t, std::size_t) { return std::sqrt(1.05); };
+  for (const char* distribution : {"normal", "exponential", "lognormal", "firefly"}) {
+    auto count = found(BatchPool(distribution, 8), {}, spread);
+    EXPECT_EQ(count["scatter/image"], kSeeds) << distribution;
+    EXPECT_EQ(count["mean/image"], 0) << distribution;
+  }
+}
+
+/// One pixel scatters three times as much as it should.
+TEST(Power, VarianceOfOnePixel) {
+  const Factor spread = [](uint32_t x, uint32_t y, std::size_t) { return x == 20 && y == 30 ? 5.0 : 1.0; };
+  EXPECT_EQ(found(BatchPool("normal", 8), {}, spread)["variance/pixel"], kSeeds);
+}
+
+/// The minimum detectable bias is what it says: found in about 90 % (here at least 7 of 10 and, at half of
+/// it, at most half). It is stated for Bonferroni over units and channels.
+TEST(Power, TheDetectableBiasIsDetected) {
+  const BatchPool pool("normal", 8);
+  const SimulatedImage shape{32, 32, 32, 1, 1};
+  const auto run = [&](double factor, uint64_t seed) {
+    SimulatedImage other = shape;
+    other.mean = [=](uint32_t, uint32_t, std::size_t) { return factor; };
+    return compare_independent(simulate(shape, pool, 2 * seed), simulate(other, pool, 2 * seed + 1),
+                               {.alpha = 1e-3});
+  };
+  const double bias = run(1, 99).tests[2].detectable.typical;
+  int full = 0, half = 0;
+  for (uint64_t seed = 0; seed < 40; ++seed) {
+    full += !run(1 + bias, seed).tests[2].passed;
+    half += !run(1 + bias / 2, seed).tests[2].passed;
+  }
+  EXPECT_GE(full, 28);
+  EXPECT_LE(half, 12);
+}
+
+}  // namespace
+}  // namespace kiloband::stats

@@ -1,0 +1,81 @@
+// False alarms: 60 comparisons without difference per distribution. Each test must have p < 5 % no more often
+// than a binomial law of rate 5 % allows at 1e-5 (11 of 60). Larger numbers:
+// validation/stats/study_comparison.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "stats/comparison.hpp"
+#include "stats/distributions.hpp"
+#include "tests/support/simulated_image.hpp"
+
+namespace kiloband::stats {
+namespace {
+
+constexpr int kPairs = 60;
+
+struct Case {
+  const char* distribution;
+  uint32_t samples;
+  double block_common;
+};
+
+class Rates : public testing::TestWithParam<Case> {};
+
+TEST_P(Rates, NoMoreFalseAlarmsThanStated) {
+  const Case& c = GetParam();
+  const test::BatchPool pool(c.distribution, c.samples);
+  test::SimulatedImage shape{32, 32, 32, 3};
+  shape.block_common = c.block_common;
+  shape.common = 0.7 - c.block_common;
+  std::map<std::string, int> alarms;
+  int failed = 0;
+  for (uint64_t i = 0; i < kPairs; ++i) {
+    const Comparison result = compare_independent(
+        simulate(shape, pool, 2 * i), simulate(shape, pool, 2 * i + 1), {.alpha = 0.05, .seed = i});
+    for (const TestVerdict& test : result.tests) alarms[test.name] += test.p < 0.05;
+    failed += !result.passed;
+  }
+  alarms["comparison"] = failed;
+  EXPECT_EQ(alarms.size(), 9u) << "eight tests and the whole";
+  for (const auto& [name, count] : alarms) {
+    const bool above = count > 0.05 * kPairs;
+    EXPECT_TRUE(!above || binomial_p(count, kPairs, 0.05) > 2e-5)
+        << name << ": " << count << " of " << kPairs;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Distributions, Rates,
+                         testing::Values(Case{"normal", 1, 0}, Case{"exponential", 8, 0.1},
+                                         Case{"lognormal", 8, 0}, Case{"firefly", 8, 0}, Case{"rare", 8, 0}),
+                         [](const auto& info) { return info.param.distribution; });
+
+/// A known truth, light tails.
+TEST(RatesOfTruths, NoMoreFalseAlarmsThanStated) {
+  const test::BatchPool pool("exponential", 64);
+  std::map<std::string, int> alarms;
+  for (uint64_t i = 0; i < kPairs; ++i) {
+    const Comparison c =
+        compare_truth(simulate({16, 16, 32, 3}, pool, i), {{1, 1.5, 2}, {}, false}, {.seed = i});
+    for (const TestVerdict& test : c.tests) alarms[test.name] += test.p < 0.05;
+  }
+  EXPECT_EQ(alarms.size(), 3u);
+  for (const auto& [name, count] : alarms) EXPECT_LE(count, 11) << name;
+}
+
+/// Pairs: B is A with independent noise of a hundredth.
+TEST(RatesOfPairs, NoMoreFalseAlarmsThanStated) {
+  const test::BatchPool pool("exponential", 8), noise("normal", 1);
+  int failed = 0;
+  for (uint64_t i = 0; i < kPairs; ++i) {
+    const ReplicateImage a = simulate({16, 16, 32, 3}, pool, i);
+    ReplicateImage b = a;
+    Random random(i);
+    for (float& value : b.means) value *= 1 + 0.01f * (noise.draw(random) - 1);
+    failed += !compare_paired(a, b, {.alpha = 0.05, .seed = i}).passed;
+  }
+  EXPECT_LE(failed, 11);
+}
+
+}  // namespace
+}  // namespace kiloband::stats

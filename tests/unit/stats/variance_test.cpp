@@ -1,0 +1,66 @@
+// Tests of variances by hand; their rates and power are in rates_test.cpp and power_test.cpp.
+#include "stats/variance_test.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stats/comparison.hpp"
+#include "tests/support/simulated_image.hpp"
+
+namespace kiloband::stats {
+namespace {
+
+UnitSample one_channel(std::vector<double> values) {
+  const std::size_t count = values.size();
+  return {1, std::move(values), std::vector<double>(count, 1.0)};
+}
+
+TEST(Variances, DeviationsFromTheMedian) {
+  EXPECT_EQ(deviations_from_median(one_channel({1, 5, 2, 10})).means,
+            (std::vector<double>{2.5, 1.5, 1.5, 6.5}));
+  EXPECT_EQ(deviations_from_median(one_channel({1, 5, 2})).means, (std::vector<double>{1, 3, 0}));
+  UnitSample uneven = one_channel({1, 5, 2});
+  uneven.weights = {8, 2, 2};
+  EXPECT_NEAR(deviations_from_median(uneven).means[0], std::sqrt(2), 1e-15);
+}
+
+/// 1, 2, 4, 9: s^2 without each one from scratch.
+TEST(Variances, PseudoValuesByHand) {
+  std::vector<double> q;
+  ASSERT_TRUE(variance_pseudo_values(one_channel({1, 2, 4, 9}), 0, 0, q));
+  const auto s2 = [](std::vector<double> v) {
+    double m = 0, s = 0;
+    for (const double x : v) m += x / static_cast<double>(v.size());
+    for (const double x : v) s += (x - m) * (x - m) / static_cast<double>(v.size() - 1);
+    return s;
+  };
+  double mean = 0;
+  for (const double value : q) mean += value / 4;
+  EXPECT_NEAR(mean, std::log(s2({1, 2, 4, 9})), 1e-12);
+  EXPECT_NEAR(q[3] - q[0], 3 * (std::log(s2({2, 4, 9})) - std::log(s2({1, 2, 4}))), 1e-12);
+}
+
+TEST(Variances, NoPseudoValuesWhereOneReplicateIsAll) {
+  std::vector<double> q;
+  EXPECT_FALSE(variance_pseudo_values(one_channel({1, 1, 1, 9}), 0, 0, q));
+  EXPECT_FALSE(variance_pseudo_values(one_channel({1, 2, 3}), 0, 0, q));
+  EXPECT_FALSE(variance_pseudo_values(one_channel({1, 1 + 1e-7, 1, 1 - 1e-7}), 0, 1e-5, q)) << "rounding";
+}
+
+/// The estimate of a ratio of 1.5 within 4.5 of its standard errors; the error is what 4096 pixels promise:
+/// Var ln s^2 = 2 / 31 per pixel and side for normal noise.
+TEST(Variances, TheRatioIsEstimated) {
+  const test::BatchPool pool("normal", 4);
+  test::SimulatedImage shape{64, 64, 32, 1};
+  const ReplicateImage b = simulate(shape, pool, 1);
+  shape.spread = [](uint32_t, uint32_t, std::size_t) { return std::sqrt(1.5); };
+  const Comparison c = compare_independent(simulate(shape, pool, 2), b, {});
+  EXPECT_NEAR(std::log(c.pooled_variance->ratio_all), std::log(1.5), 4.5 * c.pooled_variance->log_error_all);
+  EXPECT_NEAR(c.pooled_variance->log_error_all, std::sqrt(2 * 2.0 / 31 / 4096), 0.0015);
+  EXPECT_NEAR(c.pooled_scatter->ratio_all, std::pow(1.5, 0.9), 0.04) << "cut deviations";
+  EXPECT_EQ(c.pooled_variance->entries, 4096u);
+}
+
+}  // namespace
+}  // namespace kiloband::stats
