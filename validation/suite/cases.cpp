@@ -68,7 +68,7 @@ std::vector<Case> all_cases(const SceneFolders& folders) {
   };
   const fs::path stress = folders.validation;
   add("cornell_box", "diffuse interreflection with measured spectra",
-      folders.scenes / "cornell_box/cornell_box.xml", "400:700:16", {48, 48}, {2, 64, 512});
+      folders.scenes / "cornell_box/cornell_box.xml", "400:700:16", {64, 64}, {2, 128, 512});
   add("stress/metals_and_lamps",
       "rough metals, plastics, masks, every kind of lamp, an environment map, textures",
       stress / "metals_and_lamps.xml", "400:700:12", {32, 32}, {4, 32, 256});
