@@ -190,7 +190,7 @@ __kernel void any_hits(__global const KbShape* restrict shapes, __global const K
                               &fault);
   ++tallies[slot].x;
   if (fault) atomic_or(&faults->code, fault);
-  if (hidden && !KB_PLANTED(LIGHT_HIDDEN))
+  if (!KB_PLANTED(LIGHT_HIDDEN) && hidden)
     arena[ray.vertex].head &= ~KB_VERTEX_NEE; /* its texture sample stays: it is the vertex's last */
   else
     states[slot].lit = states[slot].length;

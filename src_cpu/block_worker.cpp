@@ -14,10 +14,10 @@ namespace {
 // 2^-24 = 4e-6 in the worst case (all samples equal) and 5e-7 typically, however many samples follow.
 constexpr uint32_t kFoldInterval = 64;
 
-/// A planted fault: sums as half floats would have them, 11 bits.
-void cut_to_half(std::span<float> sums) {
+/// A planted fault: sums with 8 bits, rounded down or to the nearest.
+void cut_to_8_bits(std::span<float> sums) {
   for (float& sum : sums) {
-    const float far = 8193.0f * sum, near = far - (far - sum);
+    const float far = 65537.0f * sum, near = far - (far - sum);
     sum = std::min(near, sum);
   }
 }
@@ -49,7 +49,7 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
     if (done > 0 && done % kFoldInterval == 0) fold_sums();
     add_sample(block, id);
     if (KB_PLANTED(SAMPLE_DROPPED) && done == 0) std::ranges::fill(sums_, 0.0f);
-    if (KB_PLANTED(FILM_STALLS)) cut_to_half(sums_);
+    if (KB_PLANTED(FILM_STALLS)) cut_to_8_bits(sums_);
     for (uint32_t& count : counts_) ++count;
     for (const uint32_t pixel : invalid_) {
       --counts_[pixel];

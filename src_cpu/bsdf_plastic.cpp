@@ -83,8 +83,8 @@ BsdfValue eval_rough_plastic(const KbMaterial& material, const RoughTransmittanc
   const FacetReflection r = facet_reflection(Microfacet(material), wi, wo);
   const float lambert = wo.z * KB_INV_PI;
   const float w1 = t_i * t_o * diffuse_scale(material, table.internal_reflectance) * lambert;
-  const float pdf = KB_PLANTED(MIXTURE_PDF) ? lambert : p * r.pdf + (1 - p) * lambert;
-  return {coating_reflectance(material, r.dot_ih) * r.value, w1, pdf, false};
+  return {coating_reflectance(material, r.dot_ih) * r.value, w1,
+          KB_PLANTED(MIXTURE_PDF) ? lambert : p * r.pdf + (1 - p) * lambert, false};
 }
 
 /// The lobes overlap, so weights and density are those of the whole material.

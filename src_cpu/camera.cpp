@@ -87,7 +87,8 @@ CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, cons
   if (KB_PLANTED(FILTER_OFFSET)) offset.x += 0.5;
   glm::vec2 lens(0);
   if (camera.type == KB_CAMERA_THINLENS) {
-    lens = camera.aperture_radius * warp_concentric_disk(KB_PLANTED(LENS_NUMBERS) ? glm::vec2(u.x, u.y) : glm::vec2(u.z, u.w));
+    lens = camera.aperture_radius *
+           warp_concentric_disk(KB_PLANTED(LENS_NUMBERS) ? glm::vec2(u.x, u.y) : glm::vec2(u.z, u.w));
   }
   return ray_through(camera, glm::dvec2(x, y) + 0.5 + offset, lens);
 }

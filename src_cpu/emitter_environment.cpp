@@ -75,8 +75,8 @@ float envmap_density(const EnvmapSampling& sampling, glm::vec2 uv) {
   // sines.
   const float half_step = 0.5f * KB_PI / rows;
   const float middle = (2 * static_cast<float>(row) + 1) * half_step;
-  const float sine = KB_PLANTED(ENVMAP_SINE) ? 1 : std::sin(middle);
-  return probability * columns / (4 * KB_PI * sine * std::sin(half_step));
+  return probability * columns /
+         (4 * KB_PI * (KB_PLANTED(ENVMAP_SINE) ? 1 : std::sin(middle)) * std::sin(half_step));
 }
 
 }  // namespace kiloband

@@ -142,7 +142,8 @@ void PathTracer::trace_shadows() {
   if (recording_) record_shadows();
   scene_.embree->occlusions(shadow_rays_);
   for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
-    if (shadow_rays_[i].occluded() && !KB_PLANTED(LIGHT_HIDDEN)) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
+    if (shadow_rays_[i].occluded() && !KB_PLANTED(LIGHT_HIDDEN))
+      slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
   }
 }
 
@@ -184,8 +185,9 @@ void PathTracer::add_escaped(Path& path, const TraceRay& ray, uint32_t bounce) {
   const glm::vec3 direction = ray.direction();
   Draft draft;
   set_flag(draft.vertex, KB_VERTEX_EMIT);
-  draft.vertex.emit_weight =
-      path.previous_delta || KB_PLANTED(MIS_DOUBLE) ? 1 : power_heuristic(path.previous_pdf, environment_pdf(flat_, direction));
+  draft.vertex.emit_weight = path.previous_delta || KB_PLANTED(MIS_DOUBLE)
+                                 ? 1
+                                 : power_heuristic(path.previous_pdf, environment_pdf(flat_, direction));
   const EmittedRadiance radiance = environment_radiance(flat_, direction);
   draft.vertex.emit_row = radiance.row;
   if (radiance.textured) {
@@ -198,8 +200,8 @@ void PathTracer::add_escaped(Path& path, const TraceRay& ray, uint32_t bounce) {
 void PathTracer::add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction,
                               uint32_t bounce) {
   const uint32_t emitter = flat_.shapes[hit.shape].emitter;
-  const bool back = glm::dot(hit.geometric_normal, direction) >= 0 && !KB_PLANTED(LIGHT_BACK);
-  if (emitter == KB_NONE || back) return;
+  if (emitter == KB_NONE) return;
+  if (!KB_PLANTED(LIGHT_BACK) && glm::dot(hit.geometric_normal, direction) >= 0) return;
   if (bounce == 0 && flat_.integrator.hide_emitters) return;
   float weight = 1;
   if (!path.previous_delta && !KB_PLANTED(MIS_DOUBLE)) {

@@ -12,7 +12,8 @@ namespace kiloband {
 
 /// Index of the interior over the exterior at the chosen channel's wavelength.
 float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, float mu) const {
-  const Channel& c = flat_.channels[KB_PLANTED(CHANNEL_INDEX) ? (channel + 1) % flat_.channels.size() : channel];
+  const Channel& c =
+      flat_.channels[KB_PLANTED(CHANNEL_INDEX) ? (channel + 1) % flat_.channels.size() : channel];
   const double lambda_nm = (1.0 - mu) * c.min_nm + mu * c.max_nm;
   const double exterior =
       material.k_row == KB_NONE ? material.eta_ext : flat_.spectra[material.k_row].table(lambda_nm);

@@ -1,16 +1,18 @@
-// Faults that are planted on purpose, one at a time, to see whether the validation suite finds them: their numbers and
-// the macros that ask for them. validation/faults has the table that says what each does, and how to add one.
+// Faults that are planted on purpose, one at a time, to see whether the validation suite finds them: their
+// numbers and the macros that ask for them. validation/faults has the table that says what each does, and how
+// to add one.
 //
-// Only builds with the CMake option KILOBAND_FAULTS have any. In all others the macros are the constant 0, so that the
-// compiler removes what stands behind them:
+// Only builds with the CMake option KILOBAND_FAULTS have any. In all others the macros are the constant 0, so
+// that the compiler removes what stands behind them:
 //
 //   if (KB_PLANTED(DEPTH_SHORT)) ...               code of one backend: src_cpu, kernels
 //   if (KB_PLANTED_OPENCL(MU_SHORT)) ...           the OpenCL backend's part on the host: src_gpu
 //   if (KB_PLANTED_SHARED(TRIANGLE_WARP)) ...      what both backends use: src, src/shared
 //
-// On the host they compare with the faults that are selected for the process (validation/faults/selection.hpp). A
-// program of kernels is compiled for one fault, -DKB_PLANTED_SELECTED=number (src_gpu/program.cpp), which is therefore
-// part of the key in the cache of programs.
+// On the host they compare with the faults that are selected for the process
+// (validation/faults/selection.hpp). A program of kernels is compiled for one fault,
+// -DKB_PLANTED_SELECTED=number (src_gpu/program.cpp), which is therefore part of the key in the cache of
+// programs.
 //
 // KB_FAULT_* of shared/pipeline.h are something else: what goes wrong on devices.
 #ifndef KILOBAND_SHARED_PLANTED_FAULTS_H
@@ -84,7 +86,8 @@ enum KbPlantedFault {
 
 #elif defined(KILOBAND_FAULTS) /* the host, in a build with faults */
 
-/* Selected for the process, KB_PLANTED_NONE or another: in the CPU backend, in the OpenCL backend, in what both use. */
+/* Selected for the process, KB_PLANTED_NONE or another: in the CPU backend, in the OpenCL backend, in what
+ * both use. */
 extern kb_u32 kb_planted_cpu, kb_planted_opencl, kb_planted_shared;
 #define KB_PLANTED(fault) (kb_planted_cpu == KB_PLANTED_##fault)
 #define KB_PLANTED_OPENCL(fault) (kb_planted_opencl == KB_PLANTED_##fault)

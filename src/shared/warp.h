@@ -11,8 +11,8 @@
 #include "shared/filter_sample.h"
 #include "shared/fresnel.h"
 #include "shared/lang.h"
-#include "shared/planted_faults.h"
 #include "shared/microfacet.h"
+#include "shared/planted_faults.h"
 
 /* A point of the unit disk, uniform (density 1/pi); squares around the centre become circles. */
 KB_FN KbFloat2 kb_disk_concentric(float u, float v) {

@@ -5,11 +5,12 @@
 
 namespace kiloband::faults {
 
-/// "cpu:NAME", "opencl:NAME" or "shared:NAME" of the table, or "none". At the start it is what the environment
-/// variable KILOBAND_FAULT says, none without it; a wrong one ends the process.
+/// "cpu:NAME", "opencl:NAME" or "shared:NAME" of the table, or "none". At the start it is what the
+/// environment variable KILOBAND_FAULT says, none without it; a wrong one ends the process.
 ///
-/// Backends that exist already may keep what they have: select first, then read the scene and make the backend.
-/// Not while something renders.
+/// Backends that exist already may keep what they have: select first, then read the scene and make the
+/// backend. Not while something renders.
+///
 /// throws std::invalid_argument  no such fault, or not there
 void select_fault(const std::string& text);
 

@@ -21,7 +21,7 @@ constexpr PlantedFault kFaults[] = {
     // ---- film and channels
     {KB_PLANTED_CHANNEL_SHIFT, "channel-shift", kBoth, "channel k of the film gets the values of channel k + 1",
      "spectra that are not flat", "diffuse_room", kMeans},
-    {KB_PLANTED_FILM_STALLS, "film-stalls", kBoth, "sums of samples keep 11 bits, rounded down: small terms are lost",
+    {KB_PLANTED_FILM_STALLS, "film-stalls", kBoth, "sums of samples keep 8 bits, never rounded up: small terms are lost",
      "anything; OpenCL: the methods dpept-*", "diffuse_room", kMeans},
     {KB_PLANTED_SAMPLE_DROPPED, "sample-dropped", kBoth,
      "the first sample of a replicate (OpenCL: of a round) is counted, but not added", "anything; OpenCL: the methods dpept-*",
