@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <ostream>
 #include <string>
 
 #include "tests/statistical/backends/backend_images.hpp"
@@ -57,6 +58,10 @@ struct Planted {
   std::string selection;  // "cpu:missing-cosine"
   const PlantedFault* fault;
 };
+
+void PrintTo(const Planted& planted, std::ostream* out) {
+  *out << planted.selection << " on " << planted.backend;
+}
 
 /// One after the other of every backend that has it.
 std::vector<Planted> all_planted() {
