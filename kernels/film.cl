@@ -11,6 +11,7 @@
 #undef KB_WIDTH
 #define KB_WIDTH 1
 #include "film.clh"
+#include "shared/planted_faults.h"
 #include "shared/spectra_layout.h"
 
 __kernel void film_clear(__global float* restrict sum, __global float* restrict compensation,
@@ -29,7 +30,7 @@ __kernel void film_finish(__global const KbSpectraLayout* restrict layout, __glo
   const kb_u32 values = layout->channels + layout->derived;
   if (i >= (size_t)pixels * values) return;
   const Film film = {sum, compensation, counts, film_pixels, 0u, layout->film_columns};
-  const kb_u32 value = (kb_u32)(i % values);
+  const kb_u32 value = (kb_u32)((i + KB_PLANTED(CHANNEL_SHIFT)) % values);
   const size_t pixel = first_pixel + i / values;
   const kb_u32 column = value < layout->channels ? value : layout->stride + (value - layout->channels);
   const size_t place = film_place(&film, pixel, column);

@@ -10,6 +10,7 @@
 #include "camera.clh"
 #include "gas_path.clh"
 #include "scatter.clh"
+#include "shared/planted_faults.h"
 
 /* Every slot starts in the state "ended" before its first job. */
 __kernel void reset_pool(__global KbPathState* restrict states, __global kb_u32* restrict queue,
@@ -189,7 +190,7 @@ __kernel void any_hits(__global const KbShape* restrict shapes, __global const K
                               &fault);
   ++tallies[slot].x;
   if (fault) atomic_or(&faults->code, fault);
-  if (hidden)
+  if (!KB_PLANTED(LIGHT_HIDDEN) && hidden)
     arena[ray.vertex].head &= ~KB_VERTEX_NEE; /* its texture sample stays: it is the vertex's last */
   else
     states[slot].lit = states[slot].length;

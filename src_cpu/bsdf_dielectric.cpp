@@ -1,5 +1,6 @@
 // Boundaries between dielectrics, smooth and rough. Here wi.z > 0; eta is the far side's index over that of
 // wi's side. Transmitted radiance is scaled by 1 / eta^2, which `bound` leaves out.
+#include "shared/planted_faults.h"
 #include "src_cpu/bsdf_lobes.hpp"
 #include "src_cpu/fresnel.hpp"
 
@@ -10,8 +11,9 @@ namespace {
 BsdfSample refracted(const KbMaterial& material, glm::vec3 wi, float eta, float cos_t, float weight,
                      float pdf) {
   BsdfSample sample;
-  sample.wo = {-wi.x / eta, -wi.y / eta, -cos_t};
-  sample.w0 = weight / (eta * eta);
+  const float bend = KB_PLANTED(REFRACTION_INVERTED) ? 1 / eta : eta;
+  sample.wo = {-wi.x / bend, -wi.y / bend, -cos_t};
+  sample.w0 = KB_PLANTED(RADIANCE_SCALING) && eta < 1 ? weight : weight / (eta * eta);
   sample.pdf = pdf;
   sample.eta = eta;
   sample.bound = weight * material.bound_b;
@@ -47,7 +49,8 @@ HalfVector half_vector(glm::vec3 wi, glm::vec3 wo, float eta) {
 /// Reflection with probability F: both weights are then 1 (times the radiance scaling).
 BsdfSample sample_dielectric(const KbMaterial& material, glm::vec3 wi, float eta, float u_lobe) {
   const DielectricFresnel f = fresnel_dielectric(std::min(wi.z, 1.0f), eta);
-  if (u_lobe >= f.reflectance) return refracted(material, wi, eta, f.cos_t, 1, 1 - f.reflectance);
+  const bool total = KB_PLANTED(TOTAL_REFLECTION) && f.cos_t == 0;
+  if (u_lobe >= f.reflectance || total) return refracted(material, wi, eta, f.cos_t, 1, 1 - f.reflectance);
   BsdfSample sample;
   sample.wo = mirror(wi);
   sample.w0 = 1;

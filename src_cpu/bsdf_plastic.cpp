@@ -5,6 +5,7 @@
 //
 // T = 1 - F for the smooth coating and the tabulated transmittance for the rough one. w0 goes with S_a
 // (specular), w1 with S_b (diffuse); for KB_KIND_NONLINEAR the denominator is applied by evaluation.
+#include "shared/planted_faults.h"
 #include "src_cpu/bsdf_lobes.hpp"
 #include "src_cpu/fresnel.hpp"
 
@@ -82,7 +83,8 @@ BsdfValue eval_rough_plastic(const KbMaterial& material, const RoughTransmittanc
   const FacetReflection r = facet_reflection(Microfacet(material), wi, wo);
   const float lambert = wo.z * KB_INV_PI;
   const float w1 = t_i * t_o * diffuse_scale(material, table.internal_reflectance) * lambert;
-  return {coating_reflectance(material, r.dot_ih) * r.value, w1, p * r.pdf + (1 - p) * lambert, false};
+  return {coating_reflectance(material, r.dot_ih) * r.value, w1,
+          KB_PLANTED(MIXTURE_PDF) ? lambert : p * r.pdf + (1 - p) * lambert, false};
 }
 
 /// The lobes overlap, so weights and density are those of the whole material.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "shared/planted_faults.h"
 #include "shared/records.h"
 
 namespace kiloband {
@@ -19,7 +20,9 @@ class Microfacet {
 
   explicit Microfacet(const KbMaterial& material)
       : Microfacet(material.distribution == KB_MICROFACET_GGX, material.alpha_u, material.alpha_v,
-                   (material.flags & KB_MATERIAL_SAMPLE_VISIBLE) != 0) {}
+                   (material.flags & KB_MATERIAL_SAMPLE_VISIBLE) != 0) {
+    if (KB_PLANTED(ROUGHNESS_SQUARED)) alpha_u_ *= alpha_u_, alpha_v_ *= alpha_v_;
+  }
   Microfacet(bool ggx, float alpha_u, float alpha_v, bool visible)
       : alpha_u_(std::max(alpha_u, kMinAlpha)),
         alpha_v_(std::max(alpha_v, kMinAlpha)),

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "shared/planted_faults.h"
 #include "shared/sampler.h"
 #include "src_cpu/camera.hpp"
 #include "src_cpu/path_tracer_detail.hpp"
@@ -59,7 +60,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
 
 bool PathTracer::wants_bounce(uint32_t bounce) const {
   const int max_depth = flat_.integrator.max_depth;
-  return max_depth < 0 || bounce + 1 < static_cast<uint32_t>(max_depth);
+  return max_depth < 0 || bounce + 1 + KB_PLANTED(DEPTH_SHORT) < static_cast<uint32_t>(max_depth);
 }
 
 void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<const float> mu, PathBuffer& out,
@@ -141,7 +142,8 @@ void PathTracer::trace_shadows() {
   if (recording_) record_shadows();
   scene_.embree->occlusions(shadow_rays_);
   for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
-    if (shadow_rays_[i].occluded()) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
+    if (shadow_rays_[i].occluded() && !KB_PLANTED(LIGHT_HIDDEN))
+      slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
   }
 }
 
@@ -183,8 +185,9 @@ void PathTracer::add_escaped(Path& path, const TraceRay& ray, uint32_t bounce) {
   const glm::vec3 direction = ray.direction();
   Draft draft;
   set_flag(draft.vertex, KB_VERTEX_EMIT);
-  draft.vertex.emit_weight =
-      path.previous_delta ? 1 : power_heuristic(path.previous_pdf, environment_pdf(flat_, direction));
+  draft.vertex.emit_weight = path.previous_delta || KB_PLANTED(MIS_DOUBLE)
+                                 ? 1
+                                 : power_heuristic(path.previous_pdf, environment_pdf(flat_, direction));
   const EmittedRadiance radiance = environment_radiance(flat_, direction);
   draft.vertex.emit_row = radiance.row;
   if (radiance.textured) {
@@ -197,10 +200,11 @@ void PathTracer::add_escaped(Path& path, const TraceRay& ray, uint32_t bounce) {
 void PathTracer::add_emission(Draft& draft, const Path& path, const SurfaceHit& hit, glm::vec3 direction,
                               uint32_t bounce) {
   const uint32_t emitter = flat_.shapes[hit.shape].emitter;
-  if (emitter == KB_NONE || glm::dot(hit.geometric_normal, direction) >= 0) return;
+  if (emitter == KB_NONE) return;
+  if (!KB_PLANTED(LIGHT_BACK) && glm::dot(hit.geometric_normal, direction) >= 0) return;
   if (bounce == 0 && flat_.integrator.hide_emitters) return;
   float weight = 1;
-  if (!path.previous_delta) {
+  if (!path.previous_delta && !KB_PLANTED(MIS_DOUBLE)) {
     weight = power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit.shape, path.previous_point,
                                                                hit.point, hit.geometric_normal));
   }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/planted_faults.h"
 #include "shared/sampler.h"
 #include "src_cpu/path_tracer.hpp"
 #include "src_cpu/path_tracer_detail.hpp"
@@ -11,7 +12,8 @@ namespace kiloband {
 
 /// Index of the interior over the exterior at the chosen channel's wavelength.
 float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, float mu) const {
-  const Channel& c = flat_.channels[channel];
+  const Channel& c =
+      flat_.channels[KB_PLANTED(CHANNEL_INDEX) ? (channel + 1) % flat_.channels.size() : channel];
   const double lambda_nm = (1.0 - mu) * c.min_nm + mu * c.max_nm;
   const double exterior =
       material.k_row == KB_NONE ? material.eta_ext : flat_.spectra[material.k_row].table(lambda_nm);
@@ -24,6 +26,8 @@ float PathTracer::survive(Path& path, const BinnedThroughput& carried, const Sam
   const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
   const ChannelChoice choice = choose_channel(carried, static_cast<uint32_t>(flat_.channels.size()), u);
   path.channel = choice.channel;
+  if (KB_PLANTED(CHANNEL_PROBABILITY)) return 1;
+  if (KB_PLANTED(CHANNEL_EVEN)) return 1.0f / static_cast<float>(flat_.channels.size());
   return choice.probability;
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <exception>
 
+#include "shared/planted_faults.h"
 #include "shared/sampler.h"
 
 namespace kiloband::gpu {
@@ -119,7 +120,7 @@ KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) c
   round.wavelengths =
       settings_.wavelengths == WavelengthMode::kShared ? KB_WAVELENGTHS_SHARED : KB_WAVELENGTHS_PER_PATH;
   round.replicates = settings_.replicates;
-  round.replicate = samples.replicate;
+  round.replicate = KB_PLANTED_OPENCL(REPLICATES_EQUAL) ? 0 : samples.replicate;
   round.first_index = samples.first;
   round.samples = samples.count;
   round.pixels = static_cast<uint32_t>(number);
@@ -152,8 +153,10 @@ void GroupRenderer::fill_mu(const KbRound& round) {
     const KbRoundPixel& p = round_pixels_[i];
     if (i > 0 && p.block == round_pixels_[i - 1].block) continue;
     for (uint32_t s = 0; s < round.samples; ++s) {
-      mu_.push_back(kb_shared_mu(settings_.seed, round.replicate, p.x / kBlockSize, p.y / kBlockSize,
-                                 round.first_index + s));
+      uint32_t index = round.first_index + s;
+      if (KB_PLANTED_OPENCL(SAMPLES_REPEATED)) index -= index % 2;
+      mu_.push_back(kb_shared_mu(settings_.seed, round.replicate, p.x / kBlockSize, p.y / kBlockSize, index));
+      if (KB_PLANTED_OPENCL(MU_SHORT)) mu_.back() *= 0.95f;
     }
   }
 }

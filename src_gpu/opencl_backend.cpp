@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "render/planted_helpers.hpp"
+#include "shared/planted_faults.h"
 #include "src_gpu/device.hpp"
 #include "src_gpu/group_renderer.hpp"
 
@@ -213,6 +215,9 @@ struct Renderer::Delivery {
     while (next_block < blocks.size()) {
       const std::size_t pixels = film.blocks()[blocks[next_block]].pixels();
       if (first + pixels > counts.size()) break;
+      if (KB_PLANTED_OPENCL_NUMBER != 0)
+        plant_in_means(KB_PLANTED_OPENCL_NUMBER, film.blocks()[blocks[next_block]],
+                       std::span(means).subspan(first * channels, pixels * channels), channels);
       film.add({blocks[next_block], range.replicate, std::span(counts).subspan(first, pixels),
                 std::span(means).subspan(first * channels, pixels * channels), channels, attempted[first]});
       first += pixels;

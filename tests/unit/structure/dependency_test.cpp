@@ -26,7 +26,7 @@ const std::map<std::string, std::set<std::string>> kAllowed{
     {"scenes", {}},
     {"src/app",
      {"src/base", "src/shared", "src/spectral", "src/scene", "src/sky", "src/film", "src/render", "src/stats",
-      "src_cpu", "src_gpu"}},
+      "src_cpu", "src_gpu", "scenes", "validation"}},
 };
 
 /// "src/film" of "src/film/png.cpp", "src_cpu" of "src_cpu/isa.cpp".
