@@ -34,7 +34,7 @@ TEST(WrongOption, Command) {
           {"no command", {}, "A subcommand is required (see kiloband --help)"},
           {"unknown command",
            {"rendr", "scene.xml"},
-           "unknown command 'rendr': must be render, info, convert, sensor, sky, devices or trace (see "
+           "unknown command 'rendr': must be render, info, convert, sensor, compare, sky, devices or trace (see "
            "kiloband "
            "--help)"},
           {"scene missing", {"render"}, "SCENE is required (see kiloband render --help)"},
