@@ -84,9 +84,8 @@ CompareSide::CompareSide(const SideOptions& options, const DiagnosticSink& sink)
   }
   const std::string letter = options.name == "A" ? "a" : "b";
   if (options.variance || options.dof || options.exact)
-    throw InputError(
-        fmt::format("{}: --variance-{}, --dof-{} and --{}-exact are for a single cube, these are {} renders",
-                    name_, letter, letter, letter, files.size()));
+    throw InputError(fmt::format("{}: --variance-{}, --dof-{}{} are for a single cube, these are {} renders",
+                                 name_, letter, letter, letter == "b" ? ", --b-exact" : "", files.size()));
   open_renders(files, sink);
 }
 

@@ -17,7 +17,7 @@ namespace kiloband::stats {
 
 inline constexpr std::size_t kUniformityUnits = 1000;      // at least
 inline constexpr std::size_t kUniformityMostUnits = 4096;  // more are thinned out
-inline constexpr int kDivisions = 99;
+inline constexpr int kDivisions = 49;
 
 struct UniformityResult {
   std::size_t units = 0;

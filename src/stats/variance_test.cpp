@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace kiloband::stats {
 namespace {
@@ -36,9 +37,11 @@ UnitSample per_replicate(const std::vector<double>& sums, const std::vector<std:
   return sample;
 }
 
-std::vector<double> values_of(const UnitSample& sample, std::size_t channel) {
+std::vector<double> sampled_values(const UnitSample& sample, std::size_t channel) {
   std::vector<double> values;
-  for (std::size_t r = 0; r < sample.replicates(); ++r) values.push_back(sample.mean_at(r, channel));
+  for (std::size_t r = 0; r < sample.replicates(); ++r) {
+    if (sample.weights[r] > 0) values.push_back(sample.mean_at(r, channel));
+  }
   return values;
 }
 
@@ -50,8 +53,8 @@ double median_of_both(std::vector<double> a, const std::vector<double>& b) {
 /// 2 d_r / s of both sides, large d_r cut; false if nothing scatters beyond `floor`.
 bool relative_scatter(const UnitSample& sa, const UnitSample& sb, std::size_t channel, double floor,
                       std::vector<double>& a, std::vector<double>& b) {
-  a = values_of(sa, channel);
-  b = values_of(sb, channel);
+  a = sampled_values(sa, channel);
+  b = sampled_values(sb, channel);
   const double median = median_of_both(a, b);
   for (std::size_t r = 0; r < a.size(); ++r) a[r] = std::sqrt(sa.weights[r]) * std::abs(a[r] - median);
   for (std::size_t r = 0; r < b.size(); ++r) b[r] = std::sqrt(sb.weights[r]) * std::abs(b[r] - median);
@@ -70,14 +73,12 @@ bool relative_scatter(const UnitSample& sa, const UnitSample& sb, std::size_t ch
 
 }  // namespace
 
-UnitSample deviations_from_median(const UnitSample& sample) {
+UnitSample deviations_from_median(const UnitSample& sample, const UnitSample* other) {
   UnitSample result{sample.channels, std::vector<double>(sample.means.size()), sample.weights};
   const double usual = mean_weight(sample);
   for (std::size_t c = 0; c < sample.channels; ++c) {
-    std::vector<double> values;
-    for (std::size_t r = 0; r < sample.replicates(); ++r) {
-      if (sample.weights[r] > 0) values.push_back(sample.mean_at(r, c));
-    }
+    std::vector<double> values = sampled_values(sample, c);
+    if (other != nullptr) std::ranges::copy(sampled_values(*other, c), std::back_inserter(values));
     if (values.empty()) break;
     const double median = median_of(std::move(values));
     for (std::size_t r = 0; r < sample.replicates(); ++r)
@@ -90,8 +91,14 @@ UnitSample deviations_from_median(const UnitSample& sample) {
 
 Contrast deviation_contrast(const UnitSample& a, const UnitSample& b, double rounding) {
   const Contrast means = independent_contrast(a, b, rounding);
-  Contrast contrast = independent_contrast(deviations_from_median(a), deviations_from_median(b), 0);
-  contrast.slack = means.slack;
+  if (!means.valid) return means;
+  UnitSample da = deviations_from_median(a, &b), db = deviations_from_median(b, &a);
+  for (UnitSample* side : {&da, &db}) {
+    for (std::size_t i = 0; i < side->means.size(); ++i)
+      side->means[i] = std::sqrt(std::max(0.0, side->means[i] - means.slack[i % side->channels]));
+  }
+  Contrast contrast = independent_contrast(da, db, 0);
+  contrast.dof.assign(contrast.channels, static_cast<double>(a.sampled() + b.sampled()) - 2);
   return contrast;
 }
 

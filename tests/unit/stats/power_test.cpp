@@ -1,5 +1,5 @@
 // Power: the biases that each scale is there for, 64x64 pixels, 32 replicates, alpha = 1e-4 for the whole.
-// Ten seeds each; "found" means all ten, so a test that finds 80 % fails with probability 0.9.
+// A bias counts as found if it is found with all of kSeeds seeds. Rates: validation/stats/study_comparison.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 using test::BatchPool;
 using test::SimulatedImage;
 
-constexpr int kSeeds = 6;
+constexpr int kSeeds = 3;
 using Factor = std::function<double(uint32_t, uint32_t, std::size_t)>;
 
 /// How many of kSeeds comparisons each test fails; "any": the comparison.
@@ -46,8 +46,9 @@ TEST(Power, OnePercentEverywhere) {
         << samples;
 }
 
+/// 4096 samples per pixel: 7.6 standard errors.
 TEST(Power, TwoPerMilleEverywhere) {
-  EXPECT_EQ(found(BatchPool("exponential", 64), scattered(1.002, 1), {})["mean/image"], kSeeds);
+  EXPECT_EQ(found(BatchPool("exponential", 128), scattered(1.002, 1), {})["mean/image"], kSeeds);
 }
 
 TEST(Power, TenPercentOfOnePercentOfThePixels) {
@@ -57,7 +58,7 @@ TEST(Power, TenPercentOfOnePercentOfThePixels) {
 }
 
 TEST(Power, HalfAsMuchAgainOfTwoPerMilleOfThePixels) {
-  auto count = found(BatchPool("exponential", 8), scattered(1.5, 500), {});
+  auto count = found(BatchPool("exponential", 12), scattered(1.5, 500), {});
   EXPECT_EQ(count["mean/pixel"], kSeeds);
   EXPECT_EQ(count["mean/image"], 0) << "only pixels can see it";
 }
@@ -75,20 +76,20 @@ TEST(Power, ATile) {
 TEST(Power, VarianceRatioOfFivePercent) {
   const Factor spread = [](uint32_t, uint32_t, std::size_t) { return std::sqrt(1.05); };
   for (const char* distribution : {"normal", "exponential", "lognormal", "firefly"}) {
-    auto count = found(BatchPool(distribution, 8), {}, spread);
+    auto count = found(BatchPool(distribution, 16), {}, spread);
     EXPECT_EQ(count["scatter/image"], kSeeds) << distribution;
     EXPECT_EQ(count["mean/image"], 0) << distribution;
   }
 }
 
-/// One pixel scatters three times as much as it should.
+/// One pixel scatters ten times as much as it should.
 TEST(Power, VarianceOfOnePixel) {
-  const Factor spread = [](uint32_t x, uint32_t y, std::size_t) { return x == 20 && y == 30 ? 5.0 : 1.0; };
+  const Factor spread = [](uint32_t x, uint32_t y, std::size_t) { return x == 20 && y == 30 ? 10.0 : 1.0; };
   EXPECT_EQ(found(BatchPool("normal", 8), {}, spread)["variance/pixel"], kSeeds);
 }
 
-/// The minimum detectable bias is what it says: found in about 90 % (here at least 7 of 10 and, at half of
-/// it, at most half). It is stated for Bonferroni over units and channels.
+/// The minimum detectable bias is found in 90 % of the comparisons (binomial, two-sided 1e-3: 30 to 40 of
+/// 40), half of it in less than half.
 TEST(Power, TheDetectableBiasIsDetected) {
   const BatchPool pool("normal", 8);
   const SimulatedImage shape{32, 32, 32, 1, 1};
@@ -98,13 +99,14 @@ TEST(Power, TheDetectableBiasIsDetected) {
     return compare_independent(simulate(shape, pool, 2 * seed), simulate(other, pool, 2 * seed + 1),
                                {.alpha = 1e-3});
   };
-  const double bias = run(1, 99).tests[2].detectable.typical;
+  double bias = 0;
+  for (uint64_t seed = 100; seed < 110; ++seed) bias += run(1, seed).tests[2].detectable.typical / 10;
   int full = 0, half = 0;
   for (uint64_t seed = 0; seed < 40; ++seed) {
     full += !run(1 + bias, seed).tests[2].passed;
     half += !run(1 + bias / 2, seed).tests[2].passed;
   }
-  EXPECT_GE(full, 28);
+  EXPECT_GE(full, 30);
   EXPECT_LE(half, 12);
 }
 

@@ -1,0 +1,168 @@
+// `kiloband compare`: renders of one scene agree, changed ones do not; what it says and refuses.
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/support/wrong_input.hpp"
+
+namespace kiloband::test {
+namespace {
+
+/// 16 x 16 pixels of the Cornell box in 3 channels.
+void render(const TemporaryFolder& folder, const std::string& out, const std::string& seed,
+            const std::vector<std::string>& more = {"--keep-replicates"}) {
+  std::vector<std::string> arguments{"--size", "16x16",  "--bands", "450:650:3", "--spp",
+                                     "64",     "--seed", seed,      "-o",        out};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome outcome = run_program(folder, quiet_render(cornell_box(), arguments));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+}
+
+/// The cube and its replicates times a factor.
+void scale_cube(const TemporaryFolder& folder, const std::string& from, const std::string& to, float factor,
+                uint32_t replicates) {
+  for (int r = -1; r < static_cast<int>(replicates); ++r) {
+    const std::string suffix = r < 0 ? "" : (r < 10 ? ".r0" : ".r") + std::to_string(r);
+    Cube cube = read_cube(folder / (from + suffix + ".hdr"));
+    for (float& value : cube.mean) value *= factor;
+    for (float& value : cube.variance) value *= factor * factor;
+    auto writer = create_cube_writer(folder / (to + suffix + ".hdr"), cube.info, cube.info.height);
+    writer->write_rows({0, cube.info.height, cube.mean, cube.variance, cube.aux});
+    writer->finish();
+  }
+}
+
+Outcome compare(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "compare");
+  return run_program(folder, arguments);
+}
+
+void expect_text(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
+}
+
+/// Level of a comparison: 1e-3, so a right program fails with probability 2e-3 at most, for any seeds; these
+/// are fixed.
+TEST(Compare, OtherSeedsAgreeAndOnePercentIsFound) {
+  const TemporaryFolder folder;
+  render(folder, "a.hdr", "1");
+  render(folder, "b.hdr", "2");
+  const Outcome same = compare(folder, {"a.hdr", "b.hdr", "--json", "same.json"});
+  EXPECT_EQ(same.code, 0) << same.out << same.err;
+  expect_text(same.out,
+              "A: a.hdr, 16 replicates\nB: b.hdr, 16 replicates\n16x16 pixels, 3 channels, independent, "
+              "alpha 0.001\n");
+  expect_text(same.out, "no difference found\n");
+  EXPECT_TRUE(read_json(folder, "same.json")["passed"]);
+
+  scale_cube(folder, "b", "c", 1.5f, 16);
+  const Outcome other = compare(folder, {"a.hdr", "c.hdr", "--json", "other.json"});
+  EXPECT_EQ(other.code, 1) << other.err;
+  expect_text(other.out, "DIFFERENT: ");
+  const auto json = read_json(folder, "other.json");
+  EXPECT_FALSE(json["passed"]);
+  EXPECT_EQ(json["tests"].size(), 7u);
+  EXPECT_NEAR(json["channels"][0]["mean_b"].get<double>() / json["channels"][0]["mean_a"].get<double>(), 1.5,
+              0.2);
+  EXPECT_NEAR(json["variance_ratio"]["ratio"].get<double>(), 1 / 2.25, 0.1);
+}
+
+/// Equal seeds, paired: 1 % is far above the rounding, equal files are equal.
+TEST(Compare, PairsOfEqualSeed) {
+  const TemporaryFolder folder;
+  render(folder, "a.hdr", "1");
+  scale_cube(folder, "a", "c", 1.01f, 16);
+  EXPECT_EQ(compare(folder, {"a.hdr", "a.hdr", "--paired"}).code, 0);
+  const Outcome other = compare(folder, {"a.hdr", "c.hdr", "--paired"});
+  EXPECT_EQ(other.code, 1) << other.out;
+  const Outcome unpaired = compare(folder, {"a.hdr", "c.hdr"});
+  EXPECT_EQ(unpaired.code, 0) << "the noise is larger";
+  expect_text(unpaired.err, "warning: A and B have the same seed 1: ");
+}
+
+/// Densities (EXR) against integrals (ENVI); several renders; variances; the truth.
+TEST(Compare, EveryKindOfCube) {
+  const TemporaryFolder folder;
+  render(folder, "a.hdr", "1", {"--variance", "-o", "a.exr"});
+  render(folder, "b.exr", "2", {"--variance"});
+  for (int i = 0; i < 4; ++i) {
+    render(folder, "m" + std::to_string(i) + ".hdr", std::to_string(10 + i), {});
+    render(folder, "n" + std::to_string(i) + ".exr", std::to_string(20 + i), {});
+  }
+  const Outcome variances = compare(folder, {"a.hdr", "b.exr"});
+  EXPECT_EQ(variances.code, 0) << variances.out << variances.err;
+  expect_text(variances.out, "A: a.hdr, variances with 15 degrees of freedom\n");
+  expect_text(variances.out, "note: variances were not compared: that needs replicates or several renders\n");
+  const Outcome renders = compare(folder, {"m0.hdr,m1.hdr,m2.hdr,m3.hdr", "n0.exr,n1.exr,n2.exr,n3.exr"});
+  EXPECT_EQ(renders.code, 0) << renders.out << renders.err;
+  expect_text(renders.out, "A: 4 independent renders\n");
+  expect_text(renders.out, "note: 4 replicates on a side: 32 or more are wanted");
+  EXPECT_EQ(compare(folder, {"a.hdr", "n0.exr,n1.exr,n2.exr"}).code, 0) << "variances against renders";
+  const Outcome truth = compare(folder, {"a.hdr", "a.exr", "--b-exact"});
+  EXPECT_EQ(truth.code, 0) << truth.out;
+  expect_text(truth.out, "B: a.exr, taken as exact\n");
+  scale_cube(folder, "a", "c", 3, 0);
+  EXPECT_EQ(compare(folder, {"a.hdr", "c.hdr", "--dof-b", "15", "--independent-pixels"}).code, 1);
+}
+
+TEST(Compare, WrongInput) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  const auto make = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--spp", "4", "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ASSERT_EQ(run_program(folder, quiet_render("scene.xml", arguments)).code, 0);
+  };
+  make("a.hdr", {"--bands", "400:700:4", "--variance"});
+  make("plain.hdr", {"--bands", "400:700:4"});
+  make("three.hdr", {"--bands", "400:700:3", "--variance"});
+  make("other.hdr", {"--bands", "400:720:4", "--variance"});
+  make("small.hdr", {"--bands", "400:700:4", "--size", "4x8", "--variance"});
+  expect_refused(
+      folder, std::vector<WrongCommand>{
+                  {"compare: one cube", {"compare", "a.hdr"}, "B is required (see kiloband compare --help)"},
+                  {"compare: sizes", {"compare", "a.hdr", "small.hdr"}, "A has 8x8 pixels, B has 4x8"},
+                  {"compare: counts", {"compare", "a.hdr", "three.hdr"}, "A has 4 channels, B has 3"},
+                  {"compare: bands",
+                   {"compare", "a.hdr", "other.hdr"},
+                   "channel 0: A has 400-475 nm, B has 400-480 nm"},
+                  {"compare: no errors",
+                   {"compare", "plain.hdr", "a.hdr"},
+                   "plain.hdr: has neither variances nor replicates: render with --variance or "
+                   "--keep-replicates, give "
+                   "several renders as FILE,FILE,..."},
+                  {"compare: no errors of B",
+                   {"compare", "a.hdr", "plain.hdr"},
+                   "plain.hdr: has neither variances nor replicates: render with --variance or "
+                   "--keep-replicates, give "
+                   "several renders as FILE,FILE,..., or --b-exact if B is the truth"},
+                  {"compare: one render twice",
+                   {"compare", "a.hdr,plain.hdr", "a.hdr"},
+                   "a.hdr and plain.hdr have the same seed 0: they are not independent renders"},
+                  {"compare: renders of other channels",
+                   {"compare", "a.hdr,three.hdr", "a.hdr"},
+                   "a.hdr has 4 channels, three.hdr has 3"},
+                  {"compare: --variance-a of renders",
+                   {"compare", "a.hdr,plain.hdr", "a.hdr", "--variance-a", "a.hdr"},
+                   "A: --variance-a, --dof-a are for a single cube, these are 2 renders"},
+                  {"compare: --variance-b of another shape",
+                   {"compare", "a.hdr", "plain.hdr", "--variance-b", "three.hdr"},
+                   "plain.hdr has 4 channels, three.hdr has 3"},
+                  {"compare: --paired",
+                   {"compare", "a.hdr", "a.hdr", "--paired"},
+                   "--paired needs as many replicates (or renders) of A as of B: A has none, B has none"},
+                  {"compare: --alpha 1",
+                   {"compare", "a.hdr", "a.hdr", "--alpha", "1"},
+                   "--alpha 1: must be above 0 and below 1"},
+                  {"compare: --rounding 2",
+                   {"compare", "a.hdr", "a.hdr", "--rounding", "2"},
+                   "--rounding 2: must be at least 0 and below 1"},
+                  {"compare: --dof-a 0",
+                   {"compare", "a.hdr", "a.hdr", "--dof-a", "0"},
+                   "--dof-a 0: must be at least 1"},
+                  {"compare: nothing there",
+                   {"compare", "none.hdr", "a.hdr"},
+                   "cannot open 'none.hdr': No such file or directory"},
+              });
+}
+
+}  // namespace
+}  // namespace kiloband::test
