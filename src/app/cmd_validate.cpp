@@ -146,8 +146,10 @@ void print_verdict(const SuiteResult& result) {
 /// The HTML page: by a Python script with matplotlib. Without them the results stand for themselves.
 void make_report(const ValidateOptions& options) {
   const fs::path script = fs::path(options.scenes) / "validation/report/report.py";
-  const std::string command =
-      fmt::format("/usr/bin/env python3 '{}' '{}' >&2", script.string(), options.output);
+  const std::string command = fmt::format(
+      "for python in python3 /usr/bin/python3; do $python -c 'import matplotlib, numpy' 2> /dev/null && "
+      "exec $python '{}' '{}' >&2; done; exit 1",
+      script.string(), options.output);
   if (!fs::exists(script) || std::system(command.c_str()) != 0)
     tell(
         "note: no report.html (needs python3 with matplotlib): validation/report/report.py makes it from "
@@ -210,7 +212,9 @@ Command add_validate(CLI::App& program) {
   command.add_option("--seed", options->seed, "of all random numbers")->capture_default_str();
   command.add_option("-o,--output", options->output, "folder of the results")->capture_default_str();
   command.add_option("--root", options->scenes, "kiloband's source folder, with scenes/ and validation/");
-  command.add_option("--data", options->data, "folder of public inputs (validation/scenes/real): also the cases real/...")
+  command
+      .add_option("--data", options->data,
+                  "folder of public inputs (validation/scenes/real): also the cases real/...")
       ->check(CLI::ExistingDirectory);
   command.add_flag("--no-report", options->no_report, "results.json and junit.xml alone");
   command.add_flag("--list", options->list, "name the cases");
