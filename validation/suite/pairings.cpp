@@ -31,10 +31,12 @@ std::vector<Pairing> closed_form_pairings(const std::vector<std::string>& backen
   return pairings;
 }
 
+}  // namespace
+
 /// Everything is held against the first backend in its default mode (the CPU, if it takes part). Other
 /// backends are the same estimator: their variances count too. Other modes have the same means only. Equal
 /// seeds follow the same paths: their differences show biases far below the noise.
-std::vector<Pairing> listed(const Case& c, const std::vector<std::string>& backends, Effort effort) {
+std::vector<Pairing> pairings_of(const Case& c, const std::vector<std::string>& backends, Effort effort) {
   if (c.closed_form) return closed_form_pairings(backends, effort);
   const Configuration reference{backends.front()};
   std::vector<Pairing> pairings;
@@ -54,15 +56,6 @@ std::vector<Pairing> listed(const Case& c, const std::vector<std::string>& backe
       pairings.push_back({Pairing::Kind::kIndependent, mode, other, true});
     }
   }
-  return pairings;
-}
-
-}  // namespace
-
-/// To compile kernels for every scene takes most of a quick run's time: it takes the general ones.
-std::vector<Pairing> pairings_of(const Case& c, const std::vector<std::string>& backends, Effort effort) {
-  std::vector<Pairing> pairings = listed(c, backends, effort);
-  for (Pairing& pairing : pairings) pairing.a.specialised = pairing.b.specialised = effort != Effort::kQuick;
   return pairings;
 }
 

@@ -29,7 +29,8 @@ class CaseRun {
   }
 
   CaseResult run() {
-    const std::vector<Pairing> pairings = pairings_of(case_, settings_.backends, settings_.effort);
+    std::vector<Pairing> pairings = pairings_of(case_, settings_.backends, settings_.effort);
+    for (Pairing& pairing : pairings) pairing.a.specialised = pairing.b.specialised = settings_.specialised;
     planned_ = pairings.size();
     result_.passed = true;
     for (const Pairing& pairing : pairings) {

@@ -47,7 +47,8 @@ struct CaseSettings {
   uint64_t seed = 1;
   uint32_t replicates = 32;
   stats::RepeatRule rule;
-  std::size_t family = 1;  // comparisons of the whole run
+  std::size_t family = 1;   // comparisons of the whole run
+  bool specialised = true;  // OpenCL kernels compiled for each scene; false: one program for all
 };
 
 /// throws DeviceError  a backend cannot work; faults of the scene are the case's failure

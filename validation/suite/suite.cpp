@@ -109,8 +109,10 @@ SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
   result.settings = settings;
   result.comparisons = family_of(plan, settings);
   Counter counter(plan.parts(), watch);
-  CaseSettings case_settings{settings.backends, settings.effort,   settings.seed, 32,
-                             settings.rule,     result.comparisons};
+  CaseSettings case_settings{settings.backends, settings.effort, settings.seed, 32, settings.rule,
+                             result.comparisons,
+                             // to compile kernels for every scene would take most of a quick run's time
+                             settings.effort != Effort::kQuick};
   for (const Case& c : plan.cases) {
     if (watch.stopped()) break;
     say(c.name);
