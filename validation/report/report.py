@@ -39,7 +39,15 @@ def read_results(directory):
         results[section] = [entry for entry in results.get(section) or [] if isinstance(entry, dict)]
     for case in results["cases"]:
         case["pairings"] = [p for p in case.get("pairings") or [] if isinstance(p, dict)]
+    results["mitsuba"] = read_mitsuba(directory / "mitsuba.json")
     return results
+
+
+def read_mitsuba(file):
+    """What compare_with_mitsuba.py wrote; no scenes where that comparison was not made."""
+    record = read_json(file) if file.exists() else {}
+    record = record if isinstance(record, dict) else {}
+    return record | {"scenes": [scene for scene in record.get("scenes") or [] if isinstance(scene, dict)]}
 
 
 def navigation(sections):
@@ -58,8 +66,6 @@ def navigation(sections):
 
 def report_html(directory):
     results = read_results(directory)
-    mitsuba_file = directory / "mitsuba.json"
-    mitsuba = read_json(mitsuba_file) if mitsuba_file.exists() else None
     anchors = {id(case): f"case-{k}" for k, case in enumerate(results["cases"])}
     sections = "\n".join(
         [
@@ -70,7 +76,7 @@ def report_html(directory):
             cases.tails_overview(results),
             studies.hard_cases(results),
             studies.convergence(results),
-            studies.mitsuba(mitsuba),
+            studies.mitsuba(results),
         ]
     )
     return markup.page("Validation of kiloband", verdict.head(results) + navigation(sections) + sections)

@@ -5,9 +5,10 @@ from markup import DASH, duration, is_number, number, percent, probability, text
 
 
 def count(number_of, what):
-    """ "1 case", "3 studies"."""
-    plural = what[:-1] + "ies" if what.endswith("y") else what + "s"
-    return f"{text(number_of)} {what if number_of == 1 else plural}"
+    """1 case, 3 studies, 2 scenes against Mitsuba."""
+    noun, against, rest = what.partition(" against")
+    plural = noun[:-1] + "ies" if noun.endswith("y") else noun + "s"
+    return f"{text(number_of)} {noun if number_of == 1 else plural}{against}{rest}"
 
 
 def _counts(results):
@@ -22,6 +23,7 @@ def verdict(results):
         ("case", results["cases"]),
         ("hard case", results["hard_cases"]),
         ("convergence study", results["convergence"]),
+        ("scene against Mitsuba", results["mitsuba"]["scenes"]),
     )
     failed = [
         count(sum(not e.get("passed") for e in entries), what)
@@ -33,11 +35,13 @@ def verdict(results):
         f"{count(len(results['cases']), 'case')}, {count(len(figures), 'figure')} of "
         f"{count(len(results['hard_cases']), 'hard case')}, {count(len(results['convergence']), 'convergence study')}"
     )
+    if results["mitsuba"]["scenes"]:
+        done += f", {count(len(results['mitsuba']['scenes']), 'scene against Mitsuba')}"
     if failed or results.get("passed") is False:
         return "bad", "FAILED", f"{', '.join(failed) or 'something'} failed; {done}"
     if results.get("interrupted"):
         return "open", "Interrupted", f"nothing failed until then; {done}"
-    if not pairings and not figures and not results["convergence"]:
+    if not any(entries for _, entries in sections):
         return "open", "Nothing was compared", done
     return "good", "Passed", done
 
@@ -121,6 +125,15 @@ def _hard_failure(hard):
     return f"<b>hard case {text(hard.get('name'))}</b> on {text(hard.get('backend'))}: {text(hard['error']) if hard.get('error') else why}"
 
 
+def _mitsuba_failure(scene):
+    pixels = scene.get("pixels")
+    where = f"; {test_name(pixels)}: p {probability(pixels.get('p'))}" if isinstance(pixels, dict) else ""
+    return (
+        f"<b>{text(scene.get('name'))}</b> against Mitsuba: channel means p {probability(scene.get('p'))}, level "
+        f"{probability(scene.get('level'))}, largest difference {percent(scene.get('largest_difference'))}{where}"
+    )
+
+
 def failures(results):
     lines = []
     for case in results["cases"]:
@@ -131,6 +144,7 @@ def failures(results):
     lines += [
         f"<b>{text(c.get('name'))}</b>: {text(c.get('note'))}" for c in results["convergence"] if not c.get("passed")
     ]
+    lines += [_mitsuba_failure(s) for s in results["mitsuba"]["scenes"] if not s.get("passed")]
     if not lines:
         return ""
     return '<h2 id="failures">Failures</h2>' + "".join(f'<div class="failure">{line}</div>' for line in lines)

@@ -147,6 +147,8 @@ class Page(unittest.TestCase):
             small_results.results(passed=True), [("mitsuba.json", json.dumps({"mitsuba": "3.1", "scenes": [scene]}))]
         )
         self.assertIn("Against Mitsuba 3</h2>", page)
+        self.assertIn("<b>FAILED</b> 1 scene against Mitsuba failed; 2 of 2 comparisons", page)
+        self.assertIn("<b>box</b> against Mitsuba: channel means p 10<sup>−7</sup>", page)
         self.assertRegex(page, r"FAILED</span></td><td>box</td>.*3.3 %")
 
 
