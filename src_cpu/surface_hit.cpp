@@ -44,8 +44,7 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
                              ? cross * (flip / std::sqrt(length2))
                              : glm::vec3(glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2)))) * flip;
   hit.offset = surface_offset(largest_coordinates(p0, p1, p2), hit.geometric_normal);
-  const glm::vec2 inside = off_the_edges(p0, p1, p2, std::sqrt(length2), hit.offset, {u, v});
-  hit.departure = (1 - inside.x - inside.y) * p0 + inside.x * p1 + inside.y * p2;
+  hit.departure = off_the_edges(hit.point, {w, u, v}, {p0, p1, p2}, cross, hit.offset);
   hit.shading_normal = hit.geometric_normal;
   if (shape.flags & KB_SHAPE_HAS_NORMALS) {
     const glm::vec3 n = w * to_glm(scene.normals[index[0]]) + u * to_glm(scene.normals[index[1]]) +

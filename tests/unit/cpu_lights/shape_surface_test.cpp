@@ -128,21 +128,25 @@ TEST(RayOffset, FollowsTheCornersAndNotThePoint) {
 /// Points next to an edge are kept eight offsets inside, others stay where they are; slivers keep a point
 /// too.
 TEST(RayOffset, KeepsPointsOffTheEdges) {
-  const glm::vec3 a(0, 0, 0), b(2, 0, 0), c(0, 2, 0);
-  constexpr float kOffset = 1e-4f, kArea2 = 4;
-  const glm::vec2 middle = off_the_edges(a, b, c, kArea2, kOffset, {0.25f, 0.5f});
-  EXPECT_EQ(middle, glm::vec2(0.25f, 0.5f));
-  for (const glm::vec2 at : {glm::vec2(0, 0.5f), {0.5f, 0}, {0.5f, 0.5f}, {-1e-7f, 0}, {1, 0}, {0, 1}}) {
-    const glm::vec2 inside = off_the_edges(a, b, c, kArea2, kOffset, at);
-    const float w = 1 - inside.x - inside.y;
-    EXPECT_LT(glm::length(inside - at), 2e-3f);
-    // Distances from the edges: weight times height, the heights being 2, 2 and sqrt(2).
-    EXPECT_GT(inside.x * 2, 7.9f * kOffset);
-    EXPECT_GT(inside.y * 2, 7.9f * kOffset);
-    EXPECT_GT(w * std::sqrt(2.0f), 7.9f * kOffset);
+  const glm::vec3 corners[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  const glm::vec3 normal(0, 0, 4);
+  constexpr float kOffset = 1e-4f;
+  const auto moved = [&](float x, float y) {
+    return off_the_edges({x, y, 0}, {1 - (x + y) / 2, x / 2, y / 2}, corners, normal, kOffset);
+  };
+  EXPECT_EQ(moved(0.5f, 1), glm::vec3(0.5f, 1, 0));
+  EXPECT_EQ(moved(0.001f, 0.7f), glm::vec3(0.001f, 0.7f, 0));
+  for (const glm::vec2 at : {glm::vec2(0, 0.5f), {0.5f, 0}, {0.5f, 1.5f}, {-1e-7f, 0}, {2, 0}, {0, 2}}) {
+    const glm::vec3 inside = moved(at.x, at.y);
+    EXPECT_LT(glm::length(glm::vec2(inside) - at), 30 * kOffset);
+    EXPECT_GT(inside.x, 7.9f * kOffset);
+    EXPECT_GT(inside.y, 7.9f * kOffset);
+    EXPECT_GT((2 - inside.x - inside.y) / std::sqrt(2.0f), 7.9f * kOffset);
   }
-  const glm::vec2 sliver = off_the_edges(a, b, {1, 1e-9f, 0}, 2e-9f, kOffset, {1, 0});
-  EXPECT_NEAR(sliver.x, 0.8f, 1e-6f);
+  const glm::vec3 sliver[3] = {{0, 0, 0}, {2, 0, 0}, {1, 1e-4f, 0}};
+  const glm::vec3 kept = off_the_edges({1, 0, 0}, {0.5f, 0.5f, 0}, sliver, {0, 0, 2e-4f}, kOffset);
+  EXPECT_NEAR(kept.y, 1e-4f / 8, 1e-9f);
+  EXPECT_NEAR(kept.x, 1, 1e-6f);
 }
 
 TEST(RayOffset, KeepsPointsOffTheRims) {

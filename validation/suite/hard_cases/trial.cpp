@@ -109,6 +109,7 @@ TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) 
   image.height = scene.film.crop_height;
   image.channels = scene.channels.size();
   image.replicates = settings.replicates;
+  image.samples = settings.samples;
   for (const Channel& channel : scene.channels) image.widths_nm.push_back(channel.width_nm());
   collect_pixels(film, backend->film_scale(), image);
   collect_means(film, backend->film_scale(), image);
@@ -123,8 +124,9 @@ TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) 
 }
 
 void Trial::exact(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
-                  double limit, const std::string& reason) {
+                  double rounding, const std::string& reason) {
   const double expected = reference * image.widths_nm[channel];
+  const double limit = rounding + std::min(image.samples, 64u) * 0x1p-24;
   double worst = expected, error = 0;
   for (std::size_t i = channel; i < image.mean.size(); i += image.channels) {
     const double relative = std::abs(image.mean[i] / expected - 1);

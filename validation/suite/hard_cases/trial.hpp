@@ -28,6 +28,7 @@ struct TrialImage {
   std::vector<double> widths_nm;                   // [channel]
   std::vector<double> mean;                        // [pixel][channel]
   std::vector<double> image_mean, image_variance;  // [channel]; variance of the mean
+  uint32_t samples = 0;                            // per pixel and replicate
   uint64_t rays = 0, paths = 0, vertices = 0;
 
   double at(uint32_t x, uint32_t y, std::size_t channel) const {
@@ -48,9 +49,10 @@ class Trial {
   TrialImage render(const std::string& xml, const TrialSettings& settings);
 
   /// The largest relative error of the pixels of a channel against `reference` > 0, which is per nm of the
-  /// channel.
+  /// channel. To the limit comes what the sum of a replicate's samples may be off, of which at most 64 are
+  /// added in float: min(samples, 64) * 2^-24.
   void exact(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
-             double limit, const std::string& reason);
+             double rounding, const std::string& reason);
   /// The image mean of a channel, in W m^-2 sr^-1 nm^-1, by a t-test. rounding: relative, added to the limit.
   void statistical(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
                    double rounding);
