@@ -15,7 +15,7 @@ inline bool is_boundary(const FlatScene& scene, uint32_t shape) {
 /// to.
 inline glm::vec3 leave_surface(const SurfaceHit& hit, glm::vec3 direction) {
   const glm::vec3 n = hit.geometric_normal;
-  return offset_ray_origin(hit.point, glm::dot(n, direction) >= 0 ? n : -n, hit.offset);
+  return offset_ray_origin(hit.departure, glm::dot(n, direction) >= 0 ? n : -n, hit.offset);
 }
 
 /// The parameter of the point that a ray left, whose origin is off the surface: columns of gas are measured

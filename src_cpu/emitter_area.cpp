@@ -187,10 +187,11 @@ float sphere_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point
   const SphereView view(shape, origin);
   if (!sphere_front_visible(shape, view)) return 0;
   const glm::vec3 to_light = hit_point - origin;
-  const glm::dvec3 outward = glm::dvec3(to_light) - view.to_centre;
+  // In double from the beginning: from afar the rounding of to_light may exceed the sphere.
+  const glm::dvec3 way = glm::dvec3(hit_point) - glm::dvec3(origin), outward = way - view.to_centre;
   if (!view.outside()) return area_to_solid_angle(to_light, glm::vec3(-glm::normalize(outward)), shape.area);
   // The far side, seen through an opening of the near side, shows its back.
-  return glm::dot(outward, glm::dvec3(to_light)) <= 0 ? cone_density(view.one_minus_cos()) : 0;
+  return glm::dot(outward, way) <= 0 ? cone_density(view.one_minus_cos()) : 0;
 }
 
 }  // namespace

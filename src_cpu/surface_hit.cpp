@@ -30,10 +30,10 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
   const glm::vec3 p0 = to_glm(scene.positions[index[0]]);
   const glm::vec3 p1 = to_glm(scene.positions[index[1]]);
   const glm::vec3 p2 = to_glm(scene.positions[index[2]]);
-  const float w = 1 - u - v;
-  hit.point = w * p0 + u * p1 + v * p2;
   hit.triangle = primitive;
   hit.barycentric = {u, v};
+  const float w = 1 - u - v;
+  hit.point = w * p0 + u * p1 + v * p2;
   const glm::vec3 e1 = p1 - p0;
   const glm::vec3 e2 = p2 - p0;
   const float flip = shape.flags & KB_SHAPE_FLIP_NORMALS ? -1.0f : 1.0f;
@@ -44,6 +44,7 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
                              ? cross * (flip / std::sqrt(length2))
                              : glm::vec3(glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2)))) * flip;
   hit.offset = surface_offset(largest_coordinates(p0, p1, p2), hit.geometric_normal);
+  hit.departure = off_the_edges(hit.point, {w, u, v}, {p0, p1, p2}, cross, hit.offset);
   hit.shading_normal = hit.geometric_normal;
   if (shape.flags & KB_SHAPE_HAS_NORMALS) {
     const glm::vec3 n = w * to_glm(scene.normals[index[0]]) + u * to_glm(scene.normals[index[1]]) +
@@ -77,6 +78,7 @@ SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape_index, uint32
   hit.point = surface.position;
   hit.geometric_normal = hit.shading_normal = surface.normal;
   hit.offset = surface_offset(largest_coordinates(shape), hit.geometric_normal);
+  hit.departure = off_the_rim(shape, surface.position, surface.uv, hit.offset);
   hit.tangent = surface.tangent;
   hit.uv = surface.uv;
   return hit;

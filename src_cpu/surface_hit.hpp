@@ -13,6 +13,7 @@ struct SurfaceHit {
   glm::vec3 shading_normal{0};    // unit
   glm::vec3 tangent{0};           // dp/du, not normalised; zero if unknown
   float offset = 0;               // m: how far off the surface rays begin (ray_offset.hpp)
+  glm::vec3 departure{0};         // the point off the edges: what rays begin off
   glm::vec2 uv{0};
   uint32_t shape = KB_NONE;
   uint32_t triangle = 0;     // meshes: in the shape

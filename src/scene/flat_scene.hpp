@@ -112,6 +112,7 @@ struct FlatScene {
   std::vector<float> emitter_cdf;          // emitters + 1 entries, 0 to 1, see lattice_cdf.hpp
   uint32_t environment = KB_NONE;          // emitter index of the constant or envmap emitter
   EnvmapSampling envmap;
+  std::array<double, 3> origin{};  // where the coordinates of all of this begin, in the scene file's: 0 unless it is far
   KbFloat3 scene_centre{0, 0, 0};
   float scene_radius = 0;  // bounding sphere of the geometry, m
 

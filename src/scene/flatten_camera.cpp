@@ -16,7 +16,7 @@ void Flattener::set_camera() {
   camera.principal_y = static_cast<float>(sensor.principal_point_y);
   camera.near_clip = static_cast<float>(sensor.near_clip);
   camera.far_clip = static_cast<float>(sensor.far_clip);
-  store_transform(sensor.to_world, camera.to_world);
+  store_transform(placed(sensor.to_world), camera.to_world);
   if (const auto* perspective = std::get_if<PerspectiveSensor>(&sensor.model)) {
     camera.type = KB_CAMERA_PERSPECTIVE;
     camera.tan_half_fov_x = static_cast<float>(std::tan(0.5 * perspective->fov_x));

@@ -114,12 +114,12 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
   } else if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) {
     record.type = KB_EMITTER_POINT;
     record.ref = spectra_.row(point->intensity, use("intensity"));
-    set_emitter_transforms(record, glm::translate(Transform{1.0}, point->position));
+    set_emitter_transforms(record, placed(glm::translate(Transform{1.0}, point->position)));
     powers_.push_back({point->intensity, 4 * kPi});
   } else if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model)) {
     record.type = KB_EMITTER_SPOT;
     record.ref = spectra_.row(spot->intensity, use("intensity"));
-    set_emitter_transforms(record, spot->to_world);
+    set_emitter_transforms(record, placed(spot->to_world));
     record.cutoff_angle = static_cast<float>(spot->cutoff_angle);
     record.beam_width = static_cast<float>(spot->beam_width);
     record.cos_cutoff = static_cast<float>(std::cos(spot->cutoff_angle));

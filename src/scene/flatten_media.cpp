@@ -48,7 +48,7 @@ void Flattener::set_grid(KbMedium& record, const GridField& grid) {
     record.reference_k = std::max(record.reference_k, node.temperature_k);
     out_.plume_nodes.push_back({node.temperature_k, node.scale});
   }
-  set_to_local(record, grid.to_world, {grid.nodes[0] - 1.0, grid.nodes[1] - 1.0, grid.nodes[2] - 1.0});
+  set_to_local(record, placed(grid.to_world), {grid.nodes[0] - 1.0, grid.nodes[1] - 1.0, grid.nodes[2] - 1.0});
 }
 
 void Flattener::set_jet(KbMedium& record, const JetField& jet) {
@@ -59,7 +59,7 @@ void Flattener::set_jet(KbMedium& record, const JetField& jet) {
   record.spread = static_cast<float>(jet.spread);
   record.length = static_cast<float>(jet.length);
   record.reference_k = std::max(record.temperature_k, record.ambient_k);
-  set_to_local(record, jet.to_world, {1, 1, 1});
+  set_to_local(record, placed(jet.to_world), {1, 1, 1});
 }
 
 uint32_t Flattener::add_medium(const KbMedium& record, const std::string& name,
@@ -134,7 +134,9 @@ void Flattener::add_media() {
   out_.features.gas = true;
   if (in_.atmosphere) out_.atmosphere = medium(in_.atmosphere, KB_NONE);
   for (uint32_t i = 0; i < out_.shapes.size(); ++i) out_.interiors.push_back(interior(i));
-  out_.camera_media = media_at_camera(out_, in_.sensor);
+  Sensor sensor = in_.sensor;
+  sensor.to_world = placed(sensor.to_world);
+  out_.camera_media = media_at_camera(out_, sensor);
 }
 
 }  // namespace kiloband

@@ -54,8 +54,9 @@ void Flattener::add_shapes() {
     record.emitter = record.first_cdf = KB_NONE;
     record.flags = shape.flip_normals ? KB_SHAPE_FLIP_NORMALS : 0;
     if (out_.surfaces[record.surface].flags & KB_SURFACE_NULL) record.flags |= KB_SHAPE_NULL;
-    store_transform(shape.to_world, record.to_world);
-    store_transform(glm::inverse(shape.to_world), record.to_object);
+    const Transform to_world = placed(shape.to_world);
+    store_transform(to_world, record.to_world);
+    store_transform(glm::inverse(to_world), record.to_object);
     if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry)) {
       record.type = KB_SHAPE_MESH;
       add_mesh(record, shape, *mesh->mesh);
@@ -81,8 +82,9 @@ void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) 
   }
   record.first_triangle = static_cast<uint32_t>(out_.triangles.size() / 3);
   record.triangle_count = static_cast<uint32_t>(mesh.triangles.size());
+  const Transform placed_in_world = placed(shape.to_world);
   for (const Vec3f& p : mesh.positions) {
-    out_.positions.push_back(to_record(glm::dvec3(shape.to_world * glm::dvec4(p[0], p[1], p[2], 1))));
+    out_.positions.push_back(to_record(glm::dvec3(placed_in_world * glm::dvec4(p[0], p[1], p[2], 1))));
   }
   if (!mesh.normals.empty()) {
     record.flags |= KB_SHAPE_HAS_NORMALS;

@@ -84,6 +84,10 @@ class Flattener {
   double emissivity_estimate(uint32_t thermal, double lambda_nm) const;
   double reference_estimate(uint32_t ref, double lambda_nm) const;
 
+  // flatten_place.cpp
+  void set_origin();
+  Transform placed(const Transform& to_world) const;
+
   // flatten_shapes.cpp
   void add_shapes();
   void add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh);

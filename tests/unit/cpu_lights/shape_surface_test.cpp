@@ -111,23 +111,53 @@ TEST(Area, ClosedForms) {
   EXPECT_NEAR(analytic_area(make_shape(KB_SHAPE_CYLINDER, placed({1, 2, 3}, 1, {2, 2, 5}))), 20 * pi, 1e-5);
 }
 
-TEST(RayOffset, LeavesTheSurface) {
-  // Offsets along the normal at all scales: to its side, by no more than 1e-4 of the coordinate (or 2e-5 near
-  // 0).
-  Uniform uniform(6);
-  for (const float scale : {1e-6f, 1e-2f, 1.0f, 1e3f, 1e6f}) {
-    for (int i = 0; i < 1000; ++i) {
-      const glm::vec3 n(random_direction(uniform)), p(random_direction(uniform) * static_cast<double>(scale));
-      const glm::vec3 q = offset_ray_origin(p, n);
-      ASSERT_GT(glm::dot(q - p, n), 0);
-      ASSERT_LT(glm::length(q - p), std::max(1e-4f * scale, 2e-5f));
-    }
+TEST(RayOffset, FollowsTheCornersAndNotThePoint) {
+  // Level: 2^-19 of the height, and 2^-22 of the width for tests that mix the axes.
+  EXPECT_EQ(surface_offset({8, 8, 2}, {0, 0, 1}), 2 * 0x1p-19f + 8 * 0x1p-22f);
+  EXPECT_EQ(surface_offset({8, 8, 0}, {0, 0, -1}), 8 * 0x1p-22f);
+  const glm::vec3 largest = largest_coordinates({1e-6f, 0, -2e-6f}, {0, -3e-6f, 0}, {0, 0, 1e-6f});
+  EXPECT_EQ(largest, glm::vec3(1e-6f, 3e-6f, 2e-6f));
+  EXPECT_LT(surface_offset(largest, {0.6f, 0.8f, 0}),
+            1e-11f);  // a triangle of micrometres: far below its size
+  EXPECT_EQ(offset_ray_origin({1, 2, 3}, {0, 0, 1}, 0.5f), glm::vec3(1, 2, 3.5f));
+  EXPECT_EQ(target_offset(0.25f, {-1, 4, 2}), 0.25f + 4 * 0x1p-20f);
+  const KbShape ball = make_shape(KB_SHAPE_SPHERE, placed({-5, 1, 2}, 0, {2, 2, 2}));
+  EXPECT_EQ(largest_coordinates(ball), glm::vec3(7, 3, 4));
+}
+
+/// Points next to an edge are kept eight offsets inside, others stay where they are; slivers keep a point
+/// too.
+TEST(RayOffset, KeepsPointsOffTheEdges) {
+  const glm::vec3 corners[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  const glm::vec3 normal(0, 0, 4);
+  constexpr float kOffset = 1e-4f;
+  const auto moved = [&](float x, float y) {
+    return off_the_edges({x, y, 0}, {1 - (x + y) / 2, x / 2, y / 2}, corners, normal, kOffset);
+  };
+  EXPECT_EQ(moved(0.5f, 1), glm::vec3(0.5f, 1, 0));
+  EXPECT_EQ(moved(0.001f, 0.7f), glm::vec3(0.001f, 0.7f, 0));
+  for (const glm::vec2 at : {glm::vec2(0, 0.5f), {0.5f, 0}, {0.5f, 1.5f}, {-1e-7f, 0}, {2, 0}, {0, 2}}) {
+    const glm::vec3 inside = moved(at.x, at.y);
+    EXPECT_LT(glm::length(glm::vec2(inside) - at), 30 * kOffset);
+    EXPECT_GT(inside.x, 7.9f * kOffset);
+    EXPECT_GT(inside.y, 7.9f * kOffset);
+    EXPECT_GT((2 - inside.x - inside.y) / std::sqrt(2.0f), 7.9f * kOffset);
   }
-  // The published scheme: 256 units in the last place at 1, 1/65536 at 0.
-  EXPECT_EQ(offset_ray_origin({1, 0, -1}, {1, 0, 0}).x, 1 + 256 * 0x1p-23f);
-  EXPECT_EQ(offset_ray_origin({-1, 0, 0}, {-1, 0, 0}).x, -1 - 256 * 0x1p-23f);
-  EXPECT_EQ(offset_ray_origin({-1, 0, 0}, {1, 0, 0}).x, -1 + 256 * 0x1p-24f);
-  EXPECT_EQ(offset_ray_origin({0, 0, 0}, {0, -1, 0}).y, -0x1p-16f);
+  const glm::vec3 sliver[3] = {{0, 0, 0}, {2, 0, 0}, {1, 1e-4f, 0}};
+  const glm::vec3 kept = off_the_edges({1, 0, 0}, {0.5f, 0.5f, 0}, sliver, {0, 0, 2e-4f}, kOffset);
+  EXPECT_NEAR(kept.y, 1e-4f / 8, 1e-9f);
+  EXPECT_NEAR(kept.x, 1, 1e-6f);
+}
+
+TEST(RayOffset, KeepsPointsOffTheRims) {
+  constexpr float kOffset = 1e-4f;
+  const KbShape disk = make_shape(KB_SHAPE_DISK, placed({0, 0, 0}, 0, {2, 2, 1}));
+  EXPECT_EQ(off_the_rim(disk, {1, 0, 0}, {0.5f, 0}, kOffset), glm::vec3(1, 0, 0));
+  EXPECT_NEAR(off_the_rim(disk, {2, 0, 0}, {1, 0}, kOffset).x, 2 - 8 * kOffset, 1e-6);
+  const KbShape tube = make_shape(KB_SHAPE_CYLINDER, placed({0, 0, 0}, 0, {1, 1, 4}));
+  EXPECT_EQ(off_the_rim(tube, {1, 0, 2}, {0, 0.5f}, kOffset), glm::vec3(1, 0, 2));
+  EXPECT_NEAR(off_the_rim(tube, {1, 0, 4}, {0, 1}, kOffset).z, 4 - 8 * kOffset, 1e-6);
+  EXPECT_NEAR(off_the_rim(tube, {1, 0, 0}, {0, 0}, kOffset).z, 8 * kOffset, 1e-6);
 }
 
 TEST(RayOffset, NoSelfIntersectionOnSpheres) {
@@ -141,7 +171,8 @@ TEST(RayOffset, NoSelfIntersectionOnSpheres) {
       glm::dvec3 d = random_direction(uniform);
       if (glm::dot(d, glm::dvec3(point.normal)) < 0) d = -d;
       double t = 0;
-      const glm::dvec3 origin(offset_ray_origin(point.position, point.normal));
+      const float offset = surface_offset(largest_coordinates(shape), point.normal);
+      const glm::dvec3 origin(offset_ray_origin(point.position, point.normal, offset));
       ASSERT_FALSE(intersect_analytic(shape, origin, d, 0, kInfinity, t)) << radius;
     }
   }

@@ -37,7 +37,8 @@ __kernel void leave(ARGS) {
   __global const KbShape* shape = &scene.shapes[in->u[0]];
   const SurfacePoint p = analytic_surface(shape, VEC3(0));
   const float3 d = VEC3(3);
-  const float3 origin = offset_ray_origin(p.position, dot(p.normal, d) >= 0.0f ? p.normal : -p.normal);
+  const float3 origin = offset_ray_origin(p.position, dot(p.normal, d) >= 0.0f ? p.normal : -p.normal,
+                                          surface_offset(shape_largest_coordinates(shape), p.normal));
   float t = -1.0f;
   out->u[0] = intersect_analytic(shape, origin, d, 0.0f, INFINITY, &t);
   out->f[0] = t; PUT3(1, origin); PUT3(4, p.position); PUT3(7, p.normal);

@@ -18,6 +18,7 @@ __kernel void hit(ARGS, __global const KbPrimitive* restrict primitives) {
   PUT3(0, s.point); PUT3(3, s.geometric_normal); PUT3(6, s.shading_normal); PUT3(9, s.tangent);
   out->f[12] = s.uv.x; out->f[13] = s.uv.y; out->u[0] = s.shape;
   PUT3(14, leave_surface(&s, VEC3(3)));
+  out->f[17] = s.offset;
 }
 __kernel void frame(ARGS) {
   ITEM
@@ -28,7 +29,7 @@ __kernel void frame(ARGS) {
 }
 __kernel void offset(ARGS) {
   ITEM
-  PUT3(0, offset_ray_origin(VEC3(0), VEC3(3)));
+  PUT3(0, offset_ray_origin(VEC3(0), VEC3(3), target_offset(surface_offset(fabs(VEC3(0)), VEC3(3)), VEC3(3))));
 }
 )";
 
@@ -115,7 +116,8 @@ TEST(GpuSurface, HitsOfMeshesAndShapes) {
     const float side = glm::dot(expected.geometric_normal, get3(in[i], 3));
     if (mesh && std::fabs(side) > 1e-5f) {
       const glm::vec3 n = side >= 0 ? get3(out[i], 3) : -get3(out[i], 3);
-      ASSERT_EQ(get3(out[i], 14), offset_ray_origin(get3(out[i], 0), n)) << i;
+      ASSERT_EQ(get3(out[i], 14), offset_ray_origin(expected.departure, n, out[i].f[17])) << i;
+      ASSERT_EQ(out[i].f[17], expected.offset) << i;
     }
   }
 }
@@ -153,8 +155,10 @@ TEST(GpuSurface, OffsetsAreThoseOfTheCpuBitForBit) {
   }
   in[0].f[0] = -0.0f;
   const std::vector<ItemOut> out = run_items(probe(), "offset", FlatScene(), in);
-  for (std::size_t i = 0; i < in.size(); ++i)
-    ASSERT_EQ(get3(out[i], 0), offset_ray_origin(get3(in[i], 0), get3(in[i], 3))) << i;
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const glm::vec3 p = get3(in[i], 0), n = get3(in[i], 3);
+    ASSERT_EQ(get3(out[i], 0), offset_ray_origin(p, n, target_offset(surface_offset(glm::abs(p), n), n))) << i;
+  }
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Smooth glass at its limits: total internal reflection, nested bodies, and rough glass and mirrors of roughness 1e-4.
+// Smooth glass at its limits: total internal reflection, nested bodies, and rough glass and mirrors of
+// roughness 1e-4.
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -13,7 +14,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kIndex = 1.5;
 
-std::string glass(double inside, double outside, const std::string& type = "dielectric", const std::string& more = "") {
+std::string glass(double inside, double outside, const std::string& type = "dielectric",
+                  const std::string& more = "") {
   return bsdf_element(type, float_element("int_ior", inside) + float_element("ext_ior", outside) + more);
 }
 
@@ -26,91 +28,107 @@ double reflectance(double cosine, double eta) {
   return 0.5 * (s * s + p * p);
 }
 
-/// From inside glass (z < 0) towards its surface z = 0 under theta, everywhere an environment of radiance 1. What is
-/// reflected shows 1; what comes in from outside is brighter by n^2:
+/// From inside glass (z < 0) towards its surface z = 0 under theta, everywhere an environment of radiance 1.
+/// What is reflected shows 1; what comes in from outside is brighter by n^2:
 ///   L = R + (1 - R) n^2, and 1 beyond the critical angle asin(1 / n): there without variance.
 /// Near the critical angle R(theta) is a square root: a cosine that is 6e-8 off moves R by up to
 /// 4 n sqrt(2 * 6e-8 ...), so that the angles here stay 1e-5 rad away from it.
 std::vector<HardFigure> total_reflection(const HardCaseContext& context) {
   Trial trial(context);
   const double critical = std::asin(1 / kIndex);
-  const std::string surface = shape_element("rectangle", to_world_element(scale_step(10, 10, 1)) + glass(kIndex, 1.0));
+  const std::string surface =
+      shape_element("rectangle", to_world_element(scale_step(10, 10, 1)) + glass(kIndex, 1.0));
   const auto scene = [&](double theta) {
     const std::string view = orthographic_element(
-        lookat_step(point_text(-2 * std::sin(theta), 0, -2 * std::cos(theta)), "0, 0, 0", "0, 1, 0"), 0.5, 16, 1e-3);
+        lookat_step(point_text(-2 * std::sin(theta), 0, -2 * std::cos(theta)), "0, 0, 0", "0, 1, 0"), 0.5, 16,
+        1e-3);
     return scene_text(-1, view + surface + environment_element(1));
   };
   const TrialSettings fixed{.samples = static_cast<uint32_t>(trial.by_effort(4, 64, 1024))};
   for (const double beyond : {1e-5, 1e-3, 0.3, kPi / 2 - critical - 1e-4}) {
-    trial.exact("beyond the critical angle by " + short_text(std::round(beyond * 1e5) / 1e5), trial.render(scene(critical + beyond), fixed), 0, 1,
-                5e-7, "all is reflected");
+    trial.exact("beyond the critical angle by " + short_text(std::round(beyond * 1e5) / 1e5),
+                trial.render(scene(critical + beyond), fixed), 0, 1, 5e-7, "all is reflected");
   }
-  const TrialSettings random{.samples = static_cast<uint32_t>(trial.by_effort(16, 256, 4096)), .replicates = 64};
+  const TrialSettings random{.samples = static_cast<uint32_t>(trial.by_effort(16, 256, 4096)),
+                             .replicates = 64};
   for (const double before : {1e-4, 1e-2, 0.4}) {
     const double r = reflectance(std::cos(critical - before), 1 / kIndex);
-    trial.statistical("before the critical angle by " + short_text(before), trial.render(scene(critical - before), random), 0,
-                      r + (1 - r) * kIndex * kIndex, 1e-6 + 1e-6 / std::sqrt(before));
+    trial.statistical("before the critical angle by " + short_text(before),
+                      trial.render(scene(critical - before), random), 0, r + (1 - r) * kIndex * kIndex,
+                      1e-6 + 1e-6 / std::sqrt(before));
   }
   return trial.finish();
 }
 
-/// Two glass surfaces 2 m apart and 2000 m long; light between them under 45 degrees, beyond the critical angle, is
-/// reflected 1000 times before it leaves at the end: exactly the environment's radiance 1, if nothing is lost.
+/// Two glass surfaces 2 m apart and 2000 m long; light between them under 45 degrees, beyond the critical
+/// angle, is reflected 1000 times before it leaves at the end: exactly the environment's radiance 1, if
+/// nothing is lost.
 std::vector<HardFigure> light_pipe(const HardCaseContext& context) {
   Trial trial(context);
   const std::string wall = scale_step(2000, 10, 1) + rotate_step(0, 1, 0, 90);
   const std::string walls =
       shape_element("rectangle", to_world_element(wall + translate_step(1, 0, 0)) + glass(kIndex, 1.0)) +
-      shape_element("rectangle", to_world_element(wall + rotate_step(0, 0, 1, 180) + translate_step(-1, 0, 0)) + glass(kIndex, 1.0));
+      shape_element(
+          "rectangle",
+          to_world_element(wall + rotate_step(0, 0, 1, 180) + translate_step(-1, 0, 0)) + glass(kIndex, 1.0));
   const std::string view = orthographic_element(lookat_step("0, 0, 0", "1, 0, 1", "0, 1, 0"), 0.1, 8, 1e-3);
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(1, 8, 64))};
   const TrialImage image = trial.render(scene_text(-1, view + walls + environment_element(1)), settings);
   trial.exact("after 1000 total reflections", image, 0, 1, 1e-6, "every factor is 1");
-  trial.figure("rays per path", "rays", static_cast<double>(image.rays) / static_cast<double>(image.paths), 1001, 1,
-               "a path has 1000 bounces and leaves");
+  trial.figure("rays per path", "rays", static_cast<double>(image.rays) / static_cast<double>(image.paths),
+               1001, 1, "a path has 1000 bounces and leaves");
   return trial.finish();
 }
 
-/// Glass around water around glass around air, concentric, in an environment of radiance 1: lossless bodies show 1
-/// wherever one looks. Each boundary multiplies by the square of the ratio of the indices, and on the way out by its
-/// inverse: rounding of 6e-8 per boundary, some 30 of them in the longest path of a pixel.
+/// Glass around water around glass around air, concentric, in an environment of radiance 1: lossless bodies
+/// show 1 wherever one looks. Each boundary multiplies by the square of the ratio of the indices, and on the
+/// way out by its inverse: rounding of 6e-8 per boundary, some 30 of them in the longest path of a pixel.
 std::vector<HardFigure> nested_glass(const HardCaseContext& context) {
   Trial trial(context);
   const double indices[] = {1.0, 1.5, 1.33, 2.4, 1.0}, radii[] = {1, 0.8, 0.5, 0.2};
   std::string bodies;
   for (int i = 0; i < 4; ++i)
     bodies += shape_element("sphere", float_element("radius", radii[i]) + glass(indices[i + 1], indices[i]));
-  const std::string view = orthographic_element(lookat_step("0.3, 0.2, 5", "0, 0, 0", "0, 1, 0"), 1.1, 32, 1e-3);
+  const std::string view =
+      orthographic_element(lookat_step("0.3, 0.2, 5", "0, 0, 0", "0, 1, 0"), 1.1, 32, 1e-3);
   const std::string scene = scene_text(-1, view + bodies + environment_element(1));
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(8, 128, 2048))};
   const TrialImage image = trial.render(scene, settings);
   trial.exact("four bodies in a furnace", image, 0, 1, 5e-6, "sums of rounding, about 80 boundaries at most");
-  // A diffuse core behind three boundaries, reflectance 0.5: it sees the furnace too and shows less than 1, never more.
+  // A diffuse core behind three boundaries, reflectance 0.5: it sees the furnace too and shows less than 1,
+  // never more.
   trial.oracle("evaluation", scene, settings);
   return trial.finish();
 }
 
-/// Roughness 1e-4 in an environment of radiance 1: a perfect mirror (reflectance 1) and lossless glass show 1 less
-/// what single scattering loses, of order alpha^2 = 1e-8 at these angles.
+/// Roughness 1e-4 in an environment of radiance 1: a perfect mirror (reflectance 1) and lossless glass show 1
+/// less what single scattering loses, of order alpha^2 = 1e-8 at these angles.
 std::vector<HardFigure> smallest_roughness(const HardCaseContext& context) {
   Trial trial(context);
-  const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(8, 64, 512)), .replicates = 32};
+  const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(8, 64, 512)),
+                               .replicates = 32};
   for (const char* distribution : {"ggx", "beckmann"}) {
-    const std::string rough = value_element("string", "distribution", distribution) + float_element("alpha", 1e-4);
+    const std::string rough =
+        value_element("string", "distribution", distribution) + float_element("alpha", 1e-4);
     const struct {
       std::string name, bsdf;
-    } surfaces[] = {{"mirror", bsdf_element("roughconductor", rough)}, {"glass", glass(kIndex, 1.0, "roughdielectric", rough)}};
+    } surfaces[] = {{"mirror", bsdf_element("roughconductor", rough)},
+                    {"glass", glass(kIndex, 1.0, "roughdielectric", rough)}};
     for (const auto& surface : surfaces) {
       for (const double degrees : {0.0, 60.0, 89.0}) {
         const double theta = degrees * kPi / 180;
-        const std::string plate = shape_element("rectangle", to_world_element(scale_step(1e3, 1e3, 1)) + surface.bsdf);
+        const std::string plate =
+            shape_element("rectangle", to_world_element(scale_step(1e3, 1e3, 1)) + surface.bsdf);
         const std::string view = orthographic_element(
-            lookat_step(point_text(-2 * std::sin(theta), 0, 2 * std::cos(theta)), "0, 0, 0", "0, 1, 0"), 0.01, 8, 1e-3);
-        const TrialImage image = trial.render(scene_text(-1, view + plate + environment_element(1)), settings);
+            lookat_step(point_text(-2 * std::sin(theta), 0, 2 * std::cos(theta)), "0, 0, 0", "0, 1, 0"), 0.01,
+            8, 1e-3);
+        const TrialImage image =
+            trial.render(scene_text(-1, view + plate + environment_element(1)), settings);
         // Into the glass radiance grows by n^2: L = R + (1 - R) / n^2 seen from outside.
         const double r = surface.name == "mirror" ? 1 : reflectance(std::cos(theta), kIndex);
-        trial.statistical(std::string(distribution) + " " + surface.name + ", " + short_text(degrees) + " degrees", image, 0,
-                          r + (1 - r) / (kIndex * kIndex), 2e-4);
+        trial.statistical(
+            std::string(distribution) + " " + surface.name + ", " + short_text(degrees) + " degrees", image,
+            0, r + (1 - r) / (kIndex * kIndex), 2e-4);
       }
     }
   }

@@ -1,4 +1,5 @@
-// Gas of optical depth x from 1e-8 to 1e4: a column of 1 m at temperature T in front of a wall of radiance L0 shows
+// Gas of optical depth x from 1e-8 to 1e4: a column of 1 m at temperature T in front of a wall of radiance L0
+// shows
 //   L = L0 exp(-x) + B(T) (1 - exp(-x)),
 // without variance. Relative to each term: 1 - exp(-x) must keep its accuracy where exp(-x) is 1 in float.
 #include <cmath>
@@ -11,9 +12,11 @@ namespace kiloband::validation {
 namespace {
 
 std::string column(double depth, double kelvin) {
-  const std::string gas = "<medium type=\"absorbing\" name=\"interior\">" + spectrum_element("absorption", depth) +
+  const std::string gas = "<medium type=\"absorbing\" name=\"interior\">" +
+                          spectrum_element("absorption", depth) +
                           (kelvin > 0 ? float_element("temperature", kelvin) : "") + "</medium>";
-  return shape_element("cube", to_world_element(scale_step(1, 1, 0.5) + translate_step(0, 0, 1)) + bsdf_element("null") + gas);
+  return shape_element(
+      "cube", to_world_element(scale_step(1, 1, 0.5) + translate_step(0, 0, 1)) + bsdf_element("null") + gas);
 }
 
 std::vector<HardFigure> optical_depths(const HardCaseContext& context) {
@@ -21,22 +24,23 @@ std::vector<HardFigure> optical_depths(const HardCaseContext& context) {
   const std::string view = orthographic_element(lookat_step("0, 0, 2", "0, 0, 0", "0, 1, 0"), 0.5, 8, 1e-3);
   const double planck = planck_per_nm(10000.0005, 1000);
   for (const auto mode : {WavelengthMode::kShared, WavelengthMode::kPerPath}) {
-    const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(2, 16, 128)), .wavelengths = mode};
+    const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(2, 16, 128)),
+                                 .wavelengths = mode};
     const std::string name = mode == WavelengthMode::kShared ? ", shared" : ", per path";
     for (const double depth : {1e-8, 1e-4, 1.0, 80.0, 1e4}) {
       const std::string wall = shape_element("rectangle", diffuse(0));
       const TrialImage glow = trial.render(scene_text(2, view + wall + column(depth, 1000)), settings);
-      trial.exact("emission at depth " + short_text(depth) + name, glow, 0, -std::expm1(-depth) * planck, 3e-6,
-                  "a few roundings, and Planck's law as float");
+      trial.exact("emission at depth " + short_text(depth) + name, glow, 0, -std::expm1(-depth) * planck,
+                  3e-6, "a few roundings, and Planck's law as float");
       const std::string lamp = shape_element("rectangle", diffuse(0) + area_element(1));
       const TrialImage dim = trial.render(scene_text(2, view + lamp + column(depth, 0)), settings);
       // exp(-x) of a rounded x: 6e-8 x; below 1e-38 floats hold nothing.
       if (depth < 100)
-        trial.exact("transmission at depth " + short_text(depth) + name, dim, 0, std::exp(-depth), 1e-6 + 1.2e-7 * depth,
-                    "the rounding of x times x");
+        trial.exact("transmission at depth " + short_text(depth) + name, dim, 0, std::exp(-depth),
+                    1e-6 + 1.2e-7 * depth, "the rounding of x times x");
       else
-        trial.figure("transmission at depth " + short_text(depth) + name, "W m^-2 sr^-1 nm^-1", dim.image_mean[0] / 1e-3, 0, 0,
-                     "absolute: exp(-1e4) is 0 in float");
+        trial.figure("transmission at depth " + short_text(depth) + name, "W m^-2 sr^-1 nm^-1",
+                     dim.image_mean[0] / 1e-3, 0, 0, "absolute: exp(-1e4) is 0 in float");
     }
   }
   return trial.finish();

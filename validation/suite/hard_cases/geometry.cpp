@@ -1,10 +1,11 @@
-// Places and sizes: coordinates of a million metres, triangles from micrometres to ten kilometres, grazing angles, and
-// lights of a square millimetre.
+// Places and sizes: coordinates of a million metres, triangles from micrometres to ten kilometres, grazing
+// angles, and lights of a square millimetre.
 //
 // The furnace of these cases has no variance. A closed box of diffuse walls (reflectance rho) at the ambient
 // temperature T, with roulette behind the depth limit n, adds (1 - rho) B(T) at every vertex of every path:
 //   L = B (1 - rho) (1 + rho + ... + rho^(n-1)) = B (1 - rho^n).
-// Outside shines an environment of kOutside: a ray that leaves, or a shadow ray that passes a wall, shows at once.
+// Outside shines an environment of kOutside: a ray that leaves, or a shadow ray that passes a wall, shows at
+// once.
 #include <cmath>
 #include <numbers>
 
@@ -28,13 +29,14 @@ double furnace_radiance() {
 const std::string kTilt = rotate_step(0.3, 1, 0.2, 33);
 
 std::string furnace_scene(const std::string& walls, const std::string& view) {
-  return scene_text(kDepth, view + walls + ambient_element(kKelvin) + environment_element(kOutside), kNoRoulette);
+  return scene_text(kDepth, view + walls + ambient_element(kKelvin) + environment_element(kOutside),
+                    kNoRoulette);
 }
 /// A tilted cube of half side `half` about a place, seen from inside.
 std::string furnace_cube(double half, double x, double y, double z) {
-  const std::string cube =
-      shape_element("cube", kInwards + to_world_element(scale_step(half, half, half) + kTilt + translate_step(x, y, z)) +
-                                diffuse(kReflectance));
+  const std::string cube = shape_element(
+      "cube", kInwards + to_world_element(scale_step(half, half, half) + kTilt + translate_step(x, y, z)) +
+                  diffuse(kReflectance));
   const std::string look = lookat_step(point_text(x + 0.3 * half, y - 0.2 * half, z + 0.1 * half),
                                        point_text(x - half, y + 0.3 * half, z - 0.7 * half), "0, 1, 0");
   return furnace_scene(cube, perspective_element(look, 90, 32, 1e-3 * half));
@@ -50,13 +52,15 @@ std::vector<HardFigure> far_from_the_origin(const HardCaseContext& context) {
                 "rounding of 10 vertices");
   }
   trial.oracle("evaluation", furnace_cube(50, far, -far, 0.7 * far), settings);
-  // A point light I at height h over a diffuse ground, seen at its foot: L = rho I / (pi h^2), and for the pixel's
-  // finite size cos^3(theta) of that: 2 mm at 10 m, 3e-8.
+  // A point light I at height h over a diffuse ground, seen at its foot: L = rho I / (pi h^2), and for the
+  // pixel's finite size cos^3(theta) of that: 2 mm at 10 m, 3e-8.
   const double height = 10;
-  const std::string ground = shape_element(
-      "rectangle", to_world_element(scale_step(100, 100, 1) + translate_step(far, far, 0)) + diffuse(kReflectance));
-  const std::string light = object("emitter", "point", spectrum_element("intensity", 7) + "<point name=\"position\" value=\"" +
-                                                           point_text(far, far, height) + "\"/>");
+  const std::string ground =
+      shape_element("rectangle", to_world_element(scale_step(100, 100, 1) + translate_step(far, far, 0)) +
+                                     diffuse(kReflectance));
+  const std::string light = object("emitter", "point",
+                                   spectrum_element("intensity", 7) + "<point name=\"position\" value=\"" +
+                                       point_text(far, far, height) + "\"/>");
   const std::string view = orthographic_element(
       lookat_step(point_text(far, far, 50), point_text(far, far, 0), "0, 1, 0"), 1e-3, 4, 1e-3);
   const TrialImage lit = trial.render(scene_text(2, view + ground + light), settings);
@@ -70,30 +74,32 @@ std::vector<HardFigure> all_sizes(const HardCaseContext& context) {
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(4, 64, 1024))};
   for (const double half : {1e-6, 1e-3, 1.0, 1e4}) {
     const TrialImage box = trial.render(furnace_cube(half, 0, 0, 0), settings);
-    trial.exact("furnace of triangles of " + short_text(2 * half) + " m", box, 0, furnace_radiance(), kFurnaceLimit,
-                "rounding of 10 vertices");
+    trial.exact("furnace of triangles of " + short_text(2 * half) + " m", box, 0, furnace_radiance(),
+                kFurnaceLimit, "rounding of 10 vertices");
   }
   // Both in one scene: the small box stands in the large one, whose lamp would shine into it.
-  const std::string large = shape_element(
-      "cube", kInwards + to_world_element(scale_step(1e4, 1e4, 1e4) + kTilt) + diffuse(0) + area_element(kOutside));
-  const std::string small = shape_element(
-      "cube", kInwards + to_world_element(scale_step(1e-6, 1e-6, 1e-6) + kTilt) +
-                  bsdf_element("twosided", diffuse(kReflectance)));
+  const std::string large =
+      shape_element("cube", kInwards + to_world_element(scale_step(1e4, 1e4, 1e4) + kTilt) + diffuse(0) +
+                                area_element(kOutside));
+  const std::string small =
+      shape_element("cube", kInwards + to_world_element(scale_step(1e-6, 1e-6, 1e-6) + kTilt) +
+                                bsdf_element("twosided", diffuse(kReflectance)));
   const std::string look = lookat_step("3e-7, -2e-7, 1e-7", "-1e-6, 3e-7, -7e-7", "0, 1, 0");
   const std::string inside = perspective_element(look, 90, 32, 1e-9);
-  const TrialImage both =
-      trial.render(scene_text(kDepth, inside + small + large + ambient_element(kKelvin), kNoRoulette), settings);
+  const TrialImage both = trial.render(
+      scene_text(kDepth, inside + small + large + ambient_element(kKelvin), kNoRoulette), settings);
   trial.exact("2e-6 m box within a 2e4 m lamp", both, 0, furnace_radiance(), kFurnaceLimit,
               "no light of the lamp comes in");
-  // A point light at height h over a tilted square of 2e4 m, seen at its foot: rho I cos / (pi h^2) with cos = 1.
+  // A point light at height h over a tilted square of 2e4 m, seen at its foot: rho I cos / (pi h^2) with cos
+  // = 1.
   const std::string ground =
       shape_element("rectangle", to_world_element(scale_step(1e4, 1e4, 1) + rotate_step(1, 0.4, 0, 30)) +
                                      diffuse(kReflectance));
   const double norm = std::hypot(1, 0.4), s = std::sin(kPi / 6), c = std::cos(kPi / 6);
   const double n[3] = {0.4 / norm * s, -1 / norm * s, c};
-  const std::string light =
-      object("emitter", "point", spectrum_element("intensity", 7) + "<point name=\"position\" value=\"" +
-                                     point_text(n[0], n[1], n[2]) + "\"/>");
+  const std::string light = object("emitter", "point",
+                                   spectrum_element("intensity", 7) + "<point name=\"position\" value=\"" +
+                                       point_text(n[0], n[1], n[2]) + "\"/>");
   const std::string view = orthographic_element(
       lookat_step(point_text(2 * n[0], 2 * n[1], 2 * n[2]), "0, 0, 0", "0, 1, 0"), 1e-4, 16, 1e-4);
   const TrialImage lit = trial.render(scene_text(2, view + ground + light), settings);
@@ -102,22 +108,25 @@ std::vector<HardFigure> all_sizes(const HardCaseContext& context) {
   return trial.finish();
 }
 
-/// A square turned about x by `degrees`, under a directional light of irradiance 5 that comes from its y side.
+/// A square turned about x by `degrees`, under a directional light of irradiance 5 that comes from its y
+/// side.
 std::string sunlit_square(double half, double degrees, double sine) {
   const double angle = degrees * kPi / 180, y = -std::sqrt(1 - sine * sine), z = -sine;
   const std::string way =
       point_text(0, y * std::cos(angle) - z * std::sin(angle), y * std::sin(angle) + z * std::cos(angle));
-  const std::string ground = shape_element(
-      "rectangle", to_world_element(scale_step(half, half, 1) + rotate_step(1, 0, 0, degrees)) + diffuse(kReflectance));
-  const std::string sun = object("emitter", "directional",
-                                 spectrum_element("irradiance", 5) + "<vector name=\"direction\" value=\"" + way + "\"/>");
-  const std::string view = orthographic_element(
-      lookat_step(point_text(0, 0, half), "0, 0, 0", "0, 1, 0"), half / 2, 16, 1e-3);
+  const std::string ground =
+      shape_element("rectangle", to_world_element(scale_step(half, half, 1) + rotate_step(1, 0, 0, degrees)) +
+                                     diffuse(kReflectance));
+  const std::string sun =
+      object("emitter", "directional",
+             spectrum_element("irradiance", 5) + "<vector name=\"direction\" value=\"" + way + "\"/>");
+  const std::string view =
+      orthographic_element(lookat_step(point_text(0, 0, half), "0, 0, 0", "0, 1, 0"), half / 2, 16, 1e-3);
   return scene_text(2, view + ground + sun);
 }
 
-/// A directional light of irradiance E under elevation e over a diffuse square: L = rho E sin(e) / pi. A direction's
-/// components are rounded to 6e-8, which is 6e-8 / sin(e) of the cosine on a tilted square.
+/// A directional light of irradiance E under elevation e over a diffuse square: L = rho E sin(e) / pi. A
+/// direction's components are rounded to 6e-8, which is 6e-8 / sin(e) of the cosine on a tilted square.
 std::vector<HardFigure> grazing_angles(const HardCaseContext& context) {
   Trial trial(context);
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(4, 64, 1024))};
@@ -125,7 +134,8 @@ std::vector<HardFigure> grazing_angles(const HardCaseContext& context) {
     for (const double half : {10.0, 1e4}) {
       for (const double sine : {1e-2, 1e-4, 1e-6}) {
         const TrialImage image = trial.render(sunlit_square(half, tilted ? 30 : 0, sine), settings);
-        trial.exact((tilted ? "sun on a tilted square of " : "sun on a level square of ") + exact_text(2 * half) + " m, sine " + short_text(sine),
+        trial.exact((tilted ? "sun on a tilted square of " : "sun on a level square of ") +
+                        short_text(2 * half) + " m, sine " + short_text(sine),
                     image, 0, kReflectance * 5 * sine / kPi, 1e-6 + (tilted ? 1.5e-7 / sine : 0),
                     tilted ? "components of directions and normals to 6e-8" : "rounding");
       }
@@ -138,7 +148,8 @@ std::vector<HardFigure> grazing_angles(const HardCaseContext& context) {
   const double a[3] = {0.3 / norm, 1 / norm, 0.2 / norm};
   const auto turned = [&](double x, double y, double z) {
     const double d = (a[0] * x + a[1] * y + a[2] * z) * (1 - c);
-    return point_text(x * c + (a[1] * z - a[2] * y) * s + a[0] * d, y * c + (a[2] * x - a[0] * z) * s + a[1] * d,
+    return point_text(x * c + (a[1] * z - a[2] * y) * s + a[0] * d,
+                      y * c + (a[2] * x - a[0] * z) * s + a[1] * d,
                       z * c + (a[0] * y - a[1] * x) * s + a[2] * d);
   };
   const std::string along = orthographic_element(
@@ -148,13 +159,15 @@ std::vector<HardFigure> grazing_angles(const HardCaseContext& context) {
   return trial.finish();
 }
 
-/// A lamp of area 1e-6 m^2 and radiance L0 faces a diffuse square at distance h, seen at its foot: the irradiance of a
-/// square of half side a is E = L0 4 F, F = (2 a / s) atan(a / s) / 2 ... by Lambert's formula for a parallel rectangle
-/// above its corner, E = L0 / 2 (x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) + y / sqrt(1 + y^2) atan(x / sqrt(1 + y^2)))
-/// with x = y = a / h, four times; of a disk and a sphere of radius r: pi L0 r^2 / (h^2 + r^2) and pi L0 r^2 / h^2.
+/// A lamp of area 1e-6 m^2 and radiance L0 faces a diffuse square at distance h, seen at its foot: the
+/// irradiance of a square of half side a is E = L0 4 F, F = (2 a / s) atan(a / s) / 2 ... by Lambert's
+/// formula for a parallel rectangle above its corner, E = L0 / 2 (x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) +
+/// y / sqrt(1 + y^2) atan(x / sqrt(1 + y^2))) with x = y = a / h, four times; of a disk and a sphere of
+/// radius r: pi L0 r^2 / (h^2 + r^2) and pi L0 r^2 / h^2.
 std::vector<HardFigure> small_lights(const HardCaseContext& context) {
   Trial trial(context);
-  const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(32, 256, 4096)), .replicates = 64};
+  const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(32, 256, 4096)),
+                               .replicates = 64};
   constexpr double kArea = 1e-6, kRadiance = 1e6;
   const std::string ground = shape_element("rectangle", diffuse(kReflectance));
   for (const double height : {1.0, 1000.0}) {
@@ -165,19 +178,22 @@ std::vector<HardFigure> small_lights(const HardCaseContext& context) {
       const char* name;
       std::string shape;
       double irradiance;
-    } lamps[] = {
-        {"square", shape_element("rectangle", to_world_element(scale_step(a, a, 1) + down) + diffuse(0) + area_element(kRadiance)),
-         4 * kRadiance * corner},
-        {"disk",
-         shape_element("disk", to_world_element(scale_step(std::sqrt(r2), std::sqrt(r2), 1) + down) + diffuse(0) +
-                                   area_element(kRadiance)),
-         kPi * kRadiance * r2 / (height * height + r2)},
-        {"sphere",
-         shape_element("sphere", "<point name=\"center\" value=\"" + point_text(0, 0, height) + "\"/>" +
-                                     float_element("radius", std::sqrt(r2 / 4)) + diffuse(0) + area_element(kRadiance)),
-         kPi * kRadiance * r2 / 4 / (height * height)}};
+    } lamps[] = {{"square",
+                  shape_element("rectangle", to_world_element(scale_step(a, a, 1) + down) + diffuse(0) +
+                                                 area_element(kRadiance)),
+                  4 * kRadiance * corner},
+                 {"disk",
+                  shape_element("disk", to_world_element(scale_step(std::sqrt(r2), std::sqrt(r2), 1) + down) +
+                                            diffuse(0) + area_element(kRadiance)),
+                  kPi * kRadiance * r2 / (height * height + r2)},
+                 {"sphere",
+                  shape_element("sphere", "<point name=\"center\" value=\"" + point_text(0, 0, height) +
+                                              "\"/>" + float_element("radius", std::sqrt(r2 / 4)) +
+                                              diffuse(0) + area_element(kRadiance)),
+                  kPi * kRadiance * r2 / 4 / (height * height)}};
     for (const auto& lamp : lamps) {
-      const std::string view = orthographic_element(lookat_step("0.3, 0, 0.4", "0, 0, 0", "0, 1, 0"), 1e-5, 8, 1e-3);
+      const std::string view =
+          orthographic_element(lookat_step("0.3, 0, 0.4", "0, 0, 0", "0, 1, 0"), 1e-5, 8, 1e-3);
       const TrialImage image = trial.render(scene_text(2, view + ground + lamp.shape), settings);
       trial.statistical(std::string(lamp.name) + " at " + short_text(height) + " m", image, 0,
                         kReflectance * lamp.irradiance / kPi, 2e-5);

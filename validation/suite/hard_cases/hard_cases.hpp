@@ -1,10 +1,10 @@
-// Numerical stability on hard cases: scenes at the ends of what numbers, sizes and path lengths may be, each with
-// figures that say how far a backend is from a closed form or from the double-precision oracle.
+// Numerical stability on hard cases: scenes at the ends of what numbers, sizes and path lengths may be, each
+// with figures that say how far a backend is from a closed form or from the double-precision oracle.
 //
-// A case names no backend: the context does. Where the estimator has no variance, errors are of rounding and each
-// limit has its reason beside it; where it has, the limit is a t-quantile times the standard error of the mean over
-// replicates. All statistical figures of a run together raise a false alarm with probability kHardFamilyRate at most
-// (Bonferroni over kHardStatisticalFigures).
+// A case names no backend: the context does. Where the estimator has no variance, errors are of rounding and
+// each limit has its reason beside it; where it has, the limit is a t-quantile times the standard error of
+// the mean over replicates. All statistical figures of a run together raise a false alarm with probability
+// kHardFamilyRate at most (Bonferroni over kHardStatisticalFigures).
 #pragma once
 
 #include <cstddef>

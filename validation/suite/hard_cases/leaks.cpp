@@ -1,8 +1,10 @@
-// No ray passes a closed surface: bodies that are lit from outside by an environment of 1e6 stay exactly black inside.
+// No ray passes a closed surface: bodies that are lit from outside by an environment of 1e6 stay exactly
+// black inside.
 //
-// The camera stands inside; diffuse walls of reflectance 0.97 send paths on for 50 bounces, and every vertex sends a
-// shadow ray towards the environment. One ray that passed a wall would make a pixel positive: the reference is 0, and the
-// limit is 0. With no leak in n rays, the rate of leaks is below 9.2 / n at the level 1e-4.
+// The camera stands inside; diffuse walls of reflectance 0.97 send paths on for 50 bounces, and every vertex
+// sends a shadow ray towards the environment. One ray that passed a wall would make a pixel positive: the
+// reference is 0, and the limit is 0. With no leak in n rays, the rate of leaks is below 9.2 / n at the level
+// 1e-4.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -17,13 +19,14 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 const std::string kWall = bsdf_element("twosided", diffuse(0.97));
 
-/// A closed mesh around `centre`: a sphere of `rings` x 2 `rings` quadrilaterals, scaled differently along its axes and
-/// turned by irrational angles, as ASCII PLY. Vertices are shared.
+/// A closed mesh around `centre`: a sphere of `rings` x 2 `rings` quadrilaterals, scaled differently along
+/// its axes and turned by irrational angles, as ASCII PLY. Vertices are shared.
 std::string closed_mesh(int rings, const std::array<double, 3>& centre, double size) {
   const int around = 2 * rings;
   std::string vertices, faces;
   const auto add = [&](double theta, double phi) {
-    const double x = std::sin(theta) * std::cos(phi), y = 0.7 * std::sin(theta) * std::sin(phi), z = 1.3 * std::cos(theta);
+    const double x = std::sin(theta) * std::cos(phi), y = 0.7 * std::sin(theta) * std::sin(phi),
+                 z = 1.3 * std::cos(theta);
     const double u = std::cos(1.0) * x - std::sin(1.0) * z, w = std::sin(1.0) * x + std::cos(1.0) * z;
     const double v = std::cos(2.0) * y - std::sin(2.0) * w, t = std::sin(2.0) * y + std::cos(2.0) * w;
     vertices += exact_text(centre[0] + size * u) + " " + exact_text(centre[1] + size * v) + " " +
@@ -54,8 +57,10 @@ std::string closed_mesh(int rings, const std::array<double, 3>& centre, double s
 
 /// A tetrahedron whose edges are acute.
 std::string tetrahedron() {
-  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face "
-         "4\nproperty list uchar int vertex_indices\nend_header\n1.013 0.977 1.021\n-0.991 -1.003 0.973\n-1.017 1.009 "
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+         "z\nelement face "
+         "4\nproperty list uchar int vertex_indices\nend_header\n1.013 0.977 1.021\n-0.991 -1.003 "
+         "0.973\n-1.017 1.009 "
          "-0.983\n0.987 -1.011 -1.007\n3 0 1 2\n3 0 3 1\n3 0 2 3\n3 1 3 2\n";
 }
 
@@ -77,9 +82,14 @@ std::vector<Body> bodies(const ScratchFolder& folder) {
   folder.write("acute.ply", tetrahedron());
   const std::string turned = rotate_step(0.31, 1, 0.17, 33.3);
   std::string sides;
-  for (const auto& [x, y, degrees] : {std::array{1.0, 0.0, 0.0}, {1.0, 0.0, 90.0}, {1.0, 0.0, 180.0}, {1.0, 0.0, 270.0},
-                                      {0.0, 1.0, 90.0}, {0.0, 1.0, 270.0}})
-    sides += shape_element("rectangle", to_world_element(translate_step(0, 0, -1) + rotate_step(x, y, 0, degrees)) + kWall);
+  for (const auto& [x, y, degrees] : {std::array{1.0, 0.0, 0.0},
+                                      {1.0, 0.0, 90.0},
+                                      {1.0, 0.0, 180.0},
+                                      {1.0, 0.0, 270.0},
+                                      {0.0, 1.0, 90.0},
+                                      {0.0, 1.0, 270.0}})
+    sides += shape_element(
+        "rectangle", to_world_element(translate_step(0, 0, -1) + rotate_step(x, y, 0, degrees)) + kWall);
   return {{"mesh, 2208 triangles", ply_shape("near.ply"), origin},
           {"mesh 268 m from the origin", ply_shape("away.ply"), away},
           {"mesh 268 km from the origin", ply_shape("far.ply"), far},
@@ -87,7 +97,8 @@ std::vector<Body> bodies(const ScratchFolder& folder) {
           {"cube, turned", shape_element("cube", to_world_element(turned) + kWall), origin},
           {"six rectangles", sides, origin},
           {"sphere", shape_element("sphere", kWall), origin},
-          {"sphere of 1 mm", shape_element("sphere", to_world_element(scale_step(1e-3, 1e-3, 1e-3)) + kWall), origin},
+          {"sphere of 1 mm", shape_element("sphere", to_world_element(scale_step(1e-3, 1e-3, 1e-3)) + kWall),
+           origin},
           {"cylinder and disks",
            shape_element("cylinder", kWall) + shape_element("disk", kWall) +
                shape_element("disk", to_world_element(translate_step(0, 0, 1)) + kWall),
@@ -106,14 +117,17 @@ std::vector<HardFigure> closed_bodies(const HardCaseContext& context) {
   for (const Body& body : bodies(folder)) {
     const auto& c = body.centre;
     const double near = body.name == "sphere of 1 mm" ? 1e-5 : 1e-3;
-    const std::string look = lookat_step(point_text(c[0], c[1], c[2]), point_text(c[0] + 1, c[1] + 0.3, c[2] - 0.2), "0, 1, 0");
+    const std::string look =
+        lookat_step(point_text(c[0], c[1], c[2]), point_text(c[0] + 1, c[1] + 0.3, c[2] - 0.2), "0, 1, 0");
     const TrialImage image = trial.render(
-        scene_text(50, perspective_element(look, 120, 32, near) + body.shapes + environment_element(1e6)), settings);
+        scene_text(50, perspective_element(look, 120, 32, near) + body.shapes + environment_element(1e6)),
+        settings);
     std::size_t bright = 0;
     double sum = 0;
     for (const double value : image.mean) bright += value != 0, sum += value;
-    trial.figure(body.name, "pixels that are not black", static_cast<double>(bright), 0, 0,
-                 exact_text(static_cast<double>(image.rays)) + " rays, mean radiance " + exact_text(sum / 1024));
+    trial.figure(
+        body.name, "pixels that are not black", static_cast<double>(bright), 0, 0,
+        short_text(static_cast<double>(image.rays)) + " rays, mean radiance " + short_text(sum / 1024));
     all += static_cast<double>(image.rays);
   }
   trial.figure("rays that were tried", "rays", all, all, 0, "none may come in");

@@ -1,4 +1,5 @@
-// Radiances from 1e-20 to 1e15 W m^-2 sr^-1 nm^-1, and an environment of which one pixel is a million times brighter.
+// Radiances from 1e-20 to 1e15 W m^-2 sr^-1 nm^-1, and an environment of which one pixel is a million times
+// brighter.
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -19,32 +20,42 @@ std::string decades(const std::string& name) {
   std::string text;
   for (int i = 0; i < 5; ++i) {
     const std::string value = ":" + exact_text(kDecades[i]);
-    text += (i ? ", " : "") + std::to_string(400 + 100 * i - 5) + value + ", " + std::to_string(400 + 100 * i + 15) + value;
+    text += (i ? ", " : "") + std::to_string(400 + 100 * i - 5) + value + ", " +
+            std::to_string(400 + 100 * i + 15) + value;
   }
   return value_element("spectrum", name, text);
 }
 
-/// Five channels of one light over 35 decades: seen directly L, and from a point light of intensity I at 1 m over a
-/// diffuse square rho I / pi. And both ends in ONE channel: two lamps side by side, 1e15 and 1e-20; a film in float, in
-/// units of the brightest, holds the darker as 1e-35, still a normal number.
+/// Five channels of one light over 35 decades: seen directly L, and from a point light of intensity I at 1 m
+/// over a diffuse square rho I / pi. And both ends in ONE channel: two lamps side by side, 1e15 and 1e-20; a
+/// film in float, in units of the brightest, holds the darker as 1e-35, still a normal number.
 std::vector<HardFigure> range_of_radiance(const HardCaseContext& context) {
   Trial trial(context);
-  const TrialSettings settings{.bands = kBands, .samples = static_cast<uint32_t>(trial.by_effort(4, 64, 1024))};
+  const TrialSettings settings{.bands = kBands,
+                               .samples = static_cast<uint32_t>(trial.by_effort(4, 64, 1024))};
   const std::string view = orthographic_element(lookat_step("0, 0, 2", "0, 0, 0", "0, 1, 0"), 1e-5, 4, 1e-3);
-  const std::string point = object("emitter", "point", decades("intensity") + "<point name=\"position\" value=\"0, 0, 1\"/>");
-  const TrialImage lit = trial.render(scene_text(2, view + shape_element("rectangle", diffuse(0.5)) + point), settings);
+  const std::string point =
+      object("emitter", "point", decades("intensity") + "<point name=\"position\" value=\"0, 0, 1\"/>");
+  const TrialImage lit =
+      trial.render(scene_text(2, view + shape_element("rectangle", diffuse(0.5)) + point), settings);
   for (std::size_t c = 0; c < 5; ++c)
-    trial.exact("diffuse square, " + short_text(kDecades[c]), lit, c, 0.5 * kDecades[c] / kPi, 2e-6, "rounding");
-  const TrialImage sky = trial.render(scene_text(1, view + object("emitter", "constant", decades("radiance"))), settings);
-  for (std::size_t c = 0; c < 5; ++c) trial.exact("seen directly, " + short_text(kDecades[c]), sky, c, kDecades[c], 5e-7, "rounding");
+    trial.exact("diffuse square, " + short_text(kDecades[c]), lit, c, 0.5 * kDecades[c] / kPi, 2e-6,
+                "rounding");
+  const TrialImage sky =
+      trial.render(scene_text(1, view + object("emitter", "constant", decades("radiance"))), settings);
+  for (std::size_t c = 0; c < 5; ++c)
+    trial.exact("seen directly, " + short_text(kDecades[c]), sky, c, kDecades[c], 5e-7, "rounding");
   const std::string wide = orthographic_element(lookat_step("0, 0, 2", "0, 0, 0", "0, 1, 0"), 1, 2, 1e-3);
   std::string lamps;
   for (const auto& [x, radiance] : {std::pair{-1.0, 1e15}, {1.0, 1e-20}})
-    lamps += shape_element("rectangle", to_world_element(translate_step(x, 0, 0)) + diffuse(0) + area_element(radiance));
+    lamps += shape_element("rectangle",
+                           to_world_element(translate_step(x, 0, 0)) + diffuse(0) + area_element(radiance));
   const TrialImage both = trial.render(scene_text(1, wide + lamps), {.samples = settings.samples});
   const double left = both.at(0, 0, 0) / 1e-3, right = both.at(1, 0, 0) / 1e-3;
-  trial.figure("1e15 beside 1e-20: the brighter, relative", "1", std::max(left, right) / 1e15, 1, 5e-7, "rounding");
-  trial.figure("1e15 beside 1e-20: the darker, relative", "1", std::min(left, right) / 1e-20, 1, 5e-7, "rounding");
+  trial.figure("1e15 beside 1e-20: the brighter, relative", "1", std::max(left, right) / 1e15, 1, 5e-7,
+               "rounding");
+  trial.figure("1e15 beside 1e-20: the darker, relative", "1", std::min(left, right) / 1e-20, 1, 5e-7,
+               "rounding");
   return trial.finish();
 }
 
@@ -59,12 +70,12 @@ std::string grey_pfm(const std::vector<float>& image) {
   return text;
 }
 
-/// An environment of 1 with one pixel of 1e6. Between pixels radiance is bilinear in the azimuth (columns at (c + 1/2) / W
-/// of a turn) and the polar angle (rows at r / (H - 1) of pi): the pixel adds a tent. A diffuse square of reflectance rho
-/// facing +Y shows
+/// An environment of 1 with one pixel of 1e6. Between pixels radiance is bilinear in the azimuth (columns at
+/// (c + 1/2) / W of a turn) and the polar angle (rows at r / (H - 1) of pi): the pixel adds a tent. A diffuse
+/// square of reflectance rho facing +Y shows
 ///   L = rho / pi int L cos dw = rho (1 + (1e6 - 1) / pi dphi int tent(theta) cos(theta) sin(theta) dtheta),
-/// dphi = 2 pi / W the area of the tent along the azimuth; the other integral by the midpoint rule. A channel in which D65
-/// is constant to 1e-4 and taken out by an image of the environment itself.
+/// dphi = 2 pi / W the area of the tent along the azimuth; the other integral by the midpoint rule. A channel
+/// in which D65 is constant to 1e-4 and taken out by an image of the environment itself.
 std::vector<HardFigure> one_bright_pixel(const HardCaseContext& context) {
   Trial trial(context);
   const ScratchFolder folder;
@@ -88,7 +99,8 @@ std::vector<HardFigure> one_bright_pixel(const HardCaseContext& context) {
   const double expected = 0.5 * unit * (1 + (1e6 - 1) / kPi * 2 * kPi / kColumns * tent);
   settings.samples = static_cast<uint32_t>(trial.by_effort(64, 512, 8192));
   settings.replicates = 64;
-  const std::string ground = shape_element("rectangle", to_world_element(rotate_step(1, 0, 0, -90)) + diffuse(0.5));
+  const std::string ground =
+      shape_element("rectangle", to_world_element(rotate_step(1, 0, 0, -90)) + diffuse(0.5));
   const TrialImage image = trial.render(scene_text(2, view + ground + light), settings);
   trial.statistical("diffuse square under one pixel of 1e6", image, 0, expected, 1e-5);
   return trial.finish();

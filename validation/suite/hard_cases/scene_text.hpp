@@ -76,7 +76,8 @@ inline std::string film_element(uint32_t width, uint32_t height) {
          value_element("integer", "height", std::to_string(height)) + "<rfilter type=\"box\"/></film>";
 }
 /// Rays begin `near` metres from the camera.
-inline std::string perspective_element(const std::string& steps, double fov_degrees, uint32_t size, double near) {
+inline std::string perspective_element(const std::string& steps, double fov_degrees, uint32_t size,
+                                       double near) {
   return object("sensor", "perspective",
                 float_element("fov", fov_degrees) + float_element("near_clip", near) +
                     float_element("far_clip", 1e9) + to_world_element(steps) + film_element(size, size));

@@ -109,6 +109,7 @@ TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) 
   image.height = scene.film.crop_height;
   image.channels = scene.channels.size();
   image.replicates = settings.replicates;
+  image.samples = settings.samples;
   for (const Channel& channel : scene.channels) image.widths_nm.push_back(channel.width_nm());
   collect_pixels(film, backend->film_scale(), image);
   collect_means(film, backend->film_scale(), image);
@@ -123,8 +124,9 @@ TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) 
 }
 
 void Trial::exact(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
-                  double limit, const std::string& reason) {
+                  double rounding, const std::string& reason) {
   const double expected = reference * image.widths_nm[channel];
+  const double limit = rounding + std::min(image.samples, 64u) * 0x1p-24;
   double worst = expected, error = 0;
   for (std::size_t i = channel; i < image.mean.size(); i += image.channels) {
     const double relative = std::abs(image.mean[i] / expected - 1);
@@ -134,26 +136,28 @@ void Trial::exact(const std::string& name, const TrialImage& image, std::size_t 
                       error <= limit, false, "relative, worst pixel; " + reason});
 }
 
-void Trial::statistical(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
-                        double rounding) {
+void Trial::statistical(const std::string& name, const TrialImage& image, std::size_t channel,
+                        double reference, double rounding) {
   const double width = image.widths_nm[channel];
   const double value = image.image_mean[channel] / width;
   const double standard_error = std::sqrt(image.image_variance[channel]) / width;
   const double limit = critical_t(image.replicates) * standard_error + rounding * reference;
   const double error = std::abs(value - reference);
-  figures_.push_back({name, "W m^-2 sr^-1 nm^-1", value, reference, error, limit, error <= limit, true,
-                      fmt::format("standard error {:.2g} of the value, t = {:.2f}", standard_error / reference,
-                                  standard_error > 0 ? (value - reference) / standard_error : 0.0)});
+  figures_.push_back(
+      {name, "W m^-2 sr^-1 nm^-1", value, reference, error, limit, error <= limit, true,
+       fmt::format("standard error {:.2g} of the value, t = {:.2f}", standard_error / reference,
+                   standard_error > 0 ? (value - reference) / standard_error : 0.0)});
 }
 
-void Trial::figure(const std::string& name, const std::string& unit, double value, double reference, double limit,
-                   const std::string& note) {
+void Trial::figure(const std::string& name, const std::string& unit, double value, double reference,
+                   double limit, const std::string& note) {
   const double error = std::abs(value - reference);
   figures_.push_back({name, unit, value, reference, error, limit, error <= limit, false, note});
 }
 
-/// Operations round by 6e-8 each; a vertex has about 20 in other order than the oracle's, and the rounding of a
-/// reflectance to float is the same at each vertex of a path: 1e-5 + 6e-8 per vertex (as tests/unit/cpu_evaluator).
+/// Operations round by 6e-8 each; a vertex has about 20 in other order than the oracle's, and the rounding of
+/// a reflectance to float is the same at each vertex of a path: 1e-5 + 6e-8 per vertex (as
+/// tests/unit/cpu_evaluator).
 void Trial::oracle(const std::string& name, const std::string& xml, const TrialSettings& settings) {
   const FlatScene scene = flatten_text(xml, settings);
   const SamplingSettings sampling = sampling_of(settings, context_.seed, 1);
@@ -180,7 +184,8 @@ void Trial::oracle(const std::string& name, const std::string& xml, const TrialS
     }
   }
   const double limit = 1e-5 + 6e-8 * static_cast<double>(slots);
-  figures_.push_back({name, "W m^-2 sr^-1", value, reference, error, limit, error <= limit && slots > 0, false,
+  figures_.push_back({name, "W m^-2 sr^-1", value, reference, error, limit, error <= limit && slots > 0,
+                      false,
                       fmt::format("relative, against the double oracle; paths of up to {} records", slots)});
 }
 

@@ -28,6 +28,7 @@ struct TrialImage {
   std::vector<double> widths_nm;                   // [channel]
   std::vector<double> mean;                        // [pixel][channel]
   std::vector<double> image_mean, image_variance;  // [channel]; variance of the mean
+  uint32_t samples = 0;                            // per pixel and replicate
   uint64_t rays = 0, paths = 0, vertices = 0;
 
   double at(uint32_t x, uint32_t y, std::size_t channel) const {
@@ -43,20 +44,23 @@ class Trial {
   /// The one of three that the effort chooses.
   uint64_t by_effort(uint64_t quick, uint64_t standard, uint64_t thorough) const;
 
-  /// throws what reading, flattening and rendering throw. Invalid samples and values that are not finite are counted.
+  /// throws what reading, flattening and rendering throw. Invalid samples and values that are not finite are
+  /// counted.
   TrialImage render(const std::string& xml, const TrialSettings& settings);
 
-  /// The largest relative error of the pixels of a channel against `reference` > 0, which is per nm of the channel.
-  void exact(const std::string& name, const TrialImage& image, std::size_t channel, double reference, double limit,
-             const std::string& reason);
+  /// The largest relative error of the pixels of a channel against `reference` > 0, which is per nm of the
+  /// channel. To the limit comes what the sum of a replicate's samples may be off, of which at most 64 are
+  /// added in float: min(samples, 64) * 2^-24.
+  void exact(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
+             double rounding, const std::string& reason);
   /// The image mean of a channel, in W m^-2 sr^-1 nm^-1, by a t-test. rounding: relative, added to the limit.
   void statistical(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
                    double rounding);
   /// |value - reference| <= limit
   void figure(const std::string& name, const std::string& unit, double value, double reference, double limit,
               const std::string& note);
-  /// One sample of every pixel: the film against the double-precision oracle on the backend's own paths. Largest error
-  /// relative to the pixel's largest channel.
+  /// One sample of every pixel: the film against the double-precision oracle on the backend's own paths.
+  /// Largest error relative to the pixel's largest channel.
   void oracle(const std::string& name, const std::string& xml, const TrialSettings& settings);
 
   /// What was collected, and the count of invalid and non-finite values over all renders, which must be 0.

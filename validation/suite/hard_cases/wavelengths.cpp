@@ -1,4 +1,5 @@
-// Channels of 1e-3 nm at 10 um, a ten-millionth of the wavelength and next to what a float can tell apart, and of 1e4 nm.
+// Channels of 1e-3 nm at 10 um, a ten-millionth of the wavelength and next to what a float can tell apart,
+// and of 1e4 nm.
 #include <cmath>
 
 #include "validation/suite/hard_cases/groups.hpp"
@@ -23,9 +24,10 @@ struct Mode {
 };
 constexpr Mode kModes[] = {{WavelengthMode::kShared, "shared"}, {WavelengthMode::kPerPath, "per path"}};
 
-/// A radiance that rises from 0 to 1 within the channel has the mean 1/2; one that rises within the second of three
-/// channels of 1e-3 nm side by side is 0, 1/2, 1 there: a wavelength that is wrong by a channel's width shows. Light of
-/// radiance a + b x on a reflectance of c + d x: the mean of the product, a c + (a d + b c) / 2 + b d / 3.
+/// A radiance that rises from 0 to 1 within the channel has the mean 1/2; one that rises within the second of
+/// three channels of 1e-3 nm side by side is 0, 1/2, 1 there: a wavelength that is wrong by a channel's width
+/// shows. Light of radiance a + b x on a reflectance of c + d x: the mean of the product, a c + (a d + b c) /
+/// 2 + b d / 3.
 std::vector<HardFigure> narrow_channels(const HardCaseContext& context) {
   Trial trial(context);
   for (const Mode& mode : kModes) {
@@ -37,33 +39,42 @@ std::vector<HardFigure> narrow_channels(const HardCaseContext& context) {
     const TrialImage seen = trial.render(scene_text(1, kView + sky(ramp("radiance", within))), settings);
     const std::string name = std::string(", ") + mode.name;
     trial.statistical("radiance rising within 1e-3 nm" + name, seen, 1, 0.5, 1e-5);
-    trial.figure("the channel before it" + name, "W m^-2 sr^-1 nm^-1", seen.image_mean[0] / 1e-3, 0, 1e-5, "absolute");
+    trial.figure("the channel before it" + name, "W m^-2 sr^-1 nm^-1", seen.image_mean[0] / 1e-3, 0, 1e-5,
+                 "absolute");
     trial.exact("the channel behind it" + name, seen, 2, 1, 1e-5, "rounding");
     // The square sees half a sphere of the sky and reflects rho of it.
     const std::string ground = shape_element(
-        "rectangle", bsdf_element("conductor", ramp("specular_reflectance", "9999:0.2, 10000.001:0.2, 10000.002:0.8, 10001:0.8")));
-    const TrialImage product = trial.render(scene_text(2, kView + ground + sky(ramp("radiance", within))), settings);
+        "rectangle", bsdf_element("conductor", ramp("specular_reflectance",
+                                                    "9999:0.2, 10000.001:0.2, 10000.002:0.8, 10001:0.8")));
+    const TrialImage product =
+        trial.render(scene_text(2, kView + ground + sky(ramp("radiance", within))), settings);
     trial.statistical("radiance times reflectance" + name, product, 1, 0.2 / 2 + 0.6 / 3, 1e-5);
   }
   return trial.finish();
 }
 
-/// 10 to 20 um in one channel: a ramp from 0 to 1 (mean 1/2), and Planck's law at 300 K against Simpson's rule.
+/// 10 to 20 um in one channel: a ramp from 0 to 1 (mean 1/2), and Planck's law at 300 K against Simpson's
+/// rule.
 std::vector<HardFigure> wide_channels(const HardCaseContext& context) {
   Trial trial(context);
   double planck = 0;
   constexpr int kSteps = 2000;
   for (int i = 0; i <= kSteps; ++i)
-    planck += (i == 0 || i == kSteps ? 1 : i % 2 ? 4 : 2) * planck_per_nm(10000 + 1e4 * i / kSteps, 300) / (3.0 * kSteps);
+    planck += (i == 0 || i == kSteps ? 1
+               : i % 2               ? 4
+                                     : 2) *
+              planck_per_nm(10000 + 1e4 * i / kSteps, 300) / (3.0 * kSteps);
   for (const Mode& mode : kModes) {
     const TrialSettings settings{.bands = "10000-20000",
                                  .samples = static_cast<uint32_t>(trial.by_effort(16, 256, 4096)),
                                  .replicates = 32,
                                  .wavelengths = mode.wavelengths};
     const std::string name = std::string(", ") + mode.name;
-    const TrialImage seen = trial.render(scene_text(1, kView + sky(ramp("radiance", "10000:0, 20000:1"))), settings);
+    const TrialImage seen =
+        trial.render(scene_text(1, kView + sky(ramp("radiance", "10000:0, 20000:1"))), settings);
     trial.statistical("ramp over 1e4 nm" + name, seen, 0, 0.5, 1e-5);
-    const std::string law = "<spectrum name=\"radiance\" type=\"planck\">" + float_element("temperature", 300) + "</spectrum>";
+    const std::string law =
+        "<spectrum name=\"radiance\" type=\"planck\">" + float_element("temperature", 300) + "</spectrum>";
     const TrialImage hot = trial.render(scene_text(1, kView + sky(law)), settings);
     trial.statistical("Planck's law over 1e4 nm" + name, hot, 0, planck, 1e-5);
   }
