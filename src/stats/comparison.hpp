@@ -11,7 +11,7 @@
 // equal seed for compare_paired. 32 replicates are wanted; fewer work, with wider tails, and are noted.
 // Against a truth pixels and tiles only speak where contributions are bounded: a pixel whose rare bright path
 // was not met is not its mean, and nothing in it says so (two independent sides both lack it or scatter
-// alike). TruthOptions leaves them out.
+// alike). fine_scales = false leaves them out.
 #pragma once
 
 #include <memory>
