@@ -216,6 +216,7 @@ Comparison StripComparison::finish() {
   c.tails_a = s.tails_a.finish();
   if (s.kind != Kind::kTruth) c.tails_b = s.tails_b.finish();
   add_image_means(contrast, c);
+  if (s.kind == Kind::kTruth) leave_out_skewed(c);
   judge(c, s.options, s.same_sizes);
   return c;
 }

@@ -100,6 +100,22 @@ void add_image_means(const Contrast& contrast, Comparison& c) {
   for (const double v : contrast.variance) c.image_error.push_back(std::sqrt(v));
 }
 
+void leave_out_skewed(Comparison& c) {
+  const TailWeight& tail = c.tails_a[heaviest_channel(c.tails_a)];
+  if (tail.count == 0) return;
+  const double excess = static_cast<double>(tail.count) / tail.effective - 3;
+  for (const Scale scale : {Scale::kTile, Scale::kPixel}) {
+    const double pooled = scale == Scale::kTile ? kTileEdge * kTileEdge : 1;
+    const auto found = std::ranges::find(c.scales, scale);
+    if (found == c.scales.end() || !(excess / pooled > kTruthKurtosis - 3)) continue;
+    c.means.erase(c.means.begin() + (found - c.scales.begin()));
+    c.scales.erase(found);
+    (scale == Scale::kTile ? c.uniform_tiles : c.uniform_pixels).reset();
+    c.notes.push_back(std::string(name_of(scale)) +
+                      "s were not held against the truth: the noise is too skewed");
+  }
+}
+
 void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
   c.alpha = options.alpha;
   add_means(c);

@@ -12,6 +12,9 @@ bool replicates_have_same_sizes(const UnitSample& a, const UnitSample& b);
 /// Means of the whole image.
 void add_image_means(const Contrast& contrast, Comparison& comparison);
 
+/// Against a truth: drops the scales at which the noise is too skewed for Student's law.
+void leave_out_skewed(Comparison& comparison);
+
 /// Lists the tests with their levels, the notes, and whether all passed.
 void judge(Comparison& comparison, const ComparisonOptions& options, bool same_sizes);
 

@@ -39,7 +39,7 @@ struct Strongest {
 /// wanted: channels to look at; empty: all.
 Strongest strongest_channel(const Contrast& contrast, const std::vector<bool>& wanted);
 
-inline constexpr int kRotations = 512;
+inline constexpr int kRotations = 256;
 
 /// The p-value of the unit: max |t| over the wanted channels. Without rows (variances alone) the Bonferroni
 /// bound.

@@ -50,26 +50,23 @@ double median_of_both(std::vector<double> a, const std::vector<double>& b) {
   return median_of(std::move(a));
 }
 
-/// 2 d_r / s of both sides, large d_r cut; false if nothing scatters beyond `floor`.
-bool relative_scatter(const UnitSample& sa, const UnitSample& sb, std::size_t channel, double floor,
-                      std::vector<double>& a, std::vector<double>& b) {
-  a = sampled_values(sa, channel);
-  b = sampled_values(sb, channel);
-  const double median = median_of_both(a, b);
-  for (std::size_t r = 0; r < a.size(); ++r) a[r] = std::sqrt(sa.weights[r]) * std::abs(a[r] - median);
-  for (std::size_t r = 0; r < b.size(); ++r) b[r] = std::sqrt(sb.weights[r]) * std::abs(b[r] - median);
-  floor *= std::sqrt(mean_weight(sa));
-  const double most = kScatterCut * median_of_both(a, b);
-  double s = 0;
-  for (std::vector<double>* side : {&a, &b}) {
-    for (double& d : *side) s += (d = std::min(d, most)) / (2 * static_cast<double>(side->size()));
+/// Numbers of the replicates of both sides, relative to the mean of the two sides.
+struct RelativeNumbers {
+  std::vector<double> a, b;
+
+  /// Scales to a mean of `mean`; false if that of the numbers is not above `floor`.
+  bool normalise(double mean, double floor) {
+    double s = 0;
+    for (const std::vector<double>* side : {&a, &b}) {
+      for (const double x : *side) s += x / (2 * static_cast<double>(side->size()));
+    }
+    if (!(s > floor)) return false;
+    for (std::vector<double>* side : {&a, &b}) {
+      for (double& x : *side) x *= mean / s;
+    }
+    return true;
   }
-  if (!(s > floor)) return false;
-  for (std::vector<double>* side : {&a, &b}) {
-    for (double& d : *side) d *= 2 / s;
-  }
-  return true;
-}
+};
 
 }  // namespace
 
@@ -102,34 +99,10 @@ Contrast deviation_contrast(const UnitSample& a, const UnitSample& b, double rou
   return contrast;
 }
 
-bool variance_pseudo_values(const UnitSample& sample, std::size_t channel, double floor,
-                            std::vector<double>& q) {
-  const std::size_t count = sample.replicates();
-  if (count < 4 || sample.sampled() < count) return false;
-  const auto n = static_cast<double>(count);
-  const double usual = mean_weight(sample);
-  double mean = 0, squares = 0;
-  for (std::size_t r = 0; r < count; ++r) mean += sample.mean_at(r, channel) / n;
-  q.assign(count, 0);
-  for (std::size_t r = 0; r < count; ++r) {
-    const double d = sample.mean_at(r, channel) - mean;
-    q[r] = d * d * sample.weights[r] / usual;
-    squares += q[r];
-  }
-  const double least = std::max(n * floor * floor, 1e-9 * squares);
-  double mean_log = 0;
-  for (double& value : q) {
-    const double without = squares - value * n / (n - 1);
-    if (!(without > least)) return false;
-    value = -(n - 1) * std::log(without / (n - 2));
-    mean_log += value / n;
-  }
-  for (double& value : q) value += std::log(squares / (n - 1)) - mean_log;
-  return true;
-}
-
-PooledReplicates::PooledReplicates(std::size_t channels, std::size_t replicates_a, std::size_t replicates_b)
+PooledReplicates::PooledReplicates(std::size_t channels, std::size_t replicates_a, std::size_t replicates_b,
+                                   double power)
     : channels_(channels),
+      power_(power),
       sums_a_(channels * replicates_a),
       sums_b_(channels * replicates_b),
       counts_(channels) {}
@@ -156,11 +129,11 @@ PooledVariance PooledReplicates::finish(uint64_t seed) const {
   const std::size_t c = strongest.channel;
   result.channel = c == channels_ ? kAllChannels : c;
   result.p = max_t_p(contrast, used, strongest, seed);
-  result.ratio = std::exp(contrast.difference[c]);
+  result.ratio = ratio_of(contrast.difference[c]);
   result.log_error = std::sqrt(contrast.variance[c]);
   result.t = strongest.t;
   result.dof = contrast.dof[c];
-  result.ratio_all = std::exp(contrast.difference[channels_]);
+  result.ratio_all = ratio_of(contrast.difference[channels_]);
   result.log_error_all = std::sqrt(contrast.variance[channels_]);
   for (std::size_t k = 0; k <= channels_; ++k) {
     const RelativeError e{static_cast<float>(std::sqrt(contrast.variance[k])), 0,
@@ -170,27 +143,40 @@ PooledVariance PooledReplicates::finish(uint64_t seed) const {
   return result;
 }
 
+// a and b are the means of the two sides, p (a + b) / 2 was scaled to p: a - b = D gives a / b.
+double PooledReplicates::ratio_of(double difference) const {
+  return std::pow((2 * power_ + difference) / (2 * power_ - difference), power_);
+}
+
 PooledVarianceTest::PooledVarianceTest(std::size_t channels, std::size_t replicates_a,
                                        std::size_t replicates_b)
     : channels_(channels),
-      scatter_(channels, replicates_a, replicates_b),
-      variance_(channels, replicates_a, replicates_b) {}
+      scatter_(channels, replicates_a, replicates_b, 2),
+      variance_(channels, replicates_a, replicates_b, 1) {}
 
 void PooledVarianceTest::add(const UnitSample& a, const UnitSample& b, const std::vector<bool>& wanted,
                              double rounding) {
   if (a.sampled() < a.replicates() || b.sampled() < b.replicates()) return;
-  std::vector<double> qa, qb;
+  const UnitSample da = deviations_from_median(a, &b), db = deviations_from_median(b, &a);
   for (std::size_t c = 0; c < channels_; ++c) {
     if (!wanted.empty() && !wanted[c]) continue;
     double level = 0;
     for (std::size_t r = 0; r < a.replicates(); ++r) level = std::max(level, std::abs(a.mean_at(r, c)));
     const double floor = rounding * level;
-    if (relative_scatter(a, b, c, floor, qa, qb))
-      scatter_.add(c, qa, qb);
+    RelativeNumbers cut{sampled_values(da, c), sampled_values(db, c)}, squares = cut;
+    const double most = kScatterCut * median_of_both(cut.a, cut.b);
+    for (std::vector<double>* side : {&cut.a, &cut.b}) {
+      for (double& d : *side) d = std::min(d, most);
+    }
+    for (std::vector<double>* side : {&squares.a, &squares.b}) {
+      for (double& d : *side) d *= d;
+    }
+    if (cut.normalise(2, floor))
+      scatter_.add(c, cut.a, cut.b);
     else
       scatter_.skip();
-    if (variance_pseudo_values(a, c, floor, qa) && variance_pseudo_values(b, c, floor, qb))
-      variance_.add(c, qa, qb);
+    if (squares.normalise(1, floor * floor))
+      variance_.add(c, squares.a, squares.b);
     else
       variance_.skip();
   }

@@ -8,24 +8,19 @@
 //    medians of their own lie on other steps where few paths arrive (95 % false alarms). Of the roots of the
 //    distances: with 32 replicates the t of the distances themselves cannot pass 7.5, however different the
 //    variances are, and thousands of pixels demand more.
-//  * pooled over the image, in two ways that see different things; both estimate ln(variance A / variance B),
-//  and both are
-//    averages over the pixels, replicate by replicate, compared by Welch's test. So whatever pixels have in
-//    common (wavelength offsets, scrambles) is common to a replicate and part of its error, and bright and
-//    dark pixels count alike.
-//    - scatter: 2 d_r / s with d_r = |m_r - median of both sides together|, cut at kScatterCut times the
-//    median d, and s their
-//      mean over both sides. Nothing in it knows the sides apart, so its level holds for any distribution
-//      that they share (medians of their own do not: 4 % instead of 1 % for lognormal noise). It does not
-//      feel the tails, so that a change of all that is usual is seen in the noisiest images. The cut pulls
-//      the ratio towards 1, by a tenth of its logarithm for normal noise.
-//    - variance: the jackknife of log variance (Miller, Biometrika 55, 1968). With s^2 the variance of a
-//    pixel's R replicate
-//      means and s_(r)^2 that without replicate r, ln s^2 has the error of the mean of the pseudo-values
-//      -(R - 1) ln s_(r)^2. Feels the tails. Miller's correction of the estimate itself is left out: it
-//      cancels between the sides, and with one replicate far out it doubles what its error does not (44 %
-//      false alarms instead of 5 %).
-//    The mean over the channels is tested as one channel more.
+//  * pooled over the image, in two ways that see different things. With d_r = |m_r - median of both sides
+//  together|
+//    - scatter: 2 d_r / s, d_r cut at kScatterCut times their median and s the mean of both sides. Does not
+//    feel the
+//      tails, so that a change of all that is usual is seen in the noisiest images. The cut pulls the ratio
+//      towards 1, by a tenth of its logarithm for normal noise;
+//    - variance: d_r^2 / s, s the mean of both sides. Feels the tails.
+//    Both are averaged over the pixels, replicate by replicate, and compared by Welch's test: whatever pixels
+//    have in common (wavelength offsets, scrambles) is common to a replicate and part of its error; bright
+//    and dark pixels count alike; no pixel counts for more than its number of replicates; nothing knows the
+//    sides apart, so the level holds for any distribution that they share. (Medians of their own give 4 %
+//    instead of 1 % for lognormal noise; a jackknife of ln s^2 has more than 10 % where two fireflies meet
+//    all pixels.) The mean over the channels is tested as one channel more.
 // Replicate means scatter with 1 / n_r: both sides must have the same number of samples in a replicate. Sides
 // that are not the same estimator (other samplers, wavelength modes) may differ in variance without being
 // wrong.
@@ -51,7 +46,7 @@ inline constexpr std::size_t kAllChannels = static_cast<std::size_t>(-1);
 /// One of the two pooled tests. Where nothing took part p is 1.
 struct PooledVariance {
   std::size_t entries = 0;  // pixels times channels that took part
-  std::size_t skipped = 0;  // those that hardly vary, or whose scatter is that of one replicate
+  std::size_t skipped = 0;  // those that hardly vary
   double p = 1;             // over channels
   std::size_t channel = 0;  // the worst, or kAllChannels
   double ratio = 1;         // of the variances there, A / B
@@ -64,13 +59,17 @@ struct PooledVariance {
 /// Averages numbers of replicates over pixels.
 class PooledReplicates {
  public:
-  PooledReplicates(std::size_t channels, std::size_t replicates_a, std::size_t replicates_b);
+  /// power: the numbers are proportional to the variance to the power 1 / power, and have the mean `power`.
+  PooledReplicates(std::size_t channels, std::size_t replicates_a, std::size_t replicates_b, double power);
   void add(std::size_t channel, const std::vector<double>& a, const std::vector<double>& b);
   void skip() { ++skipped_; }
   PooledVariance finish(uint64_t seed) const;
 
  private:
+  double ratio_of(double difference) const;
+
   std::size_t channels_, skipped_ = 0;
+  double power_;
   std::vector<double> sums_a_, sums_b_;  // [replicate][channel]
   std::vector<std::size_t> counts_;      // [channel]
 };
@@ -87,10 +86,5 @@ class PooledVarianceTest {
   std::size_t channels_;
   PooledReplicates scatter_, variance_;
 };
-
-/// Pseudo-values of one channel, shifted to the mean ln s^2, into q; false if there are none: fewer than 4
-/// replicates, one without samples, or scatter below `floor` with or without any one replicate.
-bool variance_pseudo_values(const UnitSample& sample, std::size_t channel, double floor,
-                            std::vector<double>& q);
 
 }  // namespace kiloband::stats

@@ -41,7 +41,7 @@ void expect_text(const std::string& text, const std::string& part) {
 
 /// Level of a comparison: 1e-3, so a right program fails with probability 2e-3 at most, for any seeds; these
 /// are fixed.
-TEST(Compare, OtherSeedsAgreeAndOnePercentIsFound) {
+TEST(Compare, OtherSeedsAgreeAndHalfAsMuchAgainIsFound) {
   const TemporaryFolder folder;
   render(folder, "a.hdr", "1");
   render(folder, "b.hdr", "2");

@@ -25,27 +25,24 @@ TEST(Variances, DeviationsFromTheMedian) {
   EXPECT_NEAR(deviations_from_median(uneven).means[0], std::sqrt(2), 1e-15);
 }
 
-/// 1, 2, 4, 9: s^2 without each one from scratch.
-TEST(Variances, PseudoValuesByHand) {
-  std::vector<double> q;
-  ASSERT_TRUE(variance_pseudo_values(one_channel({1, 2, 4, 9}), 0, 0, q));
-  const auto s2 = [](std::vector<double> v) {
-    double m = 0, s = 0;
-    for (const double x : v) m += x / static_cast<double>(v.size());
-    for (const double x : v) s += (x - m) * (x - m) / static_cast<double>(v.size() - 1);
-    return s;
-  };
-  double mean = 0;
-  for (const double value : q) mean += value / 4;
-  EXPECT_NEAR(mean, std::log(s2({1, 2, 4, 9})), 1e-12);
-  EXPECT_NEAR(q[3] - q[0], 3 * (std::log(s2({2, 4, 9})) - std::log(s2({1, 2, 4}))), 1e-12);
+/// Median 3: squares 4, 1, 1, 4 against 25, 4, 4, 25; the sides' means 2.5 and 14.5.
+TEST(Variances, PooledByHand) {
+  PooledVarianceTest test(1, 4, 4);
+  test.add(one_channel({1, 2, 4, 5}), one_channel({-2, 1, 5, 8}), {}, 0);
+  const PooledVariance variance = test.variance(1);
+  EXPECT_NEAR(variance.ratio, 2.5 / 14.5, 1e-12);
+  EXPECT_EQ(variance.channel, 0u);
+  EXPECT_EQ(variance.entries, 1u);
+  EXPECT_NEAR(variance.t, (2.5 - 14.5) / std::sqrt((9.0 + 441.0) / 12), 1e-6);
+  EXPECT_NEAR(test.scatter(1).ratio, std::pow(1.5 / 3.5, 2), 1e-12) << "the median d is 2: nothing is cut";
 }
 
-TEST(Variances, NoPseudoValuesWhereOneReplicateIsAll) {
-  std::vector<double> q;
-  EXPECT_FALSE(variance_pseudo_values(one_channel({1, 1, 1, 9}), 0, 0, q));
-  EXPECT_FALSE(variance_pseudo_values(one_channel({1, 2, 3}), 0, 0, q));
-  EXPECT_FALSE(variance_pseudo_values(one_channel({1, 1 + 1e-7, 1, 1 - 1e-7}), 0, 1e-5, q)) << "rounding";
+TEST(Variances, RoundingIsNoScatter) {
+  PooledVarianceTest test(1, 4, 4);
+  test.add(one_channel({1, 1 + 1e-7, 1, 1 - 1e-7}), one_channel({1, 1, 1, 1 + 1e-6}), {}, 1e-5);
+  EXPECT_EQ(test.variance(1).entries, 0u);
+  EXPECT_EQ(test.variance(1).skipped, 1u);
+  EXPECT_EQ(test.variance(1).p, 1);
 }
 
 /// The estimate of a ratio of 1.5 within 4.5 of its standard errors; the error is what 4096 pixels promise:
