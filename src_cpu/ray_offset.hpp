@@ -70,11 +70,11 @@ inline glm::vec3 off_the_edges(glm::vec3 p, glm::vec3 weights, const glm::vec3 (
     const glm::vec3 edge = corners[(i + 1) % 3] - corners[i];
     const float length = std::sqrt(glm::dot(edge, edge)), height = area2 / length;
     const glm::vec3 inwards = glm::cross(area_normal, edge) / (area2 * length);
-    const float missing = std::min(least, height / 8.0f) - glm::dot(p - corners[i], inwards);
+    const float wanted = std::min(least, height / 8.0f), missing = wanted - glm::dot(p - corners[i], inwards);
     if (!(missing > 0)) continue;
     ++near;
     moved = p + missing * inwards;
-    share = std::max(share, missing / (missing + height / 8.0f));
+    share = std::max(share, missing / (missing + height / 3.0f - wanted));  // the centroid is a third high
   }
   return near > 1 ? p + share * ((corners[0] + corners[1] + corners[2]) / 3.0f - p) : moved;
 }

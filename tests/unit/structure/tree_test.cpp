@@ -32,6 +32,7 @@ std::vector<SourceFile> all_files() {
 /// Written in two parts, so that this file is not a hit itself.
 TEST(Tree, NothingIsLeftForLater) {
   for (const SourceFile& file : all_files()) {
+    if (file.path.ends_with(".png")) continue;
     for (const std::string& word :
          {std::string("TO") + "DO", std::string("FIX") + "ME", std::string("XX") + "X"}) {
       EXPECT_EQ(file.text.find(word), std::string::npos) << file.path << " has " << word;
