@@ -155,10 +155,7 @@ void study_means(int trials) {
 }
 
 void study_variances(int trials) {
-  std::printf(
-      "\nPower of variances, alpha = 1e-4, 8 samples per replicate; image-scale estimate of the ratio with "
-      "its "
-      "spread and mean standard error.\n");
+  std::printf("\nPower for variances: share of %d comparisons, alpha = 1e-4, 8 samples per replicate, 64x64 pixels.\n", trials);
   print_head("distribution, ratio");
   for (const char* distribution : {"normal", "exponential", "lognormal", "firefly", "pareto"}) {
     const BatchPool pool(distribution, 8);
