@@ -183,7 +183,7 @@ std::vector<KbRay> secondary_rays(const FlatScene& scene, const std::vector<Trac
     const KbFloat4 u = kb_philox_floats(1, static_cast<uint32_t>(i), 0, 0, 0);
     const KbFloat3 d = kb_sphere_uniform(u.x, u.y);
     const glm::vec3 direction(d.x, d.y, d.z);
-    rays.push_back(make_ray(offset_ray_origin(at.point, normal),
+    rays.push_back(make_ray(offset_ray_origin(at.departure, normal, at.offset),
                             glm::dot(direction, normal) < 0 ? -direction : direction, 0, t_max));
   }
   return rays;
