@@ -123,10 +123,14 @@ TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) 
   return image;
 }
 
+double sum_rounding(const TrialImage& image) {
+  return std::min(image.samples, 64u) * 0x1p-24;
+}
+
 void Trial::exact(const std::string& name, const TrialImage& image, std::size_t channel, double reference,
                   double rounding, const std::string& reason) {
   const double expected = reference * image.widths_nm[channel];
-  const double limit = rounding + std::min(image.samples, 64u) * 0x1p-24;
+  const double limit = rounding + sum_rounding(image);
   double worst = expected, error = 0;
   for (std::size_t i = channel; i < image.mean.size(); i += image.channels) {
     const double relative = std::abs(image.mean[i] / expected - 1);

@@ -36,6 +36,9 @@ struct TrialImage {
   }
 };
 
+/// Relative error of the film's sums: at most 64 float additions each, before they are joined in double.
+double sum_rounding(const TrialImage& image);
+
 class Trial {
  public:
   explicit Trial(const HardCaseContext& context) : context_(context) {}
