@@ -134,15 +134,4 @@ std::vector<AuxiliaryPixel> DeviceState::auxiliary(const PixelRect& rect) {
   return pixels;
 }
 
-const char* to_string(Method method) {
-  switch (method) {
-    case Method::kPt:
-      return "pt";
-    case Method::kDpeptPath:
-      return "dpept-path";
-    default:
-      return "dpept-batch";
-  }
-}
-
 }  // namespace kiloband::gpu

@@ -94,6 +94,4 @@ class DeviceState {
 /// paper finds dpept-path ahead below 16 channels on GPUs with 16-wide SIMD; no GPU has been measured here.
 inline constexpr Method kDefaultMethod = Method::kDpeptBatch;
 
-const char* to_string(Method method);
-
 }  // namespace kiloband::gpu

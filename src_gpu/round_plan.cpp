@@ -86,6 +86,23 @@ uint64_t arena_chunks(const PlanRequest& r, const PoolSize& others, uint64_t job
 
 }  // namespace
 
+const char* to_string(Method method) {
+  switch (method) {
+    case Method::kPt:
+      return "pt";
+    case Method::kDpeptPath:
+      return "dpept-path";
+    default:
+      return "dpept-batch";
+  }
+}
+
+std::optional<Method> find_method(std::string_view name) {
+  for (const Method method : {Method::kDpeptBatch, Method::kDpeptPath, Method::kPt})
+    if (name == to_string(method)) return method;
+  return {};
+}
+
 uint32_t chunk_slots(Method method, const SceneFeatures& features) {
   if (method != Method::kPt) return KB_CHUNK_SLOTS;
   if (features.gas) return KB_PT_GAS_CHUNK_SLOTS;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 #include "src_gpu/path_pool.hpp"
 
@@ -10,6 +12,10 @@ namespace kiloband::gpu {
 
 /// The three evaluations of one pipeline (paper, sections 4 and 5).
 enum class Method { kDpeptBatch, kDpeptPath, kPt };
+/// "dpept-batch", "dpept-path", "pt"
+const char* to_string(Method method);
+/// The method of that name; nothing: there is none.
+std::optional<Method> find_method(std::string_view name);
 
 /// Vertices of a chunk: with the method pt, which empties chunks at every bounce, what a bounce may append.
 uint32_t chunk_slots(Method method, const SceneFeatures& features);
@@ -28,7 +34,7 @@ struct PlanRequest {
   double chunks_per_path = 3;  // expected
   bool dispersion = false;     // PoolSize::dispersion
   uint32_t chunk_slots = KB_CHUNK_SLOTS;
-  bool gas = false;            // the scene has gas
+  bool gas = false;  // the scene has gas
 };
 
 struct RoundPlan {

@@ -21,12 +21,6 @@ Isa parse_isa(const std::string& text) {
   return Isa::kAuto;
 }
 
-std::optional<gpu::Method> parse_method(const std::optional<std::string>& text) {
-  if (!text) return {};
-  if (*text == "pt") return gpu::Method::kPt;
-  return *text == "dpept-path" ? gpu::Method::kDpeptPath : gpu::Method::kDpeptBatch;
-}
-
 /// A real GPU; a loader or driver that fails counts as none.
 bool has_gpu() {
   try {
@@ -105,7 +99,7 @@ std::unique_ptr<Backend> make_backend(const BackendOptions& options, const FlatS
   OpenclOptions opencl;
   opencl.device = options.device;
   opencl.device_memory = memory;
-  opencl.method = parse_method(options.method);
+  if (options.method) opencl.method = gpu::find_method(*options.method);
   opencl.sink = sink;
   return make_opencl_backend(scene, derived, sampling, opencl);
 }

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "stats/comparison_json.hpp"
+
 namespace kiloband {
 namespace {
 
+constexpr auto number = stats::number_json;
 using stats::TestVerdict;
 using stats::WorstUnit;
 
@@ -48,25 +51,10 @@ std::string test_line(const TestVerdict& test, const std::vector<std::string>& n
                             w.b, w.t);
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json worst_json(const WorstUnit& w, const std::vector<std::string>& names) {
-  return {{"x", w.place.x},
-          {"y", w.place.y},
-          {"width", w.place.width},
-          {"height", w.place.height},
-          {"pooled", w.place.pooled},
-          {"channel", w.channel},
-          {"channel_name", names[w.channel]},
-          {"a", number(w.a)},
-          {"b", number(w.b)},
-          {"difference", number(w.difference)},
-          {"standard_error", number(w.standard_error)},
-          {"t", number(w.t)},
-          {"dof", number(w.dof)},
-          {"p", number(w.p)}};
+nlohmann::ordered_json worst_json(const WorstUnit& worst, const std::vector<std::string>& names) {
+  nlohmann::ordered_json json = stats::to_json(worst);
+  json["channel_name"] = names[worst.channel];
+  return json;
 }
 
 nlohmann::ordered_json test_json(const TestVerdict& test, const std::vector<std::string>& names) {

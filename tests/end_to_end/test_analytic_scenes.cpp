@@ -9,11 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "tests/end_to_end/support/program.hpp"
 #include "tests/support/render_harness.hpp"
+#include "validation/suite/case.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -30,21 +29,6 @@ std::vector<fs::path> analytic_scenes() {
   }
   std::sort(scenes.begin(), scenes.end());
   return scenes;
-}
-
-/// What follows "Expected:" in the scene's comment.
-std::vector<double> expected_values(const fs::path& scene) {
-  std::ifstream file(scene);
-  const std::string label = "Expected:";
-  for (std::string line; std::getline(file, line);) {
-    const auto at = line.find(label);
-    if (at == std::string::npos) continue;
-    std::vector<double> values;
-    std::istringstream numbers(line.substr(at + label.size()));
-    for (std::string number; std::getline(numbers, number, ',');) values.push_back(std::stod(number));
-    return values;
-  }
-  return {};
 }
 
 /// Mean over the image of every channel.
@@ -85,7 +69,8 @@ TEST(AnalyticScenes, ShowWhatTheyState) {
                              {"-o", "a.hdr", "--keep-replicates", "--seed", "7", "--stats", "a.json"}));
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(read_json(folder, "a.json")["invalid_samples"], 0);
-    const std::vector<double> expected = expected_values(scene);
+    const std::size_t channels = read_cube(folder / "a.hdr").info.bands.size();
+    const std::vector<double> expected = validation::read_closed_form(scene, channels).values;
     std::vector<std::vector<double>> samples(expected.size());
     for (const std::string& name : folder.list()) {
       if (!name.starts_with("a.r") || !name.ends_with(".hdr")) continue;

@@ -1,7 +1,6 @@
 #include "tests/support/test_backend.hpp"
 
 #include <cstdlib>
-#include <map>
 #include <stdexcept>
 
 #include "src_cpu/cpu_backend.hpp"
@@ -29,16 +28,11 @@ std::unique_ptr<Backend> make_test_backend(const FlatScene& scene, const Derived
                                            int threads) {
   const std::string name = test_backend_name();
   if (name == "cpu") return make_cpu_backend(scene, derived, settings, {isa_of(isa), threads});
-  static const std::map<std::string, std::optional<gpu::Method>> kMethods{
-      {"opencl", {}},
-      {"opencl:pt", gpu::Method::kPt},
-      {"opencl:dpept-path", gpu::Method::kDpeptPath},
-      {"opencl:dpept-batch", gpu::Method::kDpeptBatch}};
-  const auto method = kMethods.find(name);
-  if (method == kMethods.end())
-    throw std::runtime_error("KILOBAND_TEST_BACKEND=" + name + ": no such backend");
+  const std::string prefix = "opencl:";
   OpenclOptions options;
-  options.method = method->second;
+  if (name.starts_with(prefix)) options.method = gpu::find_method(name.substr(prefix.size()));
+  if (name != "opencl" && !options.method)
+    throw std::runtime_error("KILOBAND_TEST_BACKEND=" + name + ": no such backend");
   options.specialised =
       false;  // one program for all tests; tests/statistical/backends compares it with the others
   return make_opencl_backend(scene, derived, settings, options);

@@ -1,7 +1,6 @@
 #include "validation/suite/rendering.hpp"
 
 #include <chrono>
-#include <map>
 #include <numeric>
 #include <stdexcept>
 
@@ -17,10 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-PixelRect film_rect(const FlatScene& scene) {
-  return {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height};
 }
 
 stats::ReplicateImage image_of(const SpectralFilm& film, const PixelRect& rect, uint32_t replicates,
@@ -64,15 +59,27 @@ std::unique_ptr<Backend> make_backend(const Configuration& configuration, const 
                                       const SamplingSettings& settings) {
   const std::string& name = configuration.backend;
   if (name == "cpu") return make_cpu_backend(scene, {}, settings, {});
-  static const std::map<std::string, gpu::Method> kMethods{{"opencl:pt", gpu::Method::kPt},
-                                                           {"opencl:dpept-path", gpu::Method::kDpeptPath},
-                                                           {"opencl:dpept-batch", gpu::Method::kDpeptBatch}};
-  const auto method = kMethods.find(name);
-  if (method == kMethods.end()) throw std::logic_error("validation: no backend '" + name + "'");
+  const std::string prefix = "opencl:";
   OpenclOptions options;
-  options.method = method->second;
+  if (name.starts_with(prefix)) options.method = gpu::find_method(name.substr(prefix.size()));
+  if (name != "opencl" && !options.method) throw std::logic_error("validation: no backend '" + name + "'");
   options.specialised = configuration.specialised;
   return make_opencl_backend(scene, {}, settings, options);
+}
+
+PixelRect film_rect(const FlatScene& scene) {
+  return {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height};
+}
+
+void render_replicates(Backend& backend, SpectralFilm& film, uint32_t replicates, uint32_t samples,
+                       const Watch& watch) {
+  std::vector<uint32_t> blocks(film.blocks().size());
+  std::iota(blocks.begin(), blocks.end(), 0u);
+  static const std::atomic<bool> never{false};
+  for (uint32_t r = 0; r < replicates && !watch.stopped(); ++r) {
+    backend.render(film, {r, 0, samples}, blocks, watch.stop ? *watch.stop : never, {});
+    if (watch.progress) watch.progress((r + 1.0) / replicates);
+  }
 }
 
 Rendering render(const FlatScene& scene, const Configuration& configuration, const Sampling& sampling,
@@ -83,15 +90,9 @@ Rendering render(const FlatScene& scene, const Configuration& configuration, con
   const PixelRect rect = film_rect(scene);
   const std::vector<double> scale = backend->film_scale();
   SpectralFilm film(rect, {scale.size(), sampling.replicates, true, true});
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
-  static const std::atomic<bool> never{false};
   Rendering result;
   const auto start = Clock::now();
-  for (uint32_t r = 0; r < sampling.replicates && !watch.stopped(); ++r) {
-    backend->render(film, {r, 0, sampling.samples}, blocks, watch.stop ? *watch.stop : never, {});
-    if (watch.progress) watch.progress((r + 1.0) / sampling.replicates);
-  }
+  render_replicates(*backend, film, sampling.replicates, sampling.samples, watch);
   result.seconds = since(start);
   result.stopped = watch.stopped();
   result.image = image_of(film, rect, sampling.replicates, scale);

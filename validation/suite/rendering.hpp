@@ -58,7 +58,13 @@ struct Watch {
   bool stopped() const { return stop && stop->load(); }
 };
 
-/// Throws what making the backend throws.
+PixelRect film_rect(const FlatScene& scene);
+
+/// `samples` of each replicate into the film, until the watch stops it.
+void render_replicates(Backend& backend, SpectralFilm& film, uint32_t replicates, uint32_t samples,
+                       const Watch& watch);
+
+/// "opencl": the method that the backend chooses. Throws what making the backend throws.
 std::unique_ptr<Backend> make_backend(const Configuration& configuration, const FlatScene& scene,
                                       const SamplingSettings& settings);
 

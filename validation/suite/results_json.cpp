@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "stats/comparison_json.hpp"
 #include "validation/suite/results.hpp"
 
 namespace kiloband::validation {
@@ -7,9 +8,7 @@ namespace {
 
 using nlohmann::json;
 
-json number(double value) {
-  return std::isfinite(value) ? json(value) : json(nullptr);
-}
+constexpr auto number = stats::number_json;
 
 /// Six digits are plenty for plots.
 template <class Values>
@@ -30,29 +29,13 @@ json to_json(const stats::Detectable& d) {
           {"largest_channel", d.largest_channel}};
 }
 
-json to_json(const stats::WorstUnit& w) {
-  return {{"x", w.place.x},
-          {"y", w.place.y},
-          {"width", w.place.width},
-          {"height", w.place.height},
-          {"pooled", w.place.pooled},
-          {"channel", w.channel},
-          {"a", number(w.a)},
-          {"b", number(w.b)},
-          {"difference", number(w.difference)},
-          {"standard_error", number(w.standard_error)},
-          {"t", number(w.t)},
-          {"dof", number(w.dof)},
-          {"p", number(w.p)}};
-}
-
 json to_json(const stats::TestVerdict& v) {
   json out{{"name", v.name},
            {"p", number(v.p)},
            {"level", number(v.level)},
            {"passed", v.passed},
            {"detectable", to_json(v.detectable)}};
-  if (v.worst) out["worst"] = to_json(*v.worst);
+  if (v.worst) out["worst"] = stats::to_json(*v.worst);
   return out;
 }
 

@@ -38,17 +38,11 @@ Plan plan_of(const SuiteSettings& settings) {
   return plan;
 }
 
-HardEffort hard_effort(Effort effort) {
-  return effort == Effort::kQuick      ? HardEffort::kQuick
-         : effort == Effort::kStandard ? HardEffort::kStandard
-                                       : HardEffort::kThorough;
-}
-
 HardCaseResult run_hard_case(const HardCase& hard, const std::string& backend,
                              const SuiteSettings& settings) {
   HardCaseResult result{hard.name, hard.what, backend, {}, false, {}};
   try {
-    result.figures = hard.run({backend, hard_effort(settings.effort), settings.seed, {}});
+    result.figures = hard.run({backend, settings.effort, settings.seed, {}});
     result.passed = std::ranges::all_of(result.figures, &HardFigure::pass);
   } catch (const InputError& error) {
     result.error = error.what();

@@ -68,6 +68,28 @@ std::string view(const std::string& origin, const std::string& target) {
   return wide_sensor(lookat(origin, target, "0.1, 1, 0.2"), 1e-4, 1, 1);
 }
 
+struct Ray {
+  double from[3], to[3];
+};
+
+/// A plume whose state at a point is `field`, in front of the lamp, along a ray. cube: the shape that holds
+/// it.
+void expect_along(const Ray& ray, Point (*field)(double x, double y, double z), const std::string& cube,
+                  double kappa, double hot, const std::filesystem::path& folder = ".") {
+  SCOPED_TRACE(kappa);
+  const auto& a = ray.from;
+  const auto& b = ray.to;
+  const double length = std::sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
+                                  (b[2] - a[2]) * (b[2] - a[2]));
+  const Field along = [&](double s) {
+    const double t = s / length;
+    return field(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]));
+  };
+  expect_plume(
+      scene(4, view(vec(a[0], a[1], a[2]), vec(b[0], b[1], b[2])) + constant_environment(kLamp) + cube),
+      along, length, kappa, hot, folder);
+}
+
 constexpr double kHot = 1800, kCold = 290, kRadius = 0.3, kSpread = 0.12, kLength = 6;
 
 Point jet(double x, double y, double z) {
@@ -86,27 +108,12 @@ std::string jet_medium(double kappa) {
 /// Across the jet near its nozzle and far from it, and along it, thin to thick. The box is 8 m wide around
 /// the jet.
 TEST(Plume, JetAgainstFineQuadrature) {
-  struct {
-    double from[3], to[3];
-  } rays[] = {
+  const Ray rays[] = {
       {{5, 0.1, 0.5}, {-5, 0.1, 0.5}}, {{5, -0.2, 4.5}, {-5, 0.3, 4.2}}, {{0.1, 0.05, 9}, {-0.02, 0, -3}}};
   for (const double kappa : {1e-3, 0.3, 3.0, 300.0}) {
     const std::string cube =
         shape("cube", to_world("<scale value=\"4\"/><translate z=\"3\"/>") + kNull + jet_medium(kappa));
-    for (const auto& ray : rays) {
-      SCOPED_TRACE(kappa);
-      const auto& a = ray.from;
-      const auto& b = ray.to;
-      const double length = std::sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
-                                      (b[2] - a[2]) * (b[2] - a[2]));
-      const Field along = [&](double s) {
-        const double t = s / length;
-        return jet(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]));
-      };
-      expect_plume(
-          scene(4, view(vec(a[0], a[1], a[2]), vec(b[0], b[1], b[2])) + constant_environment(kLamp) + cube),
-          along, length, kappa, kHot);
-    }
+    for (const Ray& ray : rays) expect_along(ray, jet, cube, kappa, kHot);
   }
 }
 
@@ -161,12 +168,10 @@ double write_lattice(const TemporaryFolder& folder) {
 TEST(Plume, GridAgainstFineQuadrature) {
   const TemporaryFolder folder;
   const double hottest = write_lattice(folder);
-  struct {
-    double from[3], to[3];
-  } rays[] = {{{3, 0.1, 0.2}, {-3, -0.2, 0.3}},
-              {{0.3, 4, -0.5}, {-0.4, -4, 0.9}},
-              {{2, 3, 4}, {-2, -2.9, -4.2}},
-              {{0.5, -0.2, 3}, {0.5, -0.2, -3}}};
+  const Ray rays[] = {{{3, 0.1, 0.2}, {-3, -0.2, 0.3}},
+                      {{0.3, 4, -0.5}, {-0.4, -4, 0.9}},
+                      {{2, 3, 4}, {-2, -2.9, -4.2}},
+                      {{0.5, -0.2, 3}, {0.5, -0.2, -3}}};
   for (const double kappa : {1e-3, 0.5, 50.0}) {
     const std::string cube =
         shape("cube",
@@ -177,20 +182,7 @@ TEST(Plume, GridAgainstFineQuadrature) {
                              "<string name=\"nodes\" value=\"5, 4, 6\"/>"
                              "<string name=\"filename\" value=\"plume.txt\"/>" +
                              to_world("<translate x=\"-0.5\" y=\"-0.5\" z=\"-0.5\"/><scale value=\"2\"/>")));
-    for (const auto& ray : rays) {
-      SCOPED_TRACE(kappa);
-      const auto& a = ray.from;
-      const auto& b = ray.to;
-      const double length = std::sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
-                                      (b[2] - a[2]) * (b[2] - a[2]));
-      const Field along = [&](double s) {
-        const double t = s / length;
-        return lattice(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]));
-      };
-      expect_plume(
-          scene(4, view(vec(a[0], a[1], a[2]), vec(b[0], b[1], b[2])) + constant_environment(kLamp) + cube),
-          along, length, kappa, hottest, folder.path());
-    }
+    for (const Ray& ray : rays) expect_along(ray, lattice, cube, kappa, hottest, folder.path());
   }
 }
 

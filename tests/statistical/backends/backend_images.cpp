@@ -1,6 +1,5 @@
 #include "backend_images.hpp"
 
-#include <map>
 #include <numeric>
 
 #include "src_cpu/cpu_backend.hpp"
@@ -11,10 +10,7 @@ std::unique_ptr<Backend> make_zoo_backend(const std::string& name, const FlatSce
                                           const DerivedChannels& derived, const SamplingSettings& settings,
                                           OpenclOptions options) {
   if (name == "cpu") return make_cpu_backend(scene, derived, settings, {});
-  static const std::map<std::string, gpu::Method> kMethods{{"opencl:pt", gpu::Method::kPt},
-                                                           {"opencl:dpept-path", gpu::Method::kDpeptPath},
-                                                           {"opencl:dpept-batch", gpu::Method::kDpeptBatch}};
-  options.method = kMethods.at(name);
+  options.method = gpu::find_method(name.substr(name.find(':') + 1)).value();
   return make_opencl_backend(scene, derived, settings, options);
 }
 

@@ -29,8 +29,7 @@ class HardCases : public testing::TestWithParam<std::string> {};
 TEST_P(HardCases, StayWithinTheirLimits) {
   const auto& all = hard_cases();
   const auto one = std::ranges::find(all, GetParam(), &HardCase::name);
-  const std::vector<HardFigure> figures =
-      one->run({test_backend_name(), validation::HardEffort::kQuick, 1, {}});
+  const std::vector<HardFigure> figures = one->run({test_backend_name(), validation::Effort::kQuick, 1, {}});
   ASSERT_GE(figures.size(), 2u);
   for (const HardFigure& f : figures) {
     std::printf("%-16s %-46s %.9g, reference %.9g, error %.2g, limit %.2g\n", one->name.c_str(),

@@ -13,17 +13,17 @@
 #include <string>
 #include <vector>
 
+#include "validation/suite/effort.hpp"
+
 namespace kiloband::validation {
 
 inline constexpr double kHardFamilyRate = 1e-4;
 /// Upper bound of the statistical figures of a whole run (all cases, one backend).
 inline constexpr std::size_t kHardStatisticalFigures = 100;
 
-enum class HardEffort { kQuick, kStandard, kThorough };
-
 struct HardCaseContext {
   std::string backend = "cpu";  // or "opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"
-  HardEffort effort = HardEffort::kQuick;
+  Effort effort = Effort::kQuick;
   uint64_t seed = 1;
   std::function<void(const std::string&)> progress;  // what is being done; may be empty
 };

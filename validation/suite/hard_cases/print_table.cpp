@@ -27,9 +27,8 @@ bool print(const HardCase& one, const HardCaseContext& context) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  static const std::map<std::string, HardEffort> kEfforts{{"quick", HardEffort::kQuick},
-                                                          {"standard", HardEffort::kStandard},
-                                                          {"thorough", HardEffort::kThorough}};
+  static const std::map<std::string, Effort> kEfforts{
+      {"quick", Effort::kQuick}, {"standard", Effort::kStandard}, {"thorough", Effort::kThorough}};
   if (argc < 3 || !kEfforts.contains(argv[2])) {
     fmt::print(stderr,
                "usage: hard_cases cpu|opencl:dpept-batch|opencl:dpept-path|opencl:pt "

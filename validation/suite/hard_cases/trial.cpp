@@ -4,53 +4,27 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <fstream>
-#include <map>
-#include <numeric>
-#include <optional>
-#include <stdexcept>
 
 #include "scene/reader.hpp"
 #include "shared/sampler.h"
-#include "src_cpu/cpu_backend.hpp"
 #include "src_cpu/evaluator.hpp"
-#include "src_gpu/opencl_backend.hpp"
+#include "stats/distributions.hpp"
+#include "validation/suite/rendering.hpp"
 
 namespace kiloband::validation {
 namespace {
 
-std::unique_ptr<Backend> make_backend(const std::string& name, const FlatScene& scene,
-                                      const SamplingSettings& settings) {
-  if (name == "cpu") return make_cpu_backend(scene, {}, settings, {});
-  static const std::map<std::string, std::optional<gpu::Method>> kMethods{
-      {"opencl", {}},
-      {"opencl:pt", gpu::Method::kPt},
-      {"opencl:dpept-path", gpu::Method::kDpeptPath},
-      {"opencl:dpept-batch", gpu::Method::kDpeptBatch}};
-  const auto method = kMethods.find(name);
-  if (method == kMethods.end()) throw std::logic_error("hard cases: no backend \"" + name + "\"");
-  OpenclOptions options;
-  options.method = method->second;
-  options.specialised = false;  // one program for all scenes
-  return make_opencl_backend(scene, {}, settings, options);
+/// One program for all scenes.
+Configuration general_kernels(const std::string& backend) {
+  Configuration configuration{backend};
+  configuration.specialised = false;
+  return configuration;
 }
 
 SamplingSettings sampling_of(const TrialSettings& settings, uint64_t seed, uint32_t replicates) {
   return {settings.wavelengths, settings.sampler, seed, replicates};
-}
-
-PixelRect film_rect(const FlatScene& scene) {
-  return {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height};
-}
-
-void render_replicates(Backend& backend, SpectralFilm& film, uint32_t replicates, uint32_t samples) {
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
-  const std::atomic<bool> stop{false};
-  for (uint32_t r = 0; r < replicates; ++r) backend.render(film, {r, 0, samples}, blocks, stop, {});
 }
 
 void collect_pixels(const SpectralFilm& film, const std::vector<double>& scale, TrialImage& image) {
@@ -81,15 +55,13 @@ double offset_of(const SamplingSettings& s, const FlatScene& scene, uint32_t x, 
 
 /// Two-sided critical |t| of one figure among all.
 double critical_t(uint32_t replicates) {
-  const double one = kHardFamilyRate / static_cast<double>(kHardStatisticalFigures);
-  return boost::math::quantile(boost::math::complement(boost::math::students_t(replicates - 1.0), one / 2));
+  return stats::student_upper(kHardFamilyRate / kHardStatisticalFigures / 2, replicates - 1.0);
 }
 
 }  // namespace
 
 uint64_t Trial::by_effort(uint64_t quick, uint64_t standard, uint64_t thorough) const {
-  if (context_.effort == HardEffort::kQuick) return quick;
-  return context_.effort == HardEffort::kStandard ? standard : thorough;
+  return ByEffort<uint64_t>{quick, standard, thorough}.at(context_.effort);
 }
 
 FlatScene Trial::flatten_text(const std::string& xml, const TrialSettings& settings) const {
@@ -100,10 +72,10 @@ FlatScene Trial::flatten_text(const std::string& xml, const TrialSettings& setti
 
 TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) {
   const FlatScene scene = flatten_text(xml, settings);
-  const auto backend =
-      make_backend(context_.backend, scene, sampling_of(settings, context_.seed, settings.replicates));
+  const auto backend = make_backend(general_kernels(context_.backend), scene,
+                                    sampling_of(settings, context_.seed, settings.replicates));
   SpectralFilm film(film_rect(scene), {scene.channels.size(), settings.replicates, true});
-  render_replicates(*backend, film, settings.replicates, settings.samples);
+  render_replicates(*backend, film, settings.replicates, settings.samples, {});
   TrialImage image;
   image.width = scene.film.crop_width;
   image.height = scene.film.crop_height;
@@ -165,10 +137,10 @@ void Trial::figure(const std::string& name, const std::string& unit, double valu
 void Trial::oracle(const std::string& name, const std::string& xml, const TrialSettings& settings) {
   const FlatScene scene = flatten_text(xml, settings);
   const SamplingSettings sampling = sampling_of(settings, context_.seed, 1);
-  const auto backend = make_backend(context_.backend, scene, sampling);
+  const auto backend = make_backend(general_kernels(context_.backend), scene, sampling);
   const PixelRect rect = film_rect(scene);
   SpectralFilm film(rect, {scene.channels.size(), 1, true});
-  render_replicates(*backend, film, 1, 1);
+  render_replicates(*backend, film, 1, 1, {});
   TrialImage image{rect.width, rect.height, scene.channels.size()};
   collect_pixels(film, backend->film_scale(), image);
   const std::vector<TracedPath> paths = backend->trace(rect, {0, 0, 1});

@@ -43,7 +43,7 @@ class Trial {
  public:
   explicit Trial(const HardCaseContext& context) : context_(context) {}
 
-  HardEffort effort() const { return context_.effort; }
+  Effort effort() const { return context_.effort; }
   /// The one of three that the effort chooses.
   uint64_t by_effort(uint64_t quick, uint64_t standard, uint64_t thorough) const;
 
