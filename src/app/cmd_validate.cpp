@@ -140,7 +140,7 @@ void print_verdict(const SuiteResult& result) {
              result.interrupted ? "interrupted"
              : result.passed()  ? "all passed"
                                 : "FAILED",
-             result.comparisons, result.seconds, result.settings.rule.overall());
+             result.comparisons, result.seconds, kRunRate);
 }
 
 /// The HTML page: by a Python script with matplotlib. Without them the results stand for themselves.

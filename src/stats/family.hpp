@@ -22,7 +22,7 @@ struct RepeatRule {
   double first = 1e-2;  // family-wise rate of the first stage, over all cases
   double again = 1e-2;  // of the second, over all cases as if each were repeated
 
-  double overall() const { return first * again; }
+  constexpr double overall() const { return first * again; }
 };
 
 inline constexpr uint64_t kRepeatSamples = 4;

@@ -71,7 +71,7 @@ Verdict run_fault(const faults::PlantedFault* fault, const std::string& selected
   const faults::FaultScope scope(selected);
   const bool shared = selected.starts_with("shared:");
   static const faults::PlantedFault kNone{0, "none", faults::kCpu, "", "", "diffuse_room", ""};
-  CaseSettings settings{{"cpu", "opencl:dpept-batch"}, effort, 1, 32, {}, kFamily, false};
+  CaseSettings settings{{"cpu", "opencl:dpept-batch"}, effort, 1, 32, kComparisonRule, kFamily, false};
   // A fault of the kernels needs programs of its own: those of one scene are compiled sooner.
   settings.specialised = selected.starts_with("opencl:");
   Verdict verdict;

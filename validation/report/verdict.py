@@ -60,10 +60,11 @@ def head(results):
         ),
         (
             "false alarms",
-            f"a run without faults fails with probability {number(results.get('rate'))} at most: "
-            f"{number(results.get('rate_first'))} for the first attempts of all comparisons together, and what fails is "
+            f"a run without faults fails with probability {number(results.get('rate'))} at most: comparisons "
+            f"{number(results.get('rate_first'))} for the first attempts of all of them together, and what fails is "
             f"repeated once with fresh seeds and four times the samples at {number(results.get('rate_again'))} "
-            f"({repeated} of this run's comparisons were)",
+            f"({repeated} of this run's were); hard cases {number(results.get('rate_hard_cases'))}; slopes "
+            f"{number(results.get('rate_convergence'))}; Mitsuba {number(results.get('rate_mitsuba'))}",
         ),
     ]
     interrupted = ' <span class="word bad">The run was interrupted.</span>' if results.get("interrupted") else ""

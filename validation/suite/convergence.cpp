@@ -4,12 +4,13 @@
 
 #include <cmath>
 
+#include "stats/distributions.hpp"
+#include "validation/suite/error_rates.hpp"
+
 namespace kiloband::validation {
 namespace {
 
 constexpr uint32_t kReplicates = 16, kFirstSamples = 2, kStep = 2;
-/// Two-sided normal quantile of 1e-4 over a dozen of curves.
-constexpr double kSlopeLimit = 4.6;
 
 /// Sum over pixels and channels of the variance between the replicates, each channel relative to its mean;
 /// `left_out` is not counted (kReplicates: all are).
@@ -66,7 +67,7 @@ Scatter scatter_of(const stats::ReplicateImage& image) {
 }
 
 /// Points have independent seeds, so the slope's variance is the sum over points of what each one's jackknife
-/// gives.
+/// gives (degrees of freedom: Satterthwaite's).
 void fit(ConvergenceCurve& curve, const std::vector<Scatter>& scatters) {
   std::vector<uint32_t> samples;
   std::vector<double> variances;
@@ -75,7 +76,7 @@ void fit(ConvergenceCurve& curve, const std::vector<Scatter>& scatters) {
     variances.push_back(scatters[i].all);
   }
   curve.slope = slope_of(samples, variances);
-  double variance = 0;
+  double variance = 0, squared_variances = 0;
   for (std::size_t i = 0; i < scatters.size(); ++i) {
     const std::vector<double> all = variances;
     std::vector<double> slopes;
@@ -88,14 +89,17 @@ void fit(ConvergenceCurve& curve, const std::vector<Scatter>& scatters) {
     double mean = 0, squares = 0;
     for (const double s : slopes) mean += s / n;
     for (const double s : slopes) squares += (s - mean) * (s - mean);
-    variance += (n - 1) / n * squares;
+    const double of_point = (n - 1) / n * squares;
+    variance += of_point;
+    squared_variances += of_point * of_point / (n - 1);
   }
   curve.slope_error = std::sqrt(variance);
+  curve.slope_dof = squared_variances > 0 ? variance * variance / squared_variances : 0;
 }
 
 ConvergenceCurve measure(const FlatScene& scene, const Configuration& configuration, uint32_t most,
                          uint64_t seed, const Watch& watch) {
-  ConvergenceCurve curve{configuration, {}, 0, 0};
+  ConvergenceCurve curve{configuration, {}, 0, 0, 0};
   std::vector<Scatter> scatters;
   for (uint32_t samples = kFirstSamples; samples <= most && !watch.stopped(); samples *= kStep) {
     const Rendering rendering = render(scene, configuration, {seed + samples, kReplicates, samples}, watch);
@@ -120,8 +124,15 @@ std::vector<Configuration> configurations(const std::vector<std::string>& backen
   return all;
 }
 
-bool is_independent(const Configuration& c) {
-  return c.sampler == SamplerType::kIndependent;
+/// Independent samples: then the slope is -1/2.
+bool is_known(const ConvergenceCurve& c) {
+  return c.configuration.sampler == SamplerType::kIndependent && c.slope_dof > 0;
+}
+
+/// Two-sided, over all known slopes of a run.
+double critical_t(double dof) {
+  constexpr int kStudies = 3, kKnownCurves = 2;
+  return stats::student_upper(kConvergenceRate / (kStudies * kKnownCurves * kMostBackends) / 2, dof);
 }
 
 }  // namespace
@@ -145,8 +156,7 @@ ConvergenceResult run_convergence(const ConvergenceCase& c, const std::vector<st
   for (const Configuration& configuration : configurations(backends, effort)) {
     if (watch.stopped()) break;
     ConvergenceCurve curve = measure(scene, configuration, c.most_samples.at(effort), seed, watch);
-    if (is_independent(configuration) && curve.points.size() >= 2 &&
-        std::abs(curve.slope + 0.5) > kSlopeLimit * curve.slope_error) {
+    if (is_known(curve) && std::abs(curve.slope + 0.5) > critical_t(curve.slope_dof) * curve.slope_error) {
       result.passed = false;
       result.note += fmt::format("{}: slope {:.4f} +- {:.4f} instead of -1/2; ", configuration.label(),
                                  curve.slope, curve.slope_error);

@@ -27,13 +27,13 @@ struct ConvergencePoint {
 struct ConvergenceCurve {
   Configuration configuration;
   std::vector<ConvergencePoint> points;
-  double slope = 0, slope_error = 0;
+  double slope = 0, slope_error = 0, slope_dof = 0;
 };
 
 struct ConvergenceResult {
   std::string name;
   std::vector<ConvergenceCurve> curves;
-  bool passed = true;  // every independent per-path curve has the slope -1/2 within its error
+  bool passed = true;  // every curve of independent samples has the slope -1/2 within its error
   std::string note;
 };
 

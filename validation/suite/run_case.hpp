@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "stats/comparison.hpp"
-#include "stats/family.hpp"
 #include "validation/suite/case.hpp"
+#include "validation/suite/error_rates.hpp"
 
 namespace kiloband::validation {
 
@@ -46,7 +46,7 @@ struct CaseSettings {
   Effort effort = Effort::kStandard;
   uint64_t seed = 1;
   uint32_t replicates = 32;
-  stats::RepeatRule rule;
+  stats::RepeatRule rule = kComparisonRule;
   std::size_t family = 1;   // comparisons of the whole run
   bool specialised = true;  // OpenCL kernels compiled for each scene; false: one program for all
 };

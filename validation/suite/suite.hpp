@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "validation/suite/convergence.hpp"
+#include "validation/suite/error_rates.hpp"
 #include "validation/suite/hard_cases/hard_cases.hpp"
 #include "validation/suite/run_case.hpp"
 
@@ -18,7 +19,7 @@ struct SuiteSettings {
   Effort effort = Effort::kStandard;
   uint64_t seed = 1;
   SceneFolders folders;
-  stats::RepeatRule rule;
+  stats::RepeatRule rule = kComparisonRule;
 };
 
 struct HardCaseResult {

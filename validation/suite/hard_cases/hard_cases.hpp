@@ -4,7 +4,7 @@
 // A case names no backend: the context does. Where the estimator has no variance, errors are of rounding and
 // each limit has its reason beside it; where it has, the limit is a t-quantile times the standard error of
 // the mean over replicates. All statistical figures of a run together raise a false alarm with probability
-// kHardFamilyRate at most (Bonferroni over kHardStatisticalFigures).
+// kHardFamilyRate at most (Bonferroni over kHardStatisticalFigures on kMostBackends).
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "validation/suite/effort.hpp"
+#include "validation/suite/error_rates.hpp"
 
 namespace kiloband::validation {
 
-inline constexpr double kHardFamilyRate = 1e-4;
-/// Upper bound of the statistical figures of a whole run (all cases, one backend).
+/// Upper bound of the statistical figures of all cases on one backend.
 inline constexpr std::size_t kHardStatisticalFigures = 100;
 
 struct HardCaseContext {

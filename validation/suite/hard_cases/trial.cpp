@@ -55,7 +55,7 @@ double offset_of(const SamplingSettings& s, const FlatScene& scene, uint32_t x, 
 
 /// Two-sided critical |t| of one figure among all.
 double critical_t(uint32_t replicates) {
-  return stats::student_upper(kHardFamilyRate / kHardStatisticalFigures / 2, replicates - 1.0);
+  return stats::student_upper(kHardFamilyRate / (kMostBackends * kHardStatisticalFigures) / 2, replicates - 1.0);
 }
 
 }  // namespace
