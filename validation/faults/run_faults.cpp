@@ -37,11 +37,15 @@ struct Verdict {
 
 /// The case of the suite that has what the zoo's scene has.
 std::string concerned_case(const faults::PlantedFault& fault) {
-  static const std::map<std::string_view, std::string> kCases{
-      {"diffuse_room", "cornell_box"},    {"unlimited_depth", "stress/endless"},
-      {"prism", "stress/red_glass_ball"}, {"rough_dispersion", "stress/flint_ball"},
-      {"thermal", "stress/hot_gas"},      {"gases", "stress/hot_gas"},
-      {"glasses", "stress/endless"},      {"lenses", "stress/endless"}};
+  static const std::map<std::string_view, std::string> kCases{{"diffuse_room", "cornell_box"},
+                                                              {"unlimited_depth", "stress/endless"},
+                                                              {"prism", "stress/red_glass_ball"},
+                                                              {"rough_dispersion", "stress/flint_ball"},
+                                                              {"thermal", "stress/hot_gas"},
+                                                              {"gases", "stress/hot_gas"},
+                                                              {"glasses", "stress/lens_and_glass"},
+                                                              {"lenses", "stress/lens_and_glass"},
+                                                              {"constant_sky", "stress/lens_and_glass"}};
   const auto found = kCases.find(fault.zoo_scene);
   return found == kCases.end() ? "stress/metals_and_lamps" : found->second;
 }
