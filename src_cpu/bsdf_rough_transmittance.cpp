@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "base/gauss_legendre.hpp"
 #include "src_cpu/fresnel.hpp"
 #include "src_cpu/microfacet.hpp"
 
@@ -14,26 +15,11 @@ struct Quadrature {
   std::vector<float> nodes, weights;  // on [0, 1]
 };
 
-/// Gauss-Legendre rule: roots of the Legendre polynomial by Newton's method from Chebyshev's guess.
-Quadrature gauss_legendre(int n) {
+Quadrature unit_quadrature(int n) {
+  const GaussLegendre rule = gauss_legendre(n);
   Quadrature q;
-  for (int i = 0; i < n; ++i) {
-    double x = std::cos(M_PI * (i + 0.75) / (n + 0.5)), derivative = 1;
-    for (int step = 0; step < 20; ++step) {
-      double previous = 1, current = x;
-      for (int k = 2; k <= n; ++k) {
-        const double next = ((2 * k - 1) * x * current - (k - 1) * previous) / k;
-        previous = current;
-        current = next;
-      }
-      derivative = n * (x * current - previous) / (x * x - 1);
-      const double change = current / derivative;
-      x -= change;
-      if (std::abs(change) < 1e-15) break;
-    }
-    q.nodes.push_back(static_cast<float>(0.5 * (1 + x)));
-    q.weights.push_back(static_cast<float>(1 / ((1 - x * x) * derivative * derivative)));
-  }
+  for (const double x : rule.nodes) q.nodes.push_back(static_cast<float>(0.5 * (1 + x)));
+  for (const double w : rule.weights) q.weights.push_back(static_cast<float>(0.5 * w));
   return q;
 }
 
@@ -63,7 +49,7 @@ RoughTransmittance make_rough_transmittance(const KbMaterial& material) {
   const Microfacet facets(material.distribution == KB_MICROFACET_GGX, material.alpha_u, material.alpha_u,
                           true);
   // From inside the integrand has the edge of total internal reflection: more nodes.
-  const Quadrature outside = gauss_legendre(32), inside = gauss_legendre(64);
+  const Quadrature outside = unit_quadrature(32), inside = unit_quadrature(64);
   RoughTransmittance table;
   double internal = 0;
   for (int i = 0; i < RoughTransmittance::kNodes; ++i) {

@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "base/gauss_legendre.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -12,38 +14,10 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kMinAlpha = 1e-4;  // as the renderers'
 constexpr double kSlopes = 5.5;     // Beckmann: exp(-5.5^2) = 7e-14
 
-/// Nodes and weights on [-1, 1].
-struct Rule {
-  std::vector<double> x, w;
-};
-
-/// Gauss-Legendre: the roots of the Legendre polynomial by Newton's method from Chebyshev's guess.
-Rule make_rule(int n) {
-  Rule rule;
-  for (int i = 0; i < n; ++i) {
-    double x = std::cos(kPi * (i + 0.75) / (n + 0.5)), derivative = 1;
-    for (int step = 0; step < 20; ++step) {
-      double previous = 1, current = x;
-      for (int k = 2; k <= n; ++k) {
-        const double next = ((2 * k - 1) * x * current - (k - 1) * previous) / k;
-        previous = current;
-        current = next;
-      }
-      derivative = n * (x * current - previous) / (x * x - 1);
-      const double change = current / derivative;
-      x -= change;
-      if (std::abs(change) < 1e-15) break;
-    }
-    rule.x.push_back(x);
-    rule.w.push_back(2 / ((1 - x * x) * derivative * derivative));
-  }
-  return rule;
-}
-
-const Rule& rule_of(int n) {
-  thread_local std::map<int, Rule> rules;
+const GaussLegendre& rule_of(int n) {
+  thread_local std::map<int, GaussLegendre> rules;
   const auto [place, is_new] = rules.try_emplace(n);
-  if (is_new) place->second = make_rule(n);
+  if (is_new) place->second = gauss_legendre(n);
   return place->second;
 }
 
@@ -131,9 +105,9 @@ class FacetRule {
 
   /// w or b from one value to another.
   void add_strip(double from, double to) {
-    for (std::size_t i = 0; i < across_.x.size(); ++i) {
-      const double w = 0.5 * ((to - from) * across_.x[i] + to + from),
-                   step = 0.5 * (to - from) * across_.w[i] / kPi;
+    for (std::size_t i = 0; i < across_.nodes.size(); ++i) {
+      const double w = 0.5 * ((to - from) * across_.nodes[i] + to + from),
+                   step = 0.5 * (to - from) * across_.weights[i] / kPi;
       if (facets_.ggx) {
         add_line(std::tan(w), std::cos(w), step);
       } else {
@@ -165,8 +139,8 @@ class FacetRule {
   void add_piece(double from, double to, double b, double cosine, double weight) {
     const glm::dvec2 across(-facets_.alpha_u * sin_phi_ * b, facets_.alpha_v * cos_phi_ * b);
     const glm::dvec2 along(facets_.alpha_u * cos_phi_, facets_.alpha_v * sin_phi_);
-    for (std::size_t i = 0; i < along_.x.size(); ++i) {
-      const double t = 0.5 * ((to - from) * along_.x[i] + to + from);
+    for (std::size_t i = 0; i < along_.nodes.size(); ++i) {
+      const double t = 0.5 * ((to - from) * along_.nodes[i] + to + from);
       double density, a = t;
       if (facets_.ggx) {
         const double c = std::cos(t), s = std::sin(t);
@@ -178,14 +152,14 @@ class FacetRule {
       const glm::dvec2 slope = a * along + across;
       const double inverse = 1 / std::sqrt(1 + slope.x * slope.x + slope.y * slope.y);
       visible_.push_back(
-          {glm::dvec3(slope, 1) * inverse, masking_over_cos_ * weight * along_.w[i] * density});
+          {glm::dvec3(slope, 1) * inverse, masking_over_cos_ * weight * along_.weights[i] * density});
     }
   }
 
   const Facets& facets_;
   glm::dvec3 v_;
   double eta_;
-  const Rule &across_, &along_;
+  const GaussLegendre &across_, &along_;
   double root_ = 0, cos_phi_ = 1, sin_phi_ = 0, masking_over_cos_ = 1;
   std::vector<Edge> edges_;
   std::vector<VisibleFacet> visible_;

@@ -144,7 +144,9 @@ KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name,
   return record;
 }
 
-uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated) {
+/// Its name: its own id, or that of the bsdf that it is nested in, or a number.
+uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated,
+                             const std::string& outer_id) {
   const auto known = materials_.find({bsdf.get(), compensated});
   if (known != materials_.end()) return known->second;
   const std::string name = describe(*bsdf);
@@ -161,8 +163,8 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
       bsdf->model);
   if (compensated) compensate(record, *bsdf);
   out_.materials.push_back(record);
-  out_.material_names.push_back(bsdf->id.empty() ? fmt::format("material {}", out_.materials.size() - 1)
-                                                 : bsdf->id);
+  const std::string& id = bsdf->id.empty() ? outer_id : bsdf->id;
+  out_.material_names.push_back(id.empty() ? fmt::format("material {}", out_.materials.size() - 1) : id);
   const auto index = static_cast<uint32_t>(out_.materials.size() - 1);
   if (index >= 1u << (32 - KB_VERTEX_MATERIAL_SHIFT))
     throw InputError(bsdf->position, "more than 1048576 bsdfs");
@@ -205,6 +207,7 @@ uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t he
     out_.surfaces.push_back(record);
     return surfaces_[{bsdf.get(), heat}] = static_cast<uint32_t>(out_.surfaces.size() - 1);
   }
+  const std::string& outer_id = inner->id.empty() ? bsdf->id : inner->id;
   std::shared_ptr<const Bsdf> front = inner, back;
   if (const auto* two_sided = std::get_if<TwoSidedBsdf>(&inner->model)) {
     front = two_sided->front;
@@ -213,8 +216,8 @@ uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t he
     out_.features.two_sided = true;
   }
   const bool emits = heat != KB_NONE;
-  record.front = material(front, emits && is_rough(*front));
-  if (back) record.back = material(back, emits && is_rough(*back));
+  record.front = material(front, emits && is_rough(*front), outer_id);
+  if (back) record.back = material(back, emits && is_rough(*back), outer_id);
   const uint32_t type = out_.materials[record.front].type;
   if (!back && (type == KB_MATERIAL_DIELECTRIC || type == KB_MATERIAL_ROUGH_DIELECTRIC))
     record.flags |= KB_SURFACE_TRANSMISSIVE;

@@ -43,7 +43,7 @@ class Flattener {
   // flatten_materials.cpp
   /// heat: of the shape, or KB_NONE. Materials and surfaces with different heat are different.
   uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
-  uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated);
+  uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated, const std::string& outer_id);
   KbMaterial make(const DiffuseBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
