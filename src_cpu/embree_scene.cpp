@@ -12,8 +12,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <tuple>
 
 #include "base/error.hpp"
+#include "scene/shape_bounds.hpp"
 #include "src_cpu/shape_geometry.hpp"
 
 namespace kiloband {
@@ -67,26 +69,11 @@ void intersect16(const int* valid, RTCScene scene, Query& query, RTCRayHit16& ra
 #endif
 }
 
-/// Interval that an analytic shape covers along one axis, from that row of its to_world: a circle or sphere
-/// of unit radius reaches |row| to both sides; a cylinder also spans its axis. Grown by a few units in the
-/// last place.
-void axis_bounds(const KbShape& shape, int axis, float& low, float& high) {
-  const float* row = &shape.to_world[4 * axis];
-  const double round = row[0] * double{row[0]} + row[1] * double{row[1]};
-  const double reach = std::sqrt(shape.type == KB_SHAPE_SPHERE ? round + row[2] * double{row[2]} : round);
-  const double along = shape.type == KB_SHAPE_CYLINDER ? row[2] : 0;
-  const double from = row[3] + std::min(0.0, along) - reach;
-  const double to = row[3] + std::max(0.0, along) + reach;
-  const double slack = 1e-6 * std::max({std::abs(from), std::abs(to), reach});
-  low = static_cast<float>(from - slack);
-  high = static_cast<float>(to + slack);
-}
-
 void analytic_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
-  axis_bounds(shape, 0, args->bounds_o->lower_x, args->bounds_o->upper_x);
-  axis_bounds(shape, 1, args->bounds_o->lower_y, args->bounds_o->upper_y);
-  axis_bounds(shape, 2, args->bounds_o->lower_z, args->bounds_o->upper_z);
+  std::tie(args->bounds_o->lower_x, args->bounds_o->upper_x) = analytic_interval(shape, 0);
+  std::tie(args->bounds_o->lower_y, args->bounds_o->upper_y) = analytic_interval(shape, 1);
+  std::tie(args->bounds_o->lower_z, args->bounds_o->upper_z) = analytic_interval(shape, 2);
 }
 
 bool hit_shape(const KbShape& shape, RTCRayN* rays, unsigned count, unsigned lane, double& t) {

@@ -67,20 +67,24 @@ HWY_INLINE Floats conductor_fresnel(const FresnelTerms& f, std::size_t k) {
 }
 
 /// Unpolarised reflectance of a dielectric boundary of relative index e (transmitted over incident) for the
-/// cosine c. With E = e^2 - 1 and g = e cos_t = sqrt(E + c^2), numerators expanded so that E stands in front:
-///   r_s = -E / (c + g)^2,   r_p = E ((e^2 + 1) c^2 - 1) / (e^2 c + g)^2,   F = (r_s^2 + r_p^2) / 2;  1 where
-///   g^2 <= 0.
+/// cosine c below total reflection. With E = e^2 - 1 and g = e cos_t = sqrt(E + c^2), numerators expanded so
+/// that E stands in front:
+///   r_s = -E / (c + g)^2,   r_p = E ((e^2 + 1) c^2 - 1) / (e^2 c + g)^2,   F = (r_s^2 + r_p^2) / 2.
+HWY_INLINE Floats partial_reflectance(Floats big_e, Floats g, Floats c, Floats c2) {
+  const Floats e2 = hn::Add(big_e, constant(1));
+  const Floats rs = hn::Div(big_e, hn::Max(square(hn::Add(c, g)), constant(kTiny)));
+  const Floats brewster = hn::MulSub(hn::Add(e2, constant(1)), c2, constant(1));
+  const Floats rp = hn::Div(hn::Mul(big_e, brewster), hn::Max(square(hn::MulAdd(e2, c, g)), constant(kTiny)));
+  return hn::Mul(constant(0.5f), hn::MulAdd(rs, rs, square(rp)));
+}
+
+/// 1 where g^2 <= 0: total reflection.
 HWY_INLINE Floats dielectric_fresnel(const FresnelTerms& f, std::size_t k) {
   const Floats c = constant(f.cosine), c2 = constant(f.cosine2_high);
   const Floats big_e = hn::LoadU(kTag, f.high + k);
   const Floats g2 = hn::Add(hn::Add(big_e, c2), hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
   const Floats g = hn::Sqrt(hn::Max(g2, hn::Zero(kTag)));
-  const Floats e2 = hn::Add(big_e, constant(1));
-  const Floats rs = hn::Div(big_e, hn::Max(square(hn::Add(c, g)), constant(kTiny)));
-  const Floats brewster = hn::MulSub(hn::Add(e2, constant(1)), c2, constant(1));
-  const Floats rp = hn::Div(hn::Mul(big_e, brewster), hn::Max(square(hn::MulAdd(e2, c, g)), constant(kTiny)));
-  const Floats reflectance = hn::Mul(constant(0.5f), hn::MulAdd(rs, rs, square(rp)));
-  return hn::IfThenElse(hn::Le(g2, hn::Zero(kTag)), constant(1), reflectance);
+  return hn::IfThenElse(hn::Le(g2, hn::Zero(kTag)), constant(1), partial_reflectance(big_e, g, c, c2));
 }
 
 HWY_INLINE Floats fresnel(const FresnelTerms& f, std::size_t k) {

@@ -18,18 +18,14 @@ HWY_BEFORE_NAMESPACE();
 namespace kiloband {
 namespace HWY_NAMESPACE {
 
-/// 1 - F of a dielectric boundary, e^2 = E + 1, for cosines that differ from lane to lane: with g = sqrt(E +
-/// c^2), 1 - F = 1 - (r_s^2 + r_p^2) / 2; 0 where g^2 <= 0. Formulas: dielectric_fresnel().
+/// 1 - F of a dielectric boundary, e^2 = E + 1, for cosines that differ from lane to lane; 0 where
+/// g^2 = E + c^2 <= 0.
 HWY_INLINE Floats transmittance(Floats big_e, Floats c) {
   const Floats c2 = square(c);
   const Floats g2 = hn::Add(big_e, c2);
   const Floats g = hn::Sqrt(hn::Max(g2, hn::Zero(kTag)));
-  const Floats e2 = hn::Add(big_e, constant(1));
-  const Floats rs = hn::Div(big_e, hn::Max(square(hn::Add(c, g)), constant(kTiny)));
-  const Floats brewster = hn::MulSub(hn::Add(e2, constant(1)), c2, constant(1));
-  const Floats rp = hn::Div(hn::Mul(big_e, brewster), hn::Max(square(hn::MulAdd(e2, c, g)), constant(kTiny)));
-  const Floats reflectance = hn::Mul(constant(0.5f), hn::MulAdd(rs, rs, square(rp)));
-  return hn::IfThenElseZero(hn::Gt(g2, hn::Zero(kTag)), hn::Sub(constant(1), reflectance));
+  return hn::IfThenElseZero(hn::Gt(g2, hn::Zero(kTag)),
+                            hn::Sub(constant(1), partial_reflectance(big_e, g, c, c2)));
 }
 
 /// T of shared/rough_transmission.h. With s = wi + e wo = (wi + wo) + d wo, d = e - 1 = E / (e + 1), and m =

@@ -3,26 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <tuple>
+
+#include "scene/shape_bounds.hpp"
 
 namespace kiloband::gpu {
 namespace {
 
 constexpr float kLargest = 1.844e18f;  // Embree drops what reaches farther: squares of lengths would overflow
-
-/// Interval that an analytic shape covers along one axis, from that row of its to_world: a circle or sphere
-/// of unit radius reaches |row| to both sides; a cylinder also spans its axis. Grown by 1e-6 of its size and
-/// place.
-void analytic_interval(const KbShape& shape, int axis, float& low, float& high) {
-  const float* row = &shape.to_world[4 * axis];
-  const double round = row[0] * double{row[0]} + row[1] * double{row[1]};
-  const double reach = std::sqrt(shape.type == KB_SHAPE_SPHERE ? round + row[2] * double{row[2]} : round);
-  const double along = shape.type == KB_SHAPE_CYLINDER ? row[2] : 0;
-  const double from = row[3] + std::min(0.0, along) - reach;
-  const double to = row[3] + std::max(0.0, along) + reach;
-  const double slack = 1e-6 * std::max({std::abs(from), std::abs(to), reach});
-  low = static_cast<float>(from - slack);
-  high = static_cast<float>(to + slack);
-}
 
 Box triangle_box(const float* corner) {
   Box box;
@@ -81,7 +69,7 @@ Box primitive_box(const KbPrimitive& primitive, const FlatScene& scene) {
   if (primitive.analytic == KB_SHAPE_MESH) return triangle_box(primitive.corner);
   Box box;
   for (int axis = 0; axis < 3; ++axis)
-    analytic_interval(scene.shapes[primitive.shape], axis, box.low[axis], box.high[axis]);
+    std::tie(box.low[axis], box.high[axis]) = analytic_interval(scene.shapes[primitive.shape], axis);
   return box;
 }
 
