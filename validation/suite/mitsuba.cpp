@@ -146,7 +146,7 @@ std::optional<MitsubaDriver> find_mitsuba(const MitsubaSearch& search, const std
   }
   if (named != names.end())
     throw InputError(*named + ": Mitsuba 3 is not there (pip install mitsuba), looked for by " +
-                     joined(search.interpreters));
+                     fmt::format("{}", fmt::join(search.interpreters, " and ")));
   return std::nullopt;
 }
 
