@@ -98,7 +98,7 @@ Outcome validate_with_mitsuba(const TemporaryFolder& folder, const std::string& 
   std::filesystem::create_directories(folder / "bin");
   folder.write("bin/python3",
                "#!/bin/sh\ncase $2 in --probe) echo 9.8.7; exit;; --list) echo box; exit;; esac\n"
-               "\"$3\" --version > version\ncp passed.json \"$5/mitsuba.json\"\necho row\n" +
+               "\"$2\" --version > version\ncp passed.json \"$4/mitsuba.json\"\necho row\n" +
                    last + "\n");
   std::filesystem::permissions(folder / "bin/python3", std::filesystem::perms::owner_all);
   folder.write(
