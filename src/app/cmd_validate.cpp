@@ -123,6 +123,12 @@ void print_case(const CaseResult& c) {
   }
 }
 
+void print_mitsuba(const MitsubaScene& s) {
+  if (!s.passed) return fmt::print("FAILED  mitsuba/{} on {}: {}\n", s.name, s.backend, s.failure);
+  fmt::print("passed  mitsuba/{} on {}: largest difference {:+.2g} %, would show {:.2g} %\n", s.name,
+             s.backend, 100 * s.largest_difference, 100 * s.detectable);
+}
+
 void print_verdict(const SuiteResult& result) {
   for (const CaseResult& c : result.cases) print_case(c);
   for (const HardCaseResult& h : result.hard_cases) {
@@ -136,6 +142,7 @@ void print_verdict(const SuiteResult& result) {
   }
   for (const ConvergenceResult& c : result.convergence)
     fmt::print("{}  {}: {} curves {}\n", c.passed ? "passed" : "FAILED", c.name, c.curves.size(), c.note);
+  for (const MitsubaScene& s : result.mitsuba.scenes) print_mitsuba(s);
   fmt::print("{}: {} comparisons in {:.0f} s, family-wise error rate {:.0e}\n",
              result.interrupted ? "interrupted"
              : result.passed()  ? "all passed"
@@ -157,6 +164,15 @@ void make_report(const ValidateOptions& options) {
         options.output);
 }
 
+/// The independent renderer is optional, unless a name asks for it.
+std::optional<MitsubaDriver> mitsuba_of(const ValidateOptions& options) {
+  const fs::path script = fs::path(options.scenes) / "validation/mitsuba/compare_with_mitsuba.py";
+  auto driver = find_mitsuba({.script = script}, options.names, effort_of(options));
+  if (!driver && wants_mitsuba(options.names, effort_of(options)))
+    tell("note: Mitsuba 3 is not there (pip install mitsuba): no case mitsuba/...\n");
+  return driver;
+}
+
 SuiteSettings settings_of(const ValidateOptions& options) {
   if (options.quick && options.thorough) throw InputError("--quick together with --thorough");
   const fs::path root = options.scenes;
@@ -170,6 +186,9 @@ SuiteSettings settings_of(const ValidateOptions& options) {
   settings.seed = options.seed;
   settings.folders = {root / "scenes", root / "validation/scenes", fs::path(options.output) / "scenes",
                       options.data};
+  settings.mitsuba = mitsuba_of(options);
+  settings.program = fs::read_symlink("/proc/self/exe");
+  settings.output = options.output;
   return settings;
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <map>
 #include <new>
@@ -63,6 +64,7 @@ void add_fault_option(CLI::App& program) {
   const auto select = [](const std::string& text) {
     try {
       faults::select_fault(text);
+      setenv("KILOBAND_FAULT", text.c_str(), 1);  // the renders that `validate` starts have it too
     } catch (const std::invalid_argument& e) {
       throw InputError(e.what());
     }

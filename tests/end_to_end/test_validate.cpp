@@ -1,6 +1,7 @@
 // kiloband validate as a user runs it. What its comparisons are worth: tests/unit/stats,
 // validation/README.md.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <filesystem>
 #include <fstream>
@@ -89,6 +90,63 @@ TEST(Validate, AWrongClosedFormFails) {
       std::filesystem::exists(folder / "out/cubes/analytic/point_light/cpu_shared_sobol__failed_.hdr"));
 }
 
+/// In the place of python3: Mitsuba 9.8.7 with one scene, which passes on the CPU and then fails as `last`
+/// does.
+Outcome validate_with_mitsuba(const TemporaryFolder& folder, const std::string& last,
+                              const std::vector<std::string>& arguments, Treatment treatment = {}) {
+  std::filesystem::create_directories(folder / "scenes/analytic");
+  std::filesystem::create_directories(folder / "bin");
+  folder.write("bin/python3",
+               "#!/bin/sh\ncase $2 in --probe) echo 9.8.7; exit;; --list) echo box; exit;; esac\n"
+               "\"$2\" --version > version\ncp passed.json \"$4/mitsuba.json\"\necho row\n" +
+                   last + "\n");
+  std::filesystem::permissions(folder / "bin/python3", std::filesystem::perms::owner_all);
+  folder.write(
+      "passed.json",
+      R"({"mitsuba": "9.8.7", "variant": "v", "python": "3", "numpy": "1", "scenes": [{"name": "box",)"
+      R"("backend": "cpu", "passed": true, "p": 0.5, "level": 1e-6, "largest_difference": 0.001,)"
+      R"("detectable": {"typical": 0.005, "largest": 0.006}, "seconds_ours": 1}]})");
+  treatment.environment = {{"PATH", (folder / "bin").string() + ":/usr/bin:/bin"}};
+  std::vector<std::string> all{"validate", "--no-report", "--root", ".", "-o", "out dir"};
+  std::filesystem::create_directories(folder / "out dir");
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return run_program(folder, all, treatment);
+}
+
+TEST(Validate, ScenesAgainstMitsuba) {
+  const TemporaryFolder folder;
+  const Outcome outcome = validate_with_mitsuba(folder, "", {"mitsuba/", "--backends", "cpu"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("passed  mitsuba/box on cpu"), std::string::npos) << outcome.out;
+  EXPECT_EQ(folder.read("version").substr(0, 9), "kiloband ") << "the program itself is what is compared";
+  const auto results = read_json(folder, "out dir/results.json");
+  EXPECT_EQ(results["mitsuba"]["scenes"].size(), 1u);
+  EXPECT_EQ(results["passed"], true);
+}
+
+TEST(Validate, AFailedScriptAgainstMitsubaIsAFailure) {
+  const TemporaryFolder folder;
+  const Outcome outcome = validate_with_mitsuba(folder, "echo 'no lamp' >&2; exit 2",
+                                                {"mitsuba/box", "--backends", "cpu,opencl:pt", "--quiet"});
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_NE(
+      outcome.out.find("FAILED  mitsuba/box on opencl:pt: compare_with_mitsuba.py: exit code 2: no lamp\n"),
+      std::string::npos)
+      << outcome.out;
+  EXPECT_NE(folder.read("out dir/junit.xml").find("tests=\"2\" failures=\"1\""), std::string::npos);
+}
+
+/// The script would take longer than a test may.
+TEST(Validate, StopEndsTheScriptAgainstMitsuba) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      validate_with_mitsuba(folder, "sleep 300", {"mitsuba", "--backends", "cpu,opencl:pt"},
+                            {.signal = SIGTERM, .after_text = "mitsuba", .after_seconds = 0.5});
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_LT(outcome.seconds, 60);
+  EXPECT_EQ(read_json(folder, "out dir/results.json")["interrupted"], true);
+}
+
 TEST(Validate, WrongArguments) {
   const TemporaryFolder folder;
   const Outcome unknown = validate(folder, {"teapot"});
@@ -98,6 +156,10 @@ TEST(Validate, WrongArguments) {
   const Outcome both = validate(folder, {"--thorough"});
   EXPECT_EQ(both.code, 2);
   EXPECT_EQ(both.err, "kiloband: --quick together with --thorough\n");
+  const Outcome mitsuba = validate(folder, {"mitsuba/box"});
+  EXPECT_EQ(mitsuba.code, 2);
+  EXPECT_EQ(mitsuba.err,
+            "kiloband: mitsuba/box: a quick run has no case against Mitsuba (leave out --quick)\n");
   const Outcome root = validate(folder, {"--root", "."});
   EXPECT_EQ(root.code, 2);
   EXPECT_EQ(root.err,

@@ -1,24 +1,31 @@
 #!/usr/bin/env python3
 """Renders scenes with kiloband and with Mitsuba 3 and compares the channel means of the images.
 
-Usage: compare_with_mitsuba.py KILOBAND [-o DIR] [--scenes NAME ...] [--effort X] [--backend cpu|opencl]
+Usage: compare_with_mitsuba.py KILOBAND [-o DIR] [--scenes NAME ...] [--effort X] [--backends cpu,opencl:dpept-batch] [--rate R]
+       compare_with_mitsuba.py --probe | --list
 
-KILOBAND is the program. Writes DIR/mitsuba.json, which validation/report/report.py shows. Needs numpy and Mitsuba 3
-(`pip install mitsuba`). Both renderers make independent replicates of the same scene file; the test is Welch's over
-replicates, Šidák's over channels and scenes: all scenes together raise a false alarm with probability 1e-4 at most. Exit code:
+KILOBAND is the program; `kiloband validate` calls this script with itself. Writes DIR/mitsuba.json, which
+validation/report/report.py shows. Needs numpy and Mitsuba 3 (`pip install mitsuba`). Both renderers make independent
+replicates of the same scene file, Mitsuba's are held against those of every backend; the test is Welch's over replicates,
+Šidák's over channels, scenes and backends: all of a call together raise a false alarm with probability R at most. Exit code:
 0 if all agree, 1 if one does not, 2 if it could not be done.
 
 Pixels are compared too, by `kiloband compare --no-variances` at the same rate: where something stands in the image.
+
+--probe prints Mitsuba's version (exit code 2: it is not there), --list the names of the scenes.
 """
 
 import argparse
 import datetime
 import json
+import math
 import os
 import pathlib
+import platform
 import subprocess
 import sys
 import time
+import traceback
 
 sys.dont_write_bytecode = True  # nothing is left in the source folder
 
@@ -30,7 +37,7 @@ import numpy  # noqa: E402
 import render_mitsuba  # noqa: E402
 import welch  # noqa: E402
 
-RATE = 1e-4  # of false alarms, all scenes together
+RATE = 1e-5  # of false alarms, all comparisons of a call together: the suite's share (validation/suite/error_rates.hpp)
 REPLICATES = 32
 SIZE = (32, 32)
 BANDS = "400:700:8"
@@ -47,19 +54,26 @@ SCENES = [
 
 
 def run(*command):
-    """Output of a program; its return code must be 0 or 1."""
+    """Output of a program; its return code must be 0 or 1. throws render_mitsuba.Impossible  it was another"""
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
     if done.returncode not in (0, 1):
-        sys.exit(f"{' '.join(map(str, command))}: {done.stderr.strip() or done.returncode}")
+        raise render_mitsuba.Impossible(f"{' '.join(map(str, command))}: {done.stderr.strip() or done.returncode}")
     return done
 
 
-def render_ours(options, scene_file, spp, cube):
-    """Returns [replicate][channel], image means."""
+def backend_arguments(backend):
+    """ "opencl:pt" as `kiloband render` wants it."""
+    name, _, method = backend.partition(":")
+    return ["--backend", name] + (["--method", method] if method else [])
+
+
+def render_ours(options, backend, scene_file, spp, cube):
+    """Returns [replicate][channel], image means. Backends get seeds of their own: what one sees is no repetition of another."""
+    seed = (options.seed + options.backends.index(backend)) % 2**64
     size = f"{SIZE[0]}x{SIZE[1]}"
     command = [options.kiloband, "render", scene_file, "--bands", BANDS, "--size", size, "--spp", spp * REPLICATES]
-    command += ["--replicates", REPLICATES, "--keep-replicates", "--seed", options.seed, "--quiet", "-o", cube]
-    run(*command, "--backend", options.backend)
+    command += ["--replicates", REPLICATES, "--keep-replicates", "--seed", seed, "--quiet", "-o", cube]
+    run(*command, *backend_arguments(backend))
     images = [cubes.read_cube(cube.with_suffix(f".r{r:02d}.hdr")) for r in range(REPLICATES)]
     return numpy.array([image.mean(axis=(0, 1), dtype=float) for image in images])
 
@@ -92,22 +106,31 @@ def compare_pixels(options, ours, theirs, level, report):
     return worst and {"name": worst["name"], "p": worst["p"]}
 
 
-def compare_scene(options, mitsuba, entry, level):
-    name, scene_file, ours_spp, theirs_spp, what = entry
-    spp = [max(1, round(options.effort * count)) for count in (ours_spp, theirs_spp)]
-    folder = options.output / "mitsuba"
+def compare_backend(options, backend, entry, spp, theirs, level):
+    """theirs: image means and files of Mitsuba's replicates."""
+    name, scene_file = entry[:2]
+    stem = options.output / "mitsuba" / f"{name}_{backend.replace(':', '_')}"
+    cube = stem.with_suffix(".hdr")
     start = time.monotonic()
-    ours = render_ours(options, scene_file, spp[0], folder / f"{name}_kiloband.hdr")
-    middle = time.monotonic()
-    theirs, files = render_theirs(options, mitsuba, scene_file, spp[1], folder / f"{name}_mitsuba.hdr")
-    end = time.monotonic()
-    result = {"name": name, "what": what, "channels_nm": render_mitsuba.parse_bands(BANDS), "replicates": REPLICATES}
-    result |= {"samples_ours": spp[0], "samples_theirs": spp[1], "width": SIZE[0], "height": SIZE[1]}
-    result |= {"seconds_ours": middle - start, "seconds_theirs": end - middle}
-    result |= welch.compare(ours, theirs, level)
-    result["pixels"] = compare_pixels(options, folder / f"{name}_kiloband.hdr", files, level, folder / f"{name}.json")
+    ours = render_ours(options, backend, scene_file, spp, cube)
+    result = {"backend": backend, "samples_ours": spp, "seconds_ours": time.monotonic() - start}
+    result |= welch.compare(ours, theirs[0], level)
+    result["pixels"] = compare_pixels(options, cube, theirs[1], level, stem.with_suffix(".json"))
     result["passed"] = result["passed"] and result["pixels"] is None
     return result
+
+
+def compare_scene(options, mitsuba, entry, level):
+    """Generates a result per backend."""
+    name, scene_file, ours_spp, theirs_spp, what = entry
+    spp = [max(1, round(options.effort * count)) for count in (ours_spp, theirs_spp)]
+    start = time.monotonic()
+    theirs = render_theirs(options, mitsuba, scene_file, spp[1], options.output / "mitsuba" / f"{name}_mitsuba.hdr")
+    result = {"name": name, "what": what, "channels_nm": render_mitsuba.parse_bands(BANDS), "replicates": REPLICATES}
+    result |= {"samples_theirs": spp[1], "width": SIZE[0], "height": SIZE[1]}
+    result["seconds_theirs"] = time.monotonic() - start
+    for backend in options.backends:
+        yield result | compare_backend(options, backend, entry, spp[0], theirs, level)
 
 
 def processor_name():
@@ -122,7 +145,7 @@ def print_row(result):
     seen = result["detectable"]
     pixels = result["pixels"]
     print(
-        f"{'passed' if result['passed'] else 'FAILED'}  {result['name']:18} p {result['p']:<8.2g} "
+        f"{'passed' if result['passed'] else 'FAILED'}  {result['name']:18} {result['backend']:18} p {result['p']:<8.2g} "
         f"all channels {100 * result['difference_all']:+.3f} %  largest {100 * result['largest_difference']:+.3f} %  "
         f"detectable {100 * seen['typical']:.2f} % (worst {100 * seen['largest']:.2f} %)  "
         f"{result['seconds_ours']:.0f} s and {result['seconds_theirs']:.0f} s"
@@ -131,43 +154,81 @@ def print_row(result):
     )
 
 
+def finite(value):
+    """JSON has no NaN and no infinities: null."""
+    if isinstance(value, dict):
+        return {key: finite(v) for key, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(v) for v in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def parse():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("kiloband", type=pathlib.Path)
+    parser.add_argument("kiloband", type=pathlib.Path, nargs="?")
     parser.add_argument("-o", dest="output", type=pathlib.Path, default=pathlib.Path("validation_results"))
     parser.add_argument("--scenes", nargs="+", default=[], choices=[entry[0] for entry in SCENES])
     parser.add_argument("--effort", type=float, default=1.0, help="factor of all sample counts")
-    parser.add_argument("--backend", default="cpu")
+    parser.add_argument("--backends", type=lambda text: text.split(","), default=["cpu"])
+    parser.add_argument("--rate", type=float, default=RATE, help="of false alarms, all comparisons together")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--variant", default="scalar_spectral")
-    return parser.parse_args()
+    parser.add_argument("--probe", action="store_true", help="print the version of Mitsuba")
+    parser.add_argument("--list", action="store_true", help="print the names of the scenes")
+    options = parser.parse_args()
+    if not (options.kiloband or options.probe or options.list):
+        parser.error("no program KILOBAND")
+    return options
 
 
-def main():
-    options = parse()
-    mitsuba = render_mitsuba.find_mitsuba(options.variant)
-    (options.output / "mitsuba").mkdir(parents=True, exist_ok=True)
-    chosen = [entry for entry in SCENES if not options.scenes or entry[0] in options.scenes]
-    # Half of a scene's rate for its channel means, half for its pixels.
-    level = welch.sidak(RATE, 2 * len(chosen))
-    record = {
-        "format": "kiloband against mitsuba 1",
+def new_record(options, mitsuba):
+    return {
+        "format": "kiloband against mitsuba 2",
         "mitsuba": mitsuba.__version__,
         "variant": options.variant,
+        "python": platform.python_version(),
+        "numpy": numpy.__version__,
         "program": run(options.kiloband, "--version").stdout.strip(),
-        "backend": options.backend,
+        "backends": options.backends,
         "processor": processor_name(),
         "threads": os.cpu_count(),
         "date": datetime.datetime.now(datetime.timezone.utc).date().isoformat(),
         "command": " ".join(sys.argv[1:]),
-        "rate": RATE,
+        "rate": options.rate,
         "scenes": [],
     }
+
+
+def compare(options, mitsuba):
+    (options.output / "mitsuba").mkdir(parents=True, exist_ok=True)
+    chosen = [entry for entry in SCENES if not options.scenes or entry[0] in options.scenes]
+    # Half of a comparison's rate for its channel means, half for its pixels.
+    level = welch.sidak(options.rate, 2 * len(chosen) * len(options.backends))
+    record = new_record(options, mitsuba)
     for entry in chosen:
-        record["scenes"].append(compare_scene(options, mitsuba, entry, level))
-        print_row(record["scenes"][-1])
-        (options.output / "mitsuba.json").write_text(json.dumps(record, indent=1) + "\n")
+        for result in compare_scene(options, mitsuba, entry, level):
+            record["scenes"].append(result)
+            (options.output / "mitsuba.json").write_text(json.dumps(finite(record), indent=1) + "\n")
+            print_row(result)
     return 0 if all(scene["passed"] for scene in record["scenes"]) else 1
+
+
+def main():
+    options = parse()
+    try:
+        if options.list:
+            print("\n".join(entry[0] for entry in SCENES))
+            return 0
+        mitsuba = render_mitsuba.find_mitsuba(options.variant)
+        if options.probe:
+            print(mitsuba.__version__)
+            return 0
+        return compare(options, mitsuba)
+    except render_mitsuba.Impossible as error:
+        print(f"compare_with_mitsuba.py: {error}", file=sys.stderr)
+    except Exception:  # Python's own exit code would be that of a disagreement
+        traceback.print_exc()
+    return 2
 
 
 if __name__ == "__main__":

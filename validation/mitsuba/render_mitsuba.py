@@ -61,22 +61,28 @@ def adapted(scene_file, size, bands):
     return ElementTree.tostring(root, encoding="unicode")
 
 
+class Impossible(Exception):
+    """What was asked for cannot be done; the message says why."""
+
+
 def find_mitsuba(variant):
-    """The module, in that variant. throws SystemExit  it is not installed, or has no such variant"""
+    """The module, in that variant. throws Impossible  it is not installed, or has no such variant"""
     try:
         import mitsuba
-    except ImportError:
-        sys.exit("Mitsuba 3 is not installed (pip install mitsuba)")
+    except ImportError as error:
+        raise Impossible("Mitsuba 3 is not installed (pip install mitsuba)") from error
     if variant not in mitsuba.variants() or "spectral" not in variant:
-        sys.exit(f"Mitsuba {mitsuba.__version__} has no spectral variant {variant}: {', '.join(mitsuba.variants())}")
+        known = ", ".join(mitsuba.variants())
+        raise Impossible(f"Mitsuba {mitsuba.__version__} has no spectral variant {variant}: {known}")
     mitsuba.set_variant(variant)
     return mitsuba
 
 
 def render(mitsuba, scene_file, size, bands, spp, replicates, seed):
-    """Returns float32 [replicate][line][sample][channel]."""
+    """Returns float32 [replicate][line][sample][channel]. Mitsuba's seeds have 32 bits."""
     scene = mitsuba.load_string(adapted(scene_file, size, bands))
-    images = [numpy.array(mitsuba.render(scene, spp=spp, seed=seed * replicates + r)) for r in range(replicates)]
+    seeds = [(seed * replicates + r) % 2**32 for r in range(replicates)]
+    images = [numpy.array(mitsuba.render(scene, spp=spp, seed=s)) for s in seeds]
     return numpy.stack(images)[..., : len(bands)].astype(numpy.float32)
 
 
@@ -108,7 +114,10 @@ def main():
     options = parser.parse_args()
     bands = parse_bands(options.bands)
     size = [int(edge) for edge in options.size.split("x")]
-    mitsuba = find_mitsuba(options.variant)
+    try:
+        mitsuba = find_mitsuba(options.variant)
+    except Impossible as error:
+        sys.exit(f"render_mitsuba.py: {error}")
     images = render(mitsuba, options.scene, size, bands, options.spp, options.replicates, options.seed)
     for r, image in enumerate(images):
         write_cube(options.output.with_suffix(f".r{r:02d}.hdr"), image, bands)

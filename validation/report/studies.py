@@ -3,6 +3,7 @@
 import plots
 from markup import duration, group_row, number, percent, plot, probability, row, table, text, verdict_word
 from comparisons import in_order
+from verdict import on_backend
 
 
 def _by_name(hard_cases):
@@ -115,7 +116,8 @@ def _mitsuba_row(scene):
         [
             verdict_word(scene.get("passed")),
             text(scene.get("name")),
-            text(scene.get("what") or ""),
+            text(scene.get("backend")),
+            text(scene.get("what") or scene.get("failure") or ""),
             f"{len(scene.get('channels_nm') or [])}",
             f"{text(scene.get('replicates'))} × {text(scene.get('samples_ours'))}",
             f"{text(scene.get('replicates'))} × {text(scene.get('samples_theirs'))}",
@@ -124,9 +126,15 @@ def _mitsuba_row(scene):
             percent(best.get("typical")),
             percent(best.get("largest")),
         ],
-        range(3, 10),
+        range(4, 11),
         "" if scene.get("passed") else "bad",
     )
+
+
+def _versions(record):
+    """Of what the independent renderer ran in."""
+    parts = [f"{name} {text(record[key])}" for key, name in (("python", "Python"), ("numpy", "numpy")) if record.get(key)]
+    return "".join(f", {part}" for part in parts)
 
 
 def mitsuba(results):
@@ -136,6 +144,7 @@ def mitsuba(results):
     heads = [
         "",
         "scene",
+        "backend",
         "what",
         "channels",
         "ours: replicates × samples",
@@ -146,20 +155,22 @@ def mitsuba(results):
         "worst channel",
     ]
     parts = [
-        f'<h2 id="mitsuba">Against Mitsuba 3</h2><p>Mitsuba {text(record.get("mitsuba"))} ({text(record.get("variant"))}): '
-        f"channel means of the image, Welch's test over replicates, Šidák over channels, and pixels and tiles by the tests of the suite; all scenes together raise a false "
+        f'<h2 id="mitsuba">Against Mitsuba 3</h2><p>Mitsuba {text(record.get("mitsuba"))} ({text(record.get("variant"))}{_versions(record)}): '
+        f"channel means of the image, Welch's test over replicates, Šidák over channels, and pixels and tiles by the tests of the suite; all scenes and backends together raise a false "
         f"alarm with probability {number(record.get('rate'))}. {text(record.get('date'))}, {text(record.get('processor'))}.</p>"
-        + table(heads, [_mitsuba_row(s) for s in scenes], range(3, 10))
+        + table(heads, [_mitsuba_row(s) for s in scenes], range(4, 11))
     ]
     for scene in scenes:
+        if not scene.get("ours"):
+            continue
         shown = {
-            "a": "kiloband",
+            "a": f"kiloband{on_backend(scene)}",
             "b": "Mitsuba",
             "image_a": scene.get("ours"),
             "image_b": scene.get("theirs"),
             "image_error": scene.get("error"),
         }
-        parts.append(f"<h3>{verdict_word(scene.get('passed'))} {text(scene.get('name'))}</h3>")
+        parts.append(f"<h3>{verdict_word(scene.get('passed'))} {text(scene.get('name'))}{on_backend(scene)}</h3>")
         parts.append(
             plot(plots.spectra_plot(scene.get("channels_nm"), shown), text(scene.get("note") or ""), "spectra")
         )

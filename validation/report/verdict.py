@@ -126,11 +126,19 @@ def _hard_failure(hard):
     return f"<b>hard case {text(hard.get('name'))}</b> on {text(hard.get('backend'))}: {text(hard['error']) if hard.get('error') else why}"
 
 
+def on_backend(scene):
+    """ " on opencl:pt"; nothing where the backend was not recorded."""
+    return f" on {text(scene['backend'])}" if scene.get("backend") else ""
+
+
 def _mitsuba_failure(scene):
     pixels = scene.get("pixels")
+    place = f"<b>{text(scene.get('name'))}</b>{on_backend(scene)} against Mitsuba: "
+    if not is_number(scene.get("p")):
+        return place + text(scene.get("failure") or "not finished")
     where = f"; {test_name(pixels)}: p {probability(pixels.get('p'))}" if isinstance(pixels, dict) else ""
     return (
-        f"<b>{text(scene.get('name'))}</b> against Mitsuba: channel means p {probability(scene.get('p'))}, level "
+        f"{place}channel means p {probability(scene.get('p'))}, level "
         f"{probability(scene.get('level'))}, largest difference {percent(scene.get('largest_difference'))}{where}"
     )
 

@@ -24,7 +24,8 @@ struct RunRecord {
 /// Numbers that are not finite become null.
 nlohmann::json to_json(const SuiteResult& result, const RunRecord& record);
 
-/// A test case per comparison, hard case and convergence study; failures with the deciding test.
+/// A test case per comparison, hard case, convergence study and scene against Mitsuba; failures with the
+/// deciding test.
 std::string to_junit(const SuiteResult& result);
 
 /// Writes all of it. throws DeviceError  a file cannot be written

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 
 #include "base/error.hpp"
@@ -132,6 +133,8 @@ std::string to_junit(const SuiteResult& result) {
   }
   for (const HardCaseResult& h : result.hard_cases) add("hard/" + h.name, h.backend, 0, failure_of(h));
   for (const ConvergenceResult& c : result.convergence) add(c.name, "slopes", 0, c.passed ? "" : c.note);
+  for (const MitsubaScene& s : result.mitsuba.scenes)
+    add("mitsuba/" + s.name, s.backend, std::isfinite(s.seconds) ? s.seconds : 0, s.failure);
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"kiloband validate\" tests=\"{}\" "
       "failures=\"{}\" time=\"{:.1f}\">\n{}</testsuite>\n",

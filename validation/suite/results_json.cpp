@@ -161,6 +161,30 @@ json to_json(const ConvergenceResult& c) {
   return out;
 }
 
+json to_json(const MitsubaScene& s) {
+  json out{{"name", s.name},
+           {"backend", s.backend},
+           {"passed", s.passed},
+           {"p", number(s.p)},
+           {"level", number(s.level)},
+           {"largest_difference", number(s.largest_difference)},
+           {"detectable", {{"typical", number(s.detectable)}, {"largest", number(s.detectable_in_worst)}}},
+           {"seconds_ours", number(s.seconds)}};
+  if (!s.passed) out["failure"] = s.failure;
+  return out;
+}
+
+/// Names as in mitsuba.json, which has the means of all channels as well.
+json to_json(const MitsubaResult& m) {
+  json out{{"mitsuba", m.version},
+           {"variant", m.variant},
+           {"python", m.python},
+           {"numpy", m.numpy},
+           {"scenes", json::array()}};
+  for (const MitsubaScene& s : m.scenes) out["scenes"].push_back(to_json(s));
+  return out;
+}
+
 }  // namespace
 
 nlohmann::json to_json(const SuiteResult& result, const RunRecord& record) {
@@ -188,6 +212,7 @@ nlohmann::json to_json(const SuiteResult& result, const RunRecord& record) {
   for (const CaseResult& c : result.cases) out["cases"].push_back(to_json(c));
   for (const HardCaseResult& h : result.hard_cases) out["hard_cases"].push_back(to_json(h));
   for (const ConvergenceResult& c : result.convergence) out["convergence"].push_back(to_json(c));
+  if (!result.mitsuba.scenes.empty()) out["mitsuba"] = to_json(result.mitsuba);
   return out;
 }
 

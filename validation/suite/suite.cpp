@@ -17,8 +17,11 @@ struct Plan {
   std::vector<Case> cases;
   std::vector<std::pair<const HardCase*, std::string>> hard_cases;  // and backend
   std::vector<ConvergenceCase> convergence;
+  std::vector<std::string> mitsuba;  // scenes; one process renders them all
 
-  std::size_t parts() const { return cases.size() + hard_cases.size() + convergence.size(); }
+  std::size_t parts() const {
+    return cases.size() + hard_cases.size() + convergence.size() + (mitsuba.empty() ? 0 : 1);
+  }
 };
 
 Plan plan_of(const SuiteSettings& settings) {
@@ -32,6 +35,10 @@ Plan plan_of(const SuiteSettings& settings) {
   }
   for (ConvergenceCase& c : convergence_cases(settings.folders)) {
     if (wanted(c.name, settings.names)) plan.convergence.push_back(std::move(c));
+  }
+  if (settings.mitsuba) {
+    for (const std::string& scene : settings.mitsuba->scenes)
+      if (wanted("mitsuba/" + scene, settings.names)) plan.mitsuba.push_back(scene);
   }
   if (plan.parts() == 0)
     throw InputError("no case of the suite has such a name (kiloband validate --list names them)");
@@ -48,6 +55,12 @@ HardCaseResult run_hard_case(const HardCase& hard, const std::string& backend,
     result.error = error.what();
   }
   return result;
+}
+
+MitsubaRun mitsuba_run(const Plan& plan, const SuiteSettings& settings) {
+  return {settings.program, settings.output,
+          plan.mitsuba,     mitsuba_backends(settings.backends, settings.effort),
+          settings.effort,  settings.seed};
 }
 
 /// Progress of the run from that of its parts.
@@ -81,7 +94,7 @@ std::size_t family_of(const Plan& plan, const SuiteSettings& settings) {
 bool SuiteResult::passed() const {
   return std::ranges::all_of(cases, &CaseResult::passed) &&
          std::ranges::all_of(hard_cases, &HardCaseResult::passed) &&
-         std::ranges::all_of(convergence, &ConvergenceResult::passed);
+         std::ranges::all_of(convergence, &ConvergenceResult::passed) && mitsuba.passed();
 }
 
 std::vector<std::string> planned_names(const SuiteSettings& settings) {
@@ -92,6 +105,7 @@ std::vector<std::string> planned_names(const SuiteSettings& settings) {
     if (backend == settings.backends.front()) names.push_back("hard/" + hard->name);
   }
   for (const ConvergenceCase& c : plan.convergence) names.push_back(c.name);
+  for (const std::string& scene : plan.mitsuba) names.push_back("mitsuba/" + scene);
   return names;
 }
 
@@ -124,6 +138,11 @@ SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
     say(c.name);
     result.convergence.push_back(
         run_convergence(c, settings.backends, settings.effort, settings.seed, counter.part()));
+    counter.finish_part();
+  }
+  if (!plan.mitsuba.empty() && !watch.stopped()) {
+    say("mitsuba");
+    result.mitsuba = run_mitsuba(*settings.mitsuba, mitsuba_run(plan, settings), counter.part());
     counter.finish_part();
   }
   result.interrupted = watch.stopped();

@@ -1,14 +1,17 @@
-// A whole validation run: cases, hard cases, convergence; one family-wise error rate.
+// A whole validation run: cases, hard cases, convergence, an independent renderer; one family-wise error
+// rate.
 #pragma once
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "validation/suite/convergence.hpp"
 #include "validation/suite/error_rates.hpp"
 #include "validation/suite/hard_cases/hard_cases.hpp"
+#include "validation/suite/mitsuba.hpp"
 #include "validation/suite/run_case.hpp"
 
 namespace kiloband::validation {
@@ -20,6 +23,8 @@ struct SuiteSettings {
   uint64_t seed = 1;
   SceneFolders folders;
   stats::RepeatRule rule = kComparisonRule;
+  std::optional<MitsubaDriver> mitsuba;   // none: no case against Mitsuba
+  std::filesystem::path program, output;  // for it: kiloband itself, the folder of the results
 };
 
 struct HardCaseResult {
@@ -34,6 +39,7 @@ struct SuiteResult {
   std::vector<CaseResult> cases;
   std::vector<HardCaseResult> hard_cases;
   std::vector<ConvergenceResult> convergence;
+  MitsubaResult mitsuba;
   std::size_t comparisons = 0;  // the family
   double seconds = 0;
   bool interrupted = false;
@@ -41,7 +47,7 @@ struct SuiteResult {
   bool passed() const;
 };
 
-/// What a run will do: names of cases, "hard/..." and "convergence/...".
+/// What a run will do: names of cases, "hard/...", "convergence/..." and "mitsuba/...".
 std::vector<std::string> planned_names(const SuiteSettings& settings);
 
 /// `say` is told when something begins; watch.progress: fraction of the whole run.
