@@ -95,7 +95,8 @@ int run(int argc, char** argv) {
   settings.backends = {"cpu"};
   if (!gpu::list_devices().empty()) settings.backends.push_back("opencl:dpept-batch");
   settings.effort = Effort::kQuick;
-  settings.rule.first = 1;  // level 1 of a family of one: nothing is repeated, p-values are all that counts
+  // Nothing may fail: what fails is rendered again, and the p-values of the first attempt would be lost.
+  settings.rule.first = 1e-30;
   std::map<std::string, Series> series;
   for (Case& c : all_cases({root / "scenes", root / "validation/scenes", {}, {}})) {
     if (c.name != wanted) continue;
