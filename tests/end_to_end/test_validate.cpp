@@ -67,6 +67,18 @@ TEST(Validate, BackendsAgreeOnTheCornellBox) {
     EXPECT_TRUE(tests.contains(name)) << name;
 }
 
+/// The oracle needs the paths' vertices, which the method pt does not keep.
+TEST(Validate, HardCasesOnTheMethodWithoutVertices) {
+  const TemporaryFolder folder;
+  const Outcome outcome = validate(folder, {"hard/far_from_origin", "--backends", "opencl:pt", "-o", "out"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+  const auto hard = read_json(folder, "out/results.json")["hard_cases"];
+  ASSERT_EQ(hard.size(), 1u);
+  bool evaluated = false;
+  for (const auto& figure : hard[0]["figures"]) evaluated |= figure["name"] == "evaluation";
+  EXPECT_TRUE(evaluated);
+}
+
 /// A scene whose stated values are wrong by 2 %: the run fails, says why, and keeps what explains it.
 TEST(Validate, AWrongClosedFormFails) {
   const TemporaryFolder folder;

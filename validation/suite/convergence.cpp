@@ -135,6 +135,16 @@ double critical_t(double dof) {
   return stats::student_upper(kConvergenceRate / (kStudies * kKnownCurves * kMostBackends) / 2, dof);
 }
 
+/// Holds the last curve against what is known of its slope.
+void judge(ConvergenceResult& result) {
+  const ConvergenceCurve& curve = result.curves.back();
+  if (!is_known(curve) || std::abs(curve.slope + 0.5) <= critical_t(curve.slope_dof) * curve.slope_error)
+    return;
+  result.passed = false;
+  result.note += fmt::format("{}: slope {:.4f} +- {:.4f} instead of -1/2; ", curve.configuration.label(),
+                             curve.slope, curve.slope_error);
+}
+
 }  // namespace
 
 std::vector<ConvergenceCase> convergence_cases(const SceneFolders& folders) {
@@ -152,16 +162,17 @@ std::vector<ConvergenceCase> convergence_cases(const SceneFolders& folders) {
 ConvergenceResult run_convergence(const ConvergenceCase& c, const std::vector<std::string>& backends,
                                   Effort effort, uint64_t seed, const Watch& watch) {
   ConvergenceResult result{c.name, {}, true, {}};
-  const FlatScene scene = load(c.scene);
-  for (const Configuration& configuration : configurations(backends, effort)) {
-    if (watch.stopped()) break;
-    ConvergenceCurve curve = measure(scene, configuration, c.most_samples.at(effort), seed, watch);
-    if (is_known(curve) && std::abs(curve.slope + 0.5) > critical_t(curve.slope_dof) * curve.slope_error) {
-      result.passed = false;
-      result.note += fmt::format("{}: slope {:.4f} +- {:.4f} instead of -1/2; ", configuration.label(),
-                                 curve.slope, curve.slope_error);
+  try {
+    const FlatScene scene = load(c.scene);
+    for (const Configuration& configuration : configurations(backends, effort)) {
+      if (watch.stopped()) break;
+      ConvergenceCurve curve = measure(scene, configuration, c.most_samples.at(effort), seed, watch);
+      result.curves.push_back(std::move(curve));
+      judge(result);
     }
-    result.curves.push_back(std::move(curve));
+  } catch (const std::exception& error) {
+    result.passed = false;
+    result.note += error.what();
   }
   return result;
 }

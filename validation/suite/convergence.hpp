@@ -45,7 +45,7 @@ struct ConvergenceCase {
 
 std::vector<ConvergenceCase> convergence_cases(const SceneFolders& folders);
 
-/// throws DeviceError, InputError
+/// What is thrown (a backend that cannot work) is its failure, in the note.
 ConvergenceResult run_convergence(const ConvergenceCase& c, const std::vector<std::string>& backends,
                                   Effort effort, uint64_t seed, const Watch& watch);
 

@@ -137,7 +137,7 @@ class CaseRun {
 CaseResult run_case(const Case& c, const CaseSettings& settings, const Watch& watch) {
   try {
     return CaseRun(c, settings, watch).run();
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     CaseResult result;
     result.what = c;
     result.error = error.what();

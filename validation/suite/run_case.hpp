@@ -51,7 +51,8 @@ struct CaseSettings {
   bool specialised = true;  // OpenCL kernels compiled for each scene; false: one program for all
 };
 
-/// throws DeviceError  a backend cannot work; faults of the scene are the case's failure
+/// Whatever is thrown (a scene that cannot be read, a backend that cannot work) is the case's failure: the
+/// other cases of a run are worth having.
 CaseResult run_case(const Case& c, const CaseSettings& settings, const Watch& watch);
 
 }  // namespace kiloband::validation

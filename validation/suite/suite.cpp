@@ -51,7 +51,7 @@ HardCaseResult run_hard_case(const HardCase& hard, const std::string& backend,
   try {
     result.figures = hard.run({backend, settings.effort, settings.seed, {}});
     result.passed = std::ranges::all_of(result.figures, &HardFigure::pass);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     result.error = error.what();
   }
   return result;
@@ -86,7 +86,7 @@ class Counter {
 std::size_t family_of(const Plan& plan, const SuiteSettings& settings) {
   std::size_t comparisons = 0;
   for (const Case& c : plan.cases) comparisons += pairings_of(c, settings.backends, settings.effort).size();
-  return std::max<std::size_t>(comparisons, 1);
+  return comparisons;
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
   result.comparisons = family_of(plan, settings);
   Counter counter(plan.parts(), watch);
   CaseSettings case_settings{settings.backends, settings.effort, settings.seed, 32, settings.rule,
-                             result.comparisons,
+                             std::max<std::size_t>(result.comparisons, 1),
                              // to compile kernels for every scene would take most of a quick run's time
                              settings.effort != Effort::kQuick};
   for (const Case& c : plan.cases) {

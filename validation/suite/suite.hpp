@@ -51,7 +51,8 @@ struct SuiteResult {
 std::vector<std::string> planned_names(const SuiteSettings& settings);
 
 /// `say` is told when something begins; watch.progress: fraction of the whole run.
-/// throws InputError  a name that is no case; DeviceError  a backend cannot work
+/// What a case throws is its failure, and the run goes on.
+/// throws InputError  a name that is no case
 SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
                       const std::function<void(const std::string&)>& say);
 

@@ -55,7 +55,8 @@ double offset_of(const SamplingSettings& s, const FlatScene& scene, uint32_t x, 
 
 /// Two-sided critical |t| of one figure among all.
 double critical_t(uint32_t replicates) {
-  return stats::student_upper(kHardFamilyRate / (kMostBackends * kHardStatisticalFigures) / 2, replicates - 1.0);
+  return stats::student_upper(kHardFamilyRate / (kMostBackends * kHardStatisticalFigures) / 2,
+                              replicates - 1.0);
 }
 
 }  // namespace
@@ -131,6 +132,18 @@ void Trial::figure(const std::string& name, const std::string& unit, double valu
   figures_.push_back({name, unit, value, reference, error, limit, error <= limit, false, note});
 }
 
+namespace {
+
+/// The paths that a backend follows. The method pt evaluates its paths on the way and keeps no vertex; the
+/// other methods follow the same ones.
+std::vector<TracedPath> trace_paths(const std::string& backend, const FlatScene& scene,
+                                    const SamplingSettings& sampling) {
+  const std::string keeper = backend == "opencl:pt" ? "opencl:dpept-batch" : backend;
+  return make_backend(general_kernels(keeper), scene, sampling)->trace(film_rect(scene), {0, 0, 1});
+}
+
+}  // namespace
+
 /// Operations round by 6e-8 each; a vertex has about 20 in other order than the oracle's, and the rounding of
 /// a reflectance to float is the same at each vertex of a path: 1e-5 + 6e-8 per vertex (as
 /// tests/unit/cpu_evaluator).
@@ -143,7 +156,7 @@ void Trial::oracle(const std::string& name, const std::string& xml, const TrialS
   render_replicates(*backend, film, 1, 1, {});
   TrialImage image{rect.width, rect.height, scene.channels.size()};
   collect_pixels(film, backend->film_scale(), image);
-  const std::vector<TracedPath> paths = backend->trace(rect, {0, 0, 1});
+  const std::vector<TracedPath> paths = trace_paths(context_.backend, scene, sampling);
   double error = 0, value = 0, reference = 0;
   std::size_t slots = 0;
   for (uint32_t p = 0; p < paths.size(); ++p) {
