@@ -84,38 +84,6 @@ void follow(pid_t process, const Treatment& treatment, int out, int err, Outcome
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  static std::atomic<int> count = 0;
-  path_ = std::filesystem::temp_directory_path() /
-          ("kiloband_program_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-  std::filesystem::create_directories(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code error;
-  std::filesystem::remove_all(path_, error);
-}
-
-void TemporaryFolder::write(const std::string& name, const std::string& contents) const {
-  std::ofstream(path_ / name, std::ios::binary) << contents;
-}
-
-std::string TemporaryFolder::read(const std::string& name) const {
-  std::ifstream stream(path_ / name, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot read " + name);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-std::vector<std::string> TemporaryFolder::list() const {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(path_))
-    names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
 Outcome run_program(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
                     const Treatment& treatment) {
   const Pipe out, err;

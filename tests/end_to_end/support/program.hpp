@@ -10,27 +10,9 @@
 #include <vector>
 
 #include "film/cube_io.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
-
-/// A folder of its own that vanishes with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  void write(const std::string& name, const std::string& contents) const;
-  std::string read(const std::string& name) const;
-  /// Names of all files, hidden ones too, sorted.
-  std::vector<std::string> list() const;
-
- private:
-  std::filesystem::path path_;
-};
 
 /// What is done to the running program.
 struct Treatment {
@@ -40,7 +22,7 @@ struct Treatment {
   std::optional<uint64_t> file_size_limit;  // bytes, as `ulimit -f`: what a full disk is tried with
   std::vector<std::pair<std::string, std::string>> environment;  // added to that of the tests
   std::vector<std::string> under;  // command that starts the program, such as a checker with its options
-  bool unprivileged = false;                // as user 65534 if we are root, to whom no folder is read-only
+  bool unprivileged = false;       // as user 65534 if we are root, to whom no folder is read-only
 };
 
 struct Outcome {

@@ -46,33 +46,33 @@ TEST_P(Atomic, NothingStandsUnderTheNamesBeforeTheEnd) {
   const Cube cube = small_cube();
   const auto writer = create_cube_writer(file(), cube.info, 32);
   write_rows_of(*writer, cube, 32);
-  for (const std::string& name : folder.files()) EXPECT_TRUE(name.starts_with(".kiloband-")) << name;
+  for (const std::string& name : folder.list()) EXPECT_TRUE(name.starts_with(".kiloband-")) << name;
   writer->finish();
   const bool exr = std::string(GetParam()) == ".exr";
-  EXPECT_EQ(folder.files(), exr ? Names{"cube.exr"}
-                                : (Names{"cube.aux.hdr", "cube.aux.img", "cube.hdr", "cube.img",
-                                         "cube.var.hdr", "cube.var.img"}));
+  EXPECT_EQ(folder.list(), exr ? Names{"cube.exr"}
+                               : (Names{"cube.aux.hdr", "cube.aux.img", "cube.hdr", "cube.img",
+                                        "cube.var.hdr", "cube.var.img"}));
 }
 
 TEST_P(Atomic, ADestroyedWriterLeavesNothing) {
   const Cube cube = small_cube();
   create_cube_writer(file(), cube.info, 32)->write_rows(rows_of(cube, 0, 32));
-  EXPECT_EQ(folder.files(), Names{});
+  EXPECT_EQ(folder.list(), Names{});
   const auto interrupted = [&] {
     const auto writer = create_cube_writer(file(), cube.info, 32);
     writer->write_rows(rows_of(cube, 0, 32));
     throw std::runtime_error("interrupted");
   };
   EXPECT_THROW(interrupted(), std::runtime_error);
-  EXPECT_EQ(folder.files(), Names{});
+  EXPECT_EQ(folder.list(), Names{});
 }
 
 TEST_P(Atomic, AnOldCubeSurvivesAWriterThatFails) {
   const Cube cube = small_cube();
   write_cube_file(cube, file());
-  const Names before = folder.files();
+  const Names before = folder.list();
   create_cube_writer(file(), cube.info, 32)->write_rows(rows_of(cube, 0, 32));
-  EXPECT_EQ(folder.files(), before);
+  EXPECT_EQ(folder.list(), before);
   EXPECT_EQ(count_differences(read_cube_file(file()).aux, cube.aux), 0u);
 }
 
@@ -81,7 +81,7 @@ TEST_P(Atomic, ANewCubeReplacesTheOldOneWithAllItsFiles) {
   const Cube cube = make_cube(8, 8, equal_bands(600, 700, 2));
   write_cube_file(cube, file());
   EXPECT_EQ(read_cube_file(file()).info.bands.size(), 2u);
-  for (const std::string& name : folder.files()) EXPECT_EQ(name.find("var"), std::string::npos) << name;
+  for (const std::string& name : folder.list()) EXPECT_EQ(name.find("var"), std::string::npos) << name;
 }
 
 TEST_P(Atomic, AMissingFolderIsNamed) {
@@ -104,7 +104,7 @@ TEST_P(Atomic, AFolderInTheWayIsFoundAtOnce) {
   std::filesystem::create_directory(file());
   EXPECT_EQ(error_of<DeviceError>([&] { create_cube_writer(file(), small_cube().info, 32); }),
             "cannot write '" + file().string() + "': Is a directory");
-  EXPECT_EQ(folder.files().size(), 1u);
+  EXPECT_EQ(folder.list().size(), 1u);
 }
 
 TEST_P(Atomic, AFullDiskShowsBeforeTheRender) {
@@ -112,7 +112,7 @@ TEST_P(Atomic, AFullDiskShowsBeforeTheRender) {
   const auto data = std::string(GetParam()) == ".exr" ? file() : folder / "cube.img";
   EXPECT_EQ(error_of<DeviceError>([&] { create_cube_writer(file(), small_cube().info, 32); }),
             "cannot write '" + data.string() + "': File too large");
-  EXPECT_EQ(folder.files(), Names{});
+  EXPECT_EQ(folder.list(), Names{});
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, Atomic, testing::Values(".exr", ".hdr"),
@@ -133,7 +133,7 @@ TEST(AtomicExr, AFailureWhileWritingReachesTheCaller) {
               "cannot write '" + file.string() + "': File too large");
   }
   writer.reset();
-  EXPECT_EQ(folder.files(), Names{});
+  EXPECT_EQ(folder.list(), Names{});
 }
 
 TEST(AtomicFile, ForeignVarianceFilesStay) {
@@ -141,7 +141,7 @@ TEST(AtomicFile, ForeignVarianceFilesStay) {
   write_file(folder / "cube.var.hdr", "ENVI\nsamples = 1\n");
   write_file(folder / "cube.var.img", "data");
   write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2)), folder / "cube.hdr");
-  EXPECT_EQ(folder.files(), (Names{"cube.hdr", "cube.img", "cube.var.hdr", "cube.var.img"}));
+  EXPECT_EQ(folder.list(), (Names{"cube.hdr", "cube.img", "cube.var.hdr", "cube.var.img"}));
 }
 
 TEST(AtomicFile, LinksAreFollowed) {

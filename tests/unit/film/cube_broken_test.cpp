@@ -183,7 +183,7 @@ TEST(BrokenInfo, WhatNoFileCanHoldIsRefusedBeforeWriting) {
   EXPECT_EQ(error([](CubeInfo& i) { i.aux.push_back("depth.Z"); }), "auxiliary plane 'depth.Z': given twice");
   EXPECT_EQ(error([](CubeInfo& i) { i.aux.push_back(""); }), "an auxiliary plane must have a name");
   EXPECT_EQ(error([](CubeInfo& i) { i.metadata[""] = "x"; }), "metadata name '': must have 1 to 200 bytes");
-  EXPECT_TRUE(folder.files().empty());
+  EXPECT_TRUE(folder.list().empty());
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ TEST(EnviFile, TheImageOpensLikeItsHeader) {
   const Cube cube = make_cube(2, 2, equal_bands(400, 500, 2));
   const TemporaryFolder folder;
   write_cube_file(cube, folder / "dir.name.hdr");
-  EXPECT_EQ(folder.files(), (std::vector<std::string>{"dir.name.hdr", "dir.name.img"}));
+  EXPECT_EQ(folder.list(), (std::vector<std::string>{"dir.name.hdr", "dir.name.img"}));
   EXPECT_EQ(count_differences(read_cube_file(folder / "dir.name.img").mean, cube.mean), 0u);
 }
 

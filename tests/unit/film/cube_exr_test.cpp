@@ -127,7 +127,7 @@ TEST_F(ExrFile, NamesThatCollideAreRefused) {
               (folder / "a.exr").string() + ": auxiliary plane '" + name +
                   "': the name is that of another EXR channel");
   }
-  EXPECT_TRUE(folder.files().empty());
+  EXPECT_TRUE(folder.list().empty());
 }
 
 }  // namespace

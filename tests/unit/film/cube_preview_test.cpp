@@ -65,7 +65,7 @@ TEST(Png, HoldsSrgbBytes) {
   const TemporaryFolder folder;
   const std::vector<float> rgb = {0, 1, 2, 0.5f, 0.2140411f, 0.001f, NAN, -1, INFINITY, 0, 0, 0};
   write_png(folder / "x.png", 2, 2, rgb);
-  EXPECT_EQ(folder.files(), std::vector<std::string>{"x.png"});
+  EXPECT_EQ(folder.list(), std::vector<std::string>{"x.png"});
   const auto input = OIIO::ImageInput::open((folder / "x.png").string());
   ASSERT_TRUE(input);
   EXPECT_EQ(input->spec().width, 2);

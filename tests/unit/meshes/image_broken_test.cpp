@@ -15,7 +15,7 @@ const float kNan = std::numeric_limits<float>::quiet_NaN();
 const float kInfinity = std::numeric_limits<float>::infinity();
 
 struct BrokenImages : testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   std::string error(const std::filesystem::path& path) {
     return error_of(folder, [&] { read_image(path, false); });
   }
@@ -25,9 +25,9 @@ struct BrokenImages : testing::Test {
 };
 
 TEST_F(BrokenImages, Files) {
-  EXPECT_EQ(error(folder.path("none.exr")), "none.exr: no such file");
-  std::filesystem::create_directory(folder.path("folder.png"));
-  EXPECT_EQ(error(folder.path("folder.png")), "folder.png: not a regular file");
+  EXPECT_EQ(error(folder / "none.exr"), "none.exr: no such file");
+  std::filesystem::create_directory(folder / "folder.png");
+  EXPECT_EQ(error(folder / "folder.png"), "folder.png: not a regular file");
   EXPECT_EQ(error_of_bytes("a.png", ""), "a.png: the file is empty");
   EXPECT_EQ(error_of_bytes("a.png", "hello"),
             "a.png: not an image of a known format (EXR, HDR, PNG, JPEG, TIFF, BMP, PNM, PFM, TGA)");
@@ -39,7 +39,7 @@ TEST_F(BrokenImages, Values) {
   const auto write = [&](float value) {
     std::vector<float> pixels(4 * 3 * 3, 0.5f);
     pixels[(2 * 4 + 1) * 3 + 2] = value;
-    return write_image(folder.path("a.exr"), 4, 3, kRgb, pixels, OIIO::TypeFloat);
+    return write_image(folder / "a.exr", 4, 3, kRgb, pixels, OIIO::TypeFloat);
   };
   EXPECT_EQ(error(write(0.0f)), "no error");
   EXPECT_EQ(error(write(-0.25f)),
@@ -50,7 +50,7 @@ TEST_F(BrokenImages, Values) {
 
 TEST_F(BrokenImages, Channels) {
   const auto write = [&](const std::vector<std::string>& names) {
-    return write_image(folder.path("a.exr"), 1, 1, names, std::vector<float>(names.size(), 1.0f),
+    return write_image(folder / "a.exr", 1, 1, names, std::vector<float>(names.size(), 1.0f),
                        OIIO::TypeFloat);
   };
   EXPECT_EQ(error(write({"X", "Y", "Z"})), "a.exr: channels X, Y, Z: must be R, G, B, or Y, or a single one");
@@ -59,7 +59,7 @@ TEST_F(BrokenImages, Channels) {
 }
 
 TEST_F(BrokenImages, PixelTypes) {
-  EXPECT_EQ(error(write_image(folder.path("a.exr"), 1, 1, kRgb, {1, 1, 1}, OIIO::TypeUInt32)),
+  EXPECT_EQ(error(write_image(folder / "a.exr", 1, 1, kRgb, {1, 1, 1}, OIIO::TypeUInt32)),
             "a.exr: pixels of type uint are not supported");
 }
 
@@ -71,13 +71,13 @@ TEST_F(BrokenImages, HugeSizesCostNothing) {
 }
 
 /// Good files of every format, large enough to be written in several blocks.
-std::vector<std::filesystem::path> good_files(const TempFolder& folder) {
+std::vector<std::filesystem::path> good_files(const TemporaryFolder& folder) {
   std::vector<float> values(128 * 96 * 3);
   std::mt19937 random(5);
   for (float& value : values) value = std::uniform_real_distribution<float>(0, 1)(random);
   const auto write = [&](const char* name, OIIO::TypeDesc type,
                          const std::function<void(OIIO::ImageSpec&)>& adjust = {}) {
-    return write_image(folder.path(name), 128, 96, kRgb, values, type, adjust);
+    return write_image(folder / name, 128, 96, kRgb, values, type, adjust);
   };
   const auto compression = [](const char* name) {
     return [name](OIIO::ImageSpec& spec) { spec["compression"] = name; };

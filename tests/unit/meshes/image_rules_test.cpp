@@ -29,7 +29,7 @@ TEST(ImageRules, Channels) {
 }
 
 TEST(ImageRules, FormatsAreToldByTheirFirstBytes) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto format = [&](const std::string& start) {
     return examine_image(folder.write("a.tga", start)).format;
   };
@@ -42,7 +42,7 @@ TEST(ImageRules, FormatsAreToldByTheirFirstBytes) {
 }
 
 TEST(ImageRules, Sizes) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto error = [&](ImageFormat format, int64_t width, int64_t height) {
     return error_of(folder, [&] { check_image_size({"a", 1000, format}, width, height); });
   };

@@ -15,7 +15,7 @@ namespace {
 constexpr int kWidth = 5, kHeight = 3;
 
 struct Images : testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
 };
 
 /// The picture has the ramp's values, up to `tolerance`, after `decode`.
@@ -33,31 +33,28 @@ void expect_ramp(
 TEST_F(Images, FloatFormatsAreLinear) {
   const auto values = ramp(kWidth * kHeight * 3);
   expect_ramp(
-      read_image(write_image(folder.path("a.exr"), kWidth, kHeight, kRgb, values, OIIO::TypeFloat), false),
-      0);
+      read_image(write_image(folder / "a.exr", kWidth, kHeight, kRgb, values, OIIO::TypeFloat), false), 0);
+  expect_ramp(read_image(write_image(folder / "b.exr", kWidth, kHeight, kRgb, values, OIIO::TypeHalf), false),
+              1e-3);
   expect_ramp(
-      read_image(write_image(folder.path("b.exr"), kWidth, kHeight, kRgb, values, OIIO::TypeHalf), false),
-      1e-3);
-  expect_ramp(
-      read_image(write_image(folder.path("c.tif"), kWidth, kHeight, kRgb, values, OIIO::TypeFloat), false),
-      0);
+      read_image(write_image(folder / "c.tif", kWidth, kHeight, kRgb, values, OIIO::TypeFloat), false), 0);
   // One shared 8-bit exponent, set by the largest channel of a pixel.
   expect_ramp(
-      read_image(write_image(folder.path("d.hdr"), kWidth, kHeight, kRgb, values, OIIO::TypeFloat), false),
+      read_image(write_image(folder / "d.hdr", kWidth, kHeight, kRgb, values, OIIO::TypeFloat), false),
       1.0 / 128);
 }
 
 TEST_F(Images, IntegersAreDecodedFromSrgbUnlessRaw) {
   const auto values = ramp(kWidth * kHeight * 3);
   for (const char* name : {"a.png", "a.tif", "a.bmp", "a.tga", "a.ppm"}) {
-    const auto path = write_image(folder.path(name), kWidth, kHeight, kRgb, values, OIIO::TypeUInt8);
+    const auto path = write_image(folder / name, kWidth, kHeight, kRgb, values, OIIO::TypeUInt8);
     SCOPED_TRACE(name);
     expect_ramp(read_image(path, true), 0.5 / 255 + 1e-6);
     expect_ramp(read_image(path, false), 2.3 * 0.5 / 255 + 1e-6,
                 decode_srgb);  // the curve's slope is below 2.3
   }
   for (const char* name : {"b.png", "b.tif"}) {
-    const auto path = write_image(folder.path(name), kWidth, kHeight, kRgb, values, OIIO::TypeUInt16);
+    const auto path = write_image(folder / name, kWidth, kHeight, kRgb, values, OIIO::TypeUInt16);
     SCOPED_TRACE(name);
     expect_ramp(read_image(path, true), 0.5 / 65535 + 1e-6);
     expect_ramp(read_image(path, false), 2.3 * 0.5 / 65535 + 1e-6, decode_srgb);
@@ -66,7 +63,7 @@ TEST_F(Images, IntegersAreDecodedFromSrgbUnlessRaw) {
 
 TEST_F(Images, JpegIsRead) {
   const auto path =
-      write_image(folder.path("a.jpg"), 64, 32, kRgb, std::vector<float>(64 * 32 * 3, 0.5f), OIIO::TypeUInt8);
+      write_image(folder / "a.jpg", 64, 32, kRgb, std::vector<float>(64 * 32 * 3, 0.5f), OIIO::TypeUInt8);
   const Image image = read_image(path, true);
   EXPECT_EQ(image.width, 64u);
   for (const float value : image.pixels) EXPECT_NEAR(value, 0.5, 0.02);
@@ -115,18 +112,18 @@ TEST_F(Images, AlphaIsDroppedAndNotMultiplied) {
   const auto unassociated = [](OIIO::ImageSpec& spec) { spec["oiio:UnassociatedAlpha"] = 1; };
   for (const char* name : {"a.png", "a.tif"}) {
     const Image image =
-        read_image(write_image(folder.path(name), 1, 1, rgba, pixel, OIIO::TypeUInt8, unassociated), true);
+        read_image(write_image(folder / name, 1, 1, rgba, pixel, OIIO::TypeUInt8, unassociated), true);
     ASSERT_EQ(image.pixels.size(), 3u);
     for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(image.pixels[c], pixel[c], 0.5 / 255 + 1e-6) << name;
   }
-  const Image exr = read_image(write_image(folder.path("a.exr"), 1, 1, rgba, pixel, OIIO::TypeFloat), false);
+  const Image exr = read_image(write_image(folder / "a.exr", 1, 1, rgba, pixel, OIIO::TypeFloat), false);
   EXPECT_EQ(exr.pixels, (std::vector<float>{0.4f, 0.6f, 0.8f}));
 }
 
 TEST_F(Images, GreyHasOneChannel) {
   for (const char* name : {"a.png", "a.jpg", "a.tif"}) {
     const Image image = read_image(
-        write_image(folder.path(name), 8, 8, {"Y"}, std::vector<float>(64, 0.5f), OIIO::TypeUInt8), true);
+        write_image(folder / name, 8, 8, {"Y"}, std::vector<float>(64, 0.5f), OIIO::TypeUInt8), true);
     EXPECT_EQ(image.channels, 1u) << name;
     EXPECT_NEAR(image.pixels[0], 0.5, 0.02) << name;
   }
@@ -137,12 +134,10 @@ TEST_F(Images, TiledAndLargeFiles) {
   const auto values = ramp(100 * 150 * 3);
   const auto tiles = [](OIIO::ImageSpec& spec) { spec.tile_width = spec.tile_height = 32; };
   EXPECT_EQ(
-      read_image(write_image(folder.path("a.exr"), 100, 150, kRgb, values, OIIO::TypeFloat, tiles), false)
-          .pixels,
+      read_image(write_image(folder / "a.exr", 100, 150, kRgb, values, OIIO::TypeFloat, tiles), false).pixels,
       values);
-  EXPECT_EQ(
-      read_image(write_image(folder.path("b.exr"), 100, 150, kRgb, values, OIIO::TypeFloat), false).pixels,
-      values);
+  EXPECT_EQ(read_image(write_image(folder / "b.exr", 100, 150, kRgb, values, OIIO::TypeFloat), false).pixels,
+            values);
 }
 
 TEST_F(Images, DataWindowMayBeAnywhere) {
@@ -151,7 +146,7 @@ TEST_F(Images, DataWindowMayBeAnywhere) {
     spec.y = 11;
   };
   expect_ramp(
-      read_image(write_image(folder.path("a.exr"), kWidth, kHeight, kRgb, ramp(45), OIIO::TypeFloat, shift),
+      read_image(write_image(folder / "a.exr", kWidth, kHeight, kRgb, ramp(45), OIIO::TypeFloat, shift),
                  false),
       0);
 }
@@ -160,12 +155,11 @@ TEST_F(Images, ExrChannelsAreChosenByName) {
   // EXR sorts channels by name: the colours come in another order, or with others between them.
   const std::vector<std::string> names = {"depth", "layer.B", "layer.G", "layer.R", "layer.A"};
   const Image image =
-      read_image(write_image(folder.path("a.exr"), 1, 1, names, {9, 1, 2, 3, 0.5f}, OIIO::TypeFloat), false);
+      read_image(write_image(folder / "a.exr", 1, 1, names, {9, 1, 2, 3, 0.5f}, OIIO::TypeFloat), false);
   EXPECT_EQ(image.pixels, (std::vector<float>{3, 2, 1}));
   const std::vector<std::string> apart = {"B", "G", "M", "Q", "R"};
   EXPECT_EQ(
-      read_image(write_image(folder.path("b.exr"), 1, 1, apart, {1, 2, 8, 9, 3}, OIIO::TypeFloat), false)
-          .pixels,
+      read_image(write_image(folder / "b.exr", 1, 1, apart, {1, 2, 8, 9, 3}, OIIO::TypeFloat), false).pixels,
       (std::vector<float>{3, 2, 1}));
 }
 

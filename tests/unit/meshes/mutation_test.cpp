@@ -64,7 +64,7 @@ void expect_consistent(const Mesh& mesh) {
 using ReadFunction = Mesh (*)(const std::filesystem::path&, const MeshOptions&, const DiagnosticSink&);
 
 void attack(ReadFunction read, const std::string& good) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   std::mt19937 random(20240607);
   expect_consistent(read(folder.write("good", good), {}, {}));
   int refused = 0;
@@ -135,7 +135,7 @@ TEST(Mutations, SerializedFile) {
 
 /// The decompressed contents are damaged, so that the zlib checksum does not stop everything.
 TEST(Mutations, SerializedContents) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   std::mt19937 random(20240608);
   int refused = 0;
   for (int i = 0; i < kMutations; ++i) {

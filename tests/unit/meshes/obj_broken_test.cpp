@@ -63,7 +63,7 @@ const std::vector<BrokenFile> kBroken = {
 };
 
 TEST(ObjBroken, SaysWhatAndWhere) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   for (const BrokenFile& broken : kBroken) {
     const auto path = folder.write("a.obj", broken.content);
     EXPECT_EQ(error_of(folder, [&] { read_obj(path, {}); }), broken.message) << broken.what;
@@ -71,11 +71,10 @@ TEST(ObjBroken, SaysWhatAndWhere) {
 }
 
 TEST(ObjBroken, RefusesWhatIsNoFile) {
-  const TempFolder folder;
-  EXPECT_EQ(error_of(folder, [&] { read_obj(folder.path("none.obj"), {}); }), "none.obj: no such file");
-  std::filesystem::create_directory(folder.path("folder.obj"));
-  EXPECT_EQ(error_of(folder, [&] { read_obj(folder.path("folder.obj"), {}); }),
-            "folder.obj: not a regular file");
+  const TemporaryFolder folder;
+  EXPECT_EQ(error_of(folder, [&] { read_obj(folder / "none.obj", {}); }), "none.obj: no such file");
+  std::filesystem::create_directory(folder / "folder.obj");
+  EXPECT_EQ(error_of(folder, [&] { read_obj(folder / "folder.obj", {}); }), "folder.obj: not a regular file");
 }
 
 }  // namespace

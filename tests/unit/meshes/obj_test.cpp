@@ -14,7 +14,7 @@ using Triangles = std::vector<std::array<uint32_t, 3>>;
 const std::string kQuadPositions = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 struct Obj : testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   Collector collector;
   Mesh read(const std::string& text, const MeshOptions& options = {}) {
     return read_obj(folder.write("a.obj", text), options, collector.sink(folder));

@@ -143,7 +143,7 @@ const std::vector<BrokenFile> kBrokenBinaries = {
 };
 
 void check(const std::vector<BrokenFile>& files) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   for (const BrokenFile& broken : files) {
     const auto path = folder.write("a.ply", broken.content);
     EXPECT_EQ(error_of(folder, [&] { read_ply(path, {}); }), broken.message) << broken.what;
@@ -171,7 +171,7 @@ TEST(PlyBroken, TruncatedAtEveryEighth) {
       "a.ply:9: header: unknown keyword 'end_h'",
       "a.ply:3: header: element 'vertex': 3 rows of at least 12 bytes, but only 21 bytes follow the header",
   };
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::string whole = binary_file(kRawVertices + kRawFace);
   ASSERT_EQ(whole.size(), 218u);
   for (size_t eighth = 1; eighth < 8; ++eighth) {
@@ -182,7 +182,7 @@ TEST(PlyBroken, TruncatedAtEveryEighth) {
 
 // Whatever is missing of the body, even one byte, is noticed.
 TEST(PlyBroken, EveryTruncatedBody) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::string whole = binary_file(kRawVertices + kRawFace);
   for (size_t size = 0; size < whole.size(); ++size) {
     const auto path = folder.write("a.ply", whole.substr(0, size));

@@ -13,7 +13,7 @@ using Triangles = std::vector<std::array<uint32_t, 3>>;
 const Triangles kQuad = {{0, 1, 2}, {0, 2, 3}};
 
 struct Ply : testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   Collector collector;
   Mesh read(const std::string& bytes, const MeshOptions& options = {}) {
     return read_ply(folder.write("a.ply", bytes), options, collector.sink(folder));

@@ -11,7 +11,7 @@ namespace kiloband::test {
 namespace {
 
 struct RealMeshes : testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   Collector collector;
   /// Path of a data file, empty if it is not there.
   static std::filesystem::path data(const std::string& name) {

@@ -11,7 +11,7 @@ namespace kiloband::test {
 namespace {
 
 struct SerializedBroken : testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   std::string error(const std::string& bytes, int shape_index = 0) {
     const auto path = folder.write("a.serialized", bytes);
     MeshOptions options;

@@ -9,7 +9,7 @@ namespace kiloband::test {
 namespace {
 
 struct Serialized : testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   Mesh read(const std::string& bytes, const MeshOptions& options = {}) {
     return read_serialized(folder.write("a.serialized", bytes), options);
   }

@@ -27,7 +27,7 @@ std::string binary_stl(uint32_t count, const std::vector<float>& corners) {
 const std::vector<float> kCorners = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2};
 
 struct Stl : testing::Test {
-  TempFolder folder;
+  TemporaryFolder folder;
   Mesh read(const std::string& bytes) { return read_stl(folder.write("a.stl", bytes), {}); }
   void check(const std::vector<BrokenFile>& files) {
     for (const BrokenFile& broken : files) {

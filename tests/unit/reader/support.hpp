@@ -7,24 +7,9 @@
 #include <vector>
 
 #include "scene/reader.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
-
-/// A folder of its own that vanishes with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  /// Writes a file and returns its path.
-  std::filesystem::path write(const std::string& name, const std::string& contents) const;
-
- private:
-  std::filesystem::path path_;
-};
 
 /// What a scene needs besides what a test is about; all on one line, so that line numbers stay simple.
 inline const std::string kSensor = R"(<sensor type="perspective"/>)";

@@ -10,35 +10,9 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
-
-/// A folder of its own that goes away with the object.
-class TempFolder {
- public:
-  TempFolder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("kiloband_spectral_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  std::filesystem::path write(const std::string& name, const std::string& content) const {
-    std::filesystem::remove(path_ / name);  // truncating a file makes some file systems wait for the disk
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return path_ / name;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// What the InputError says that `action` throws, without the temporary folder's name; "" if it throws
 /// nothing.

@@ -71,7 +71,7 @@ TEST(Channels, EveryBrokenRuleHasItsMessage) {
 }
 
 TEST(Channels, FileWithHeaderCommentsAndBlankLines) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write(
       "bands.csv", "\xEF\xBB\xBFmin_nm,max_nm\r\n# visible\r\n400,410 # first\r\n\r\n500 , 505.5\r\n");
   const ChannelList channels = read_channels_file(file);
@@ -81,7 +81,7 @@ TEST(Channels, FileWithHeaderCommentsAndBlankLines) {
 }
 
 TEST(Channels, FileErrorsNameTheLine) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::pair<const char*, const char*> cases[] = {
       {"", "f.csv: no channels"},
       {"min,max\n", "f.csv: no channels"},

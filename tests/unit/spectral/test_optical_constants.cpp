@@ -11,7 +11,7 @@ namespace {
 
 OpticalConstants read_text(const std::string& name, const std::string& content,
                            std::vector<Diagnostic>* diagnostics = nullptr) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   return read_optical_constants(folder.write(name, content), [&](const Diagnostic& d) {
     if (diagnostics) diagnostics->push_back(d);
   });
@@ -114,7 +114,7 @@ TEST(OpticalConstants, PlainText) {
 }
 
 TEST(OpticalConstants, WrongFilesHaveTheirMessages) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::string entry = "DATA:\n  - type: ";
   const std::pair<std::string, const char*> cases[] = {
       {"", "f.yml: has no list DATA"},
@@ -157,7 +157,7 @@ TEST(OpticalConstants, WrongFilesHaveTheirMessages) {
 }
 
 TEST(OpticalConstants, DeepNestingIsAnErrorNotACrash) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   for (const char* open : {"[", "{a: "}) {
     std::string nested = "DATA: ";
     for (int i = 0; i < 100000; ++i) nested += open;
@@ -167,7 +167,7 @@ TEST(OpticalConstants, DeepNestingIsAnErrorNotACrash) {
 }
 
 TEST(OpticalConstants, ResonanceInsideTheRangeIsAnError) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write("f.yml", yaml_formula(6, "0.1 1", "0 1 25"));  // pole at 0.2 um
   EXPECT_THROW(read_optical_constants(file), InputError);
 }

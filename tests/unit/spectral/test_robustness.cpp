@@ -48,7 +48,7 @@ struct Outcome {
 Outcome damage(const std::string& name, const std::string& valid,
                const std::function<void(const std::filesystem::path&)>& read) {
   constexpr int kTimes = 2000;
-  const TempFolder folder;
+  const TemporaryFolder folder;
   std::mt19937 generator(2024);
   Outcome outcome;
   EXPECT_NO_THROW(read(folder.write(name, valid)));

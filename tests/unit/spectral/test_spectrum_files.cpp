@@ -8,7 +8,7 @@ namespace kiloband::test {
 namespace {
 
 Spectrum read_text(const std::string& content, std::vector<Diagnostic>* diagnostics = nullptr) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   return read_spectrum_file(folder.write("a.spd", content), [&](const Diagnostic& d) {
     if (diagnostics) diagnostics->push_back(d);
   });
@@ -88,7 +88,7 @@ TEST(SpectrumFile, EcostressUnitsAndOrder) {
 }
 
 TEST(SpectrumFile, WrongFilesHaveTheirMessages) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::pair<std::string, const char*> cases[] = {
       {"", "f.txt: no data"},
       {"# only\n", "f.txt: no data"},
@@ -146,7 +146,7 @@ TEST(SpectrumFile, LongLinesAreNoTrouble) {
 }
 
 TEST(ResponseFile, HeaderNamesTheColumns) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto responses =
       read_response_file(folder.write("eye.csv", "wavelength_um,x,y bar,z\n0.4,1,2,3\n0.5,4,5,6\n"));
   ASSERT_EQ(responses.size(), 3u);
@@ -156,7 +156,7 @@ TEST(ResponseFile, HeaderNamesTheColumns) {
 }
 
 TEST(ResponseFile, WithoutHeaderTheStemIsTheName) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto one = read_response_file(folder.write("green.txt", "# nm\n500 0.1\n400 0.2\n"));
   ASSERT_EQ(one.size(), 1u);
   EXPECT_EQ(one[0].first, "green");
@@ -167,7 +167,7 @@ TEST(ResponseFile, WithoutHeaderTheStemIsTheName) {
 }
 
 TEST(ResponseFile, ModisTable) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto responses =
       read_response_file(folder.write("rsr.31",
                                       "#| Band Channel Wavelength RSR\n#|----\n31 1 10.5 0.01\n31 1 11 1\n31 "
@@ -179,7 +179,7 @@ TEST(ResponseFile, ModisTable) {
 }
 
 TEST(ResponseFile, WrongFilesHaveTheirMessages) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   std::string wide = "400";
   for (int i = 0; i < 5000; ++i) wide += ",1";
   const std::pair<std::string, const char*> cases[] = {
