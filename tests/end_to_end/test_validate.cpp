@@ -79,6 +79,18 @@ TEST(Validate, HardCasesOnTheMethodWithoutVertices) {
   EXPECT_TRUE(evaluated);
 }
 
+/// Hours of work: it ends at once, without figures of images that were not finished.
+TEST(Validate, AHardCaseIsInterrupted) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      folder, {"validate", "--thorough", "hard/watertight", "--backends", "cpu", "--no-report", "-o", "out"},
+      {.signal = SIGINT, .after_text = "hard/watertight", .after_seconds = 0.3});
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  const auto results = read_json(folder, "out/results.json");
+  EXPECT_EQ(results["interrupted"], true);
+  EXPECT_TRUE(results["hard_cases"].empty());
+}
+
 /// A scene whose stated values are wrong by 2 %: the run fails, says why, and keeps what explains it.
 TEST(Validate, AWrongClosedFormFails) {
   const TemporaryFolder folder;

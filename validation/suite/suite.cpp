@@ -45,11 +45,11 @@ Plan plan_of(const SuiteSettings& settings) {
   return plan;
 }
 
-HardCaseResult run_hard_case(const HardCase& hard, const std::string& backend,
-                             const SuiteSettings& settings) {
+HardCaseResult run_hard_case(const HardCase& hard, const std::string& backend, const SuiteSettings& settings,
+                             const Watch& watch) {
   HardCaseResult result{hard.name, hard.what, backend, {}, false, {}};
   try {
-    result.figures = hard.run({backend, settings.effort, settings.seed, {}});
+    result.figures = hard.run({backend, settings.effort, settings.seed, {watch.stop, {}}});
     result.passed = std::ranges::all_of(result.figures, &HardFigure::pass);
   } catch (const std::exception& error) {
     result.error = error.what();
@@ -130,7 +130,9 @@ SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
   for (const auto& [hard, backend] : plan.hard_cases) {
     if (watch.stopped()) break;
     say("hard/" + hard->name + " on " + backend);
-    result.hard_cases.push_back(run_hard_case(*hard, backend, settings));
+    HardCaseResult figures = run_hard_case(*hard, backend, settings, watch);
+    if (watch.stopped()) break;  // of images that were not finished
+    result.hard_cases.push_back(std::move(figures));
     counter.finish_part();
   }
   for (const ConvergenceCase& c : plan.convergence) {

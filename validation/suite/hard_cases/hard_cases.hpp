@@ -15,6 +15,7 @@
 
 #include "validation/suite/effort.hpp"
 #include "validation/suite/error_rates.hpp"
+#include "validation/suite/rendering.hpp"
 
 namespace kiloband::validation {
 
@@ -25,7 +26,7 @@ struct HardCaseContext {
   std::string backend = "cpu";  // or "opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"
   Effort effort = Effort::kQuick;
   uint64_t seed = 1;
-  std::function<void(const std::string&)> progress;  // what is being done; may be empty
+  Watch watch;  // once it is stopped, figures are of unfinished images and mean nothing
 };
 
 /// One number. error and limit are in `unit`, as value and reference are, unless the note says otherwise.

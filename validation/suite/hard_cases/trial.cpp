@@ -76,7 +76,7 @@ TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) 
   const auto backend = make_backend(general_kernels(context_.backend), scene,
                                     sampling_of(settings, context_.seed, settings.replicates));
   SpectralFilm film(film_rect(scene), {scene.channels.size(), settings.replicates, true});
-  render_replicates(*backend, film, settings.replicates, settings.samples, {});
+  render_replicates(*backend, film, settings.replicates, settings.samples, context_.watch);
   TrialImage image;
   image.width = scene.film.crop_width;
   image.height = scene.film.crop_height;
@@ -153,7 +153,7 @@ void Trial::oracle(const std::string& name, const std::string& xml, const TrialS
   const auto backend = make_backend(general_kernels(context_.backend), scene, sampling);
   const PixelRect rect = film_rect(scene);
   SpectralFilm film(rect, {scene.channels.size(), 1, true});
-  render_replicates(*backend, film, 1, 1, {});
+  render_replicates(*backend, film, 1, 1, context_.watch);
   TrialImage image{rect.width, rect.height, scene.channels.size()};
   collect_pixels(film, backend->film_scale(), image);
   const std::vector<TracedPath> paths = trace_paths(context_.backend, scene, sampling);
