@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "src_cpu/ray_offset.hpp"
 #include "tests/unit/gpu_bvh/ray_tester.hpp"
 
 namespace kiloband::test {
@@ -146,6 +147,31 @@ TEST(BvhEdgeCases, SliversAreHarmless) {
     EXPECT_TRUE(hit.t > 0 && hit.t < 2.01f);
     EXPECT_TRUE(hit.u >= 0 && hit.v >= 0 && hit.u + hit.v <= 1.00001f);
   }
+}
+
+// A facet of a moulding, 1.8 m long and 2.6 mm high, 5 m from the origin. Barycentric coordinates that are
+// off by rounding along its length put the hit 10^-5 m off its plane, where rays begin.
+TEST(BvhEdgeCases, RaysDoNotMeetTheSliverTheyLeave) {
+  const glm::vec3 a(-4.49f, 0.06866025f, -4.195f), b(-2.71f, 0.06707107f, -4.19292879f),
+      c(-2.71f, 0.06866025f, -4.195f);
+  Mesh mesh;
+  mesh.add_triangle(a, b, c);
+  RayTester tester(scene_of(mesh));
+  const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
+  const float offset = surface_offset(largest_coordinates(a, b, c), normal);
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> uniform(0.02f, 0.49f);
+  std::vector<KbRay> rays;
+  while (rays.size() < 100000) {
+    const float u = uniform(random), v = uniform(random);
+    const glm::vec3 direction = random_direction(random), point = (1 - u - v) * a + u * b + v * c;
+    const float cosine = glm::dot(direction, normal);
+    if (std::abs(cosine) < 0.05f) continue;
+    rays.push_back(make_ray(offset_ray_origin(point, cosine > 0 ? normal : -normal, offset), direction));
+  }
+  std::size_t met = 0;
+  for (const uint32_t any : tester.any(rays)) met += any;
+  EXPECT_EQ(met, 0u) << "of " << rays.size();
 }
 
 using Corners = std::tuple<float, float, float, float, float, float, float, float, float>;
