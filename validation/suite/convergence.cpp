@@ -101,6 +101,8 @@ ConvergenceCurve measure(const FlatScene& scene, const Configuration& configurat
                          uint64_t seed, const Watch& watch) {
   ConvergenceCurve curve{configuration, {}, 0, 0, 0};
   std::vector<Scatter> scatters;
+  // Once without a clock: the first render compiles kernels, or reads them from the disk.
+  render(scene, configuration, {seed, kReplicates, kFirstSamples}, watch);
   for (uint32_t samples = kFirstSamples; samples <= most && !watch.stopped(); samples *= kStep) {
     const Rendering rendering = render(scene, configuration, {seed + samples, kReplicates, samples}, watch);
     if (rendering.stopped) break;
