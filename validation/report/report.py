@@ -4,8 +4,8 @@
 Usage: report.py DIR    (needs numpy and matplotlib: apt-get install python3-matplotlib)
 
 Reads DIR/results.json, the cubes that it names, and DIR/mitsuba.json if there is one (written by the suite, or by
-compare_with_mitsuba.py alone). Sections and values that are missing
-are left out: a run that was interrupted has a report too.
+compare_with_mitsuba.py alone). Sections and values that are missing are left out: a run that was interrupted has a report
+too.
 """
 
 import json

@@ -14,11 +14,8 @@ import sys
 sys.dont_write_bytecode = True  # nothing is left in the source folder
 
 from comparisons import VARIANCES, detectable  # noqa: E402
-from markup import is_number  # noqa: E402
+from markup import DASH, is_number  # noqa: E402
 from report import ReportError, read_results  # noqa: E402
-
-DASH = "–"
-
 
 def number(value, digits=2):
     return f"{value:.{digits}g}" if is_number(value) else DASH
@@ -82,18 +79,27 @@ def _hard_backends(results):
     return list(dict.fromkeys(hard.get("backend") for hard in results["hard_cases"]))
 
 
+def _error_heads(backends):
+    return [*(f"error, {b}" for b in backends), "limit"]
+
+
+def _errors(found, backends):
+    """Cells of a figure: the error on each backend, the largest limit."""
+    limit = max((f["limit"] for f in found.values() if is_number(f.get("limit"))), default=None)
+    return [*(number((found.get(b) or {}).get("error")) for b in backends), number(limit)]
+
+
 def _hard_row(key, found, backends):
     first = next(iter(found.values()))
-    errors = [number((found.get(b) or {}).get("error")) for b in backends]
-    limit = max((f["limit"] for f in found.values() if is_number(f.get("limit"))), default=None)
     failed = "" if all(f.get("passed") for f in found.values()) else "FAILED; "
-    return [*key, number(first.get("reference"), 9), *errors, number(limit), failed + (first.get("note") or "")]
+    note = failed + (first.get("note") or "")
+    return [*key, number(first.get("reference"), 9), *_errors(found, backends), note]
 
 
 def hard(results):
     backends = _hard_backends(results)
     rows = [_hard_row(key, found, backends) for key, found in _figures(results).items()]
-    return table(["case", "figure", "reference", *(f"error, {b}" for b in backends), "limit", "note"], rows)
+    return table(["case", "figure", "reference", *_error_heads(backends), "note"], rows)
 
 
 def _nearness(found):
@@ -111,10 +117,8 @@ def nearest(results):
     for key, found in _figures(results).items():
         if key[0] not in chosen or _nearness(found) > _nearness(chosen[key[0]][1]):
             chosen[key[0]] = (key, found)
-    rows = [_hard_row(key, found, backends)[:-1] for key, found in chosen.values()]
-    for row in rows:
-        del row[2]
-    return table(["case", "figure", *(f"error, {b}" for b in backends), "limit"], rows)
+    rows = [[*key, *_errors(found, backends)] for key, found in chosen.values()]
+    return table(["case", "figure", *_error_heads(backends)], rows)
 
 
 def convergence(results):
@@ -136,22 +140,23 @@ def convergence(results):
     return table(["study", "configuration", "slope", "samples", "error", "seconds", "1 / (error² · s)"], rows)
 
 
-def mitsuba(results):
-    rows = [
-        [
-            scene.get("name"),
-            scene.get("backend"),
-            "passed" if scene.get("passed") else "FAILED",
-            f"{scene.get('samples_ours', DASH)} / {scene.get('samples_theirs', DASH)}",
-            percent(scene.get("difference_all")),
-            percent(scene.get("largest_difference")),
-            number(scene.get("p")),
-            f"{percent((scene.get('detectable') or {}).get('typical'))} ({percent((scene.get('detectable') or {}).get('largest'))})",
-        ]
-        for scene in results["mitsuba"]["scenes"]
+def _mitsuba_row(scene):
+    seen = scene.get("detectable") or {}
+    return [
+        scene.get("name"),
+        scene.get("backend"),
+        "passed" if scene.get("passed") else "FAILED",
+        f"{scene.get('samples_ours', DASH)} / {scene.get('samples_theirs', DASH)}",
+        percent(scene.get("difference_all")),
+        percent(scene.get("largest_difference")),
+        number(scene.get("p")),
+        f"{percent(seen.get('typical'))} ({percent(seen.get('largest'))})",
     ]
+
+
+def mitsuba(results):
     heads = ["scene", "backend", "", "samples, ours / theirs", "difference", "largest of a channel", "p", "detectable (worst)"]
-    return table(heads, rows)
+    return table(heads, [_mitsuba_row(scene) for scene in results["mitsuba"]["scenes"]])
 
 
 def head(results):

@@ -189,17 +189,19 @@ MitsubaResult read_mitsuba(const std::string& text, const MitsubaRun& run, const
   return result;
 }
 
-MitsubaResult run_mitsuba(const MitsubaDriver& driver, const MitsubaRun& run, const Watch& watch) {
+MitsubaResult run_mitsuba(const MitsubaDriver& driver, const MitsubaRun& run, const Watch& watch) try {
   const fs::path file = run.output / "mitsuba.json";
-  std::error_code error;
-  fs::remove(file, error);  // of an earlier run
-  if (error) throw DeviceError(file.string() + ": " + error.message());
+  fs::remove(file);  // of an earlier run
   const double rows = static_cast<double>(run.scenes.size() * run.backends.size());
   double done = 0;
   const ChildEnd end = run_child(command_of(driver, run), watch, [&](const std::string&) {
     if (watch.progress) watch.progress(++done / rows);
   });
   return read_mitsuba(contents(file), run, end);
+} catch (const std::exception& error) {  // the rest of the run is worth having
+  ChildEnd end;
+  end.err = error.what();
+  return read_mitsuba({}, run, end);
 }
 
 }  // namespace kiloband::validation

@@ -214,6 +214,21 @@ TEST(RunMitsuba, RunsTheScriptAndReadsItsFile) {
                 " --backends cpu,opencl:pt --seed 7 --rate 1e-05 --effort 0.25 --scenes box\n");
 }
 
+/// What keeps the script from being run has failed, as what it could not do: an hour of other cases is not
+/// lost.
+TEST(RunMitsuba, AResultThatCannotBeReplacedIsAFailure) {
+  const ScratchFolder folder;
+  fs::create_directories(folder.path() / "mitsuba.json" / "not empty");
+  MitsubaRun run = kRun;
+  run.output = folder.path();
+  const MitsubaResult result = run_mitsuba({with_mitsuba(folder), "9.8.7", "compare.py", {"box"}}, run, {});
+  ASSERT_EQ(result.scenes.size(), 2u);
+  EXPECT_FALSE(result.passed());
+  EXPECT_TRUE(result.scenes[0].failure.starts_with("compare_with_mitsuba.py: not started: "))
+      << result.scenes[0].failure;
+  EXPECT_NE(result.scenes[0].failure.find("mitsuba.json"), std::string::npos) << result.scenes[0].failure;
+}
+
 /// A scene against Mitsuba that fails is a failure of the run, once in each file.
 TEST(RunMitsuba, IsPartOfTheResults) {
   SuiteResult result;
