@@ -155,7 +155,10 @@ void study_means(int trials) {
 }
 
 void study_variances(int trials) {
-  std::printf("\nPower for variances: share of %d comparisons, alpha = 1e-4, 8 samples per replicate, 64x64 pixels.\n", trials);
+  std::printf(
+      "\nPower for variances: share of %d comparisons, alpha = 1e-4, 8 samples per replicate, 64x64 "
+      "pixels.\n",
+      trials);
   print_head("distribution, ratio");
   for (const char* distribution : {"normal", "exponential", "lognormal", "firefly", "pareto"}) {
     const BatchPool pool(distribution, 8);

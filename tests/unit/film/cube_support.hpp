@@ -1,8 +1,6 @@
 // Cubes with known contents, and folders that disappear.
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstdint>

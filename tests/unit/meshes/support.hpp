@@ -2,9 +2,6 @@
 // real data.
 #pragma once
 
-#include <unistd.h>
-
-#include <atomic>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>

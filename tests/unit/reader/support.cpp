@@ -1,10 +1,6 @@
 #include "support.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <fstream>
 
 namespace kiloband::test {
 

@@ -1,9 +1,6 @@
 // Scenes with spectral images for the tests of this folder.
 #pragma once
 
-#include <unistd.h>
-
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <string>

@@ -1,8 +1,6 @@
 // Helpers of the spectral tests: temporary files, messages of errors, the real data folder.
 #pragma once
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
