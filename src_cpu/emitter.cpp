@@ -29,8 +29,8 @@ LightSample sample_area(const FlatScene& scene, const KbEmitter& emitter, glm::v
   LightSample sample;
   if (!(on_light.pdf > 0)) return sample;
   sample.direction = on_light.direction;
-  sample.target = offset_ray_origin(
-      on_light.position, on_light.normal, target_offset(on_light.offset, on_light.position - point));
+  sample.target = offset_ray_origin(on_light.position, on_light.normal,
+                                    target_offset(on_light.offset, on_light.position - point));
   sample.pdf = on_light.pdf * emitter.select_pdf;
   sample.factor = on_light.factor;
   if (!thermal) {
@@ -38,8 +38,7 @@ LightSample sample_area(const FlatScene& scene, const KbEmitter& emitter, glm::v
     return sample;
   }
   sample.thermal = true;
-  sample.surface = make_surface_hit(scene, emitter.shape, on_light.triangle, on_light.barycentric.x,
-                                    on_light.barycentric.y, on_light.position, glm::vec3(0), 0);
+  sample.on = {emitter.shape, on_light.triangle, on_light.barycentric, on_light.position};
   return sample;
 }
 
@@ -125,6 +124,11 @@ LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_se
     default:
       return sample_directional(scene, emitter);
   }
+}
+
+SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on) {
+  return make_surface_hit(scene, on.shape, on.triangle, on.barycentric.x, on.barycentric.y, on.position,
+                          glm::vec3(0), 0);
 }
 
 float area_light_pdf(const FlatScene& scene, uint32_t shape, glm::vec3 origin, glm::vec3 hit_point,

@@ -17,6 +17,14 @@ struct EmittedRadiance {
   KbTextureSample texture{};  // if textured
 };
 
+/// A point of a thermally emitting shape, for thermal_surface().
+struct ThermalPoint {
+  uint32_t shape = KB_NONE;
+  uint32_t triangle = 0;  // meshes: in the shape, and the point's weights of its second and third vertex
+  glm::vec2 barycentric{0};
+  glm::vec3 position{0};
+};
+
 /// One sample of direct light at a point.
 struct LightSample {
   glm::vec3 direction{0};  // unit, from the shaded point towards the light
@@ -30,7 +38,7 @@ struct LightSample {
       0;  // incident radiance (or, for delta lights, irradiance) = factor * spectrum; about 1 for area lights
   EmittedRadiance radiance;
   bool thermal = false;  // `radiance` is not set: the surface there emits towards -direction (thermal.hpp)
-  SurfaceHit surface;    // of thermal lights
+  ThermalPoint on;       // if thermal
 };
 
 /// Selects an emitter by FlatScene::emitter_cdf (u_select.x), a triangle of a mesh (u_select.y), a point or
@@ -38,6 +46,9 @@ struct LightSample {
 /// area from inside; other shapes over their area; environment maps by their texels; constant environments
 /// over the sphere. Points behind a one-sided area light give pdf 0.
 LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position);
+
+/// The surface that a thermal light's sample lies on; apart from the sample, which most lights do without.
+SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on);
 
 /// Density with which sample_light() gives the direction from `origin` to `hit_point` on the area light of
 /// shape `shape`; selection included [1/sr]. 0 where the light does not emit (its back) or cannot be sampled.

@@ -91,6 +91,7 @@ void PathTracer::run_wavefront(const SampleId& id, std::span<const float> mu) {
 
 void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t count, const SampleId& id) {
   paths_.clear();
+  dispersed_.clear();
   gas_.clear();
   slots_.clear();
   active_.clear();
@@ -105,12 +106,12 @@ void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t co
     path.key = kb_sampler_key(sampler, settings_.seed, y * flat_.camera.film_width + x, id.sample,
                               id.replicate, id.index);
     path.bound = path.magnitude = 1;
-    path.carried.fill(1);
     path.previous_delta = true;
     path.channel = path.first_slot = path.last_slot = KB_NONE;
     const CameraRay ray = sample_camera_ray(flat_.camera, x, y, kb_sampler_block(path.key, KB_BLOCK_CAMERA));
     path.previous_point = ray.origin;
     paths_.push_back(path);
+    if (flat_.features.dispersion) dispersed_.emplace_back().carried.fill(1);
     if (flat_.features.gas) gas_.push_back({MediumStack(flat_.camera_media), 0, ray.t_min, ray.t_max});
     active_.push_back(i - first);
     rays_queue_.emplace_back(ray.origin, ray.direction, ray.t_min, ray.t_max);
@@ -245,8 +246,8 @@ void PathTracer::resolve_spectra(Draft& draft, const KbMaterial& material, const
 void PathTracer::append(Path& path, const Draft& draft) {
   ++vertices_;
   if (!stays_finite(draft.vertex, draft.scale, path.magnitude)) path.invalid = true;
-  if (!flat_.channel_bins.empty() && (draft.vertex.head & KB_VERTEX_SCATTER))
-    carry(path.carried, draft.vertex, flat_.channel_bins);
+  if (flat_.features.dispersion && (draft.vertex.head & KB_VERTEX_SCATTER))
+    carry(dispersed(path).carried, draft.vertex, flat_.channel_bins);
   const auto index = static_cast<uint32_t>(slots_.size());
   (path.last_slot == KB_NONE ? path.first_slot : slots_[path.last_slot].next) = index;
   path.last_slot = index;

@@ -86,9 +86,12 @@ class PathTracer {
     float magnitude;  // product of the scatter weights: where this overflows the sample is invalid
     bool previous_delta;
     bool invalid;
-    BinnedThroughput carried;                    // with dispersion: what each bin of channels carries
-    uint32_t heroes;                             // of spectral MIS; 0: none chosen yet
-    std::array<float, kMaxHeroes> hero_weights;  // q_c
+  };
+  /// What a path carries in scenes with dispersion besides.
+  struct DispersedPath {
+    BinnedThroughput carried;                      // in each bin of channels
+    uint32_t heroes = 0;                           // of spectral MIS; 0: none chosen yet
+    std::array<float, kMaxHeroes> hero_weights{};  // q_c
   };
   struct Slot {
     KbPathVertex vertex;
@@ -165,7 +168,8 @@ class PathTracer {
     float opacity;
     glm::vec3 direction;  // of the ray that arrived
   };
-  HeroSet choose_heroes(Path& path, const KbMaterial& material, const SampleId& id, float mu) const;
+  HeroSet choose_heroes(const Path& path, const KbMaterial& material, const SampleId& id, float mu);
+  DispersedPath& dispersed(const Path& path) { return dispersed_[index_of(path)]; }
   bool add_hero_light(Path& path, const Boundary& at, const HeroSet& heroes, const SampleId& id,
                       uint32_t bounce);
   bool scatter_heroes(Path& path, const Boundary& at, const HeroSet& heroes, const KbFloat4& u,
@@ -179,7 +183,7 @@ class PathTracer {
   const KbMaterial& with_local_bounds(const KbMaterial& material, const SurfaceHit& hit,
                                       KbMaterial& local) const;
   // path_tracer_gas.cpp
-  GasPath& gas_of(const Path& path) { return gas_[static_cast<std::size_t>(&path - paths_.data())]; }
+  GasPath& gas_of(const Path& path) { return gas_[index_of(path)]; }
   void cross(Path& path, MediumStack& media, uint32_t shape, bool outwards);
   MediumStack media_towards(Path& path, const SurfaceHit& hit, glm::vec3 from, glm::vec3 direction);
   void walk_boundaries();
@@ -196,6 +200,7 @@ class PathTracer {
   void gather(PathBuffer& out, std::vector<uint32_t>& invalid);
   float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
   bool wants_bounce(uint32_t bounce) const;
+  std::size_t index_of(const Path& path) const { return static_cast<std::size_t>(&path - paths_.data()); }
 
   const TracerScene& scene_;
   const FlatScene& flat_;
@@ -207,7 +212,8 @@ class PathTracer {
   std::vector<uint32_t> shadow_slot_;  // vertex of each shadow ray
   std::vector<uint32_t> shadow_path_;  // while recording: its path
   std::vector<Slot> slots_;
-  std::vector<GasPath> gas_;  // as paths_; this and the next two are empty in scenes without gas
+  std::vector<DispersedPath> dispersed_;  // as paths_; empty in scenes without dispersion
+  std::vector<GasPath> gas_;              // as paths_; this and the next two are empty in scenes without gas
   std::vector<Segment> segments_;
   std::vector<ShadowOwner> shadow_owner_;  // as shadow_rays_
   Recording* recording_ = nullptr;

@@ -34,7 +34,7 @@ float PathTracer::survive(Path& path, const BinnedThroughput& carried, const Sam
 /// Refraction by an index that depends on wavelength: one channel goes on, with weight 1 / probability.
 bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial& material, glm::vec3 wi,
                                      BsdfSample& sample, const SampleId& id, uint32_t bounce, float mu) {
-  BinnedThroughput carried = path.carried;
+  BinnedThroughput carried = dispersed(path).carried;
   if ((material.ref_b & KB_REF_KIND_MASK) == KB_REF_SPECTRUM) {
     for (uint32_t b = 0; b < KB_CHANNEL_BINS; ++b)
       carried[b] *= flat_.channel_bins[std::size_t{material.ref_b} * KB_CHANNEL_BINS + b];
@@ -54,7 +54,7 @@ bool PathTracer::refract_one_channel(Draft& draft, Path& path, const KbMaterial&
 
 /// A rough dispersive boundary: the channel is chosen on arrival, before light and BSDF samples.
 void PathTracer::degrade(Path& path, const SampleId& id, uint32_t bounce) {
-  const float probability = survive(path, path.carried, id, bounce);
+  const float probability = survive(path, dispersed(path).carried, id, bounce);
   Draft draft;
   draft.vertex.head = KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE;
   draft.vertex.row_a = static_cast<uint16_t>(flat_.unit_row);
@@ -67,17 +67,18 @@ void PathTracer::degrade(Path& path, const SampleId& id, uint32_t bounce) {
 /// The path's hero channels at this boundary. count 0: there are none, since a lobe is too narrow for float
 /// directions and the boundary is treated as a smooth one, or the boundary is energy-compensated (surfaces
 /// that emit thermally), by a factor that depends on the index.
-HeroSet PathTracer::choose_heroes(Path& path, const KbMaterial& material, const SampleId& id,
-                                  float mu) const {
+HeroSet PathTracer::choose_heroes(const Path& path, const KbMaterial& material, const SampleId& id,
+                                  float mu) {
   if (material.flags & KB_MATERIAL_COMPENSATED) return {};
   const auto channels = static_cast<uint32_t>(flat_.channels.size());
   HeroSet heroes;
   heroes.count = std::min(kMaxHeroes, channels);
-  if (path.heroes == 0) {
-    path.heroes = heroes.count;
-    path.hero_weights.fill(1.0f / static_cast<float>(heroes.count));
+  DispersedPath& own = dispersed(path);
+  if (own.heroes == 0) {
+    own.heroes = heroes.count;
+    own.hero_weights.fill(1.0f / static_cast<float>(heroes.count));
   }
-  heroes.q = path.hero_weights;
+  heroes.q = own.hero_weights;
   const float offset = kb_hero_offset(settings_.seed, path.key.pixel, id.sample);
   for (uint32_t c = 0; c < heroes.count; ++c) {
     heroes.eta[c] = channel_eta(material, hero_channel(c, heroes.count, channels, offset), mu);
@@ -154,7 +155,7 @@ bool PathTracer::scatter_heroes(Path& path, const Boundary& at, const HeroSet& h
                 (pair.transmission ? at.material.bound_b : at.material.bound_a);
   if (!(path.bound > 0)) return false;
   for (uint32_t c = 0; c < heroes.count; ++c)
-    path.hero_weights[c] = heroes.q[c] * density.hero[c] / density.pdf;
+    dispersed(path).hero_weights[c] = heroes.q[c] * density.hero[c] / density.pdf;
   if (!roulette(draft, path, bounce, u.w)) return false;
   append_pair(path, draft, at, pair, wo);
   path.previous_pdf = density.pdf * at.opacity;

@@ -35,7 +35,8 @@ LightSample PathTracer::choose_light(const Path& path, const SurfaceHit& hit, co
   LightSample light = sample_light(flat_, hit.point, {u.x, u.y}, {u.z, u.w});
   if (!light.thermal) return light;
   const KbFloat4 v = kb_thermal_sample(settings_.seed, path.key.pixel, id.sample, bounce);
-  const ThermalRadiance emitted = thermal_radiance(flat_, light.surface, -light.direction, {v.z, v.w});
+  const ThermalRadiance emitted =
+      thermal_radiance(flat_, thermal_surface(flat_, light.on), -light.direction, {v.z, v.w});
   light.factor *= emitted.weight;
   light.radiance = emitted.radiance;
   return light;
