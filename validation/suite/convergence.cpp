@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "stats/distributions.hpp"
@@ -127,21 +128,16 @@ std::vector<Configuration> configurations(const std::vector<std::string>& backen
 }
 
 /// Independent samples: then the slope is -1/2.
-bool is_known(const ConvergenceCurve& c) {
-  return c.configuration.sampler == SamplerType::kIndependent && c.slope_dof > 0;
+bool has_known_slope(const Configuration& configuration) {
+  return configuration.sampler == SamplerType::kIndependent;
 }
 
-/// Two-sided, over all known slopes of a run.
-double critical_t(double dof) {
-  constexpr int kStudies = 3, kKnownCurves = 2;
-  return stats::student_upper(kConvergenceRate / (kStudies * kKnownCurves * kMostBackends) / 2, dof);
-}
-
-/// Holds the last curve against what is known of its slope.
-void judge(ConvergenceResult& result) {
+/// Holds the last curve against what is known of its slope. level: of this slope, two-sided
+void judge(ConvergenceResult& result, double level) {
   const ConvergenceCurve& curve = result.curves.back();
-  if (!is_known(curve) || std::abs(curve.slope + 0.5) <= critical_t(curve.slope_dof) * curve.slope_error)
-    return;
+  if (!has_known_slope(curve.configuration) || !(curve.slope_dof > 0)) return;
+  const double critical_t = stats::student_upper(level / 2, curve.slope_dof);
+  if (std::abs(curve.slope + 0.5) <= critical_t * curve.slope_error) return;
   result.passed = false;
   result.note += fmt::format("{}: slope {:.4f} +- {:.4f} instead of -1/2; ", curve.configuration.label(),
                              curve.slope, curve.slope_error);
@@ -161,16 +157,19 @@ std::vector<ConvergenceCase> convergence_cases(const SceneFolders& folders) {
            {8, 128, 1024}}};
 }
 
-ConvergenceResult run_convergence(const ConvergenceCase& c, const std::vector<std::string>& backends,
-                                  Effort effort, uint64_t seed, const Watch& watch) {
+ConvergenceResult run_convergence(const ConvergenceCase& c, const ConvergenceSettings& settings,
+                                  const Watch& watch) {
   ConvergenceResult result{c.name, {}, true, {}};
   try {
     const FlatScene scene = load(c.scene);
-    for (const Configuration& configuration : configurations(backends, effort)) {
+    const std::vector<Configuration> all = configurations(settings.backends, settings.effort);
+    const auto known = static_cast<std::size_t>(std::ranges::count_if(all, has_known_slope));
+    const double level = kConvergenceRate / static_cast<double>(settings.cases * known);
+    for (const Configuration& configuration : all) {
       if (watch.stopped()) break;
-      ConvergenceCurve curve = measure(scene, configuration, c.most_samples.at(effort), seed, watch);
-      result.curves.push_back(std::move(curve));
-      judge(result);
+      result.curves.push_back(
+          measure(scene, configuration, c.most_samples.at(settings.effort), settings.seed, watch));
+      judge(result, level);
     }
   } catch (const std::exception& error) {
     result.passed = false;

@@ -45,8 +45,15 @@ struct ConvergenceCase {
 
 std::vector<ConvergenceCase> convergence_cases(const SceneFolders& folders);
 
+struct ConvergenceSettings {
+  std::vector<std::string> backends;
+  Effort effort = Effort::kStandard;
+  uint64_t seed = 1;
+  std::size_t cases = 1;  // of the run: kConvergenceRate is that of all their known slopes
+};
+
 /// What is thrown (a backend that cannot work) is its failure, in the note.
-ConvergenceResult run_convergence(const ConvergenceCase& c, const std::vector<std::string>& backends,
-                                  Effort effort, uint64_t seed, const Watch& watch);
+ConvergenceResult run_convergence(const ConvergenceCase& c, const ConvergenceSettings& settings,
+                                  const Watch& watch);
 
 }  // namespace kiloband::validation

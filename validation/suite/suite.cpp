@@ -1,7 +1,10 @@
 #include "validation/suite/suite.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <map>
 
 #include "base/error.hpp"
 
@@ -97,6 +100,18 @@ bool SuiteResult::passed() const {
          std::ranges::all_of(convergence, &ConvergenceResult::passed) && mitsuba.passed();
 }
 
+void bound_statistical_figures(std::vector<HardCaseResult>& hard_cases) {
+  std::map<std::string, std::size_t> counts;
+  for (HardCaseResult& hard : hard_cases) {
+    std::size_t& count = counts[hard.backend];
+    count += static_cast<std::size_t>(std::ranges::count_if(hard.figures, &HardFigure::statistical));
+    if (count <= kHardStatisticalFigures) continue;
+    hard.passed = false;
+    hard.error = fmt::format("{} statistical figures so far, the rate is divided over {}", count,
+                             kHardStatisticalFigures);
+  }
+}
+
 std::vector<std::string> planned_names(const SuiteSettings& settings) {
   const Plan plan = plan_of(settings);
   std::vector<std::string> names;
@@ -135,11 +150,12 @@ SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
     result.hard_cases.push_back(std::move(figures));
     counter.finish_part();
   }
+  bound_statistical_figures(result.hard_cases);
   for (const ConvergenceCase& c : plan.convergence) {
     if (watch.stopped()) break;
     say(c.name);
-    result.convergence.push_back(
-        run_convergence(c, settings.backends, settings.effort, settings.seed, counter.part()));
+    result.convergence.push_back(run_convergence(
+        c, {settings.backends, settings.effort, settings.seed, plan.convergence.size()}, counter.part()));
     counter.finish_part();
   }
   if (!plan.mitsuba.empty() && !watch.stopped()) {

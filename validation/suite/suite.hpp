@@ -50,6 +50,10 @@ struct SuiteResult {
 /// What a run will do: names of cases, "hard/...", "convergence/..." and "mitsuba/...".
 std::vector<std::string> planned_names(const SuiteSettings& settings);
 
+/// The rate of false alarms is divided over kHardStatisticalFigures of a backend: the case whose figures are
+/// beyond that many has failed.
+void bound_statistical_figures(std::vector<HardCaseResult>& hard_cases);
+
 /// `say` is told when something begins; watch.progress: fraction of the whole run.
 /// What a case throws is its failure, and the run goes on.
 /// throws InputError  a name that is no case
