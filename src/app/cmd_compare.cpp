@@ -21,7 +21,7 @@ constexpr uint32_t kRowsPerStrip = 32;  // EXR tiles; a multiple of stats::kTile
 
 struct CompareOptions {
   SideOptions a{"A"}, b{"B"};
-  bool paired = false, independent_pixels = false, no_variances = false;
+  bool paired = false, independent_pixels = false, no_variances = false, image_only = false;
   double alpha = 1e-3, rounding = 1e-5;
   std::optional<std::string> json;
 };
@@ -50,6 +50,8 @@ void check_sides(const CompareOptions& o, const CompareSide& a, const CompareSid
   const bool replicates = a.has_replicates() && (b.has_replicates() || b.source() == ErrorSource::kExact);
   if (o.independent_pixels && replicates)
     throw InputError("--independent-pixels is for cubes with variances alone: these have replicates");
+  if (o.image_only && !replicates)
+    throw InputError("--image-only needs replicates (--keep-replicates) or several renders of both sides");
 }
 
 std::string metadata(const CubeInfo& info, const char* key) {
@@ -135,6 +137,7 @@ int compare(const CompareOptions& o) {
   options.alpha = o.alpha;
   options.rounding = o.rounding;
   options.variances = !o.no_variances;
+  options.fine_scales = !o.image_only;
   CompareReport report{a.describe(), b.describe(), a.info().quantity, a.info().bands};
   const bool exact = b.source() == ErrorSource::kExact;
   if (a.has_replicates() && (b.has_replicates() || exact)) {
@@ -172,6 +175,8 @@ Command add_compare(CLI::App& program) {
       "pixels share no random numbers and no filter: tiles and the image are tested from variances");
   command->add_flag("--no-variances", o->no_variances,
                     "compare means alone: A and B are different estimators");
+  command->add_flag("--image-only", o->image_only,
+                    "compare the means of the image alone: different estimators, noise of few bright paths");
   command->add_option("--alpha", o->alpha, "rate of false alarms of the whole comparison")
       ->capture_default_str();
   command->add_option("--rounding", o->rounding, "relative difference that arithmetic may make")

@@ -63,6 +63,13 @@ TEST(Compare, OtherSeedsAgreeAndHalfAsMuchAgainIsFound) {
   EXPECT_NEAR(json["channels"][0]["mean_b"].get<double>() / json["channels"][0]["mean_a"].get<double>(), 1.5,
               0.2);
   EXPECT_NEAR(json["variance_ratio"]["ratio"].get<double>(), 1 / 2.25, 0.1);
+
+  const Outcome image = compare(folder, {"a.hdr", "c.hdr", "--image-only", "--json", "image.json"});
+  EXPECT_EQ(image.code, 1) << image.out << image.err;
+  const auto tests = read_json(folder, "image.json")["tests"];
+  ASSERT_EQ(tests.size(), 1u);
+  EXPECT_EQ(tests[0]["name"], "mean/image");
+  EXPECT_EQ(compare(folder, {"a.hdr", "b.hdr", "--image-only"}).code, 0);
 }
 
 /// Equal seeds, paired: 1 % is far above the rounding, equal files are equal.
@@ -149,6 +156,9 @@ TEST(Compare, WrongInput) {
                   {"compare: --paired",
                    {"compare", "a.hdr", "a.hdr", "--paired"},
                    "--paired needs as many replicates (or renders) of A as of B: A has none, B has none"},
+                  {"compare: --image-only",
+                   {"compare", "a.hdr", "a.hdr", "--image-only"},
+                   "--image-only needs replicates (--keep-replicates) or several renders of both sides"},
                   {"compare: --alpha 1",
                    {"compare", "a.hdr", "a.hdr", "--alpha", "1"},
                    "--alpha 1: must be above 0 and below 1"},

@@ -183,6 +183,39 @@ TEST(Comparison, SkewedNoiseIsNotHeldAgainstATruthPixelByPixel) {
   EXPECT_EQ(c.notes.back(), "pixels were not held against the truth: the noise is too skewed");
 }
 
+/// One estimator has met no bright path in a pixel: nothing in its error says so. It is a difference, but one
+/// that different estimators are told about.
+TEST(Comparison, DifferentEstimatorsAreToldOfPathsThatOneHasNotMet) {
+  const BatchPool skewed("lognormal", 8), smooth("exponential", 64);
+  const SimulatedImage shape{32, 32, 32, 2};
+  const ReplicateImage a = simulate(shape, skewed, 1);
+  ReplicateImage b = simulate(shape, skewed, 2);
+  const ReplicateImage dim = simulate(shape, smooth, 3);
+  constexpr std::size_t kPixel = 5 * 32 + 9;
+  for (uint32_t r = 0; r < b.replicates; ++r) {
+    const std::size_t value = (r * b.pixels() + kPixel) * b.channels;
+    for (std::size_t c = 0; c < b.channels; ++c) b.means[value + c] = 0.2f * dim.means[value + c];
+  }
+  const auto says_so = [](const Comparison& c) {
+    return std::ranges::any_of(c.notes, [](const std::string& note) {
+      return note.starts_with("pixels or tiles differ, the image does not");
+    });
+  };
+  const Comparison same = compare_independent(a, b, {}),
+                   different = compare_independent(a, b, {.variances = false}),
+                   image = compare_independent(a, b, {.variances = false, .fine_scales = false});
+  EXPECT_FALSE(same.passed || different.passed);
+  EXPECT_EQ(different.decisive().worst->place.x, 9u);
+  EXPECT_EQ(different.decisive().worst->place.y, 5u);
+  EXPECT_FALSE(says_so(same)) << "one estimator has one law: no excuse";
+  EXPECT_TRUE(says_so(different));
+  EXPECT_TRUE(image.passed);
+  EXPECT_EQ(names_of(image), std::vector<std::string>{"mean/image"});
+  ReplicateImage wrong = b;
+  for (float& mean : wrong.means) mean *= 2;
+  EXPECT_FALSE(says_so(compare_independent(a, wrong, {.variances = false}))) << "the image differs too";
+}
+
 TEST(Comparison, StripsAreTheWhole) {
   const SimulatedImage shape{20, 21, 8, 2};
   const ReplicateImage a = image_of(1, shape), b = image_of(2, shape);
