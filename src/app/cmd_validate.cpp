@@ -61,10 +61,9 @@ RunRecord record_of(const std::vector<std::string>& backends) {
                    processor_name(),
                    fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))),
                    {}};
-  const auto devices = gpu::list_devices();
   for (const std::string& backend : backends)
-    record.backends.push_back(backend == "cpu" || devices.empty() ? backend
-                                                                  : backend + " on " + devices.front().name);
+    record.backends.push_back(backend == "cpu" ? backend
+                                               : backend + " on " + gpu::select_device(std::nullopt).name);
   return record;
 }
 
@@ -105,15 +104,19 @@ class RunProgress {
   std::string name_;
 };
 
+const char* word_of(bool passed, bool interrupted) {
+  return !passed ? "FAILED" : interrupted ? "stopped" : "passed";
+}
+
 void print_case(const CaseResult& c) {
   if (!c.error.empty()) return fmt::print("FAILED  {}: {}\n", c.what.name, c.error);
-  double bias = 0;
+  double bias = -1;
   for (const PairingResult& r : c.pairings) {
     for (const stats::TestVerdict& v : r.comparison.tests)
-      if (v.name == "mean/image") bias = std::max(bias, v.detectable.typical);
+      if (v.name == "mean/image" && v.detectable.typical > bias) bias = v.detectable.typical;
   }
-  fmt::print("{}  {}: {} comparisons, image means would show {:.2g} %\n", c.passed ? "passed" : "FAILED",
-             c.what.name, c.pairings.size(), 100 * bias);
+  fmt::print("{}  {}: {} comparisons, image means would show {}\n", word_of(c.passed, c.interrupted),
+             c.what.name, c.pairings.size(), bias < 0 ? "nothing" : fmt::format("{:.2g} %", 100 * bias));
   for (const PairingResult& r : c.pairings) {
     if (r.passed) continue;
     const stats::TestVerdict& v = r.comparison.decisive();
@@ -141,7 +144,7 @@ void print_verdict(const SuiteResult& result) {
     if (!h.error.empty()) fmt::print("        {}\n", h.error);
   }
   for (const ConvergenceResult& c : result.convergence)
-    fmt::print("{}  {}: {} curves {}\n", c.passed ? "passed" : "FAILED", c.name, c.curves.size(), c.note);
+    fmt::print("{}  {}: {} curves {}\n", word_of(c.passed, c.interrupted), c.name, c.curves.size(), c.note);
   for (const MitsubaScene& s : result.mitsuba.scenes) print_mitsuba(s);
   fmt::print("{}: {} comparisons in {:.0f} s, family-wise error rate {:.0e}\n",
              result.interrupted ? "interrupted"
@@ -199,6 +202,8 @@ int validate(const ValidateOptions& options) {
     for (const std::string& name : names) fmt::print("{}\n", name);
     return kDone;
   }
+  const RunRecord record = record_of(settings.backends);
+  prepare_results(options.output);
   if (settings.effort != Effort::kQuick) generate_scenes(settings);
   catch_stop_signals();
   RunProgress progress(!options.quiet);
@@ -206,9 +211,9 @@ int validate(const ValidateOptions& options) {
   const SuiteResult result =
       run_suite(settings, watch, [&](const std::string& name) { progress.begin(name); });
   progress.end();
-  write_results(options.output, result, record_of(settings.backends));
-  if (!options.no_report) make_report(options);
   print_verdict(result);
+  write_results(options.output, result, record);
+  if (!options.no_report) make_report(options);
   if (result.interrupted) return kInterrupted;
   return result.passed() ? kDone : kFailed;
 }

@@ -91,6 +91,55 @@ TEST(Validate, AHardCaseIsInterrupted) {
   EXPECT_TRUE(results["hard_cases"].empty());
 }
 
+/// Nor has a case that was stopped passed.
+TEST(Validate, ACaseIsInterrupted) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      folder, {"validate", "--thorough", "cornell_box", "--backends", "cpu", "--no-report", "-o", "out"},
+      {.signal = SIGINT, .after_text = "cornell_box", .after_seconds = 0.3});
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_NE(outcome.out.find("stopped  cornell_box: 0 comparisons, image means would show nothing\n"),
+            std::string::npos)
+      << outcome.out;
+  const auto results = read_json(folder, "out/results.json");
+  EXPECT_EQ(results["passed"], false);
+  EXPECT_EQ(results["cases"][0]["interrupted"], true);
+  EXPECT_TRUE(results["cases"][0]["pairings"].empty() && results["cases"][0]["cubes"].empty());
+  EXPECT_NE(folder.read("out/junit.xml").find("errors=\"1\""), std::string::npos);
+}
+
+/// What an earlier run has left is not this one's; a folder that cannot be is found out before hours of work.
+TEST(Validate, TheFolderOfResultsIsThisRuns) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "out");
+  for (const char* name : {"out/report.html", "out/mitsuba.json", "out/junit.xml", "file"})
+    folder.write(name, "old");
+  EXPECT_EQ(validate(folder, {"analytic/planck", "--backends", "cpu", "-o", "out"}).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/report.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/mitsuba.json"));
+  EXPECT_NE(folder.read("out/junit.xml"), "old");
+  const Outcome refused = validate(folder, {"analytic/planck", "--backends", "cpu", "-o", "file"});
+  EXPECT_NE(refused.code, 0);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_EQ(refused.err.substr(0, 16), "kiloband: file: ") << refused.err;
+}
+
+/// A black scene agrees with itself: that says nothing.
+TEST(Validate, BlackImagesAreNoAgreement) {
+  const TemporaryFolder folder;
+  const std::filesystem::path source = KILOBAND_SOURCE_DIR;
+  std::filesystem::create_directories(folder / "scenes/analytic");
+  std::filesystem::create_directories(folder / "scenes/cornell_box");
+  folder.write("scenes/cornell_box/cornell_box.xml",
+               scene_text(kSensor + kSphere +
+                          "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0\"/></emitter>"));
+  const Outcome outcome =
+      validate(folder, {"cornell_box", "--root", ".", "--backends", "cpu,opencl:dpept-batch", "-o", "out"});
+  EXPECT_EQ(outcome.code, 1) << outcome.out << outcome.err;
+  EXPECT_NE(folder.read("out/junit.xml").find("black in every channel: nothing was compared"),
+            std::string::npos);
+}
+
 /// A scene whose stated values are wrong by 2 %: the run fails, says why, and keeps what explains it.
 TEST(Validate, AWrongClosedFormFails) {
   const TemporaryFolder folder;
@@ -110,8 +159,8 @@ TEST(Validate, AWrongClosedFormFails) {
   EXPECT_EQ(pairing["passed"], false);
   EXPECT_EQ(pairing["attempts"], 2) << "repeated with fresh seeds";
   EXPECT_EQ(pairing["samples"], 256) << "and four times the samples";
-  EXPECT_TRUE(
-      std::filesystem::exists(folder / "out/cubes/analytic/point_light/cpu_shared_sobol__failed_.hdr"));
+  EXPECT_TRUE(std::filesystem::exists(
+      folder / "out/cubes/analytic/point_light/cpu_shared_sobol_repeated__failed_.hdr"));
 }
 
 /// In the place of python3: Mitsuba 9.8.7 with one scene, which passes on the CPU and then fails as `last`
@@ -175,8 +224,12 @@ TEST(Validate, WrongArguments) {
   const TemporaryFolder folder;
   const Outcome unknown = validate(folder, {"teapot"});
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_EQ(unknown.err,
-            "kiloband: no case of the suite has such a name (kiloband validate --list names them)\n");
+  EXPECT_EQ(
+      unknown.err,
+      "kiloband: teapot: no case of this run has such a name (kiloband validate --list names them; some "
+      "need --data, some are not in quick runs)\n");
+  EXPECT_EQ(validate(folder, {"analytic/planck", "stress/hot_gaz"}).code, 2)
+      << "a misspelt one beside others";
   const Outcome both = validate(folder, {"--thorough"});
   EXPECT_EQ(both.code, 2);
   EXPECT_EQ(both.err, "kiloband: --quick together with --thorough\n");

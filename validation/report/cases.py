@@ -155,7 +155,7 @@ def case_part(case, anchor, directory):
     passed = bool(case.get("passed"))
     body = [
         f'<section class="case{"" if passed else " bad"}" id="{anchor}">'
-        f"<h3>{verdict_word(passed)} {text(case.get('name'))}</h3>"
+        f"<h3>{verdict_word(passed, case.get('interrupted'))} {text(case.get('name'))}</h3>"
         f"<p>{text(case.get('what') or '')} <span class=soft>{size}</span></p>"
     ]
     if case.get("error"):

@@ -113,7 +113,7 @@ def _overview_row(case, anchor):
     paired = [p for p in case["pairings"] if p.get("kind") == "paired"]
     others = [p for p in case["pairings"] if p.get("kind") != "paired"]
     cells = [
-        verdict_word(case.get("passed")),
+        verdict_word(case.get("passed"), case.get("interrupted")),
         f'<a href="#{anchor}">{text(case.get("name"))}</a>',
         text(case.get("what") or ""),
         _count_text(case["pairings"]),

@@ -22,7 +22,7 @@ nav { font-size: 14px; margin: 14px 0; } nav a { margin-right: 18px; } a { color
 .verdict.good { border-color: var(--good); } .verdict.bad { border-color: var(--bad); background: #fdf2f1; }
 .verdict.open { border-color: #b7791f; background: #fdf8ec; }
 .verdict b { font-size: 21px; margin-right: 8px; }
-.good b, .good.word { color: var(--good); } .bad b, .bad.word { color: var(--bad); } .word { font-weight: 600; }
+.good b, .good.word { color: var(--good); } .bad b, .bad.word { color: var(--bad); } .open.word { color: #8a5a12; } .word { font-weight: 600; }
 .failure { border-left: 7px solid var(--bad); background: #fdf2f1; padding: 8px 14px; margin: 8px 0; }
 dl.facts { display: grid; grid-template-columns: max-content 1fr; gap: 2px 20px; margin: 12px 0; font-size: 14px; }
 dl.facts dt { color: var(--soft); } dl.facts dd { margin: 0; overflow-wrap: anywhere; }
@@ -86,8 +86,10 @@ def duration(seconds):
     return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
 
 
-def verdict_word(passed):
-    return '<span class="word good">passed</span>' if passed else '<span class="word bad">FAILED</span>'
+def verdict_word(passed, interrupted=False):
+    if not passed:
+        return '<span class="word bad">FAILED</span>'
+    return '<span class="word open">stopped</span>' if interrupted else '<span class="word good">passed</span>'
 
 
 def row(cells, numeric=(), mark=""):

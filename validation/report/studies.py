@@ -104,7 +104,7 @@ def convergence(results):
         "backend; dashed: independent samples; triangles: wavelengths per path.</p>"
     ]
     for study in in_order(results["convergence"]):
-        parts.append(f"<h3>{verdict_word(study.get('passed'))} {text(study.get('name'))}</h3>")
+        parts.append(f"<h3>{verdict_word(study.get('passed'), study.get('interrupted'))} {text(study.get('name'))}</h3>")
         if study.get("note"):
             parts.append(f'<div class="failure">{text(study["note"])}</div>')
         parts.append(plot(plots.convergence_plot(study.get("curves") or []), alt="convergence") + _curve_table(study))

@@ -16,6 +16,7 @@ sys.dont_write_bytecode = True  # nothing is left in the source folder
 from comparisons import VARIANCES, detectable  # noqa: E402
 from markup import DASH, is_number  # noqa: E402
 from report import ReportError, read_results  # noqa: E402
+from verdict import failed_parts  # noqa: E402
 
 def number(value, digits=2):
     return f"{value:.{digits}g}" if is_number(value) else DASH
@@ -28,6 +29,10 @@ def percent(value):
 def table(heads, rows):
     lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in cells) + " |" for cells in rows]) + "\n"
+
+
+def word(passed, interrupted=False):
+    return "interrupted" if interrupted else "passed" if passed else "FAILED"
 
 
 def margin(pairing):
@@ -52,7 +57,7 @@ def _case_row(case):
     ]
     return [
         case.get("name"),
-        "passed" if case.get("passed") else "FAILED",
+        word(case.get("passed"), case.get("interrupted")),
         len(pairings),
         sum((p.get("attempts") or 0) > 1 for p in pairings),
         number(_smallest(margin(p) for p in pairings)),
@@ -160,7 +165,8 @@ def mitsuba(results):
 
 
 def head(results):
-    verdict = "passed" if results.get("passed") else "FAILED"
+    failed = failed_parts(results)
+    verdict = "FAILED" if failed else word(results.get("passed"), results.get("interrupted"))
     backends = ", ".join(str(b) for b in results.get("backends") or [])
     return (
         f"{results.get('program')}, {results.get('date')}, {results.get('processor')}; {backends}; effort "

@@ -17,19 +17,27 @@ def _counts(results):
     return pairings, figures
 
 
-def verdict(results):
-    pairings, figures = _counts(results)
-    sections = (
+def _sections(results):
+    return (
         ("case", results["cases"]),
         ("hard case", results["hard_cases"]),
         ("convergence study", results["convergence"]),
         ("scene against Mitsuba", results["mitsuba"]["scenes"]),
     )
-    failed = [
+
+
+def failed_parts(results):
+    """["2 cases", "1 convergence study"]: of the parts of a run, what has failed."""
+    return [
         count(sum(not e.get("passed") for e in entries), what)
-        for what, entries in sections
+        for what, entries in _sections(results)
         if not all(e.get("passed") for e in entries)
     ]
+
+
+def verdict(results):
+    pairings, figures = _counts(results)
+    failed = failed_parts(results)
     done = (
         f"{len(pairings)} of {count(results.get('comparisons', len(pairings)), 'comparison')} in "
         f"{count(len(results['cases']), 'case')}, {count(len(figures), 'figure')} of "
@@ -37,11 +45,13 @@ def verdict(results):
     )
     if results["mitsuba"]["scenes"]:
         done += f", {count(len(results['mitsuba']['scenes']), 'scene against Mitsuba')}"
-    if failed or results.get("passed") is False:
-        return "bad", "FAILED", f"{', '.join(failed) or 'something'} failed; {done}"
+    if failed:
+        return "bad", "FAILED", f"{', '.join(failed)} failed; {done}"
     if results.get("interrupted"):
         return "open", "Interrupted", f"nothing failed until then; {done}"
-    if not any(entries for _, entries in sections):
+    if results.get("passed") is False:
+        return "bad", "FAILED", f"something failed; {done}"
+    if not any(entries for _, entries in _sections(results)):
         return "open", "Nothing was compared", done
     return "good", "Passed", done
 
@@ -113,7 +123,7 @@ def _pairing_failure(case, pairing):
     others = [test_name(t) for t in pairing.get("tests") or [] if not t.get("passed") and t is not test]
     if others:
         parts.append("failed too: " + ", ".join(others))
-    return f"<b>{text(case.get('name'))}</b>: {pairing_name(pairing)}: " + ("; ".join(parts) or "not finished")
+    return f"<b>{text(case.get('name'))}</b>: {pairing_name(pairing)}: " + ("; ".join(parts or map(text, pairing.get("notes") or [])) or "not finished")
 
 
 def _hard_failure(hard):

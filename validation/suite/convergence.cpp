@@ -32,7 +32,8 @@ double relative_variance(const stats::ReplicateImage& image, const std::vector<d
       sum += (squares - total * total / count) / (count - 1);
     }
   }
-  return std::max(0.0, sum / static_cast<double>(image.pixels() * image.channels));
+  const double variance = sum / static_cast<double>(image.pixels() * image.channels);
+  return variance < 0 ? 0 : variance;  // rounding; NaN stays
 }
 
 std::vector<double> channel_means(const stats::ReplicateImage& image) {
@@ -100,13 +101,14 @@ void fit(ConvergenceCurve& curve, const std::vector<Scatter>& scatters) {
 
 ConvergenceCurve measure(const FlatScene& scene, const Configuration& configuration, uint32_t most,
                          uint64_t seed, const Watch& watch) {
-  ConvergenceCurve curve{configuration, {}, 0, 0, 0};
+  ConvergenceCurve curve{configuration, {}, 0, 0, 0, 0};
   std::vector<Scatter> scatters;
   // Once without a clock: the first render compiles kernels, or reads them from the disk.
   render(scene, configuration, {seed, kReplicates, kFirstSamples}, watch);
   for (uint32_t samples = kFirstSamples; samples <= most && !watch.stopped(); samples *= kStep) {
     const Rendering rendering = render(scene, configuration, {seed + samples, kReplicates, samples}, watch);
     if (rendering.stopped) break;
+    curve.invalid_samples += rendering.invalid_samples;
     scatters.push_back(scatter_of(rendering.image));
     curve.points.push_back({samples, std::sqrt(scatters.back().all), rendering.seconds / kReplicates});
   }
@@ -132,15 +134,23 @@ bool has_known_slope(const Configuration& configuration) {
   return configuration.sampler == SamplerType::kIndependent;
 }
 
-/// Holds the last curve against what is known of its slope. level: of this slope, two-sided
+/// What is wrong with a curve; empty: nothing. level: of its slope where that is known, two-sided
+std::string failure_of(const ConvergenceCurve& curve, double level) {
+  if (curve.invalid_samples > 0) return fmt::format("{} invalid samples", curve.invalid_samples);
+  if (!(curve.slope_dof > 0) || !std::isfinite(curve.slope))
+    return "no slope: an image without noise, or with values that are not finite";
+  if (!has_known_slope(curve.configuration)) return {};
+  const double critical_t = stats::student_upper(level / 2, curve.slope_dof);
+  if (std::abs(curve.slope + 0.5) <= critical_t * curve.slope_error) return {};
+  return fmt::format("slope {:.4f} +- {:.4f} instead of -1/2", curve.slope, curve.slope_error);
+}
+
 void judge(ConvergenceResult& result, double level) {
   const ConvergenceCurve& curve = result.curves.back();
-  if (!has_known_slope(curve.configuration) || !(curve.slope_dof > 0)) return;
-  const double critical_t = stats::student_upper(level / 2, curve.slope_dof);
-  if (std::abs(curve.slope + 0.5) <= critical_t * curve.slope_error) return;
+  const std::string failure = failure_of(curve, level);
+  if (failure.empty()) return;
   result.passed = false;
-  result.note += fmt::format("{}: slope {:.4f} +- {:.4f} instead of -1/2; ", curve.configuration.label(),
-                             curve.slope, curve.slope_error);
+  result.note += fmt::format("{}: {}; ", curve.configuration.label(), failure);
 }
 
 }  // namespace
@@ -159,16 +169,18 @@ std::vector<ConvergenceCase> convergence_cases(const SceneFolders& folders) {
 
 ConvergenceResult run_convergence(const ConvergenceCase& c, const ConvergenceSettings& settings,
                                   const Watch& watch) {
-  ConvergenceResult result{c.name, {}, true, {}};
+  ConvergenceResult result{c.name, {}, true, false, {}};
   try {
     const FlatScene scene = load(c.scene);
     const std::vector<Configuration> all = configurations(settings.backends, settings.effort);
     const auto known = static_cast<std::size_t>(std::ranges::count_if(all, has_known_slope));
     const double level = kConvergenceRate / static_cast<double>(settings.cases * known);
     for (const Configuration& configuration : all) {
-      if (watch.stopped()) break;
-      result.curves.push_back(
-          measure(scene, configuration, c.most_samples.at(settings.effort), settings.seed, watch));
+      ConvergenceCurve curve =
+          measure(scene, configuration, c.most_samples.at(settings.effort), settings.seed, watch);
+      result.interrupted = watch.stopped();
+      if (result.interrupted) break;
+      result.curves.push_back(std::move(curve));
       judge(result, level);
     }
   } catch (const std::exception& error) {

@@ -28,12 +28,14 @@ struct ConvergenceCurve {
   Configuration configuration;
   std::vector<ConvergencePoint> points;
   double slope = 0, slope_error = 0, slope_dof = 0;
+  uint64_t invalid_samples = 0;  // a pass has none
 };
 
 struct ConvergenceResult {
   std::string name;
   std::vector<ConvergenceCurve> curves;
-  bool passed = true;  // every curve of independent samples has the slope -1/2 within its error
+  bool passed = true;        // every curve of independent samples has the slope -1/2 within its error
+  bool interrupted = false;  // the run was stopped before all curves were measured
   std::string note;
 };
 

@@ -21,12 +21,17 @@ struct RunRecord {
   std::vector<std::string> backends;  // "opencl:pt on DEVICE"
 };
 
-/// Numbers that are not finite become null.
+/// Numbers that are not finite become null, infinite ones of maps 1e30.
 nlohmann::json to_json(const SuiteResult& result, const RunRecord& record);
 
 /// A test case per comparison, hard case, convergence study and scene against Mitsuba; failures with the
-/// deciding test.
+/// deciding test; an interrupted run is an error.
 std::string to_junit(const SuiteResult& result);
+
+/// To be called before a run: makes the folder and removes what an earlier run has left there (reports and
+/// verdicts, not cubes), so that it is not taken for this run's.
+/// throws DeviceError  the folder cannot be written to
+void prepare_results(const std::filesystem::path& directory);
 
 /// Writes all of it. throws DeviceError  a file cannot be written
 void write_results(const std::filesystem::path& directory, const SuiteResult& result,

@@ -44,6 +44,7 @@ std::string test_case(const std::string& group, const std::string& name, double 
 std::string failure_of(const PairingResult& r) {
   if (r.passed) return {};
   if (r.invalid_samples > 0) return fmt::format("{} invalid samples", r.invalid_samples);
+  if (r.comparison.passed) return r.comparison.notes.empty() ? "failed" : r.comparison.notes.back();
   const stats::TestVerdict& v = r.comparison.decisive();
   std::string text = fmt::format("{}: p {:.3g}, level {:.3g}", v.name, v.p, v.level);
   if (v.worst) {
@@ -135,16 +136,31 @@ std::string to_junit(const SuiteResult& result) {
   for (const ConvergenceResult& c : result.convergence) add(c.name, "slopes", 0, c.passed ? "" : c.note);
   for (const MitsubaScene& s : result.mitsuba.scenes)
     add("mitsuba/" + s.name, s.backend, std::isfinite(s.seconds) ? s.seconds : 0, s.failure);
+  if (result.interrupted) {
+    body +=
+        "  <testcase classname=\"run\" name=\"complete\"><error message=\"the run was "
+        "interrupted\"/></testcase>\n";
+    ++tests;
+  }
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"kiloband validate\" tests=\"{}\" "
-      "failures=\"{}\" time=\"{:.1f}\">\n{}</testsuite>\n",
-      tests, failures, result.seconds, body);
+      "failures=\"{}\" errors=\"{}\" time=\"{:.1f}\">\n{}</testsuite>\n",
+      tests, failures, result.interrupted ? 1 : 0, result.seconds, body);
+}
+
+void prepare_results(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw DeviceError(directory.string() + ": " + error.message());
+  write_text(directory / "results.json", "");
+  for (const char* name : {"results.json", "junit.xml", "mitsuba.json", "report.html"}) {
+    fs::remove(directory / name, error);
+    if (error) throw DeviceError((directory / name).string() + ": " + error.message());
+  }
 }
 
 void write_results(const fs::path& directory, const SuiteResult& result, const RunRecord& record) {
   std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw DeviceError(directory.string() + ": " + error.message());
   for (const CaseResult& c : result.cases) {
     for (const SideImage& side : c.images) {
       const fs::path file = directory / (cube_name(c, side) + ".hdr");

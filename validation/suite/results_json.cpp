@@ -10,14 +10,14 @@ using nlohmann::json;
 
 constexpr auto number = stats::number_json;
 
-/// Six digits are plenty for plots.
+/// Six digits are plenty for plots. Infinite t (no noise, yet a difference) must not look like none: 1e30.
 template <class Values>
 json rounded(const Values& values) {
   json out = json::array();
   for (const double value : values) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    out.push_back(std::isfinite(value) ? json(std::strtod(text, nullptr)) : json(nullptr));
+    std::snprintf(text, sizeof text, "%.6g", std::isinf(value) ? std::copysign(1e30, value) : value);
+    out.push_back(std::isnan(value) ? json(nullptr) : json(std::strtod(text, nullptr)));
   }
   return out;
 }
@@ -110,6 +110,7 @@ json to_json(const CaseResult& c) {
            {"what", c.what.what},
            {"scene", c.what.scene.file.filename().string()},
            {"passed", c.passed},
+           {"interrupted", c.interrupted},
            {"width", c.width},
            {"height", c.height},
            {"triangles", c.triangles},
@@ -144,7 +145,11 @@ json to_json(const HardCaseResult& h) {
 }
 
 json to_json(const ConvergenceResult& c) {
-  json out{{"name", c.name}, {"passed", c.passed}, {"note", c.note}, {"curves", json::array()}};
+  json out{{"name", c.name},
+           {"passed", c.passed},
+           {"interrupted", c.interrupted},
+           {"note", c.note},
+           {"curves", json::array()}};
   for (const ConvergenceCurve& curve : c.curves) {
     json points = json::array();
     for (const ConvergencePoint& p : curve.points) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "base/error.hpp"
 
@@ -41,8 +42,10 @@ class CaseRun {
     planned_ = pairings.size();
     result_.passed = true;
     for (const Pairing& pairing : pairings) {
-      if (watch_.stopped()) break;
-      result_.pairings.push_back(run(pairing));
+      std::optional<PairingResult> result = run(pairing);
+      result_.interrupted = !result;
+      if (!result) break;
+      result_.pairings.push_back(std::move(*result));
       result_.passed = result_.passed && result_.pairings.back().passed;
       ++done_;
     }
@@ -50,7 +53,8 @@ class CaseRun {
   }
 
  private:
-  /// Equal seeds follow from equal names of the side: pairs of equal seed share one.
+  /// Equal seeds follow from equal names of the side: pairs of equal seed share one. `stopped`: not to be
+  /// kept.
   const Rendering& side(const Configuration& configuration, const std::string& seed_name, int attempt) {
     const std::string key = configuration.label() + "\n" + seed_name + "\n" + std::to_string(attempt);
     if (const auto found = renderings_.find(key); found != renderings_.end()) return found->second;
@@ -61,7 +65,8 @@ class CaseRun {
     Watch watch = watch_;
     watch.progress = [this](double fraction) { report(fraction); };
     Rendering rendering = render(scene_, configuration, sampling, watch);
-    if (result_.images.empty()) result_.images.push_back({configuration.label(), rendering.image});
+    if (result_.images.empty() && !rendering.stopped)
+      result_.images.push_back({configuration.label(), rendering.image});
     return renderings_.emplace(key, std::move(rendering)).first->second;
   }
 
@@ -75,18 +80,21 @@ class CaseRun {
       watch_.progress((static_cast<double>(done_) + 0.9 * fraction) / static_cast<double>(planned_));
   }
 
-  PairingResult run(const Pairing& pairing) {
+  /// Nothing where the run was stopped before the verdict.
+  std::optional<PairingResult> run(const Pairing& pairing) {
     PairingResult result;
     result.pairing = pairing;
-    for (stats::Stage stage = stats::Stage::kRepeat; stage == stats::Stage::kRepeat && !watch_.stopped();) {
-      attempt(pairing, result);
+    for (stats::Stage stage = stats::Stage::kRepeat; stage == stats::Stage::kRepeat;) {
+      if (watch_.stopped() || !attempt(pairing, result)) return std::nullopt;
+      if (result.invalid_samples > 0 || result.comparison.non_finite > 0) break;
       stage = stats::next_stage(result.passed, result.attempts - 1);
     }
     if (!result.passed) keep_images(pairing, result.attempts - 1);
     return result;
   }
 
-  void attempt(const Pairing& pairing, PairingResult& result) {
+  /// False: it was stopped, and the result says nothing.
+  bool attempt(const Pairing& pairing, PairingResult& result) {
     const int number = result.attempts++;
     const bool closed = pairing.kind == Pairing::Kind::kClosedForm,
                paired = pairing.kind == Pairing::Kind::kPaired;
@@ -99,19 +107,24 @@ class CaseRun {
     options.fine_scales = !closed && has_fine_scales(pairing);
     options.seed = seed_of(settings_.seed, case_.name, "comparison", number);
     const Rendering& a = side(pairing.a, "first", number);
+    if (a.stopped) return false;
     result.seconds_a = a.seconds;
     result.invalid_samples = a.invalid_samples;
     if (closed) {
       result.comparison = compare_truth(a.image, truth(), options);
     } else {
       const Rendering& b = side(pairing.b, paired ? "first" : second_name(pairing), number);
+      if (b.stopped) return false;
       result.seconds_b = b.seconds;
       result.invalid_samples += b.invalid_samples;
       result.comparison =
           paired ? compare_paired(a.image, b.image, options) : compare_independent(a.image, b.image, options);
     }
-    result.passed = result.comparison.passed && result.invalid_samples == 0;
+    const bool black = std::ranges::all_of(result.comparison.image_a, [](double mean) { return mean == 0; });
+    if (black) result.comparison.notes.push_back("black in every channel: nothing was compared");
+    result.passed = result.comparison.passed && result.invalid_samples == 0 && !black;
     if (number == 0) result.first_p = result.comparison.decisive().p;
+    return true;
   }
 
   static std::string second_name(const Pairing& pairing) { return "second " + pairing.b.label(); }
@@ -122,11 +135,19 @@ class CaseRun {
     return truth;
   }
 
+  /// A side is an image of its own for each of its seeds.
   void keep_images(const Pairing& pairing, int attempt) {
-    result_.images.push_back({pairing.a.label() + " (failed)", side(pairing.a, "first", attempt).image});
+    const std::string times = attempt > 0 ? " repeated" : "";
+    keep_image(pairing.a.label() + times + " (failed)", side(pairing.a, "first", attempt));
     if (pairing.kind == Pairing::Kind::kClosedForm) return;
-    const std::string seed = pairing.kind == Pairing::Kind::kPaired ? "first" : second_name(pairing);
-    result_.images.push_back({pairing.b.label() + " (failed)", side(pairing.b, seed, attempt).image});
+    const bool paired = pairing.kind == Pairing::Kind::kPaired;
+    keep_image(pairing.b.label() + (paired ? " equal seeds" : "") + times + " (failed)",
+               side(pairing.b, paired ? "first" : second_name(pairing), attempt));
+  }
+
+  void keep_image(const std::string& label, const Rendering& rendering) {
+    if (std::ranges::find(result_.images, label, &SideImage::label) == result_.images.end())
+      result_.images.push_back({label, rendering.image});
   }
 
   const Case& case_;

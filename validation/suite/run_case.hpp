@@ -11,7 +11,8 @@
 
 namespace kiloband::validation {
 
-/// What decides about a pairing: the last attempt.
+/// What decides about a pairing: the last attempt. Invalid samples and values that are not finite are
+/// failures that no repetition takes back.
 struct PairingResult {
   Pairing pairing;
   bool passed = false;
@@ -36,6 +37,7 @@ struct CaseResult {
   ChannelList channels;
   uint32_t width = 0, height = 0;
   bool passed = false;
+  bool interrupted = false;  // the run was stopped before all comparisons were made
   std::vector<PairingResult> pairings;
   std::vector<SideImage> images;  // of the first side, and of all sides of failed pairings
   std::string error;              // what kept the case from being run: then it has failed

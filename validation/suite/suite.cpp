@@ -27,6 +27,28 @@ struct Plan {
   }
 };
 
+std::vector<std::string> names_of(const Plan& plan) {
+  std::vector<std::string> names;
+  for (const Case& c : plan.cases) names.push_back(c.name);
+  for (const auto& [hard, backend] : plan.hard_cases) {
+    if (backend == plan.hard_cases.front().second) names.push_back("hard/" + hard->name);
+  }
+  for (const ConvergenceCase& c : plan.convergence) names.push_back(c.name);
+  for (const std::string& scene : plan.mitsuba) names.push_back("mitsuba/" + scene);
+  return names;
+}
+
+/// What is misspelt, or needs another effort or --data, must not count as passed.
+void check_names(const std::vector<std::string>& asked, const Plan& plan) {
+  const std::vector<std::string> names = names_of(plan);
+  for (const std::string& name : asked) {
+    if (std::ranges::none_of(names, [&](const std::string& n) { return n.starts_with(name); }))
+      throw InputError(name +
+                       ": no case of this run has such a name (kiloband validate --list names them; some "
+                       "need --data, some are not in quick runs)");
+  }
+}
+
 Plan plan_of(const SuiteSettings& settings) {
   Plan plan;
   for (Case& c : all_cases(settings.folders)) {
@@ -43,8 +65,7 @@ Plan plan_of(const SuiteSettings& settings) {
     for (const std::string& scene : settings.mitsuba->scenes)
       if (wanted("mitsuba/" + scene, settings.names)) plan.mitsuba.push_back(scene);
   }
-  if (plan.parts() == 0)
-    throw InputError("no case of the suite has such a name (kiloband validate --list names them)");
+  check_names(settings.names, plan);
   return plan;
 }
 
@@ -95,7 +116,7 @@ std::size_t family_of(const Plan& plan, const SuiteSettings& settings) {
 }  // namespace
 
 bool SuiteResult::passed() const {
-  return std::ranges::all_of(cases, &CaseResult::passed) &&
+  return !interrupted && std::ranges::all_of(cases, &CaseResult::passed) &&
          std::ranges::all_of(hard_cases, &HardCaseResult::passed) &&
          std::ranges::all_of(convergence, &ConvergenceResult::passed) && mitsuba.passed();
 }
@@ -113,15 +134,7 @@ void bound_statistical_figures(std::vector<HardCaseResult>& hard_cases) {
 }
 
 std::vector<std::string> planned_names(const SuiteSettings& settings) {
-  const Plan plan = plan_of(settings);
-  std::vector<std::string> names;
-  for (const Case& c : plan.cases) names.push_back(c.name);
-  for (const auto& [hard, backend] : plan.hard_cases) {
-    if (backend == settings.backends.front()) names.push_back("hard/" + hard->name);
-  }
-  for (const ConvergenceCase& c : plan.convergence) names.push_back(c.name);
-  for (const std::string& scene : plan.mitsuba) names.push_back("mitsuba/" + scene);
-  return names;
+  return names_of(plan_of(settings));
 }
 
 SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,

@@ -44,10 +44,12 @@ struct SuiteResult {
   double seconds = 0;
   bool interrupted = false;
 
+  /// Nothing failed, and all was run.
   bool passed() const;
 };
 
-/// What a run will do: names of cases, "hard/...", "convergence/..." and "mitsuba/...".
+/// What a run will do, and the errors, as run_suite(): names of cases, "hard/...", "convergence/..." and
+/// "mitsuba/...".
 std::vector<std::string> planned_names(const SuiteSettings& settings);
 
 /// The rate of false alarms is divided over kHardStatisticalFigures of a backend: the case whose figures are
@@ -56,7 +58,7 @@ void bound_statistical_figures(std::vector<HardCaseResult>& hard_cases);
 
 /// `say` is told when something begins; watch.progress: fraction of the whole run.
 /// What a case throws is its failure, and the run goes on.
-/// throws InputError  a name that is no case
+/// throws InputError  a name of none of the cases that there are with these settings
 SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
                       const std::function<void(const std::string&)>& say);
 

@@ -89,8 +89,12 @@ class Verdicts(unittest.TestCase):
         )
 
     def test_interrupted(self):
-        content = small_results.results(passed=True, interrupted=True, comparisons=9)
-        self.assertIn("<b>Interrupted</b> nothing failed until then; 2 of 9 comparisons", page_of(content))
+        content = small_results.results(True, interrupted=True, comparisons=9) | {"passed": False}
+        content["cases"][1]["interrupted"] = True
+        page = page_of(content)
+        self.assertIn("<b>Interrupted</b> nothing failed until then; 2 of 9 comparisons", page)
+        self.assertIn('<span class="word open">stopped</span> wrong</h3>', page)
+        self.assertNotIn("FAILED", page)
 
 
 class Page(unittest.TestCase):

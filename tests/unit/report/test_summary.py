@@ -52,8 +52,9 @@ class Summary(unittest.TestCase):
         self.assertIn("| convergence/box | cpu shared sobol | -0.7 ± 0.01 | 8 | 23 % | 0.8 | 23 |", text)
 
     def test_a_run_that_was_interrupted_early(self):
-        content = small_results.results(True, cases=[], hard_cases=[], convergence=[])
-        self.assertEqual(text_of(content).count("\n|---"), 5)
+        content = small_results.results(True, cases=[], hard_cases=[], convergence=[], interrupted=True)
+        self.assertEqual(text_of(content | {"passed": False}).count("\n|---"), 5)
+        self.assertIn("2 comparisons: interrupted.", text_of(content | {"passed": False}))
 
     def test_no_results(self):
         with tempfile.TemporaryDirectory() as folder, self.assertRaises(report.ReportError):

@@ -10,7 +10,6 @@
 #include <cmath>
 
 #include "tests/support/test_backend.hpp"
-#include "validation/suite/suite.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -51,23 +50,6 @@ std::string test_name(const testing::TestParamInfo<std::string>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, HardCases, testing::ValuesIn(names()), test_name);
-
-/// More statistical figures than the rate is divided over are a failure, per backend.
-TEST(StatisticalFigures, AreBounded) {
-  HardFigure figure;
-  figure.pass = figure.statistical = true;
-  const auto result = [&](const std::string& backend, std::size_t figures) {
-    return validation::HardCaseResult{"a", "", backend, std::vector<HardFigure>(figures, figure), true, {}};
-  };
-  const std::size_t half = validation::kHardStatisticalFigures / 2;
-  std::vector<validation::HardCaseResult> results{result("cpu", half), result("opencl:pt", half + 1),
-                                                  result("cpu", half), result("opencl:pt", half)};
-  results[2].figures.push_back({});  // not statistical
-  validation::bound_statistical_figures(results);
-  EXPECT_TRUE(results[0].passed && results[1].passed && results[2].passed);
-  EXPECT_FALSE(results[3].passed);
-  EXPECT_EQ(results[3].error, "101 statistical figures so far, the rate is divided over 100");
-}
 
 }  // namespace
 }  // namespace kiloband::test

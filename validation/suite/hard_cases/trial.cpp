@@ -89,12 +89,25 @@ TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) 
   image.rays = backend->counters().rays;
   image.paths = backend->counters().paths;
   image.vertices = backend->counters().vertices;
-  invalid_ += backend->counters().invalid_samples;
-  samples_ += image.paths;
-  not_finite_ += static_cast<uint64_t>(
-      std::ranges::count_if(image.mean, [](double value) { return !std::isfinite(value); }));
+  count_invalid(*backend, image);
   return image;
 }
+
+void Trial::count_invalid(const Backend& backend, const TrialImage& image) {
+  invalid_ += backend.counters().invalid_samples;
+  samples_ += backend.counters().paths;
+  not_finite_ += static_cast<uint64_t>(
+      std::ranges::count_if(image.mean, [](double value) { return !std::isfinite(value); }));
+}
+
+namespace {
+
+/// Whether an error replaces the largest one so far: NaN does, and stays.
+bool is_worse(double error, double largest) {
+  return !std::isnan(largest) && !(error <= largest);
+}
+
+}  // namespace
 
 double sum_rounding(const TrialImage& image) {
   return std::min(image.samples, 64u) * 0x1p-24;
@@ -107,7 +120,7 @@ void Trial::exact(const std::string& name, const TrialImage& image, std::size_t 
   double worst = expected, error = 0;
   for (std::size_t i = channel; i < image.mean.size(); i += image.channels) {
     const double relative = std::abs(image.mean[i] / expected - 1);
-    if (!(relative <= error)) error = relative, worst = image.mean[i];
+    if (is_worse(relative, error)) error = relative, worst = image.mean[i];
   }
   figures_.push_back({name, "W m^-2 sr^-1 nm^-1", worst / image.widths_nm[channel], reference, error, limit,
                       error <= limit, false, "relative, worst pixel; " + reason});
@@ -142,7 +155,20 @@ std::vector<TracedPath> trace_paths(const std::string& backend, const FlatScene&
   return make_backend(general_kernels(keeper), scene, sampling)->trace(film_rect(scene), {0, 0, 1});
 }
 
+/// What the oracle sees along a path, per channel; a path without records brings nothing.
+std::vector<double> evaluated(const FlatScene& scene, const TracedPath& path, double mu) {
+  if (path.slots.empty()) return std::vector<double>(scene.channels.size(), 0.0);
+  const PathBuffer buffer{path.slots, {{0, static_cast<uint32_t>(path.slots.size()), 0}}};
+  return evaluate_path_reference(scene, {}, buffer, 0, mu);
+}
+
 }  // namespace
+
+void Trial::at_least(const std::string& name, const std::string& unit, double value, double least,
+                     const std::string& note) {
+  figures_.push_back(
+      {name, unit, value, least, std::max(least - value, 0.0), 0, value >= least, false, note});
+}
 
 /// Operations round by 6e-8 each; a vertex has about 20 in other order than the oracle's, and the rounding of
 /// a reflectance to float is the same at each vertex of a path: 1e-5 + 6e-8 per vertex (as
@@ -156,20 +182,19 @@ void Trial::oracle(const std::string& name, const std::string& xml, const TrialS
   render_replicates(*backend, film, 1, 1, context_.watch);
   TrialImage image{rect.width, rect.height, scene.channels.size()};
   collect_pixels(film, backend->film_scale(), image);
+  count_invalid(*backend, image);
   const std::vector<TracedPath> paths = trace_paths(context_.backend, scene, sampling);
   double error = 0, value = 0, reference = 0;
   std::size_t slots = 0;
   for (uint32_t p = 0; p < paths.size(); ++p) {
-    if (paths[p].slots.empty()) continue;
     slots = std::max(slots, paths[p].slots.size());
-    const PathBuffer buffer{paths[p].slots, {{0, static_cast<uint32_t>(paths[p].slots.size()), 0}}};
     const double mu = offset_of(sampling, scene, p % rect.width, p / rect.width);
-    const std::vector<double> expected = evaluate_path_reference(scene, {}, buffer, 0, mu);
+    const std::vector<double> expected = evaluated(scene, paths[p], mu);
     const double largest = *std::ranges::max_element(expected);
-    for (std::size_t k = 0; k < expected.size() && largest > 0; ++k) {
-      const double seen = image.mean[p * image.channels + k];
-      const double relative = std::abs(seen - expected[k]) / largest;
-      if (!(relative <= error)) error = relative, value = seen, reference = expected[k];
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      const double seen = image.mean[p * image.channels + k], difference = std::abs(seen - expected[k]);
+      const double relative = difference == 0 ? 0 : difference / largest;  // infinite where black is expected
+      if (is_worse(relative, error)) error = relative, value = seen, reference = expected[k];
     }
   }
   const double limit = 1e-5 + 6e-8 * static_cast<double>(slots);

@@ -62,8 +62,11 @@ class Trial {
   /// |value - reference| <= limit
   void figure(const std::string& name, const std::string& unit, double value, double reference, double limit,
               const std::string& note);
+  /// value >= least
+  void at_least(const std::string& name, const std::string& unit, double value, double least,
+                const std::string& note);
   /// One sample of every pixel: the film against the double-precision oracle on the backend's own paths.
-  /// Largest error relative to the pixel's largest channel.
+  /// Largest error relative to the pixel's largest channel; black where the oracle says so.
   void oracle(const std::string& name, const std::string& xml, const TrialSettings& settings);
 
   /// What was collected, and the count of invalid and non-finite values over all renders, which must be 0.
@@ -71,6 +74,7 @@ class Trial {
 
  private:
   FlatScene flatten_text(const std::string& xml, const TrialSettings& settings) const;
+  void count_invalid(const Backend& backend, const TrialImage& image);
 
   const HardCaseContext& context_;
   std::vector<HardFigure> figures_;
