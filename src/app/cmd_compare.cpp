@@ -71,59 +71,100 @@ void warn_of_equal_seeds(const CompareOptions& o, const CompareSide& a, const Co
                   seed));
 }
 
+uint32_t replicates_with_samples(const stats::ReplicateImage& image, std::size_t pixel) {
+  uint32_t count = 0;
+  for (uint32_t r = 0; r < image.replicates; ++r) count += image.samples_at(r, pixel) > 0;
+  return count;
+}
+
+/// Counts what an interrupted render lacks in pixels that it has reached.
+void count_missing_replicates(const stats::ReplicateImage& image, CompareReport& report) {
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    const uint32_t sampled = replicates_with_samples(image, p);
+    if (sampled > 0) report.missing_replicates += image.replicates - sampled;
+  }
+}
+
 /// Pixels without values on one side alone are left as NaN, which is a difference.
-std::size_t settle_missing(stats::ReplicateImage& a, stats::ReplicateImage* b) {
-  std::size_t missing = 0;
-  const auto sampled = [](const stats::ReplicateImage& image, std::size_t p) {
-    uint64_t sum = 0;
-    for (uint32_t r = 0; r < image.replicates; ++r) sum += image.samples_at(r, p);
-    return sum > 0;
-  };
+void settle_missing(stats::ReplicateImage& a, stats::ReplicateImage& b, CompareReport& report) {
   const auto revive = [](stats::ReplicateImage& image, std::size_t p) {
     for (uint32_t r = 0; r < image.replicates; ++r) image.samples[r * image.pixels() + p] = 1;
   };
   for (std::size_t p = 0; p < a.pixels(); ++p) {
-    const bool in_a = sampled(a, p), in_b = b == nullptr || sampled(*b, p);
-    missing += !in_a && !in_b;
-    if (in_a && !in_b) revive(*b, p);
+    const bool in_a = replicates_with_samples(a, p) > 0, in_b = replicates_with_samples(b, p) > 0;
+    report.missing_pixels += !in_a && !in_b;
+    if (in_a && !in_b) revive(b, p);
     if (!in_a && in_b) revive(a, p);
   }
-  return missing;
 }
 
 stats::Comparison compare_replicates(stats::Kind kind, const CompareSide& a, const CompareSide& b,
-                                     const stats::ComparisonOptions& options, std::size_t& missing) {
+                                     const stats::ComparisonOptions& options, CompareReport& report) {
   const CubeInfo& info = a.info();
   stats::StripComparison comparison(kind, info.width, info.height, info.bands.size(), a.replicates(),
                                     b.replicates(), options);
   for (uint32_t y = 0; y < info.height; y += kRowsPerStrip) {
     const uint32_t rows = std::min(kRowsPerStrip, info.height - y);
     stats::ReplicateImage strip = a.read_replicates(y, rows, info.quantity);
-    if (kind == stats::Kind::kTruth) {
-      missing += settle_missing(strip, nullptr);
-      comparison.add(strip, b.read_truth(y, rows, info.quantity));
-      continue;
-    }
     stats::ReplicateImage other = b.read_replicates(y, rows, info.quantity);
-    missing += settle_missing(strip, &other);
-    comparison.add(strip, other);
+    for (const stats::ReplicateImage* side : {&strip, &other}) count_missing_replicates(*side, report);
+    settle_missing(strip, other, report);
+    if (kind == stats::Kind::kTruth)
+      comparison.add(strip, stats::Truth{{other.means.begin(), other.means.end()}, {}, true});
+    else
+      comparison.add(strip, other);
   }
   return comparison.finish();
 }
 
+stats::MomentImage read_moments(const CompareSide& side, uint32_t y, uint32_t rows, Quantity quantity,
+                                CompareReport& report) {
+  if (!side.has_replicates()) return side.read_moments(y, rows, quantity);
+  const stats::ReplicateImage image = side.read_replicates(y, rows, quantity);
+  count_missing_replicates(image, report);
+  return moments_of(image);
+}
+
+std::size_t count_missing_pixels(const stats::MomentImage& a, const stats::MomentImage& b) {
+  std::size_t missing = 0;
+  for (std::size_t first = 0; first < a.mean.size(); first += a.channels) {
+    bool none = true;
+    for (std::size_t i = first; i < first + a.channels; ++i)
+      none = none && std::isnan(a.mean[i]) && std::isnan(b.mean[i]);
+    missing += none;
+  }
+  return missing;
+}
+
 stats::Comparison compare_moments(const CompareOptions& o, const CompareSide& a, const CompareSide& b,
-                                  const stats::ComparisonOptions& options) {
+                                  const stats::ComparisonOptions& options, CompareReport& report) {
   const CubeInfo& info = a.info();
   stats::MomentComparison comparison(info.width, info.height, info.bands.size(), o.independent_pixels,
                                      options);
   for (uint32_t y = 0; y < info.height; y += kRowsPerStrip) {
     const uint32_t rows = std::min(kRowsPerStrip, info.height - y);
-    comparison.add(a.read_moments(y, rows, info.quantity), b.read_moments(y, rows, info.quantity));
+    const stats::MomentImage strip = read_moments(a, y, rows, info.quantity, report);
+    const stats::MomentImage other = read_moments(b, y, rows, info.quantity, report);
+    report.missing_pixels += count_missing_pixels(strip, other);
+    comparison.add(strip, other);
   }
-  stats::Comparison result = comparison.finish();
-  const stats::EntryCounts& pixels = result.means.front().entries;
-  if (pixels.tested + pixels.constant == 0 && result.non_finite == 0)
-    throw InputError("no pixel has values and errors on both sides: there is nothing to compare");
+  return comparison.finish();
+}
+
+/// The replicates of independent sides, and their variances where both say that they have equally many
+/// samples.
+stats::Comparison compare_independent(const CompareSide& a, const CompareSide& b,
+                                      stats::ComparisonOptions options, CompareReport& report) {
+  std::string unknown;
+  if (options.variances && options.fine_scales) {
+    if (!a.states_samples()) unknown = "A";
+    if (!b.states_samples()) unknown += unknown.empty() ? "B" : " and B";
+  }
+  if (!unknown.empty()) options.variances = false;
+  stats::Comparison result = compare_replicates(stats::Kind::kIndependent, a, b, options, report);
+  if (!unknown.empty())
+    result.notes.push_back(fmt::format(
+        "variances were not compared: nothing says how many samples the replicates of {} have", unknown));
   return result;
 }
 
@@ -140,14 +181,13 @@ int compare(const CompareOptions& o) {
   options.fine_scales = !o.image_only;
   CompareReport report{a.describe(), b.describe(), a.info().quantity, a.info().bands};
   const bool exact = b.source() == ErrorSource::kExact;
-  if (a.has_replicates() && (b.has_replicates() || exact)) {
-    const stats::Kind kind = exact      ? stats::Kind::kTruth
-                             : o.paired ? stats::Kind::kPaired
-                                        : stats::Kind::kIndependent;
-    report.result = compare_replicates(kind, a, b, options, report.missing_pixels);
-  } else {
-    report.result = compare_moments(o, a, b, options);
-  }
+  if (!a.has_replicates() || !(b.has_replicates() || exact))
+    report.result = compare_moments(o, a, b, options, report);
+  else if (exact || o.paired)
+    report.result =
+        compare_replicates(exact ? stats::Kind::kTruth : stats::Kind::kPaired, a, b, options, report);
+  else
+    report.result = compare_independent(a, b, options, report);
   const std::string text = compare_text(report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   if (o.json) write_file_atomically(*o.json, compare_json(report));

@@ -102,7 +102,8 @@ void CompareSide::open_renders(const std::vector<std::string>& files, const Diag
     }
     samples_.push_back(info.samples_per_pixel);
   }
-  if (std::ranges::count(samples_, uint64_t{0}) > 0) std::ranges::fill(samples_, uint64_t{1});
+  samples_known_ = std::ranges::count(samples_, uint64_t{0}) == 0;
+  if (!samples_known_) std::ranges::fill(samples_, uint64_t{1});
 }
 
 void CompareSide::open_single(const SideOptions& options, const DiagnosticSink& sink) {
@@ -118,6 +119,7 @@ void CompareSide::open_single(const SideOptions& options, const DiagnosticSink& 
     throw InputError(fmt::format("{}: has replicates, which have their own degrees of freedom", files_));
   source_ = ErrorSource::kReplicates;
   cubes_ = std::move(cube.replicates);
+  samples_known_ = info().samples_per_pixel > 0;
   for (const double n : cube.samples) samples_.push_back(static_cast<uint64_t>(n));
 }
 
@@ -164,19 +166,38 @@ std::vector<float> CompareSide::read_mean(CubeReader& cube, uint32_t y0, uint32_
 }
 
 stats::ReplicateImage CompareSide::read_replicates(uint32_t y0, uint32_t rows, Quantity quantity) const {
-  stats::ReplicateImage image{info().width, rows, info().bands.size(), replicates(), {}, {}};
+  const auto replicates = static_cast<uint32_t>(cubes_.size());
+  stats::ReplicateImage image{info().width, rows, info().bands.size(), replicates, {}, {}};
   for (std::size_t r = 0; r < cubes_.size(); ++r) {
     const std::vector<float> values = read_mean(*cubes_[r], y0, rows, quantity);
     image.means.insert(image.means.end(), values.begin(), values.end());
-    for (std::size_t p = 0; p < image.pixels(); ++p)
-      image.samples.push_back(is_missing(values, p, image.channels) ? 0 : samples_[r]);
+    image.samples.insert(image.samples.end(), image.pixels(), samples_[r]);
+  }
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    std::size_t reached = cubes_.size();  // replicates up to the last that has values
+    while (reached > 0 && is_missing(image.means, (reached - 1) * image.pixels() + p, image.channels))
+      --reached;
+    if (source_ == ErrorSource::kRenders && reached > 0) reached = cubes_.size();
+    for (std::size_t r = reached; r < cubes_.size(); ++r) image.samples[r * image.pixels() + p] = 0;
   }
   return image;
 }
 
+bool CompareSide::states_samples() const {
+  if (!samples_known_ || source_ != ErrorSource::kReplicates) return samples_known_;
+  const CubeInfo& shape = info();
+  std::vector<float> last(std::size_t{shape.width} * shape.bands.size());
+  for (uint32_t y = 0; y < shape.height; ++y) {
+    cubes_.back()->read_rows(y, 1, last, {});
+    for (std::size_t x = 0; x < shape.width; ++x) {
+      if (is_missing(last, x, shape.bands.size())) return false;
+    }
+  }
+  return true;
+}
+
 stats::MomentImage CompareSide::read_moments(uint32_t y0, uint32_t rows, Quantity quantity) const {
   stats::MomentImage image{info().width, rows, info().bands.size(), dof_, {}, {}};
-  if (has_replicates()) return moments_of(read_replicates(y0, rows, quantity));
   image.mean = read_mean(*cubes_.front(), y0, rows, quantity);
   image.variance.assign(image.mean.size(), 0);
   if (source_ == ErrorSource::kExact) {
@@ -193,11 +214,6 @@ stats::MomentImage CompareSide::read_moments(uint32_t y0, uint32_t rows, Quantit
     if (factor != 1) image.variance[i] = static_cast<float>(image.variance[i] * factor * factor);
   }
   return image;
-}
-
-stats::Truth CompareSide::read_truth(uint32_t y0, uint32_t rows, Quantity quantity) const {
-  const std::vector<float> values = read_mean(*cubes_.front(), y0, rows, quantity);
-  return {{values.begin(), values.end()}, {}, true};
 }
 
 }  // namespace kiloband

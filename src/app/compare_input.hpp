@@ -40,13 +40,18 @@ class CompareSide {
     return source_ == ErrorSource::kRenders || source_ == ErrorSource::kReplicates;
   }
   uint32_t replicates() const { return has_replicates() ? static_cast<uint32_t>(cubes_.size()) : 0; }
+  /// Whether the cubes say how many samples each replicate (or render) has in every pixel. An interrupted
+  /// render says how many samples a pixel has at least, not how they are dealt to replicates.
+  bool states_samples() const;
   /// "room.hdr, 16 replicates"
   std::string describe() const;
 
+  /// Samples are 0 in pixels without any values, and where a replicate and all after it have none: the render
+  /// was interrupted. NaN anywhere else counts as samples that are not finite: kiloband leaves invalid
+  /// samples out of a mean, and several renders are complete ones. A truth is one replicate.
   stats::ReplicateImage read_replicates(uint32_t y0, uint32_t rows, Quantity quantity) const;
-  /// Of replicates their mean and its variance.
+  /// Of one cube.
   stats::MomentImage read_moments(uint32_t y0, uint32_t rows, Quantity quantity) const;
-  stats::Truth read_truth(uint32_t y0, uint32_t rows, Quantity quantity) const;
 
  private:
   void open_renders(const std::vector<std::string>& files, const DiagnosticSink& sink);
@@ -58,7 +63,8 @@ class CompareSide {
   ErrorSource source_ = ErrorSource::kVariance;
   std::vector<std::unique_ptr<CubeReader>> cubes_;  // replicates, renders, or one cube
   std::unique_ptr<CubeReader> variance_;            // a cube of its own, or none: the cube's planes
-  std::vector<uint64_t> samples_;                   // of each of cubes_
+  std::vector<uint64_t> samples_;                   // of each of cubes_; 1 where unknown
+  bool samples_known_ = false;
   double dof_ = 0;
 };
 

@@ -123,6 +123,10 @@ std::string compare_text(const CompareReport& report) {
   text += tail_text("A", r.tails_a, names) + tail_text("B", r.tails_b, names);
   if (report.missing_pixels > 0)
     text += fmt::format("note: {} pixels have no values on either side\n", report.missing_pixels);
+  if (report.missing_replicates > 0)
+    text += fmt::format(
+        "note: {} replicate means of pixels have no samples (an interrupted render) and were left out\n",
+        report.missing_replicates);
   for (const std::string& note : r.notes) text += "note: " + note + "\n";
   if (r.passed) return text + "no difference found\n";
   return text + fmt::format("DIFFERENT: {} (p = {:.3g}, level {:.3g})\n", r.decisive().name, r.decisive().p,
@@ -142,6 +146,7 @@ std::string compare_json(const CompareReport& report) {
   json["height"] = r.height;
   json["quantity"] = report.quantity == Quantity::kIntegral ? "integral" : "density";
   json["missing_pixels"] = report.missing_pixels;
+  json["missing_replicate_means"] = report.missing_replicates;
   json["tests"] = nlohmann::ordered_json::array();
   for (const TestVerdict& test : r.tests) json["tests"].push_back(test_json(test, names));
   json["variance_ratio"] = nullptr;

@@ -13,7 +13,8 @@ struct CompareReport {
   std::string a, b;  // what the sides are
   Quantity quantity = Quantity::kIntegral;
   std::vector<Band> bands;
-  std::size_t missing_pixels = 0;  // without values on both sides
+  std::size_t missing_pixels = 0;      // without values on both sides
+  std::size_t missing_replicates = 0;  // replicate means of other pixels without samples
   stats::Comparison result;
 };
 

@@ -62,7 +62,7 @@ struct Comparison {
   uint32_t width = 0, height = 0;
   uint32_t replicates_a = 0, replicates_b = 0;  // 0: a truth, or variances alone
   std::size_t channels = 0;
-  std::vector<TestVerdict> tests;
+  std::vector<TestVerdict> tests;      // those that had something to test
   std::vector<Scale> scales;           // of `means`
   std::vector<ScaleResult> means;      // pixel, tile, image; the image alone without fine scales
   std::vector<ScaleResult> variances;  // pixel, tile; may be empty
@@ -70,14 +70,17 @@ struct Comparison {
   std::optional<UniformityResult> uniform_pixels, uniform_tiles;
   std::vector<TailWeight> tails_a, tails_b;           // [channel]; b empty for a truth
   std::vector<double> image_a, image_b, image_error;  // [channel] means and the difference's standard error
-  std::size_t non_finite = 0;                         // replicate means of pixels that are NaN or infinite
-  std::vector<std::string> notes;                     // what the reader must know to judge a pass
+  // Replicate means of pixels that are NaN or infinite, pixels with such a truth; from moments alone: pixels
+  // with such a value, or with values on one side alone.
+  std::size_t non_finite = 0;
+  std::vector<std::string> notes;  // what the reader must know to judge a pass
 
   /// The failed test with the smallest p, or the smallest p if all passed.
   const TestVerdict& decisive() const;
 };
 
 /// throws std::logic_error  the images differ in shape, or break check_shape()
+///        InputError        no pixel has two replicates with samples on both sides, and nothing is not finite
 Comparison compare_independent(const ReplicateImage& a, const ReplicateImage& b,
                                const ComparisonOptions& options);
 /// Equal seeds: replicate r of A belongs to replicate r of B. Means alone.

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/error.hpp"
+
 namespace kiloband::stats {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 TestVerdict of_units(const std::string& name, const ScaleResult& result) {
   TestVerdict verdict{name, result.p};
   verdict.detectable = {kNone, kNone, kNone, 0};
-  if (result.worst.p <= 1 && result.units + result.entries.constant > 0) verdict.worst = result.worst;
+  if (result.worst.p <= 1) verdict.worst = result.worst;
   return verdict;
 }
 
@@ -23,17 +25,31 @@ double test_count(const ScaleResult& result) {
   return static_cast<double>(std::max<std::size_t>(1, result.entries.tested));
 }
 
-void add_means(Comparison& c) {
-  for (std::size_t i = 0; i < c.means.size(); ++i)
-    c.tests.push_back(of_units(std::string("mean/") + name_of(c.scales[i]), c.means[i]));
+/// Names of tests that saw nothing.
+using Untested = std::vector<std::string>;
+
+void add_units(Comparison& c, const std::string& name, const ScaleResult& result, Untested& untested) {
+  if (result.units + result.entries.constant > 0)
+    c.tests.push_back(of_units(name, result));
+  else
+    untested.push_back(name);
 }
 
-void add_variances(Comparison& c) {
+void add_means(Comparison& c, Untested& untested) {
+  for (std::size_t i = 0; i < c.means.size(); ++i)
+    add_units(c, std::string("mean/") + name_of(c.scales[i]), c.means[i], untested);
+}
+
+void add_variances(Comparison& c, Untested& untested) {
   for (std::size_t i = 0; i < c.variances.size(); ++i)
-    c.tests.push_back(of_units(std::string("variance/") + name_of(static_cast<Scale>(i)), c.variances[i]));
+    add_units(c, std::string("variance/") + name_of(static_cast<Scale>(i)), c.variances[i], untested);
   for (const auto& [name, result] :
        {std::pair{"scatter/image", &c.pooled_scatter}, std::pair{"variance/image", &c.pooled_variance}}) {
     if (!*result) continue;
+    if ((*result)->entries == 0) {
+      untested.emplace_back(name);
+      continue;
+    }
     TestVerdict pooled{name, (*result)->p};
     pooled.detectable = {kNone, kNone, kNone, 0};
     c.tests.push_back(pooled);
@@ -50,9 +66,11 @@ void add_uniformity(Comparison& c, std::optional<UniformityResult>& result, Scal
 
 /// Detectable biases need the levels.
 void add_detectable(Comparison& c) {
-  for (std::size_t i = 0; i < c.means.size(); ++i)
-    c.tests[i].detectable = c.means[i].errors.at(c.tests[i].level, test_count(c.means[i]));
   for (TestVerdict& test : c.tests) {
+    for (std::size_t i = 0; i < c.means.size(); ++i) {
+      if (test.name == std::string("mean/") + name_of(c.scales[i]))
+        test.detectable = c.means[i].errors.at(test.level, test_count(c.means[i]));
+    }
     const auto tests = static_cast<double>(c.channels + 1);
     if (test.name == "scatter/image") test.detectable = c.pooled_scatter->errors.at(test.level, tests);
     if (test.name == "variance/image") test.detectable = c.pooled_variance->errors.at(test.level, tests);
@@ -107,6 +125,21 @@ void add_notes(Comparison& c, const ComparisonOptions& options, bool same_sizes)
   }
 }
 
+void add_untested_note(Comparison& c, const Untested& untested) {
+  if (untested.empty()) return;
+  std::string names;
+  for (const std::string& name : untested) names += (names.empty() ? "" : ", ") + name;
+  c.notes.push_back(names + ": not tested, no value has enough contributions and replicates, or none varies");
+}
+
+std::string non_finite_note(const Comparison& c) {
+  const std::string count = std::to_string(c.non_finite);
+  if (c.replicates_a == 0)
+    return count + " pixels have values that are not finite, or values on one side alone";
+  if (c.kind == Kind::kTruth) return count + " replicate means or true values of pixels are not finite";
+  return count + " replicate means of pixels are not finite";
+}
+
 }  // namespace
 
 bool replicates_have_same_sizes(const UnitSample& a, const UnitSample& b) {
@@ -138,11 +171,14 @@ void leave_out_skewed(Comparison& c) {
 
 void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
   c.alpha = options.alpha;
-  add_means(c);
-  add_variances(c);
+  Untested untested;
+  add_means(c, untested);
+  add_variances(c, untested);
   add_uniformity(c, c.uniform_pixels, Scale::kPixel);
   add_uniformity(c, c.uniform_tiles, Scale::kTile);
-  const double level = options.alpha / static_cast<double>(c.tests.size());
+  if (c.tests.empty() && c.non_finite == 0)
+    throw InputError("no pixel has values and errors on both sides: there is nothing to compare");
+  const double level = options.alpha / static_cast<double>(std::max<std::size_t>(1, c.tests.size()));
   for (TestVerdict& test : c.tests) {
     test.level = level;
     test.passed = test.p >= level;
@@ -150,10 +186,11 @@ void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
   add_detectable(c);
   if (c.non_finite > 0) {
     c.tests.push_back({"finite", 0, level, false, {kNone, kNone, kNone, 0}, std::nullopt});
-    c.notes.push_back(std::to_string(c.non_finite) + " replicate means of pixels are not finite");
+    c.notes.push_back(non_finite_note(c));
   }
   c.passed = std::ranges::all_of(c.tests, &TestVerdict::passed);
   add_notes(c, options, same_sizes);
+  add_untested_note(c, untested);
 }
 
 const TestVerdict& Comparison::decisive() const {

@@ -15,7 +15,8 @@ void add_image_means(const Contrast& contrast, Comparison& comparison);
 /// Against a truth: drops the scales at which the noise is too skewed for Student's law.
 void leave_out_skewed(Comparison& comparison);
 
-/// Lists the tests with their levels, the notes, and whether all passed.
+/// Lists the tests with their levels, the notes, and whether all passed. Tests that saw nothing are named in
+/// a note and take no share of alpha. throws InputError  none saw anything, and nothing is not finite
 void judge(Comparison& comparison, const ComparisonOptions& options, bool same_sizes);
 
 }  // namespace kiloband::stats

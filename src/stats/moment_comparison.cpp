@@ -22,20 +22,32 @@ double joint_dof(double va, double dof_a, double vb, double dof_b) {
   return 1 / (share * share / dof_a + (1 - share) * (1 - share) / dof_b);
 }
 
+/// The moments of one pixel's replicates, of which `lost` are not finite; appended.
+void add_moments(const UnitSample& pixel, std::size_t lost, MomentImage& moments) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  const std::size_t sampled = pixel.sampled();
+  moments.pixel_dof.push_back(static_cast<double>(sampled) - 1);
+  const Contrast contrast = truth_contrast(pixel, {std::vector<double>(pixel.channels), {}}, 0);
+  const auto only = static_cast<std::size_t>(
+      std::ranges::find_if(pixel.weights, [](double w) { return w > 0; }) - pixel.weights.begin());
+  for (std::size_t c = 0; c < pixel.channels; ++c) {
+    double mean = kNone;
+    if (contrast.valid) mean = contrast.a[c];
+    if (sampled == 1) mean = pixel.mean_at(only, c);
+    if (lost > 0) mean = std::numeric_limits<float>::infinity();
+    moments.mean.push_back(static_cast<float>(mean));
+    moments.variance.push_back(contrast.valid ? static_cast<float>(contrast.variance[c]) : kNone);
+  }
+}
+
 }  // namespace
 
 MomentImage moments_of(const ReplicateImage& image) {
   MomentImage moments{image.width, image.height, image.channels, image.replicates - 1.0, {}, {}};
   UnitSample pixel;
-  const TruthValues zero{std::vector<double>(image.channels), {}};
   for (std::size_t p = 0; p < image.pixels(); ++p) {
-    gather_pixel(image, p, pixel);
-    const Contrast contrast = truth_contrast(pixel, zero, 0);
-    for (std::size_t c = 0; c < image.channels; ++c) {
-      constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-      moments.mean.push_back(contrast.valid ? static_cast<float>(contrast.a[c]) : kNone);
-      moments.variance.push_back(contrast.valid ? static_cast<float>(contrast.variance[c]) : kNone);
-    }
+    const std::size_t lost = gather_pixel(image, p, pixel);
+    add_moments(pixel, lost, moments);
   }
   return moments;
 }
@@ -81,22 +93,24 @@ Contrast MomentComparison::contrast_of(const Sums& sums) const {
 }
 
 void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y) {
-  const std::size_t first = (std::size_t{y - next_row_} * width_ + x) * channels_;
+  const std::size_t pixel = std::size_t{y - next_row_} * width_ + x, first = pixel * channels_;
   const std::span<const float> ma(&a.mean[first], channels_), mb(&b.mean[first], channels_);
   const auto finite = [](float v) { return std::isfinite(v); };
+  const auto none = [](float v) { return std::isnan(v); };
   const bool has_a = std::ranges::all_of(ma, finite), has_b = std::ranges::all_of(mb, finite);
-  non_finite_ += has_a != has_b;
+  const bool missing = std::ranges::all_of(ma, none) && std::ranges::all_of(mb, none);
+  non_finite_ += !missing && !(has_a && has_b);
   Contrast contrast;
   contrast.channels = channels_;
   contrast.valid = has_a && has_b;
   for (std::size_t c = 0; c < channels_ && contrast.valid; ++c) {
     const double va = a.variance[first + c], vb = b.variance[first + c];
-    contrast.valid = va >= 0 && vb >= 0;
+    contrast.valid = va >= 0 && vb >= 0 && std::isfinite(va + vb);
     contrast.a.push_back(ma[c]);
     contrast.b.push_back(mb[c]);
     contrast.difference.push_back(double{ma[c]} - mb[c]);
     contrast.variance.push_back(va + vb);
-    contrast.dof.push_back(joint_dof(va, a.dof, vb, b.dof));
+    contrast.dof.push_back(joint_dof(va, a.dof_of(pixel), vb, b.dof_of(pixel)));
     contrast.slack.push_back(options_.rounding * std::max(std::abs(ma[c]), std::abs(mb[c])));
   }
   const auto index = static_cast<std::ptrdiff_t>(std::size_t{y} * width_ + x);

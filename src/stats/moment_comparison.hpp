@@ -10,18 +10,24 @@
 
 namespace kiloband::stats {
 
-/// dof: of the variances; infinite where unknown (normal). A NaN variance is none.
+/// dof: of the variances; infinite where unknown (normal). A variance that is negative or not finite is none.
 struct MomentImage {
   uint32_t width = 0, height = 0;
   std::size_t channels = 0;
   double dof = 0;
-  std::vector<float> mean, variance;  // [pixel][channel], variance of the mean
+  std::vector<float> mean, variance;   // [pixel][channel], variance of the mean
+  std::vector<double> pixel_dof = {};  // [pixel] instead of dof; may be empty
+
+  double dof_of(std::size_t pixel) const { return pixel_dof.empty() ? dof : pixel_dof[pixel]; }
 };
 
-/// The moments of replicates; R - 1 degrees of freedom. NaN for pixels with fewer than two replicates.
+/// The moments of replicates; one less than have samples in the pixel are its degrees of freedom. The
+/// variance is NaN with fewer than two, the mean without any; the mean is infinite where a replicate is not
+/// finite.
 MomentImage moments_of(const ReplicateImage& image);
 
-/// Strips as in StripComparison. A pixel whose mean is NaN on both sides is left out.
+/// Strips as in StripComparison. A pixel whose mean is NaN in all channels on both sides is left out;
+/// any other mean that is not finite is a difference.
 class MomentComparison {
  public:
   MomentComparison(uint32_t width, uint32_t height, std::size_t channels, bool independent_pixels,

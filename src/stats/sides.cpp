@@ -1,5 +1,7 @@
 #include "stats/sides.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace kiloband::stats {
@@ -15,6 +17,16 @@ UnitSample truth_unit(const std::vector<double>& values, std::size_t first, cons
   for (const double w : a.weights) unit.weights[0] += w;
   for (std::size_t c = 0; c < a.channels && !values.empty(); ++c) unit.means[c] = values[first + c];
   return unit;
+}
+
+bool is_finite(const UnitSample& unit) {
+  return std::ranges::all_of(unit.means, [](double v) { return std::isfinite(v); });
+}
+
+/// Without samples, and without numbers that could spoil a sum.
+void drop(UnitSample& unit) {
+  std::ranges::fill(unit.means, 0);
+  std::ranges::fill(unit.weights, 0);
 }
 
 }  // namespace
@@ -52,6 +64,9 @@ std::size_t PixelSource::gather(std::size_t pixel, Sides& out) const {
   const std::size_t first = truth_->per_pixel ? pixel * a_.channels : 0;
   out.b = truth_unit(truth_->value, first, out.a);
   out.bound = truth_unit(truth_->bound, first, out.a);
+  if (is_finite(out.b) && is_finite(out.bound)) return lost;
+  lost += out.a.sampled() > 0;
+  for (UnitSample* side : {&out.a, &out.b, &out.bound}) drop(*side);
   return lost;
 }
 

@@ -28,7 +28,8 @@ class PixelSource {
  public:
   PixelSource(const ReplicateImage& a, const ReplicateImage* b, const Truth* truth)
       : a_(a), b_(b), truth_(truth) {}
-  /// Returns how many replicates lost samples (gather_pixel).
+  /// Returns how many replicates lost samples (gather_pixel). A truth that is not finite takes away all of
+  /// A's, and counts once; where A has none it does not matter.
   std::size_t gather(std::size_t pixel, Sides& out) const;
   const ReplicateImage& image() const { return a_; }
 

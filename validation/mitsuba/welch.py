@@ -61,34 +61,60 @@ POWER = 0.9
 
 def differences(ours, theirs):
     """Per channel: both means, standard error of their difference, t, degrees of freedom."""
-    mean_a, mean_b = ours.mean(axis=0), theirs.mean(axis=0)
-    part_a, part_b = ours.var(axis=0, ddof=1) / len(ours), theirs.var(axis=0, ddof=1) / len(theirs)
-    error = numpy.sqrt(part_a + part_b)
     with numpy.errstate(divide="ignore", invalid="ignore"):
+        mean_a, mean_b = ours.mean(axis=0), theirs.mean(axis=0)
+        part_a, part_b = ours.var(axis=0, ddof=1) / len(ours), theirs.var(axis=0, ddof=1) / len(theirs)
+        error = numpy.sqrt(part_a + part_b)
         dof = error**4 / (part_a**2 / (len(ours) - 1) + part_b**2 / (len(theirs) - 1))
         return mean_a, mean_b, error, (mean_a - mean_b) / error, dof
 
 
-def sidak_p(t, dof):
-    """p-value over the channels (Šidák, which bounds two-sided tests of any correlation)."""
-    smallest = min(student_p(abs(v), d) for v, d in zip(t, dof))
-    return -math.expm1(len(t) * math.log1p(-smallest)) if smallest < 1 else 1.0
+def channel_p(difference, error, t, dof):
+    """Of one channel. Without any error it is equal or not; what is not finite is a difference."""
+    if not (math.isfinite(difference) and math.isfinite(error)):
+        return 0.0
+    if error == 0:
+        return float(difference == 0)
+    return student_p(abs(t), dof)
+
+
+def sidak_p(each):
+    """From p-values of channels to one over all (Šidák, which bounds two-sided tests of any correlation)."""
+    smallest = float(numpy.min(each))
+    return -math.expm1(len(each) * math.log1p(-smallest)) if smallest < 1 else 1.0
+
+
+def largest_difference(mean_a, mean_b):
+    """Relative difference of largest size and its channel; NaN if no channel has one (0/0)."""
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        relative = mean_a / mean_b - 1
+    worst = int(numpy.argmax(numpy.where(numpy.isnan(relative), -1, numpy.abs(relative))))
+    return float(relative[worst]), worst
+
+
+def detectable(mean, error, dof, each):
+    """Biases relative to the mean that are found with probability POWER at the level `each`, of channels that vary."""
+    seen = [
+        (student_quantile(each, d) + student_quantile(2 * (1 - POWER), d)) * e / abs(m)
+        for m, e, d in zip(mean, error, dof)
+        if math.isfinite(e) and e > 0 and math.isfinite(m) and m != 0
+    ]
+    if not seen:
+        return {"typical": math.nan, "largest": math.nan, "power": POWER}
+    return {"typical": float(numpy.median(seen)), "largest": float(max(seen)), "power": POWER}
 
 
 def compare(ours, theirs, level):
     """ours, theirs: [replicate][channel], image means. level: of all channels together.
 
-    Returns what differences() does and the p-value over the channels, and the biases relative to the mean that are found with
-    probability POWER: of the median channel and of the worst.
+    Returns what differences() does, the p-value over the channels (0 where a mean is not finite), and the biases relative to the
+    mean that are found with probability POWER: of the median channel and of the worst.
     """
     mean_a, mean_b, error, t, dof = differences(ours, theirs)
-    each = sidak(level, len(t))
-    p = sidak_p(t, dof)
-    seen = [
-        (student_quantile(each, d) + student_quantile(2 * (1 - POWER), d)) * e / abs(m)
-        for d, e, m in zip(dof, error, mean_b)
-    ]
-    worst = int(numpy.argmax(numpy.abs(mean_a / mean_b - 1)))
+    p = sidak_p([channel_p(*channel) for channel in zip(mean_a - mean_b, error, t, dof)])
+    largest, worst = largest_difference(mean_a, mean_b)
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        difference_all = float(mean_a.sum() / mean_b.sum() - 1)
     return {
         "ours": mean_a.tolist(),
         "theirs": mean_b.tolist(),
@@ -98,8 +124,8 @@ def compare(ours, theirs, level):
         "p": p,
         "level": level,
         "passed": bool(p >= level),
-        "largest_difference": float(mean_a[worst] / mean_b[worst] - 1),
+        "largest_difference": largest,
         "largest_difference_channel": worst,
-        "difference_all": float(mean_a.sum() / mean_b.sum() - 1),
-        "detectable": {"typical": float(numpy.median(seen)), "largest": float(max(seen)), "power": POWER},
+        "difference_all": difference_all,
+        "detectable": detectable(mean_b, error, dof, sidak(level, len(t))),
     }

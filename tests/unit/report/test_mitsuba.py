@@ -1,5 +1,6 @@
 """The comparison with Mitsuba 3, as far as it needs no Mitsuba: statistics and the adapted scene."""
 
+import math
 import pathlib
 import sys
 import tempfile
@@ -45,7 +46,7 @@ class Statistics(unittest.TestCase):
         failed = 0
         for _ in range(1000):
             _, _, _, t, dof = welch.differences(random.normal(100, 1, (32, 8)), random.normal(100, 2, (32, 8)))
-            failed += welch.sidak_p(t, dof) < 0.05
+            failed += welch.sidak_p([welch.student_p(abs(v), d) for v, d in zip(t, dof)]) < 0.05
         self.assertTrue(21 <= failed <= 84, failed)
 
     def test_detectable_bias(self):
@@ -57,6 +58,34 @@ class Statistics(unittest.TestCase):
             shift = 100 * welch.compare(ours, theirs, 0.05)["detectable"]["typical"]
             found += not welch.compare(ours + [0, shift, 0], theirs, 0.05)["passed"]
         self.assertTrue(74 <= found < 100, found)
+
+    def test_not_finite_fails(self):
+        """One replicate of one channel suffices, whatever the others say."""
+        random = numpy.random.default_rng(7)
+        ours, theirs = random.normal(100, 1, (32, 3)), random.normal(100, 1, (32, 3))
+        self.assertTrue(welch.compare(ours, theirs, 1e-3)["passed"])
+        for value in (math.nan, math.inf):
+            for side in (0, 1):
+                pair = [ours.copy(), theirs.copy()]
+                pair[side][5, 1] = value
+                result = welch.compare(*pair, 1e-3)
+                self.assertEqual(result["p"], 0)
+                self.assertFalse(result["passed"])
+
+    def test_channels_without_error(self):
+        """A channel that does not vary is equal or not; the others are tested all the same."""
+        random = numpy.random.default_rng(8)
+        black = numpy.zeros((32, 1))
+        ours, theirs = (numpy.hstack([black, random.normal(100, 1, (32, 2))]) for _ in range(2))
+        same = welch.compare(ours, theirs, 1e-3)
+        self.assertTrue(0 < same["p"] < 1 and same["passed"], same)
+        relative = numpy.divide(same["ours"][1:], same["theirs"][1:]) - 1
+        self.assertEqual(same["largest_difference_channel"], int(numpy.argmax(abs(relative))) + 1)
+        self.assertTrue(0 < same["detectable"]["typical"] <= same["detectable"]["largest"] < 0.1, same["detectable"])
+        self.assertFalse(welch.compare(ours, 1.5 * theirs, 1e-3)["passed"])
+        self.assertEqual(welch.compare(ours + [0.001, 0, 0], theirs, 1e-3)["p"], 0)
+        both = welch.compare(numpy.zeros((4, 2)), numpy.zeros((4, 2)), 1e-3)
+        self.assertEqual((both["p"], both["passed"]), (1, True))
 
     def test_sidak(self):
         self.assertAlmostEqual(1 - (1 - welch.sidak(0.05, 7)) ** 7, 0.05, places=14)
