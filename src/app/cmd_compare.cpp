@@ -171,6 +171,7 @@ stats::Comparison compare_independent(const CompareSide& a, const CompareSide& b
 int compare(const CompareOptions& o) {
   const DiagnosticSink sink = print_diagnostics(false);
   check_values(o);
+  if (o.json) const AtomicFile trial(*o.json);  // its temporary file vanishes at once
   const CompareSide a(o.a, sink), b(o.b, sink);
   check_sides(o, a, b);
   warn_of_equal_seeds(o, a, b, sink);

@@ -41,7 +41,9 @@ CubeSelection selection_of(const ConvertOptions& options, const CubeInfo& info) 
 int convert(const ConvertOptions& options) {
   const DiagnosticSink sink = print_diagnostics(false);
   const std::filesystem::path out = options.out;
-  CubeSelection selection = selection_of(options, open_cube(options.in)->info());
+  const CubeInfo info = open_cube(options.in)->info();
+  check_holds_radiances(options.in, info);
+  CubeSelection selection = selection_of(options, info);
   if (to_lower(out.extension().string()) != ".csv") {
     if (options.places.any())
       throw InputError("--pixel, --region and --signature write CSV: the output must end in .csv");

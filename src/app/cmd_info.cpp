@@ -111,7 +111,8 @@ void print_path_memory(const FlatScene& scene) {
   const uint64_t vertices = longest_path(scene.integrator);
   const bool textured =
       scene.features.bitmap || scene.features.envmap_light || scene.features.temperature_field;
-  const uint64_t slots = (textured ? 2 : 1) + (scene.features.gas ? 2 : 0);  // gas: a vertex on the way, one for its light
+  const uint64_t slots =
+      (textured ? 2 : 1) + (scene.features.gas ? 2 : 0);  // gas: a vertex on the way, one for its light
   const uint64_t pt =
       gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots, scene.features);
   const uint64_t dpept =

@@ -44,9 +44,11 @@ OutputFiles output_files(const RenderOptions& options) {
   OutputFiles files;
   files.scene = options.scene.scene;
   for (const std::string& output : options.outputs) files.cubes.emplace_back(output);
-  if (files.cubes.empty()) files.cubes.push_back(files.scene.stem().string() + ".exr");
+  if (files.cubes.empty()) files.cubes.push_back(files.scene->stem().string() + ".exr");
   files.preview = options.preview;
   files.stats = options.stats;
+  files.checkpoint = options.checkpoint;
+  if (options.keep_replicates) files.kept_replicates = options.replicates.value_or(kReplicates);
   return files;
 }
 
@@ -89,6 +91,8 @@ SessionSettings session_settings(const RenderOptions& options, const OutputFiles
     settings.stop.samples_per_pixel = options.spp.value_or(scene.sensor.sample_count);
   }
   settings.replicates = options.replicates.value_or(kReplicates);
+  if (options.resume && !options.replicates)  // more samples than before might be dealt to more replicates
+    settings.replicates = checkpoint_replicates(*options.checkpoint).value_or(settings.replicates);
   settings.variance = options.variance;
   settings.keep_replicates = options.keep_replicates;
   settings.outputs = files.cubes;
@@ -221,6 +225,7 @@ void add_output_options(CLI::App& command, RenderOptions& o) {
       ->allow_extra_args(false);
   command.add_option("--aov", o.aux, "auxiliary images: depth,normal,object,material")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({"depth", "normal", "object", "material"}));
   command
       .add_option("--quantity", o.quantity,

@@ -1,6 +1,7 @@
 // kiloband sensor CUBE --response F: sensor channels, XYZ, pictures and tables of a rendered cube.
 #include <fmt/core.h>
 
+#include <cmath>
 #include <memory>
 
 #include "app/commands.hpp"
@@ -42,8 +43,8 @@ void check_options(const SensorOptions& o) {
   if (o.outputs.empty() && !o.png) throw InputError("nothing to write: give -o or --png");
   if (o.responses.empty() && !o.outputs.empty()) throw InputError("-o needs --response");
   if (o.responses.empty() && o.picture == "sensor") throw InputError("--picture sensor needs --response");
-  if (o.exposure && !(*o.exposure > 0))
-    throw InputError(fmt::format("--exposure {}: must be > 0", *o.exposure));
+  if (o.exposure && !(*o.exposure > 0 && std::isfinite(*o.exposure)))
+    throw InputError(fmt::format("--exposure {}: must be a number > 0", *o.exposure));
   bool table = false;
   for (const std::string& out : o.outputs) {
     table = table || is_table(out);
@@ -77,6 +78,7 @@ void write_picture(const SensorOptions& o, const std::vector<NamedResponse>& res
 int sensor(const SensorOptions& o) {
   const DiagnosticSink sink = print_diagnostics(false);
   check_options(o);
+  check_holds_radiances(o.cube, open_cube(o.cube)->info());
   const std::vector<NamedResponse> responses = load_responses(o.responses);
   if (!responses.empty()) apply_responses(open_cube(o.cube, sink), responses);  // errors before warnings
   report_responses(*open_cube(o.cube), responses, sink);

@@ -5,6 +5,7 @@
 
 #include "app/commands.hpp"
 #include "app/messages.hpp"
+#include "app/output_files.hpp"
 #include "app/render_options.hpp"
 #include "film/cube_io.hpp"
 #include "sky/sky_map.hpp"
@@ -94,7 +95,10 @@ void report(const SkyMap& map) {
 }
 
 int sky(const SkyOptions& options) {
-  check_cube_name(options.out);
+  OutputFiles files;
+  files.cubes.emplace_back(options.out);
+  files.preview = options.preview;
+  check_output_files(files);
   const auto [width, height] = parse_size_option(options.size);
   const ClearSky model(options.sky);
   const SkyMap map(model, bands_of(options), width, height);

@@ -16,6 +16,7 @@
 #include "base/error.hpp"
 #include "scenes/generator/scenes.hpp"
 #include "src_gpu/device.hpp"
+#include "validation/suite/child_process.hpp"
 #include "validation/suite/results.hpp"
 
 namespace kiloband {
@@ -146,25 +147,30 @@ void print_verdict(const SuiteResult& result) {
   for (const ConvergenceResult& c : result.convergence)
     fmt::print("{}  {}: {} curves {}\n", word_of(c.passed, c.interrupted), c.name, c.curves.size(), c.note);
   for (const MitsubaScene& s : result.mitsuba.scenes) print_mitsuba(s);
-  fmt::print("{}: {} comparisons in {:.0f} s, family-wise error rate {:.0e}\n",
+  std::size_t made = 0;
+  for (const CaseResult& c : result.cases) made += c.pairings.size();
+  fmt::print("{}: {} of {} comparisons in {:.0f} s, family-wise error rate {:.0e}\n",
              result.interrupted ? "interrupted"
              : result.passed()  ? "all passed"
                                 : "FAILED",
-             result.comparisons, result.seconds, kRunRate);
+             made, result.comparisons, result.seconds, kRunRate);
 }
 
 /// The HTML page: by a Python script with matplotlib. Without them the results stand for themselves.
 void make_report(const ValidateOptions& options) {
   const fs::path script = fs::path(options.scenes) / "validation/report/report.py";
-  const std::string command = fmt::format(
-      "for python in python3 /usr/bin/python3; do $python -c 'import matplotlib, numpy' 2> /dev/null && "
-      "exec $python '{}' '{}' >&2; done; exit 1",
-      script.string(), options.output);
-  if (!fs::exists(script) || std::system(command.c_str()) != 0)
-    tell(
-        "note: no report.html (needs python3 with matplotlib): validation/report/report.py makes it from "
-        "{}/results.json\n",
-        options.output);
+  for (const std::string& python : {std::string("python3"), std::string("/usr/bin/python3")}) {
+    if (!fs::exists(script) || run_child({python, "-c", "import matplotlib, numpy"}, {}, {}).code != 0)
+      continue;
+    const ChildEnd end = run_child({python, script.string(), options.output}, {}, {});
+    tell("{}{}", end.out, end.err);
+    if (end.code == 0) return;
+    break;
+  }
+  tell(
+      "note: no report.html (needs python3 with matplotlib): validation/report/report.py makes it from "
+      "{}/results.json\n",
+      options.output);
 }
 
 /// The independent renderer is optional, unless a name asks for it.
@@ -230,6 +236,7 @@ Command add_validate(CLI::App& program) {
           "--backends", options->backends,
           "cpu,opencl:dpept-batch,opencl:dpept-path,opencl:pt; the first is what others are held against")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({"cpu", "opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"}));
   command.add_flag("--quick", options->quick, "a minute or two");
   command.add_flag("--thorough", options->thorough, "hours");

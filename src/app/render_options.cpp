@@ -70,6 +70,17 @@ void check_scene_file(const std::filesystem::path& file) {
       "reads cubes");
 }
 
+/// Spectra below 100 nm and above 1 mm are no subject of this program: somebody means another unit.
+void warn_of_other_units(const ChannelList& channels, const DiagnosticSink& sink) {
+  constexpr double kLeastNm = 100, kMostNm = 1e6;
+  const Channel range = hull(channels);
+  if (range.min_nm >= kLeastNm && range.max_nm <= kMostNm) return;
+  warn(sink, {},
+       fmt::format(
+           "channels from {:g} to {:g} nm: wavelengths are in nm, scenes are meant for 380 to 20000 nm",
+           range.min_nm, range.max_nm));
+}
+
 LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) {
   ReadOptions read;
   std::set<std::string> defined;
@@ -91,6 +102,7 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) 
   } else {
     loaded.channels = film.channels.empty() ? parse_channels(kDefaultBands) : film.channels;
   }
+  warn_of_other_units(loaded.channels, sink);
   loaded.guide =
       options.guide_bands ? parse_channels_option("--guide-bands", *options.guide_bands) : loaded.channels;
   return loaded;
@@ -108,9 +120,10 @@ DerivedChannels load_responses(const std::vector<std::string>& files, const Load
   for (const auto& [name, response] : responses) {
     if (!names.insert(name).second) throw InputError("response '" + name + "' is given twice");
     const double missing = uncovered_part(response, scene.channels);
+    if (missing >= 1) throw InputError("response '" + name + "': is 0 in all channels");
     if (missing > kUncovered) {
       warn(sink, {},
-           fmt::format("response '{}': {:.2g} % of its integral lies outside the channels", name,
+           fmt::format("response '{}': {:.3g} % of its integral lies outside the channels", name,
                        100 * missing));
     }
     derived.names.push_back(name);

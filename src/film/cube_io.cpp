@@ -14,6 +14,13 @@ namespace {
 
 }  // namespace
 
+void check_holds_radiances(const std::filesystem::path& file, const CubeInfo& info) {
+  if (!info.holds_variances) return;
+  const std::filesystem::path stem = file.stem().stem();  // X of X.var.hdr
+  throw InputError(file.string() + ": holds variances, not radiances: give the cube itself, " +
+                   stem.string() + ".hdr, whose variances go with it");
+}
+
 void check_cube_name(const std::filesystem::path& file) {
   const std::string extension = to_lower(file.extension().string());
   if (extension != ".exr" && extension != ".hdr") refuse_name(file);

@@ -18,7 +18,8 @@ namespace kiloband {
 /// Integral: W m^-2 sr^-1 over the band. Density: its mean, W m^-2 sr^-1 nm^-1 (value / width).
 enum class Quantity { kIntegral, kDensity };
 
-/// One band of a cube. A derived band (a sensor response) has a name and no width that values could be divided by.
+/// One band of a cube. A derived band (a sensor response) has a name and no width that values could be
+/// divided by.
 struct Band {
   Channel channel;       // interval in nm; name may be empty
   bool derived = false;  // always written as it is, whatever the quantity
@@ -27,24 +28,25 @@ struct Band {
 struct CubeInfo {
   uint32_t width = 0, height = 0;
   std::vector<Band> bands;
-  bool variance = false;          // the variance of the mean accompanies every band
+  bool variance = false;         // the variance of the mean accompanies every band
+  bool holds_variances = false;  // the values themselves are variances of another cube's means (X.var.hdr)
   Quantity quantity = Quantity::kIntegral;  // of the values on disk
   uint64_t samples_per_pixel = 0;
   uint32_t replicates = 0;
-  std::vector<std::string> aux;   // names of auxiliary float planes ("depth", "normal.X" ...)
+  std::vector<std::string> aux;                 // names of auxiliary float planes ("depth", "normal.X" ...)
   std::map<std::string, std::string> metadata;  // written as they are (seed, method, program version ...)
 };
 
-/// Values of some full rows: [row][x][band] for mean and variance, [row][x][aux plane] for aux. Channel values
-/// (integrals) always; writers convert to the file's quantity (variance by width squared).
+/// Values of some full rows: [row][x][band] for mean and variance, [row][x][aux plane] for aux. Channel
+/// values (integrals) always; writers convert to the file's quantity (variance by width squared).
 struct CubeRows {
   uint32_t y0 = 0, rows = 0;
   std::span<const float> mean, variance, aux;
 };
 
 /// Writes a cube strip by strip in ascending order. Nothing stands under the final names before finish():
-/// files are written beside, flushed and renamed, the ENVI data before its header. A destroyed writer that was not
-/// finished leaves nothing behind.
+/// files are written beside, flushed and renamed, the ENVI data before its header. A destroyed writer that
+/// was not finished leaves nothing behind.
 class CubeWriter {
  public:
   virtual ~CubeWriter() = default;
@@ -55,14 +57,22 @@ class CubeWriter {
 /// throws InputError if create_cube_writer() does not know the extension
 void check_cube_name(const std::filesystem::path& file);
 
-/// By extension: .exr, .hdr (ENVI: X.hdr + X.img, with variance X.var.hdr + X.var.img, aux planes X.aux.hdr + X.aux.img).
-/// rows_per_strip  rows that each write_rows call will have (the last may have fewer); a multiple of 32 or the height
-/// throws InputError (extension), DeviceError (cannot create, disk full ...: names the file and the system's message)
+/// For what converts, sums or weighs values: variances follow other rules.
+/// throws InputError  the cube's values are variances; names the cube that they belong to
+void check_holds_radiances(const std::filesystem::path& file, const CubeInfo& info);
+
+/// By extension: .exr, .hdr (ENVI: X.hdr + X.img, with variance X.var.hdr + X.var.img, aux planes X.aux.hdr +
+/// X.aux.img).
+/// rows_per_strip  rows that each write_rows call will have (the last may have fewer); a multiple of 32 or
+///                 the height
+/// throws InputError   the extension
+///        DeviceError  cannot create, disk full ...: names the file and the system's message
 std::unique_ptr<CubeWriter> create_cube_writer(const std::filesystem::path& file, const CubeInfo& info,
                                                uint32_t rows_per_strip);
 
-/// Reads back what the writers wrote, and cubes of others as far as the layouts are followed. Values come back as they
-/// are on disk (info().quantity says what that is); incomplete or damaged files are an InputError.
+/// Reads back what the writers wrote, and cubes of others as far as the layouts are followed. Values come
+/// back as they are on disk (info().quantity says what that is); incomplete or damaged files are an
+/// InputError.
 class CubeReader {
  public:
   virtual ~CubeReader() = default;
@@ -80,10 +90,11 @@ std::unique_ptr<CubeReader> open_cube(const std::filesystem::path& file, const D
 std::vector<std::string> unique_band_names(const std::vector<Band>& bands);
 
 /// 8-bit sRGB PNG of linear RGB [y][x][3], exposure applied by the caller; atomic as above.
-void write_png(const std::filesystem::path& file, uint32_t width, uint32_t height, std::span<const float> linear_rgb);
+void write_png(const std::filesystem::path& file, uint32_t width, uint32_t height,
+               std::span<const float> linear_rgb);
 
-/// Weights [band][3] that turn band values (integrals) of a cube into a linear sRGB preview: colour matching functions
-/// where the bands reach into 380-780 nm, false colour (three equal thirds of the range) otherwise.
+/// Weights [band][3] that turn band values (integrals) of a cube into a linear sRGB preview: colour matching
+/// functions where the bands reach into 380-780 nm, false colour (three equal thirds of the range) otherwise.
 /// Exposure is left to auto_exposure().
 std::vector<std::array<float, 3>> preview_weights(const std::vector<Band>& bands);
 /// False colour whatever the wavelengths. throws InputError if all bands are derived

@@ -78,6 +78,7 @@ std::filesystem::path envi_file(const std::filesystem::path& stem, EnviContent c
 // Keys of our own.
 inline constexpr std::string_view kEnviLayoutKey = "kiloband layout";
 inline constexpr std::string_view kEnviQuantityKey = "kiloband quantity";
+inline constexpr std::string_view kEnviContentKey = "kiloband content";
 inline constexpr std::string_view kEnviSamplesKey = "kiloband samples per pixel";
 inline constexpr std::string_view kEnviReplicatesKey = "kiloband replicates";
 inline constexpr std::string_view kEnviMinKey = "kiloband band minimum";

@@ -115,6 +115,8 @@ CubeInfo read_envi_info(const EnviHeader& header, const EnviStorage& storage, co
   info.quantity = read_quantity(header, sink);
   info.bands = header.find(kEnviMinKey) ? own_bands(header, storage.bands)
                                         : foreign_bands(header, storage.bands, sink);
+  const EnviHeader::Entry* content = header.find(kEnviContentKey);
+  info.holds_variances = content && content->value == "variance";
   info.samples_per_pixel = header.count(kEnviSamplesKey, UINT64_MAX, 0);
   info.replicates = static_cast<uint32_t>(header.count(kEnviReplicatesKey, UINT32_MAX, 0));
   read_metadata(header, own, info);

@@ -111,6 +111,7 @@ std::string envi_header_text(const CubeInfo& info, EnviContent content) {
     add_bands(text, info);
   add(text, kEnviLayoutKey, "1");
   add(text, kEnviQuantityKey, info.quantity == Quantity::kIntegral ? "integral" : "density");
+  if (content == EnviContent::kVariance) add(text, kEnviContentKey, "variance");
   if (content != EnviContent::kValues) return text;
   if (info.samples_per_pixel > 0) add(text, kEnviSamplesKey, std::to_string(info.samples_per_pixel));
   if (info.replicates > 0) add(text, kEnviReplicatesKey, std::to_string(info.replicates));

@@ -12,13 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "X.r03.hdr" of "X.hdr", as the render names them.
-fs::path replicate_path(const fs::path& file, uint32_t replicate) {
-  const std::string number = std::to_string(replicate);
-  fs::path path = file;
-  return path.replace_extension((number.size() < 2 ? ".r0" : ".r") + number + file.extension().string());
-}
-
 std::string metadata(const CubeInfo& info, const char* key) {
   const auto found = info.metadata.find(key);
   return found == info.metadata.end() ? std::string() : found->second;
@@ -97,6 +90,12 @@ class VarianceCube : public CubeReader {
 };
 
 }  // namespace
+
+fs::path replicate_path(const fs::path& file, uint32_t replicate) {
+  const std::string number = std::to_string(replicate);
+  fs::path path = file;
+  return path.replace_extension((number.size() < 2 ? ".r0" : ".r") + number + file.extension().string());
+}
 
 double replicate_error(std::span<const double> values, std::span<const double> samples) {
   double sum = 0, total = 0;

@@ -1,6 +1,7 @@
 // A cube together with the cubes of its replicates (--keep-replicates): where error bars of sums come from.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -27,6 +28,9 @@ struct ReplicatedCube {
 
 /// Standard error of a mean from its values in the replicates; NaN with fewer than two.
 double replicate_error(std::span<const double> values, std::span<const double> samples);
+
+/// "X.r03.hdr" of "X.hdr": what the render calls a replicate's cube.
+std::filesystem::path replicate_path(const std::filesystem::path& file, uint32_t replicate);
 
 /// X.hdr with X.r00.hdr, X.r01.hdr ..., which --keep-replicates writes; without them if there are none.
 /// throws InputError  some of them are missing, or belong to another render

@@ -1,5 +1,7 @@
 #include "render/checkpoint.hpp"
 
+#include <fmt/core.h>
+
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -13,6 +15,10 @@ namespace {
 // attempted; block samples; block sums (those of empty blocks as zeros); checksum of all before it.
 constexpr std::array<char, 16> kMagic{'k', 'i', 'l', 'o', 'b', 'a', 'n', 'd',
                                       ' ', 'c', 'h', 'e', 'c', 'k', ' ', '1'};
+
+using CheckpointHeader = std::array<uint64_t, 5>;  // between magic and means
+constexpr std::size_t kReplicatesEntry = 1;
+constexpr uint64_t kMostReplicates = 4096;  // more are no checkpoint of ours
 
 /// FNV-1a over 64-bit words (the rest bytewise): fast enough for gigabytes, and every bit counts.
 class Hash {
@@ -109,6 +115,14 @@ class Reader {
     get_all(std::span<uint64_t>(&value, 1));
     return value;
   }
+  CheckpointHeader get_header() {
+    std::array<char, kMagic.size()> magic{};
+    get_all<char>(magic);
+    if (magic != kMagic) fail("is not a checkpoint");
+    CheckpointHeader header{};
+    get_all<uint64_t>(header);
+    return header;
+  }
   void check_end() {
     const uint64_t expected = hash_.value();
     if (get() != expected) fail("is damaged: the checksum differs");
@@ -133,7 +147,7 @@ void add_spectral_textures(Hash& hash, const FlatScene& scene) {
     if (texels) hash.add_all(*texels);
 }
 
-std::array<uint64_t, 5> header_of(const SpectralFilm& film, uint64_t fingerprint) {
+CheckpointHeader header_of(const SpectralFilm& film, uint64_t fingerprint) {
   return {fingerprint, film.options().replicates, film.rect().pixels(), film.options().channels,
           film.blocks().size()};
 }
@@ -198,15 +212,21 @@ void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& fil
   out.finish();
 }
 
+std::optional<uint32_t> checkpoint_replicates(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const uint64_t replicates = Reader(file).get_header()[kReplicatesEntry];
+  if (replicates < 1 || replicates > kMostReplicates) return std::nullopt;  // read_checkpoint() says so
+  return static_cast<uint32_t>(replicates);
+}
+
 uint64_t read_checkpoint(const std::filesystem::path& file, SpectralFilm& film, uint64_t fingerprint) {
   Reader in(file);
-  std::array<char, kMagic.size()> magic{};
-  in.get_all<char>(magic);
-  if (magic != kMagic) in.fail("is not a checkpoint");
-  for (const uint64_t expected : header_of(film, fingerprint)) {
-    if (in.get() != expected)
-      in.fail("belongs to another render: scene, channels, sampling, size or instruction set differ");
-  }
+  const CheckpointHeader expected = header_of(film, fingerprint), found = in.get_header();
+  if (found != expected && found[kReplicatesEntry] != expected[kReplicatesEntry])
+    in.fail(fmt::format("belongs to another render: it has {} replicates, this one {}",
+                        found[kReplicatesEntry], expected[kReplicatesEntry]));
+  if (found != expected)
+    in.fail("belongs to another render: scene, channels, sampling, size or instruction set differ");
   HeldCounts counts = film.held_counts().copy();
   in.get_all<float>(film.held_means());
   for (auto& samples : counts.samples) in.get_all<uint64_t>(samples);

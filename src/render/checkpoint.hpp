@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "film/spectral_film.hpp"
 #include "render/backend.hpp"
@@ -19,6 +20,10 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
 
 /// Writes the film to `file`, whole or not at all, with a checksum. throws DeviceError
 void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint);
+
+/// How many replicates the film in `file` has; nothing: there is no such file, or its number is damaged.
+/// throws InputError  it is no checkpoint
+std::optional<uint32_t> checkpoint_replicates(const std::filesystem::path& file);
 
 /// Fills a fresh film from `file` and returns the number of pixel samples it holds.
 /// throws InputError  missing, damaged (checksum), or of another render (fingerprint)

@@ -7,16 +7,12 @@
 #include <limits>
 
 #include "film/cube_text.hpp"
+#include "film/replicated_cube.hpp"
 
 namespace kiloband {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
-
-std::filesystem::path replicate_path(const std::filesystem::path& file, uint32_t replicate) {
-  return std::filesystem::path(file).replace_extension(
-      fmt::format(".r{:02}{}", replicate, file.extension().string()));
-}
 
 bool is_exr(const std::filesystem::path& file) {
   return to_lower(file.extension().string()) == ".exr";

@@ -39,6 +39,27 @@ TEST(Messages, ConvertSaysWhatItWrote) {
   EXPECT_EQ(run_program(folder, {"convert", "a.exr", "b.csv", "--pixel", "1,1"}).err, "wrote b.csv\n");
 }
 
+/// A render begun with few samples, and so with fewer replicates, is extended without saying so again.
+TEST(Messages, ExtendedRendersKeepTheirReplicates) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  const auto run = [&](const std::string& spp, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--spp", spp, "-o", "a.hdr", "--stats", "a.json", "--checkpoint", "c"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(folder, quiet_render("scene.xml", arguments));
+  };
+  ASSERT_EQ(run("16", {}).code, 0);
+  EXPECT_EQ(read_cube(folder / "a.hdr").info.replicates, 8u);
+  const Outcome extended = run("64", {"--resume"});
+  EXPECT_EQ(extended.code, 0) << extended.err;
+  EXPECT_EQ(read_cube(folder / "a.hdr").info.replicates, 8u);
+  EXPECT_EQ(read_cube(folder / "a.hdr").info.samples_per_pixel, 64u);
+  const Outcome other = run("128", {"--resume", "--replicates", "16"});
+  EXPECT_EQ(other.code, 2);
+  EXPECT_EQ(other.err,
+            "kiloband: checkpoint c belongs to another render: it has 8 replicates, this one 16\n");
+}
+
 TEST(Messages, FewSamplesLeaveFewerReplicates) {
   const TemporaryFolder folder;
   folder.write("scene.xml", complete_scene(""));

@@ -98,8 +98,8 @@ class CachedPrograms : public ::testing::Test {
   std::string image_;
 };
 
-/// Built from source instead, and mended: the file is another one, and good enough for the next render to leave it
-/// alone. (It need not be the first one: drivers put into a binary what they have compiled by then.)
+/// Built from source instead, and mended: the file is another one, and good enough for the next render to
+/// leave it alone. (It need not be the first one: drivers put into a binary what they have compiled by then.)
 TEST_F(CachedPrograms, DamagedFilesAreReplaced) {
   const fs::path file = file_of_cache(cache_, 0), other = file_of_cache(cache_, 1);
   const std::string whole = read_all(file);

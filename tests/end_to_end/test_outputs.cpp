@@ -163,7 +163,10 @@ TEST(Outputs, StatisticsHaveTheNamesOfTheContract) {
                        "vertices",
                        "rays",
                        "peak_memory_bytes",
-                       "device_memory_bytes", "kernel_seconds", "longest_launch_seconds", "device_losses",
+                       "device_memory_bytes",
+                       "kernel_seconds",
+                       "longest_launch_seconds",
+                       "device_losses",
                        "invalid_samples",
                        "resumed_samples",
                        "mean_relative_error"};

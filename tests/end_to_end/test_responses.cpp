@@ -89,5 +89,31 @@ TEST(Responses, PartOutsideTheChannelsIsAWarning) {
   EXPECT_EQ(outcome.err, "warning: response 'wide': 75 % of its integral lies outside the channels\n");
 }
 
+/// As `sensor` has it: a band of zeros is no result.
+TEST(Responses, WhollyOutsideTheChannelsIsAnError) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", sky_scene("hdrfilm", ""));
+  folder.write("camera.csv", "wavelength_nm,wide\n700,1\n800,1\n");
+  const Outcome outcome =
+      run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "400:500:2", "--response",
+                                                     "camera.csv", "-o", "out.hdr"}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "kiloband: response 'wide': is 0 in all channels\n");
+}
+
+/// Micrometres taken for nanometres: an image of zeros without a word would be believed.
+TEST(Responses, ChannelsFarFromLightAreAWarning) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", sky_scene("hdrfilm", ""));
+  const Outcome outcome =
+      run_program(folder, quiet_render("scene.xml", {"--spp", "1", "--bands", "8:12:4", "-o", "out.hdr"}));
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(
+      outcome.err.find("warning: channels from 8 to 12 nm: wavelengths are in nm, scenes are meant for 380 "
+                       "to 20000 nm\n"),
+      std::string::npos)
+      << outcome.err;
+}
+
 }  // namespace
 }  // namespace kiloband::test

@@ -87,6 +87,12 @@ TEST(Sky, RefusesWrongOptions) {
                      {"bands",
                       {"sky", "a.exr", "--bands", "200:300:4"},
                       "sky band 200-225 nm: the model goes from 300 to 100000 nm"},
+                     {"preview over the map",
+                      {"sky", "a.hdr", "--preview", "a.img"},
+                      "--preview a.img: another output has this name"},
+                     {"preview of another format",
+                      {"sky", "a.hdr", "--preview", "a.jpg"},
+                      "--preview a.jpg: must end in .png"},
                      {"two bands",
                       {"sky", "a.exr", "--bands", "400:500:4", "--bands-file", "b.csv"},
                       "--bands together with --bands-file"}});

@@ -124,6 +124,16 @@ TEST(Validate, TheFolderOfResultsIsThisRuns) {
   EXPECT_EQ(refused.err.substr(0, 16), "kiloband: file: ") << refused.err;
 }
 
+/// Names are names, whatever a shell would make of them; what was compared is counted, not what was planned.
+TEST(Validate, OddNamesOfFolders) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      folder, {"validate", "--quick", "--quiet", "analytic/planck", "--backends", "cpu", "-o", "o'x; y"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err.find("Syntax error"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("all passed: 2 of 2 comparisons in "), std::string::npos) << outcome.out;
+}
+
 /// A black scene agrees with itself: that says nothing.
 TEST(Validate, BlackImagesAreNoAgreement) {
   const TemporaryFolder folder;

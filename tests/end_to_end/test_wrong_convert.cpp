@@ -26,6 +26,21 @@ void write_cubes(const TemporaryFolder& folder) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
 }
 
+/// Variances do not scale, add or weigh as radiances do.
+TEST(WrongConversion, Variances) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "8", "--variance", "-o", "v.hdr"})).code,
+            0);
+  const std::string expected =
+      "v.var.hdr: holds variances, not radiances: give the cube itself, v.hdr, whose variances go with it";
+  expect_refused(
+      folder,
+      std::vector<WrongCommand>{
+          {"convert: variances", {"convert", "v.var.hdr", "out.hdr", "--quantity", "density"}, expected},
+          {"sensor: variances", {"sensor", "v.var.hdr", "--png", "out.png"}, expected}});
+}
+
 TEST(WrongConversion, Options) {
   const TemporaryFolder folder;
   write_cubes(folder);

@@ -192,6 +192,8 @@ TEST_F(SessionTest, CheckpointsOfOtherRendersAndDamagedOnesAreRefused) {
   const std::string name = "checkpoint " + settings_.checkpoint->string();
   EXPECT_EQ(message(),
             name + " belongs to another render: scene, channels, sampling, size or instruction set differ");
+  EXPECT_EQ(checkpoint_replicates(*settings_.checkpoint), session_replicates(settings_));
+  EXPECT_EQ(checkpoint_replicates("none"), std::nullopt);
   settings_.fingerprint = 7;
   const auto size = std::filesystem::file_size(*settings_.checkpoint);
   std::fstream(*settings_.checkpoint, std::ios::in | std::ios::out | std::ios::binary)
