@@ -107,13 +107,17 @@ def hard(results):
     return table(["case", "figure", "reference", *_error_heads(backends), "note"], rows)
 
 
+def _share(figure):
+    """Error over limit; exact figures (limit 0) and errors that are no number are near only where they fail."""
+    if is_number(figure.get("error")) and figure.get("limit"):
+        return figure["error"] / figure["limit"]
+    return float(not figure.get("passed")) * 1e300
+
+
 def _nearness(found):
-    """Largest error over its limit; exact figures (limit 0) are nearest only where they fail."""
-    return max(
-        (f["error"] / f["limit"] if f.get("limit") else float(not f.get("passed")) * 1e300)
-        for f in found.values()
-        if is_number(f.get("error"))
-    )
+    """Failures first, exact figures last; figures of every backend before those of some; the largest error over its limit."""
+    share = max(map(_share, found.values()))
+    return share > 1, share > 0, len(found), share
 
 
 def nearest(results):

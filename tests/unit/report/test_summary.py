@@ -46,6 +46,14 @@ class Summary(unittest.TestCase):
         self.assertIn("| grazing | other | 9e-07 | 1e-06 |", text)
         self.assertNotIn("far", text)
         self.assertNotIn("exact", text)
+        alone = dict(other, name="alone", error=0.95e-6)
+        content["hard_cases"].append(dict(content["hard_cases"][0], backend="opencl:pt", figures=[alone]))
+        content["hard_cases"][0]["figures"].append(dict(other, name="of both", error=1e-9))
+        content["hard_cases"][1]["figures"].append(dict(other, name="of both", error=1e-9))
+        self.assertIn("| grazing | of both | 1e-09 | 1e-09 | 1e-06 |", text_of(content, "nearest"))
+        lost = dict(other, name="lost", error=None, passed=False)
+        content["hard_cases"][0]["figures"].append(lost)
+        self.assertIn("| grazing | lost |", text_of(content, "nearest"))
 
     def test_convergence(self):
         text = text_of(small_results.results(True), "convergence")
