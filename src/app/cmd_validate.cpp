@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -159,9 +158,8 @@ void print_verdict(const SuiteResult& result) {
 /// The HTML page: by a Python script with matplotlib. Without them the results stand for themselves.
 void make_report(const ValidateOptions& options) {
   const fs::path script = fs::path(options.scenes) / "validation/report/report.py";
-  for (const std::string& python : {std::string("python3"), std::string("/usr/bin/python3")}) {
-    if (!fs::exists(script) || run_child({python, "-c", "import matplotlib, numpy"}, {}, {}).code != 0)
-      continue;
+  for (const char* python : {"python3", "/usr/bin/python3"}) {
+    if (run_child({python, "-c", "import matplotlib, numpy"}, {}, {}).code != 0) continue;
     const ChildEnd end = run_child({python, script.string(), options.output}, {}, {});
     tell("{}{}", end.out, end.err);
     if (end.code == 0) return;

@@ -35,9 +35,12 @@ void add_units(Comparison& c, const std::string& name, const ScaleResult& result
     untested.push_back(name);
 }
 
+std::string mean_test(Scale scale) {
+  return std::string("mean/") + name_of(scale);
+}
+
 void add_means(Comparison& c, Untested& untested) {
-  for (std::size_t i = 0; i < c.means.size(); ++i)
-    add_units(c, std::string("mean/") + name_of(c.scales[i]), c.means[i], untested);
+  for (std::size_t i = 0; i < c.means.size(); ++i) add_units(c, mean_test(c.scales[i]), c.means[i], untested);
 }
 
 void add_variances(Comparison& c, Untested& untested) {
@@ -66,11 +69,11 @@ void add_uniformity(Comparison& c, std::optional<UniformityResult>& result, Scal
 
 /// Detectable biases need the levels.
 void add_detectable(Comparison& c) {
+  for (std::size_t i = 0; i < c.means.size(); ++i) {
+    const auto test = std::ranges::find(c.tests, mean_test(c.scales[i]), &TestVerdict::name);
+    if (test != c.tests.end()) test->detectable = c.means[i].errors.at(test->level, test_count(c.means[i]));
+  }
   for (TestVerdict& test : c.tests) {
-    for (std::size_t i = 0; i < c.means.size(); ++i) {
-      if (test.name == std::string("mean/") + name_of(c.scales[i]))
-        test.detectable = c.means[i].errors.at(test.level, test_count(c.means[i]));
-    }
     const auto tests = static_cast<double>(c.channels + 1);
     if (test.name == "scatter/image") test.detectable = c.pooled_scatter->errors.at(test.level, tests);
     if (test.name == "variance/image") test.detectable = c.pooled_variance->errors.at(test.level, tests);

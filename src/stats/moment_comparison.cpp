@@ -22,12 +22,12 @@ double joint_dof(double va, double dof_a, double vb, double dof_b) {
   return 1 / (share * share / dof_a + (1 - share) * (1 - share) / dof_b);
 }
 
-/// The moments of one pixel's replicates, of which `lost` are not finite; appended.
-void add_moments(const UnitSample& pixel, std::size_t lost, MomentImage& moments) {
+/// The moments of one pixel's replicates, of which `lost` are not finite; appended. zero: of all channels
+void add_moments(const UnitSample& pixel, std::size_t lost, const TruthValues& zero, MomentImage& moments) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const std::size_t sampled = pixel.sampled();
   moments.pixel_dof.push_back(static_cast<double>(sampled) - 1);
-  const Contrast contrast = truth_contrast(pixel, {std::vector<double>(pixel.channels), {}}, 0);
+  const Contrast contrast = truth_contrast(pixel, zero, 0);
   const auto only = static_cast<std::size_t>(
       std::ranges::find_if(pixel.weights, [](double w) { return w > 0; }) - pixel.weights.begin());
   for (std::size_t c = 0; c < pixel.channels; ++c) {
@@ -45,9 +45,10 @@ void add_moments(const UnitSample& pixel, std::size_t lost, MomentImage& moments
 MomentImage moments_of(const ReplicateImage& image) {
   MomentImage moments{image.width, image.height, image.channels, image.replicates - 1.0, {}, {}};
   UnitSample pixel;
+  const TruthValues zero{std::vector<double>(image.channels), {}};
   for (std::size_t p = 0; p < image.pixels(); ++p) {
     const std::size_t lost = gather_pixel(image, p, pixel);
-    add_moments(pixel, lost, moments);
+    add_moments(pixel, lost, zero, moments);
   }
   return moments;
 }

@@ -30,15 +30,6 @@ void scale_cube(const TemporaryFolder& folder, const std::string& from, const st
   }
 }
 
-Outcome compare(const TemporaryFolder& folder, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "compare");
-  return run_program(folder, arguments);
-}
-
-void expect_text(const std::string& text, const std::string& part) {
-  EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
-}
-
 /// Level of a comparison: 1e-3, so a right program fails with probability 2e-3 at most, for any seeds; these
 /// are fixed.
 TEST(Compare, OtherSeedsAgreeAndHalfAsMuchAgainIsFound) {

@@ -97,15 +97,6 @@ std::string write_variances(const TemporaryFolder& folder, const std::string& na
   return name;
 }
 
-Outcome compare(const TemporaryFolder& folder, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "compare");
-  return run_program(folder, arguments);
-}
-
-void expect_text(const std::string& text, const std::string& part) {
-  EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
-}
-
 void expect_no_text(const std::string& text, const std::string& part) {
   EXPECT_EQ(text.find(part), std::string::npos) << part << " is in: " << text;
 }

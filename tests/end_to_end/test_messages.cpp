@@ -6,10 +6,6 @@
 namespace kiloband::test {
 namespace {
 
-void expect_text(const std::string& text, const std::string& part) {
-  EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
-}
-
 TEST(Messages, Version) {
   const TemporaryFolder folder;
   const Outcome outcome = run_program(folder, {"--version"});

@@ -78,25 +78,24 @@ TEST(Responses, FilesAreAccumulatedBesideTheChannels) {
   expect_band(cube, 21, "ramp", 50, stratified_bound(0.01, 100));
 }
 
-TEST(Responses, PartOutsideTheChannelsIsAWarning) {
+/// Two channels from 400 to 500 nm, and a response that is 1 in a range.
+Outcome render_response(const std::string& first_nm, const std::string& last_nm) {
   const TemporaryFolder folder;
   folder.write("scene.xml", sky_scene("hdrfilm", ""));
-  folder.write("camera.csv", "wavelength_nm,wide\n400,1\n800,1\n");
-  const Outcome outcome =
-      run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "400:500:2", "--response",
-                                                     "camera.csv", "-o", "out.hdr"}));
+  folder.write("camera.csv", "wavelength_nm,wide\n" + first_nm + ",1\n" + last_nm + ",1\n");
+  return run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "400:500:2", "--response",
+                                                        "camera.csv", "-o", "out.hdr"}));
+}
+
+TEST(Responses, PartOutsideTheChannelsIsAWarning) {
+  const Outcome outcome = render_response("400", "800");
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "warning: response 'wide': 75 % of its integral lies outside the channels\n");
 }
 
 /// As `sensor` has it: a band of zeros is no result.
 TEST(Responses, WhollyOutsideTheChannelsIsAnError) {
-  const TemporaryFolder folder;
-  folder.write("scene.xml", sky_scene("hdrfilm", ""));
-  folder.write("camera.csv", "wavelength_nm,wide\n700,1\n800,1\n");
-  const Outcome outcome =
-      run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "400:500:2", "--response",
-                                                     "camera.csv", "-o", "out.hdr"}));
+  const Outcome outcome = render_response("700", "800");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err, "kiloband: response 'wide': is 0 in all channels\n");
 }

@@ -79,13 +79,19 @@ TEST(Validate, HardCasesOnTheMethodWithoutVertices) {
   EXPECT_TRUE(evaluated);
 }
 
+/// One case of hours, interrupted while it runs.
+Outcome interrupted(const TemporaryFolder& folder, const std::string& name) {
+  const Outcome outcome =
+      run_program(folder, {"validate", "--thorough", name, "--backends", "cpu", "--no-report", "-o", "out"},
+                  {.signal = SIGINT, .after_text = name, .after_seconds = 0.3});
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  return outcome;
+}
+
 /// Hours of work: it ends at once, without figures of images that were not finished.
 TEST(Validate, AHardCaseIsInterrupted) {
   const TemporaryFolder folder;
-  const Outcome outcome = run_program(
-      folder, {"validate", "--thorough", "hard/watertight", "--backends", "cpu", "--no-report", "-o", "out"},
-      {.signal = SIGINT, .after_text = "hard/watertight", .after_seconds = 0.3});
-  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  interrupted(folder, "hard/watertight");
   const auto results = read_json(folder, "out/results.json");
   EXPECT_EQ(results["interrupted"], true);
   EXPECT_TRUE(results["hard_cases"].empty());
@@ -94,10 +100,7 @@ TEST(Validate, AHardCaseIsInterrupted) {
 /// Nor has a case that was stopped passed.
 TEST(Validate, ACaseIsInterrupted) {
   const TemporaryFolder folder;
-  const Outcome outcome = run_program(
-      folder, {"validate", "--thorough", "cornell_box", "--backends", "cpu", "--no-report", "-o", "out"},
-      {.signal = SIGINT, .after_text = "cornell_box", .after_seconds = 0.3});
-  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  const Outcome outcome = interrupted(folder, "cornell_box");
   EXPECT_NE(outcome.out.find("stopped  cornell_box: 0 comparisons, image means would show nothing\n"),
             std::string::npos)
       << outcome.out;

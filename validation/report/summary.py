@@ -32,7 +32,10 @@ def table(heads, rows):
 
 
 def word(passed, interrupted=False):
-    return "interrupted" if interrupted else "passed" if passed else "FAILED"
+    """A part that has failed has failed, whether it was interrupted afterwards or not."""
+    if not passed:
+        return "FAILED"
+    return "interrupted" if interrupted else "passed"
 
 
 def margin(pairing):
@@ -169,8 +172,8 @@ def mitsuba(results):
 
 
 def head(results):
-    failed = failed_parts(results)
-    verdict = "FAILED" if failed else word(results.get("passed"), results.get("interrupted"))
+    interrupted = bool(results.get("interrupted"))  # such a run has not passed, nor failed by that
+    verdict = word((results.get("passed") or interrupted) and not failed_parts(results), interrupted)
     backends = ", ".join(str(b) for b in results.get("backends") or [])
     return (
         f"{results.get('program')}, {results.get('date')}, {results.get('processor')}; {backends}; effort "

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 
 #include "base/error.hpp"
 #include "film/atomic_file.hpp"
@@ -105,13 +104,6 @@ void write_cube(const fs::path& file, const stats::ReplicateImage& image, const 
   writer->finish();
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw DeviceError(file.string() + ": cannot be written");
-}
-
 }  // namespace
 
 std::string cube_name(const CaseResult& c, const SideImage& side) {
@@ -152,7 +144,7 @@ void prepare_results(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw DeviceError(directory.string() + ": " + error.message());
-  write_text(directory / "results.json", "");
+  { const AtomicFile trial(directory / "results.json"); }  // its temporary file vanishes at once
   for (const char* name : {"results.json", "junit.xml", "mitsuba.json", "report.html"}) {
     fs::remove(directory / name, error);
     if (error) throw DeviceError((directory / name).string() + ": " + error.message());
@@ -169,8 +161,8 @@ void write_results(const fs::path& directory, const SuiteResult& result, const R
       write_cube(file, side.image, c.channels);
     }
   }
-  write_text(directory / "results.json", to_json(result, record).dump(1) + "\n");
-  write_text(directory / "junit.xml", to_junit(result));
+  write_file_atomically(directory / "results.json", to_json(result, record).dump(1) + "\n");
+  write_file_atomically(directory / "junit.xml", to_junit(result));
 }
 
 }  // namespace kiloband::validation

@@ -1,6 +1,7 @@
 #include "tests/end_to_end/support/program.hpp"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -113,6 +114,15 @@ Cube read_cube(const std::filesystem::path& file) {
 
 nlohmann::json read_json(const TemporaryFolder& folder, const std::string& name) {
   return nlohmann::json::parse(folder.read(name));
+}
+
+Outcome compare(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "compare");
+  return run_program(folder, arguments);
+}
+
+void expect_text(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << part << " is not in: " << text;
 }
 
 std::string cornell_box() {

@@ -47,6 +47,11 @@ Cube read_cube(const std::filesystem::path& file);
 
 nlohmann::json read_json(const TemporaryFolder& folder, const std::string& name);
 
+/// `kiloband compare` with these arguments.
+Outcome compare(const TemporaryFolder& folder, std::vector<std::string> arguments);
+/// `part` is somewhere in `text`.
+void expect_text(const std::string& text, const std::string& part);
+
 /// The Cornell box that comes with the project.
 std::string cornell_box();
 /// Arguments of a render without messages: "render", scene, "--quiet", then `more`.

@@ -63,6 +63,10 @@ class Summary(unittest.TestCase):
         content = small_results.results(True, cases=[], hard_cases=[], convergence=[], interrupted=True)
         self.assertEqual(text_of(content | {"passed": False}).count("\n|---"), 5)
         self.assertIn("2 comparisons: interrupted.", text_of(content | {"passed": False}))
+        failed = small_results.results(False, interrupted=True)
+        failed["cases"][1]["interrupted"] = True
+        self.assertIn("2 comparisons: FAILED.", text_of(failed))
+        self.assertIn("| wrong | FAILED |", text_of(failed, "cases"))
 
     def test_no_results(self):
         with tempfile.TemporaryDirectory() as folder, self.assertRaises(report.ReportError):

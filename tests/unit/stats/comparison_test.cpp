@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tests/support/simulated_image.hpp"
+#include "tests/unit/stats/support.hpp"
 
 namespace kiloband::stats {
 namespace {
@@ -28,12 +29,6 @@ const TestVerdict& test_named(const Comparison& c, const std::string& name) {
   const auto found = std::ranges::find(c.tests, name, &TestVerdict::name);
   if (found == c.tests.end()) throw std::logic_error("no test " + name);
   return *found;
-}
-
-std::vector<std::string> names_of(const Comparison& c) {
-  std::vector<std::string> names;
-  for (const TestVerdict& test : c.tests) names.push_back(test.name);
-  return names;
 }
 
 TEST(Comparison, ListsItsTestsAndSharesAlpha) {

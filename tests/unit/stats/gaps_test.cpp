@@ -8,6 +8,7 @@
 #include "stats/comparison.hpp"
 #include "stats/moment_comparison.hpp"
 #include "tests/support/simulated_image.hpp"
+#include "tests/unit/stats/support.hpp"
 
 namespace kiloband::stats {
 namespace {
@@ -26,12 +27,6 @@ void lose_samples(ReplicateImage& image, std::size_t pixel) {
     for (std::size_t c = 0; c < image.channels; ++c)
       image.means[(r * image.pixels() + pixel) * image.channels + c] = kNaN;
   }
-}
-
-std::vector<std::string> names_of(const Comparison& c) {
-  std::vector<std::string> names;
-  for (const TestVerdict& test : c.tests) names.push_back(test.name);
-  return names;
 }
 
 bool says(const Comparison& c, const std::string& note) {
