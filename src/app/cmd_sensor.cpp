@@ -25,11 +25,11 @@ struct SensorOptions {
   std::optional<double> exposure;
 };
 
-std::vector<NamedResponse> load_responses(const std::vector<std::string>& names) {
+std::vector<NamedResponse> load_responses(const std::vector<std::string>& names, const DiagnosticSink& sink) {
   std::vector<NamedResponse> responses;
   for (const std::string& name : names) {
     const bool built_in = to_lower(name) == "xyz" && !std::filesystem::exists(name);
-    for (auto& response : built_in ? xyz_responses() : read_response_file(name))
+    for (auto& response : built_in ? xyz_responses() : read_response_file(name, sink))
       responses.push_back(std::move(response));
   }
   return responses;
@@ -79,7 +79,7 @@ int sensor(const SensorOptions& o) {
   const DiagnosticSink sink = print_diagnostics(false);
   check_options(o);
   check_holds_radiances(o.cube, open_cube(o.cube)->info());
-  const std::vector<NamedResponse> responses = load_responses(o.responses);
+  const std::vector<NamedResponse> responses = load_responses(o.responses, sink);
   if (!responses.empty()) apply_responses(open_cube(o.cube, sink), responses);  // errors before warnings
   report_responses(*open_cube(o.cube), responses, sink);
   const CubeChange change = [&](ReplicatedCube cube) {

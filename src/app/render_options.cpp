@@ -112,7 +112,7 @@ DerivedChannels load_responses(const std::vector<std::string>& files, const Load
                                const DiagnosticSink& sink) {
   std::vector<std::pair<std::string, Spectrum>> responses = scene.description.sensor.film.responses;
   for (const std::string& file : files) {
-    for (auto& response : read_response_file(file)) responses.push_back(std::move(response));
+    for (auto& response : read_response_file(file, sink)) responses.push_back(std::move(response));
   }
   DerivedChannels derived;
   std::set<std::string> names;

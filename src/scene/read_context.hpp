@@ -45,10 +45,17 @@ auto load_at(const Place& place, Loader&& loader) {
 /// How bare numbers and colours are understood, and what values are allowed.
 enum class SpectrumUse {
   kReflectance,  // numbers flat, colours upsampled, all in [0, 1]
-  kEmission,     // numbers and colours times D65, all >= 0
+  kEmission,     // radiance: numbers and colours times D65, all >= 0
+  kIrradiance,   // the same of a directional light
+  kIntensity,    // the same of point and spot lights
+  kAny,          // of an object that others refer to: what it is used as is not known yet
   kQuantity,     // numbers flat, colours upsampled, all >= 0: indices, sensor responses
   kAbsorption    // the same in 1/m; files may be in 1/cm
 };
+
+bool is_emission(SpectrumUse use);
+/// The spectrum in a file. throws InputError  see read_spectrum_file()
+Spectrum read_used_file(ReadContext& context, const std::filesystem::path& file, SpectrumUse use);
 
 /// A spectral parameter; `fallback` where the file has none.
 /// throws InputError  wrong kind, value out of range with its wavelength

@@ -16,8 +16,8 @@ Spectrum default_emission() {
   return illuminant_d65();
 }
 
-Spectrum emission(ReadContext& context, const ObjectReader& object, std::string_view name) {
-  return read_spectrum(context, object, name, SpectrumUse::kEmission, default_emission());
+Spectrum emission(ReadContext& context, const ObjectReader& object, std::string_view name, SpectrumUse use) {
+  return read_spectrum(context, object, name, use, default_emission());
 }
 
 /// The transform of an emitter that is not a surface.
@@ -30,7 +30,7 @@ Transform rotation_and_position(const ObjectReader& object) {
 }
 
 Model read_constant(ReadContext& context, const ObjectReader& object) {
-  return ConstantEmitter{emission(context, object, "radiance")};
+  return ConstantEmitter{emission(context, object, "radiance", SpectrumUse::kEmission)};
 }
 
 void check_map_size(const ObjectReader& object, const std::filesystem::path& file, uint32_t width,
@@ -66,7 +66,7 @@ Model read_spectral_envmap(ReadContext& context, const ObjectReader& object) {
 
 Model read_point(ReadContext& context, const ObjectReader& object) {
   PointEmitter point;
-  point.intensity = emission(context, object, "intensity");
+  point.intensity = emission(context, object, "intensity", SpectrumUse::kIntensity);
   if (object.has("position") && object.has("to_world")) {
     object.fail_at("to_world", "'position' together with 'to_world'");
   }
@@ -77,7 +77,7 @@ Model read_point(ReadContext& context, const ObjectReader& object) {
 
 Model read_spot(ReadContext& context, const ObjectReader& object) {
   SpotEmitter spot;
-  spot.intensity = emission(context, object, "intensity");
+  spot.intensity = emission(context, object, "intensity", SpectrumUse::kIntensity);
   const double cutoff = object.get_float("cutoff_angle", 20);
   object.check(cutoff > 0 && cutoff < 180, "cutoff_angle", cutoff, "must be between 0 and 180 degrees");
   const double beam = object.get_float("beam_width", 0.75 * cutoff);
@@ -91,7 +91,7 @@ Model read_spot(ReadContext& context, const ObjectReader& object) {
 
 Model read_directional(ReadContext& context, const ObjectReader& object) {
   DirectionalEmitter directional;
-  directional.irradiance = emission(context, object, "irradiance");
+  directional.irradiance = emission(context, object, "irradiance", SpectrumUse::kIrradiance);
   if (object.has("direction") && object.has("to_world")) {
     object.fail_at("to_world", "'direction' together with 'to_world'");
   }

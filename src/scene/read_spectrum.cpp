@@ -21,7 +21,7 @@ bool is_allowed(double value, SpectrumUse use) {
 
 /// A number: flat, or times D65 on emitters.
 Spectrum from_number(double value, SpectrumUse use) {
-  return use == SpectrumUse::kEmission ? illuminant_d65().scaled(value) : Spectrum::constant(value);
+  return is_emission(use) ? illuminant_d65().scaled(value) : Spectrum::constant(value);
 }
 
 Rgb parse_rgb(const XmlAttribute& value, const std::string& context) {
@@ -43,7 +43,7 @@ Spectrum from_rgb(const XmlAttribute& value, const std::string& label, SpectrumU
   }
   if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) return from_number(rgb[0], use);
   return load_at(value.value_place, [&] {
-    if (use == SpectrumUse::kEmission) return rgb_emission(rgb);
+    if (is_emission(use)) return rgb_emission(rgb);
     if (use == SpectrumUse::kReflectance) return rgb_reflectance(rgb);
     const double scale = 2 * std::max({rgb[0], rgb[1], rgb[2]});
     return rgb_reflectance({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).scaled(scale);
@@ -73,15 +73,29 @@ Spectrum from_pairs(const XmlAttribute& value, const std::string& context) {
   return Spectrum::tabulated(std::move(lambda), std::move(values));
 }
 
-Spectrum read_file(const std::filesystem::path& file, SpectrumUse use, const DiagnosticSink& sink) {
-  return use == SpectrumUse::kAbsorption ? read_absorption_file(file, sink) : read_spectrum_file(file, sink);
+/// What the numbers in a file are.
+ValueKind kind_of(SpectrumUse use) {
+  switch (use) {
+    case SpectrumUse::kReflectance:
+      return ValueKind::kPlain;
+    case SpectrumUse::kEmission:
+      return ValueKind::kRadiance;
+    case SpectrumUse::kIrradiance:
+      return ValueKind::kIrradiance;
+    case SpectrumUse::kIntensity:
+      return ValueKind::kIntensity;
+    case SpectrumUse::kAbsorption:
+      return ValueKind::kAbsorption;
+    default:
+      return ValueKind::kAny;
+  }
 }
 
 /// <spectrum value= | filename=>. A single number is flat, on emitters too.
 Spectrum from_spectrum(ReadContext& context, const Node& node, const std::string& label, SpectrumUse use) {
   if (const XmlAttribute* filename = node.find("filename")) {
     const std::filesystem::path file = find_file(context.tree, filename->value, filename->value_place);
-    return load_at(filename->value_place, [&] { return read_file(file, use, context.sink); });
+    return load_at(filename->value_place, [&] { return read_used_file(context, file, use); });
   }
   const XmlAttribute& value = *node.find("value");
   if (value.value.find(':') != std::string::npos) return from_pairs(value, label + ": ");
@@ -97,6 +111,14 @@ Texture from_object(ReadContext& context, Node& node, const std::string& label, 
 }
 
 }  // namespace
+
+bool is_emission(SpectrumUse use) {
+  return use == SpectrumUse::kEmission || use == SpectrumUse::kIrradiance || use == SpectrumUse::kIntensity;
+}
+
+Spectrum read_used_file(ReadContext& context, const std::filesystem::path& file, SpectrumUse use) {
+  return read_spectrum_file(file, kind_of(use), context.sink);
+}
 
 void check_spectrum(const Spectrum& spectrum, const std::string& label, SpectrumUse use, const Place& place) {
   const auto lambda = spectrum.knots_nm();

@@ -4,7 +4,6 @@
 #include "scene/xml_values.hpp"
 #include "spectral/colour.hpp"
 #include "spectral/rgb.hpp"
-#include "spectral/spectrum_files.hpp"
 
 namespace kiloband {
 namespace {
@@ -80,10 +79,8 @@ Spectrum read_planck(ReadContext&, const ObjectReader& object, SpectrumUse) {
 /// Our own: a spectrum file as an object, so that `extrapolate` can be stated.
 Spectrum read_file(ReadContext& context, const ObjectReader& object, SpectrumUse use) {
   const std::filesystem::path file = context.file(object, "filename");
-  const Spectrum spectrum = load_at(object.value_place("filename"), [&] {
-    return use == SpectrumUse::kAbsorption ? read_absorption_file(file, context.sink)
-                                           : read_spectrum_file(file, context.sink);
-  });
+  const Spectrum spectrum =
+      load_at(object.value_place("filename"), [&] { return read_used_file(context, file, use); });
   return object.get_bool("extrapolate", false) ? spectrum.extrapolated() : spectrum;
 }
 
@@ -92,8 +89,7 @@ Spectrum read_srgb(ReadContext& context, const ObjectReader& object, SpectrumUse
   const Node* color = object.find("color");
   if (!color) object.fail_here("parameter 'color' is missing");
   if (color->tag != "rgb") object.fail_at("color", "color: expected an rgb, found " + describe_kind(*color));
-  const SpectrumUse plain =
-      use == SpectrumUse::kEmission ? SpectrumUse::kQuantity : use;  // D65 comes from `d65` only
+  const SpectrumUse plain = is_emission(use) ? SpectrumUse::kQuantity : use;  // D65 comes from `d65` only
   return read_spectrum(context, object, "color", plain, Spectrum());
 }
 
@@ -118,7 +114,7 @@ Texture read_d65(ReadContext& context, const ObjectReader& object) {
     return read_spectrum(context, object, "color", SpectrumUse::kEmission, Spectrum()).scaled(scale);
   }
   const Texture inner =
-      read_texture_node(context, *nested, object.label() + ": nested texture", SpectrumUse::kEmission);
+      read_texture_node(context, *nested, object.label() + ": nested texture", SpectrumUse::kAny);
   if (const auto* spectrum = std::get_if<Spectrum>(&inner))
     return Spectrum::product(illuminant_d65(), *spectrum).scaled(scale);
   const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&inner);

@@ -1,5 +1,8 @@
 #include "scene/reader.hpp"
 
+#include <memory>
+#include <set>
+
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
 
@@ -8,11 +11,20 @@ namespace {
 
 constexpr uint64_t kMaxSamples = uint64_t{1} << 32;  // per pixel
 
+/// Passes every different message on once: a file that several objects name says its notes once.
+DiagnosticSink without_repetitions(const DiagnosticSink& sink) {
+  return [sink, told = std::make_shared<std::set<std::string>>()](const Diagnostic& d) {
+    if (sink && told->insert(d.to_string()).second) sink(d);
+  };
+}
+
 /// Reads the objects directly under <scene>.
 class SceneReader {
  public:
   SceneReader(SceneTree& tree, const ReadOptions& options)
-      : tree_(tree), context_{tree, options.sink, options.film_size, {}, {}, {}, {}, {}} {}
+      : tree_(tree), sink_(without_repetitions(options.sink)), context_{tree, sink_, options.film_size,
+                                                                        {},   {},    {},
+                                                                        {},   {}} {}
 
   SceneDescription run() {
     const ObjectReader scene(*tree_.root);
@@ -44,7 +56,7 @@ class SceneReader {
     } else if (tag == "bsdf") {
       read_bsdf(context_, node);
     } else if (tag == "texture" || tag == "spectrum") {
-      read_texture_node(context_, node, ObjectReader(node).label(), SpectrumUse::kEmission);
+      read_texture_node(context_, node, ObjectReader(node).label(), SpectrumUse::kAny);
     } else if (tag == "sensor") {
       if (++sensors_ > 1) fail(child.place, scene.label() + ": a second sensor: only one is supported");
       scene_.sensor = read_sensor(context_, node);
@@ -132,6 +144,7 @@ class SceneReader {
   }
 
   SceneTree& tree_;
+  DiagnosticSink sink_;
   ReadContext context_;
   SceneDescription scene_;
   Integrator integrator_;

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "base/error.hpp"
+#include "spectral/spectrum_units.hpp"
 #include "spectral/text_table.hpp"
 
 namespace kiloband {
@@ -97,10 +99,12 @@ bool is_header(const std::vector<std::string_view>& fields) {
                       [](std::string_view f) { return to_number(f).has_value(); });
 }
 
-Channel parse_line(const std::string& where, const std::vector<std::string_view>& fields) {
+Channel parse_line(const std::string& where, const std::vector<std::string_view>& fields,
+                   WavelengthUnit unit) {
   if (fields.size() != 2) throw InputError(where + ": must be MIN,MAX");
-  const double min_nm = edge_number(where, fields[0]);
-  const double max_nm = edge_number(where, fields[1]);
+  double min_nm = to_nanometres(edge_number(where, fields[0]), unit);
+  double max_nm = to_nanometres(edge_number(where, fields[1]), unit);
+  if (unit == WavelengthUnit::kWavenumber) std::swap(min_nm, max_nm);
   check_interval(where, min_nm, max_nm);
   return {min_nm, max_nm, {}};
 }
@@ -125,16 +129,21 @@ ChannelList read_channels_file(const std::filesystem::path& file) {
   const std::string text = read_text_file(file);
   ChannelList channels;
   bool first = true;
+  WavelengthUnit unit = WavelengthUnit::kNanometre;
   LineReader lines(text);
   for (std::string_view line; lines.next(line);) {
-    line = trimmed(line.substr(0, line.find('#')));
+    const std::size_t hash = line.find('#');
+    if (hash != std::string_view::npos && first)
+      unit = find_unit_in_comment(line.substr(hash + 1)).value_or(unit);
+    line = trimmed(line.substr(0, hash));
     if (line.empty()) continue;
     const std::vector<std::string_view> fields = split_fields(line, 4);
     const bool header = first && is_header(fields);
     first = false;
+    if (header) unit = find_unit(line).value_or(unit);
     if (header) continue;
     const std::string where = file.string() + ":" + std::to_string(lines.line_number());
-    channels.push_back(parse_line(where, fields));
+    channels.push_back(parse_line(where, fields, unit));
     check_count(where, channels.size());
   }
   if (channels.empty()) throw InputError(file.string() + ": no channels");

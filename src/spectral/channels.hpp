@@ -27,7 +27,7 @@ using ChannelList = std::vector<Channel>;
 ///                    number, more than kMaxChannels, wavelengths that are not finite and positive)
 ChannelList parse_channels(std::string_view text);
 
-/// Reads a CSV of "min,max" per line in nm (an optional header line, '#' comments).
+/// Reads a CSV of "min,max" per line (header line, '#' comments; both may state another unit than nm).
 /// throws InputError  "file:line: ..."
 ChannelList read_channels_file(const std::filesystem::path& file);
 

@@ -37,6 +37,34 @@ void append_row(NumberTable& table, const std::vector<std::string_view>& fields,
   table.lines.push_back(line);
 }
 
+/// The fields of a header line; commas between quotes separate nothing.
+std::vector<std::string> header_fields(std::string_view line) {
+  std::vector<std::string> fields;
+  if (line.find('"') == std::string_view::npos) {
+    for (const std::string_view field : split_fields(line)) fields.emplace_back(field);
+    return fields;
+  }
+  std::string field;
+  bool is_quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      is_quoted = !is_quoted;
+    } else if ((c == ',' || c == ';' || c == '\t') && !is_quoted) {
+      fields.emplace_back(trimmed(field));
+      field.clear();
+    } else {
+      field += c;
+    }
+  }
+  fields.emplace_back(trimmed(field));
+  return fields;
+}
+
+/// "Wavelength, microns" over two columns: the second field begins with the unit of the first.
+bool unit_has_a_field_of_its_own(const NumberTable& table) {
+  return table.names.size() > 1 && !find_unit(table.names[0]) && begins_with_unit(table.names[1]);
+}
+
 /// A number that RADIS writes in its header: `"wavenum_min": 2082.76` or `wavenum_min 2082.76 cm-1`.
 std::optional<double> radis_number(const std::vector<std::string>& comments, std::string_view key) {
   for (const std::string& comment : comments) {
@@ -91,26 +119,46 @@ NumberTable parse_number_table(const std::filesystem::path& file, std::string_vi
     const std::vector<std::string_view> fields = split_fields(line, rule.max_columns + 1);
     if (table.rows() == 0 && header_lines < kMaxHeaderLines && !has_number(fields)) {
       ++header_lines;
-      table.names.assign(fields.begin(), fields.end());
+      table.names = header_fields(line);
+      table.headers.push_back(table.names);
       continue;
     }
+    if (table.rows() == 0) table.row_fields = split_fields(line).size();
     append_row(table, fields, rule, first_line - 1 + lines.line_number());
   }
   if (table.rows() == 0) throw InputError(file.string() + ": no data");
   return table;
 }
 
-WavelengthUnit wavelength_unit(const NumberTable& table, const DiagnosticSink& sink) {
-  if (!table.names.empty())
-    if (const auto unit = find_unit(table.names.front())) return *unit;
+std::string column_text(const NumberTable& table, std::size_t column) {
+  std::string of_column, whole;
+  for (auto line = table.headers.rbegin(); line != table.headers.rend(); ++line) {
+    std::string joined;
+    for (const std::string& field : *line) joined += (joined.empty() ? "" : " ") + field;
+    whole = joined + " ; " + whole;
+    const bool is_title = std::ranges::any_of(*line, [](const std::string& field) { return field.empty(); });
+    if (line->size() == table.row_fields && !is_title) of_column += line->at(column) + " ; ";
+  }
+  return of_column.empty() || unit_has_a_field_of_its_own(table) ? whole : of_column;
+}
+
+std::optional<WavelengthUnit> stated_wavelength_unit(const NumberTable& table) {
+  const std::string text = column_text(table, 0);
+  if (const auto unit = find_unit_in_comment(text)) return *unit;
+  if (const auto unit = find_unit(text)) return *unit;
+  if (const auto foreign = find_foreign_unit(text))
+    throw InputError(table.file.string() + ": a first column in '" + *foreign +
+                     "': must be a wavelength in nm, um, mm, cm, m or angstrom, or a wavenumber in cm-1");
   if (const auto unit = radis_unit(table)) return *unit;
-  if (const auto unit = unit_in_comments(table)) return *unit;
-  double largest = 0;
-  for (std::size_t row = 0; row < table.rows(); ++row) largest = std::max(largest, table.at(row, 0));
-  if (largest < 100)
-    warn(sink, {table.file.string(), 0, 0},
-         "wavelengths up to " + to_text(largest) + " are read as nm: the file states no unit");
-  return WavelengthUnit::kNanometre;
+  return unit_in_comments(table);
+}
+
+bool is_from_radis(const NumberTable& table) {
+  const auto has = [&](std::string_view word) {
+    return std::ranges::any_of(table.comments,
+                               [&](const std::string& c) { return c.find(word) != std::string::npos; });
+  };
+  return has("wavenum_min") && has("abscoeff");
 }
 
 WavelengthAxis wavelength_axis(const std::filesystem::path& file, const std::vector<double>& raw,
@@ -138,16 +186,20 @@ WavelengthAxis wavelength_axis(const std::filesystem::path& file, const std::vec
   return axis;
 }
 
-Spectrum column_spectrum(const NumberTable& table, const WavelengthAxis& axis, std::size_t column,
-                         double factor) {
+WavelengthAxis axis_in(const NumberTable& table, std::optional<WavelengthUnit> stated) {
+  return wavelength_axis(table.file, first_column(table), table.lines,
+                         stated.value_or(WavelengthUnit::kNanometre));
+}
+
+std::vector<double> finite_column(const NumberTable& table, std::size_t column) {
   std::vector<double> values(table.rows());
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double value = table.at(row, column);
-    if (!std::isfinite(value))
-      throw InputError(at_line(table.file, table.lines[row], "value " + to_text(value) + ": must be finite"));
-    values[axis.reversed ? table.rows() - 1 - row : row] = value * factor;
+    values[row] = table.at(row, column);
+    if (!std::isfinite(values[row]))
+      throw InputError(
+          at_line(table.file, table.lines[row], "value " + to_text(values[row]) + ": must be finite"));
   }
-  return Spectrum::tabulated(axis.lambda_nm, std::move(values));
+  return values;
 }
 
 std::vector<double> first_column(const NumberTable& table) {

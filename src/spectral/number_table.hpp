@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +16,10 @@ namespace kiloband {
 struct NumberTable {
   std::filesystem::path file;
   std::vector<std::string> names;     // of the columns, from the last header line; empty without one
+  std::vector<std::vector<std::string>> headers;  // the fields of every header line
   std::vector<std::string> comments;  // without '#', header lines included
   std::size_t columns = 0;
+  std::size_t row_fields = 0;   // fields of the first row, those that are not read included
   std::vector<double> numbers;  // rows x columns
   std::vector<int> lines;       // where each row stands
 
@@ -38,10 +41,16 @@ struct ColumnRule {
 NumberTable parse_number_table(const std::filesystem::path& file, std::string_view text,
                                const ColumnRule& rule, int first_line = 1);
 
-/// The unit of the first column as the file states it: its name, RADIS's wavenumber range, comments. nm where
-/// nothing is said, with a warning if all wavelengths are below 100. throws InputError  where comments
-/// contradict each other
-WavelengthUnit wavelength_unit(const NumberTable& table, const DiagnosticSink& sink);
+/// What the header says about a column: its names, from the last line to the first, or the whole header where
+/// its lines have other fields than the rows.
+std::string column_text(const NumberTable& table, std::size_t column);
+
+/// The unit of the first column as the file states it: its name, RADIS's wavenumber range, comments. Nothing
+/// stated: nm is meant. throws InputError  a unit of frequency or energy; comments that contradict each other
+std::optional<WavelengthUnit> stated_wavelength_unit(const NumberTable& table);
+
+/// Whether RADIS wrote the file.
+bool is_from_radis(const NumberTable& table);
 
 /// Wavelengths of the rows in nm, ascending, and the rows' order for it.
 struct WavelengthAxis {
@@ -53,10 +62,12 @@ struct WavelengthAxis {
 WavelengthAxis wavelength_axis(const std::filesystem::path& file, const std::vector<double>& raw,
                                const std::vector<int>& lines, WavelengthUnit unit);
 
-/// Column `column` of the table times `factor` over the axis.
+/// The axis of a table in the unit that its file states, or nm.
+WavelengthAxis axis_in(const NumberTable& table, std::optional<WavelengthUnit> stated);
+
+/// A column as it stands in the file.
 /// throws InputError  "file:line: value nan: must be finite"
-Spectrum column_spectrum(const NumberTable& table, const WavelengthAxis& axis, std::size_t column,
-                         double factor = 1);
+std::vector<double> finite_column(const NumberTable& table, std::size_t column);
 
 /// The first column.
 std::vector<double> first_column(const NumberTable& table);

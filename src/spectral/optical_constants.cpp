@@ -8,6 +8,7 @@
 #include "spectral/number_table.hpp"
 #include "spectral/spectrum_files.hpp"
 #include "spectral/text_table.hpp"
+#include "spectral/value_scale.hpp"
 
 namespace kiloband {
 namespace {
@@ -116,8 +117,8 @@ void read_tabulated(const std::filesystem::path& file, const YAML::Node& item, c
   merge_repeated(table, sink);
   const WavelengthAxis axis =
       wavelength_axis(file, first_column(table), table.lines, WavelengthUnit::kMicrometre);
-  if (has_n) set_once(file, found.n, column_spectrum(table, axis, 1), "n");
-  if (has_k) set_once(file, found.k, column_spectrum(table, axis, columns - 1), "k");
+  if (has_n) set_once(file, found.n, column_spectrum(table, axis, 1, {}), "n");
+  if (has_k) set_once(file, found.k, column_spectrum(table, axis, columns - 1, {}), "k");
 }
 
 Found read_yaml(const std::filesystem::path& file, const std::string& text, const DiagnosticSink& sink) {
@@ -143,11 +144,12 @@ Found read_yaml(const std::filesystem::path& file, const std::string& text, cons
 
 Found read_text(const std::filesystem::path& file, const std::string& text, const DiagnosticSink& sink) {
   const NumberTable table = parse_number_table(file, text, {2, 3, true});
-  const WavelengthUnit unit = wavelength_unit(table, sink);
-  const WavelengthAxis axis = wavelength_axis(file, first_column(table), table.lines, unit);
+  const auto unit = stated_wavelength_unit(table);
+  report_assumed_units(table, unit.has_value(), {}, ValueKind::kPlain, sink);
+  const WavelengthAxis axis = axis_in(table, unit);
   Found found;
-  found.n = column_spectrum(table, axis, 1);
-  if (table.columns == 3) found.k = column_spectrum(table, axis, 2);
+  found.n = column_spectrum(table, axis, 1, {});
+  if (table.columns == 3) found.k = column_spectrum(table, axis, 2, {});
   return found;
 }
 

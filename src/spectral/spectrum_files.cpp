@@ -7,6 +7,7 @@
 
 #include "spectral/number_table.hpp"
 #include "spectral/text_table.hpp"
+#include "spectral/value_scale.hpp"
 
 namespace kiloband {
 namespace {
@@ -46,7 +47,7 @@ EcostressHeader parse_ecostress_header(std::string_view text) {
 }
 
 Spectrum read_ecostress(const std::filesystem::path& file, std::string_view text,
-                        const EcostressHeader& header) {
+                        const EcostressHeader& header, ValueKind kind, const DiagnosticSink& sink) {
   const std::optional<WavelengthUnit> unit = find_unit(header.x_units);
   if (!unit)
     throw InputError(file.string() + ": X Units " + quote_text(header.x_units) +
@@ -58,14 +59,9 @@ Spectrum read_ecostress(const std::filesystem::path& file, std::string_view text
     throw InputError(file.string() + ": the header states " + to_text(*header.count) +
                      " values, the file has " + std::to_string(table.rows()));
   const WavelengthAxis axis = wavelength_axis(file, first_column(table), table.lines, *unit);
-  return column_spectrum(table, axis, 1, says_percent(header.y_units) ? 0.01 : 1);
-}
-
-/// 0.01 if the file says that the values of a column are in percent.
-double value_factor(const NumberTable& table, std::size_t column) {
-  if (column < table.names.size() && says_percent(table.names[column])) return 0.01;
-  const bool percent = std::any_of(table.comments.begin(), table.comments.end(), comment_says_percent);
-  return percent ? 0.01 : 1;
+  const ValueScale scale = scale_of_name(file.string(), header.y_units, kind, sink);
+  report_assumed_units(table, true, scale, kind, sink);
+  return column_spectrum(table, axis, 1, scale);
 }
 
 /// The response of one detector in a MODIS table, in file order.
@@ -134,26 +130,32 @@ std::vector<std::string> response_names(const NumberTable& table) {
 
 }  // namespace
 
-Spectrum read_spectrum_file(const std::filesystem::path& file, const DiagnosticSink& sink) {
+Spectrum read_spectrum_file(const std::filesystem::path& file, ValueKind kind, const DiagnosticSink& sink) {
   const std::string text = read_text_file(file);
   const EcostressHeader header = parse_ecostress_header(text);
-  if (!header.x_units.empty() && !header.y_units.empty()) return read_ecostress(file, text, header);
+  if (!header.x_units.empty() && !header.y_units.empty())
+    return read_ecostress(file, text, header, kind, sink);
   const NumberTable table = parse_number_table(file, text, {2, 2, true});
-  const WavelengthUnit unit = wavelength_unit(table, sink);
-  const WavelengthAxis axis = wavelength_axis(file, first_column(table), table.lines, unit);
-  return column_spectrum(table, axis, 1, value_factor(table, 1));
+  const auto unit = stated_wavelength_unit(table);
+  const ValueScale scale = scale_of_column(table, 1, kind, sink);
+  report_assumed_units(table, unit.has_value(), scale, kind, sink);
+  return column_spectrum(table, axis_in(table, unit), 1, scale);
 }
 
-std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::filesystem::path& file) {
+std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::filesystem::path& file,
+                                                                 const DiagnosticSink& sink) {
   const std::string text = read_text_file(file);
   const NumberTable table = parse_number_table(file, text, {2, kMaxResponseColumns, false});
   if (is_modis(table) && table.columns == 4) return modis_responses(table);
-  const WavelengthAxis axis =
-      wavelength_axis(file, first_column(table), table.lines, wavelength_unit(table, {}));
+  const auto unit = stated_wavelength_unit(table);
+  report_assumed_units(table, unit.has_value(), {}, ValueKind::kAny, sink);
+  const WavelengthAxis axis = axis_in(table, unit);
   const std::vector<std::string> names = response_names(table);
   std::vector<std::pair<std::string, Spectrum>> result;
-  for (std::size_t column = 1; column < table.columns; ++column)
-    result.emplace_back(names[column - 1], column_spectrum(table, axis, column, value_factor(table, column)));
+  for (std::size_t column = 1; column < table.columns; ++column) {
+    const ValueScale scale = scale_of_column(table, column, ValueKind::kAny, sink);
+    result.emplace_back(names[column - 1], column_spectrum(table, axis, column, scale));
+  }
   return result;
 }
 

@@ -9,20 +9,21 @@
 
 #include "base/diagnostics.hpp"
 #include "spectral/spectrum.hpp"
+#include "spectral/value_scale.hpp"
 
 namespace kiloband {
 
 /// Reads "lambda value" per line (nm; '#' comments; commas or blanks between; further columns ignored),
 /// ascending or descending; an ECOSTRESS file (recognised by its header: X Units, Y Units; Latin-1;
-/// micrometres; percent) or a CSV with a header line. Units other than nm are taken from the file's own
-/// statement only (a header or comment that names micrometers / um / cm-1 / wavenumber; percent). throws
-/// InputError  "file:line: ..." (not a number, not finite, duplicate wavelength, order changes, no data ...)
-Spectrum read_spectrum_file(const std::filesystem::path& file, const DiagnosticSink& sink = {});
-
-/// Reads an absorption coefficient in 1/m: two columns as read_spectrum_file, the second in 1/m unless the
-/// file states 1/cm ("cm-1" in the column's name, or in a comment behind "abscoeff" or "absorption") or was
-/// written by RADIS, whose unit is 1/cm. throws InputError  as read_spectrum_file
-Spectrum read_absorption_file(const std::filesystem::path& file, const DiagnosticSink& sink = {});
+/// micrometres; percent) or a CSV with a header line. Units that the file states, in its header or in
+/// comments, are converted: of wavelengths (spectrum_units.hpp) and of values (value_scale.hpp); what it
+/// leaves open is noted. kAbsorption: in 1/m unless the file states another inverse length (in the column's
+/// name, or in a comment behind "abscoeff" or "absorption") or was written by RADIS, whose unit is 1/cm.
+/// throws InputError  "file:line: ..." (not a number, not finite, duplicate wavelength, order changes, no
+/// data ...),
+///                    units that the kind cannot have
+Spectrum read_spectrum_file(const std::filesystem::path& file, ValueKind kind = ValueKind::kPlain,
+                            const DiagnosticSink& sink = {});
 
 /// n and k of a material; k is absent where the file gives none.
 struct OpticalConstants {
@@ -43,6 +44,7 @@ OpticalConstants read_optical_constants(const std::filesystem::path& file, const
 /// MODIS table of band, detector, wavelength and response ("band31_detector1" ...). Units as in
 /// read_spectrum_file. throws InputError  "file:line: ..." as read_spectrum_file; names that are empty or
 /// repeated
-std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::filesystem::path& file);
+std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::filesystem::path& file,
+                                                                 const DiagnosticSink& sink = {});
 
 }  // namespace kiloband

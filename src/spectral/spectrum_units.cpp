@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "spectral/text_table.hpp"
+#include "spectral/value_units.hpp"
 
 namespace kiloband {
 namespace {
@@ -14,13 +15,9 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
     text.replace(at, from.size(), to);
 }
 
-/// Lower-case words; the ways to write micrometres and inverse centimetres made one.
+/// Lower-case words without units of power; the ways to write micrometres and inverse centimetres made one.
 std::vector<std::string> words(std::string_view text) {
-  std::string plain = lowered(text);
-  replace_all(plain, "\xC2\xB5m", "um");                 // UTF-8 micro sign
-  replace_all(plain, "\xCE\xBCm", "um");                 // UTF-8 Greek mu
-  replace_all(plain, "\xB5m", "um");                     // Latin-1 micro sign
-  replace_all(plain, "cm\xE2\x81\xBB\xC2\xB9", "cm-1");  // superscript minus one
+  std::string plain = lowered(without_power_units(text));
   replace_all(plain, "cm^-1", "cm-1");
   replace_all(plain, "1/cm", "cm-1");
   std::vector<std::string> result;
@@ -49,7 +46,18 @@ std::optional<WavelengthUnit> unit_of(const std::string& word) {
   constexpr std::array kWavenumbers = {"cm-1", "wavenumber", "wavenumbers"};
   if (is_one_of(word, kNm)) return WavelengthUnit::kNanometre;
   if (is_one_of(word, kUm)) return WavelengthUnit::kMicrometre;
+  constexpr std::array kAngstroms = {"angstrom", "angstroms", "ang"};
   if (is_one_of(word, kWavenumbers)) return WavelengthUnit::kWavenumber;
+  if (is_one_of(word, kAngstroms)) return WavelengthUnit::kAngstrom;
+  return std::nullopt;
+}
+
+/// Units that only the name of a column means: a comment may speak of a cell of 10 cm.
+std::optional<WavelengthUnit> long_unit_of(const std::string& word) {
+  constexpr std::array kMetres = {"m", "meter", "meters", "metre", "metres"};
+  if (word == "mm") return WavelengthUnit::kMillimetre;
+  if (word == "cm") return WavelengthUnit::kCentimetre;
+  if (is_one_of(word, kMetres)) return WavelengthUnit::kMetre;
   return std::nullopt;
 }
 
@@ -67,6 +75,14 @@ const char* unit_name(WavelengthUnit unit) {
       return "um";
     case WavelengthUnit::kWavenumber:
       return "cm-1";
+    case WavelengthUnit::kAngstrom:
+      return "angstrom";
+    case WavelengthUnit::kMillimetre:
+      return "mm";
+    case WavelengthUnit::kCentimetre:
+      return "cm";
+    case WavelengthUnit::kMetre:
+      return "m";
     default:
       return "nm";
   }
@@ -83,13 +99,37 @@ double to_nanometres(double value, WavelengthUnit unit) {
       return value * 1000;
     case WavelengthUnit::kWavenumber:
       return 1e7 / value;
+    case WavelengthUnit::kAngstrom:
+      return value / 10;
+    case WavelengthUnit::kMillimetre:
+      return value * 1e6;
+    case WavelengthUnit::kCentimetre:
+      return value * 1e7;
+    case WavelengthUnit::kMetre:
+      return value * 1e9;
     default:
       return value;
   }
 }
 
 std::optional<WavelengthUnit> find_unit(std::string_view text) {
-  return first_unit(words(text));
+  const std::vector<std::string> all = words(text);
+  if (const auto unit = first_unit(all)) return unit;
+  for (const std::string& word : all)
+    if (const auto unit = long_unit_of(word)) return unit;
+  return std::nullopt;
+}
+
+bool begins_with_unit(std::string_view text) {
+  const std::vector<std::string> all = words(text);
+  return !all.empty() && unit_of(all.front());
+}
+
+std::optional<std::string> find_foreign_unit(std::string_view text) {
+  constexpr std::array kForeign = {"hz", "khz", "mhz", "ghz", "thz", "ev", "mev", "kev"};
+  const std::vector<std::string> all = words(text);
+  const auto found = std::ranges::find_if(all, [&](const auto& word) { return is_one_of(word, kForeign); });
+  return found == all.end() ? std::nullopt : std::optional(*found);
 }
 
 std::optional<WavelengthUnit> find_unit_in_comment(std::string_view comment) {

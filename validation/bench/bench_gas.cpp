@@ -42,7 +42,7 @@ Gas comb() {
 }
 
 Gas from_file(const std::string& file) {
-  const Spectrum absorption = read_absorption_file(file);
+  const Spectrum absorption = read_spectrum_file(file, ValueKind::kAbsorption);
   const auto range = *absorption.data_range();
   return {std::filesystem::path(file).filename().string(), absorption, range.min_nm, range.max_nm};
 }

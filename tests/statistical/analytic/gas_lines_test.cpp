@@ -58,7 +58,7 @@ TEST_P(GasLines, MeasuredSpectraOfCoAndCo2) {
     const RenderResult result =
         render_valid(scene(4, straight_camera(2) + black_lamp(flat("radiance", kLamp)) + box), lines.bands,
                      GetParam(), {512, 43});
-    const Spectrum kappa = read_absorption_file(file);
+    const Spectrum kappa = read_spectrum_file(file, ValueKind::kAbsorption);
     std::vector<double> expected;
     for (const Channel& channel : result.scene.channels)
       expected.push_back(quadrature(kappa, channel, lines, kLamp));

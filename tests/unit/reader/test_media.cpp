@@ -79,7 +79,7 @@ TEST(SceneMedium, Plumes) {
 TEST(SceneMedium, FilesOfAbsorptionSayTheirUnit) {
   const TemporaryFolder folder;
   const auto at_4500 = [&](const std::string& text) {
-    return read_absorption_file(folder.write("gas.txt", text))(4500);
+    return read_spectrum_file(folder.write("gas.txt", text), ValueKind::kAbsorption)(4500);
   };
   EXPECT_DOUBLE_EQ(at_4500("4000 2\n5000 4\n"), 3);
   EXPECT_DOUBLE_EQ(at_4500("wavelength_nm,absorption (1/m)\n4000,2\n5000,4\n"), 3);

@@ -105,6 +105,29 @@ TEST(SceneSpectra, FilesAreReadAndMayExtrapolate) {
   EXPECT_EQ(read_one(object + R"(<boolean name="extrapolate" value="true"/></spectrum>)")(600), 0.3);
 }
 
+TEST(SceneSpectra, UnitsOfFilesFollowTheParameter) {
+  const TemporaryFolder folder;
+  folder.write("sun.csv", "wavelength_um,E (W/m2/um)\n0.4,1700\n0.8,1100\n");
+  folder.write("bare.csv", "400,1\n800,2\n");
+  const auto read_sun = [&](const std::string& file, std::vector<Diagnostic>& messages) {
+    ReadOptions options;
+    options.sink = [&](const Diagnostic& d) { messages.push_back(d); };
+    const std::string spectrum = "<spectrum name='irradiance' filename='" + file + "'/></emitter>";
+    const std::string light =
+        "<emitter type='directional'><vector name='direction' value='0 0 -1'/>" + spectrum;
+    return read_scene(folder.write("units.xml", scene(kSphere + kSensor + light + light)), options);
+  };
+  std::vector<Diagnostic> messages;
+  const auto& sun = std::get<DirectionalEmitter>(read_sun("sun.csv", messages).emitters.at(0).model);
+  EXPECT_DOUBLE_EQ(sun.irradiance(400), 1.7);
+  EXPECT_TRUE(messages.empty());
+  read_sun("bare.csv", messages);
+  ASSERT_EQ(messages.size(), 1u) << "once for two lights";
+  EXPECT_EQ(messages[0].severity, Severity::kNote);
+  EXPECT_EQ(messages[0].message,
+            "wavelengths are read as nm, values as W m^-2 nm^-1: the file states no units");
+}
+
 TEST(SceneSpectra, QuantitiesAboveOneMayBeColours) {
   const SceneDescription result = read(complete_scene(
       R"(<shape type="disk"><bsdf type="conductor"><rgb name="eta" value="0.2 0.9 1.2"/><rgb name="k" value="4"/></bsdf></shape>)"));

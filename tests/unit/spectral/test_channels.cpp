@@ -80,6 +80,17 @@ TEST(Channels, FileWithHeaderCommentsAndBlankLines) {
   EXPECT_EQ(channels[1].max_nm, 505.5);
 }
 
+TEST(Channels, FileInItsOwnUnit) {
+  const TemporaryFolder folder;
+  const auto first = [&](const std::string& text) {
+    return read_channels_file(folder.write("f.csv", text))[0];
+  };
+  EXPECT_EQ(first("min_um,max_um\n8,12\n").max_nm, 12000);
+  EXPECT_EQ(first("# wavelength in microns\n8,12\n").min_nm, 8000);
+  EXPECT_EQ(first("from (cm-1),to (cm-1)\n1000,1250\n").min_nm, 8000);
+  EXPECT_EQ(first("min,max\n8,12\n# the next one has 5 um\n12,13\n").max_nm, 12);
+}
+
 TEST(Channels, FileErrorsNameTheLine) {
   const TemporaryFolder folder;
   const std::pair<const char*, const char*> cases[] = {

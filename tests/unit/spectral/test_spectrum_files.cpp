@@ -9,7 +9,7 @@ namespace {
 
 Spectrum read_text(const std::string& content, std::vector<Diagnostic>* diagnostics = nullptr) {
   const TemporaryFolder folder;
-  return read_spectrum_file(folder.write("a.spd", content), [&](const Diagnostic& d) {
+  return read_spectrum_file(folder.write("a.spd", content), ValueKind::kPlain, [&](const Diagnostic& d) {
     if (diagnostics) diagnostics->push_back(d);
   });
 }
@@ -67,7 +67,8 @@ TEST(SpectrumFile, UnstatedMicrometresAreReadAsNanometresWithAWarning) {
   read_text("0.4 1\n14 2\n", &diagnostics);
   ASSERT_EQ(diagnostics.size(), 1u);
   EXPECT_EQ(diagnostics[0].message, "wavelengths up to 14 are read as nm: the file states no unit");
-  read_text("400 1\n800 2\n", &diagnostics);
+  EXPECT_EQ(diagnostics[0].severity, Severity::kWarning);
+  read_text("# nm\n400 1\n800 2\n", &diagnostics);
   EXPECT_EQ(diagnostics.size(), 1u);
 }
 
