@@ -1,16 +1,19 @@
 #include "film/exr_scan.hpp"
 
+#include <OpenEXR/ImfAttribute.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfVersion.h>
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
 #include "film/cube_layout.hpp"
+#include "film/cube_text.hpp"
 #include "film/exr_stream.hpp"
 
 namespace kiloband {
@@ -36,24 +39,44 @@ Number read_number(const InputFileBytes& file, ExrInputStream& stream) {
   return value;
 }
 
-/// Length of a zero-terminated name, which is skipped.
-std::size_t skip_name(const InputFileBytes& file, ExrInputStream& stream) {
+/// A zero-terminated name.
+std::string read_name(const InputFileBytes& file, ExrInputStream& stream) {
   constexpr std::size_t kLongest = 255;
-  for (std::size_t length = 0; length <= kLongest; ++length)
-    if (read_number<char>(file, stream) == 0) return length;
+  std::string name;
+  while (name.size() <= kLongest) {
+    const auto letter = read_number<char>(file, stream);
+    if (letter == 0) return name;
+    name += letter;
+  }
   damaged(file, "an attribute's name is too long");
+}
+
+/// OpenEXR goes on where a value of its type ends, wherever the stated size says: what follows would be taken
+/// for names and sizes of attributes that nobody has checked.
+void check_attribute_end(const InputFileBytes& file, ExrInputStream& stream, const std::string& name,
+                         const std::string& type, uint32_t size, int version) {
+  if (!Imf::Attribute::knownType(type.c_str())) return;
+  const uint64_t end = stream.tellg() + size;
+  const std::unique_ptr<Imf::Attribute> attribute(Imf::Attribute::newAttribute(type.c_str()));
+  attribute->readValueFrom(stream, static_cast<int>(size), version);
+  if (stream.tellg() != end)
+    damaged(file, "attribute '" + printable(name) + "' does not have the size that it states");
 }
 
 /// Walks over the attributes; returns the offset behind the header.
 uint64_t walk_header(const InputFileBytes& file, ExrInputStream& stream) {
   if (read_number<uint32_t>(file, stream) != kMagic) damaged(file, "it does not begin as one");
-  if (read_number<uint32_t>(file, stream) & kDeepOrMultiPart)
+  const auto version = read_number<uint32_t>(file, stream);
+  if (version & kDeepOrMultiPart)
     throw InputError(file.path().string() + ": deep and multi-part EXR files cannot be read as cubes");
-  while (skip_name(file, stream) > 0) {
-    skip_name(file, stream);  // type
+  Imf::staticInitialize();  // makes the types of attributes known
+  for (std::string name = read_name(file, stream); !name.empty(); name = read_name(file, stream)) {
+    const std::string type = read_name(file, stream);
     const auto size = read_number<uint32_t>(file, stream);
-    if (size > file.size() - stream.tellg()) damaged(file, "an attribute is larger than the file");
-    stream.seekg(stream.tellg() + size);
+    const uint64_t begin = stream.tellg();
+    if (size > file.size() - begin) damaged(file, "an attribute is larger than the file");
+    check_attribute_end(file, stream, name, type, size, static_cast<int>(version));
+    stream.seekg(begin + size);
   }
   return stream.tellg();
 }

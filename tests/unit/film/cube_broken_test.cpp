@@ -139,6 +139,10 @@ TEST_F(BrokenExr, Messages) {
   EXPECT_EQ(error(with_number(tiles, 0)), damaged + "tiles without pixels");
   EXPECT_EQ(error(with_number(tiles, 0x7FFFFFFF)), damaged + "tiles or blocks of lines are too large");
   EXPECT_EQ(error(with_number(window - 4, 0x7FFFFFFF)), damaged + "an attribute is larger than the file");
+  // Four bytes that are no part of a box of integers would be read as the next attribute's name.
+  std::string longer = with_number(window - 4, 20);
+  longer.insert(window + 16, "name");
+  EXPECT_EQ(error(longer), damaged + "attribute 'dataWindow' does not have the size that it states");
   // In the channel list a name is followed by its type (2: FLOAT), a flag and the two sampling rates.
   const std::size_t channel = good.find(std::string("S0.416,666667nm\0\2\0\0\0", 20));
   ASSERT_NE(channel, std::string::npos);
