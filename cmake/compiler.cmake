@@ -1,12 +1,18 @@
 # One set of flags for every target: SSE4.2 baseline, no contraction (results are to agree between back ends).
 # -Wrestrict is off: GCC 12 reports it for plain std::string concatenation (GCC bug 105651).
 add_library(kiloband_flags INTERFACE)
-target_compile_options(kiloband_flags INTERFACE -Wall -Wextra -Wshadow -Wno-missing-field-initializers -Wno-restrict -ffp-contract=off -msse4.2 -mpclmul -maes)
+target_compile_options(kiloband_flags INTERFACE -Wall -Wextra -Wshadow -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off -msse4.2 -mpclmul -maes)
 target_include_directories(kiloband_flags INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR})
 if(KILOBAND_SANITIZE)
   target_compile_options(kiloband_flags INTERFACE -fsanitize=${KILOBAND_SANITIZE} -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer)
   target_link_options(kiloband_flags INTERFACE -fsanitize=${KILOBAND_SANITIZE})
+endif()
+if(KILOBAND_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "KILOBAND_FUZZ needs clang: configure with the preset fuzz")
+  endif()
+  target_compile_options(kiloband_flags INTERFACE -fsanitize=fuzzer-no-link)  # counts which code an input reaches
 endif()
 
 # kiloband_library(name SOURCES ... DEPENDS ...): a static library with the project's flags.

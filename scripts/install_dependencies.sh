@@ -9,7 +9,8 @@ build=(g++ cmake ninja-build pkg-config git ca-certificates
   libembree-dev libtbb-dev libopenexr-dev libopenimageio-dev openimageio-tools libglm-dev libpugixml-dev zlib1g-dev libyaml-cpp-dev
   libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev libboost-dev libboost-math-dev
   opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev)
-tests=(libgtest-dev libbenchmark-dev clang pocl-opencl-icd oclgrind gdal-bin python3-matplotlib)
+# libclang-rt-dev: libFuzzer and the sanitizers of clang; llvm: names of functions in their reports.
+tests=(libgtest-dev libbenchmark-dev clang libclang-rt-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib)
 
 packages=("${build[@]}")
 case "${1:-test}" in

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs all tests.
+# Installs what is missing, builds everything and runs all tests; with the preset release also a minute of fuzzing.
 # Usage: scripts/test.sh [preset]   (release by default; dev, asan, tsan: see CMakePresets.json)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,3 +11,4 @@ case "$preset" in asan | tsan) bench=OFF ;; esac
 cmake --preset "$preset" -DKILOBAND_TESTS=ON -DKILOBAND_BENCH="$bench"
 cmake --build --preset "$preset"
 ctest --preset "$preset" --parallel "$(nproc)"
+if [ "$preset" = release ]; then scripts/fuzz.sh 60; fi
