@@ -1,10 +1,10 @@
 // The files that the zoo's scenes name.
 #include <unistd.h>
 
-#include <atomic>
 #include <cmath>
 #include <fstream>
 
+#include "base/temporary_folder.hpp"
 #include "scene/reader.hpp"
 #include "tests/support/cube_files.hpp"
 #include "tests/support/scene_zoo.hpp"
@@ -103,11 +103,7 @@ std::string plume_nodes() {
 
 }  // namespace
 
-ZooFolder::ZooFolder() {
-  static std::atomic<int> count{0};
-  path_ = fs::temp_directory_path() /
-          ("kiloband_zoo_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-  fs::create_directories(path_);
+ZooFolder::ZooFolder() : path_(make_temporary_folder("kiloband_zoo")) {
   write_picture(path_ / "colours.ppm", 7, 5, 3, colours(7, 5, 3));
   write_picture(path_ / "grey.pgm", 6, 6, 1, colours(6, 6, 1));
   write_sky(path_ / "sky.pfm");

@@ -1,10 +1,7 @@
 // A folder of its own for a test.
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -12,17 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "base/temporary_folder.hpp"
+
 namespace kiloband::test {
 
 /// A new folder, removed with its contents at the end.
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    static std::atomic<int> count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("kiloband_test_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
+  TemporaryFolder() : path_(make_temporary_folder("kiloband_test")) {}
   ~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::permissions(path_, std::filesystem::perms::owner_all, ignored);

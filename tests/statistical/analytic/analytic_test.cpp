@@ -1,14 +1,13 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <sstream>
+
+#include "base/temporary_folder.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -139,12 +138,7 @@ std::string plane_sensor(uint32_t size) {
          "</sensor>";
 }
 
-TemporaryFolder::TemporaryFolder() {
-  static std::atomic<int> count{0};
-  path_ = std::filesystem::temp_directory_path() /
-          ("kiloband_analytic_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-  std::filesystem::create_directories(path_);
-}
+TemporaryFolder::TemporaryFolder() : path_(make_temporary_folder("kiloband_analytic")) {}
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;

@@ -10,12 +10,12 @@
 // difference (15 to 30). A difference of 9 standard errors is then detected with probability 0.99; each test
 // states what that is.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "base/temporary_folder.hpp"
 #include "box_scene.hpp"
 #include "tests/support/render_harness.hpp"
 
@@ -151,8 +151,7 @@ TEST(ChannelsWithoutGuide, AgreeInTheMean) {
 class DispersiveChannels : public ::testing::Test {
  protected:
   DispersiveChannels() {
-    directory_ = std::filesystem::temp_directory_path() / ("kiloband_channels_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(directory_);
+    directory_ = make_temporary_folder("kiloband_channels");
     std::ofstream(directory_ / "flint.txt") << "400 1.85\n500 1.80\n600 1.78\n700 1.77\n";
   }
   ~DispersiveChannels() override { std::filesystem::remove_all(directory_); }

@@ -1,11 +1,11 @@
 // Scenes in which paths could live for ever or values leave the range of floats: none may produce an invalid
 // sample.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
 
+#include "base/temporary_folder.hpp"
 #include "tests/support/render_harness.hpp"
 
 namespace kiloband::test {
@@ -15,10 +15,7 @@ namespace {
 class HardScenes : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("kiloband_hard_" + std::to_string(getpid()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
+    folder_ = make_temporary_folder("kiloband_hard");
     const char texels[] = "P6\n2 2\n255\n\x20\x20\x60\x60\x20\x20\x20\x60\x20\xff\xff\xff";
     std::ofstream(folder_ / "picture.ppm", std::ios::binary).write(texels, sizeof texels - 1);
     spec_.directory = folder_;

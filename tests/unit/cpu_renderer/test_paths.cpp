@@ -1,11 +1,11 @@
 // What the film holds is what the saved paths say; and the modes estimate the same thing.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "base/temporary_folder.hpp"
 #include "room_scene.hpp"
 #include "src_cpu/evaluator.hpp"
 #include "src_cpu/path_tracer.hpp"
@@ -105,9 +105,7 @@ TEST(SavedPaths, SumToTheFilm) {
 }
 
 TEST(SavedPaths, SumToTheFilmWithDispersion) {
-  const auto directory =
-      std::filesystem::temp_directory_path() / ("kiloband_renderer_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(directory);
+  const auto directory = make_temporary_folder("kiloband_renderer");
   std::ofstream(directory / "flint.txt") << "500 1.80\n550 1.79\n600 1.78\n";
   const auto ball = [](const char* type, const char* x) {
     return std::string("<shape type=\"sphere\"><point name=\"center\" x=\"") + x +

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 
+#include "base/temporary_folder.hpp"
 #include "src_gpu/program.hpp"
 
 namespace kiloband::gpu::test {
@@ -17,12 +17,9 @@ class CacheFolder {
  public:
   CacheFolder() {
     list_devices();  // PoCL chooses the folder of its own cache now: one that stays
-    static int counter = 0;
     const char* value = std::getenv("XDG_CACHE_HOME");
     if (value) before_ = value;
-    path_ = std::filesystem::temp_directory_path() /
-            ("kiloband-gpu-host-" + std::to_string(getpid()) + "-" + std::to_string(counter++));
-    std::filesystem::create_directories(path_);
+    path_ = make_temporary_folder("kiloband_gpu_host");
     setenv("XDG_CACHE_HOME", path_.c_str(), 1);
   }
   ~CacheFolder() {

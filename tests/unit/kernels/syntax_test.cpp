@@ -1,14 +1,13 @@
 // The kernels are OpenCL C 1.2 for any device: compiled for spir64 with all warnings as errors, general and
 // with each feature left out.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace {
 
@@ -18,18 +17,15 @@ const fs::path kKernels = fs::path(KILOBAND_SOURCE_DIR) / "kernels";
 
 /// Compiles a kernel file (what a left-out feature reads is then an unused parameter); returns the compiler's messages, empty if there are none.
 std::string compile(const fs::path& file, const std::string& options) {
-  const fs::path log = fs::temp_directory_path() / ("kiloband_kernel_" + std::to_string(getpid()) + ".log");
+  const kiloband::test::TemporaryFolder folder;
   const std::string command =
       std::string(KILOBAND_CLANG) +
       " -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -Wall -Wextra -Werror"
-      " -Wno-unused-function -Wno-unused-parameter -fsyntax-only '-I" KILOBAND_SOURCE_DIR "/kernels' '-I" KILOBAND_SOURCE_DIR
-      "/src' " +
-      options + " '" + file.string() + "' 2> '" + log.string() + "'";
+      " -Wno-unused-function -Wno-unused-parameter -fsyntax-only '-I" KILOBAND_SOURCE_DIR
+      "/kernels' '-I" KILOBAND_SOURCE_DIR "/src' " +
+      options + " '" + file.string() + "' 2> '" + (folder / "log").string() + "'";
   const int status = std::system(command.c_str());
-  std::ostringstream text;
-  text << std::ifstream(log).rdbuf();
-  fs::remove(log);
-  return status == 0 ? "" : text.str() + "(status " + std::to_string(status) + ")";
+  return status == 0 ? "" : folder.read("log") + "(status " + std::to_string(status) + ")";
 }
 
 std::vector<fs::path> kernel_files(const std::string& extension) {
@@ -77,10 +73,10 @@ TEST(KernelSyntax, TheMethodPtCompiles) {
 
 /// The check itself can fail.
 TEST(KernelSyntax, MistakesAreFound) {
-  const fs::path file = fs::temp_directory_path() / ("kiloband_mistake_" + std::to_string(getpid()) + ".cl");
-  std::ofstream(file) << "__kernel void f(__global float* x) { x[0] = undeclared; }\n";
+  const kiloband::test::TemporaryFolder folder;
+  const fs::path file =
+      folder.write("mistake.cl", "__kernel void f(__global float* x) { x[0] = undeclared; }\n");
   EXPECT_NE(compile(file, "").find("undeclared"), std::string::npos);
-  fs::remove(file);
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 #include "render/session.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 
+#include "base/temporary_folder.hpp"
 #include "film/cube_io.hpp"
 #include "render/checkpoint.hpp"
 #include "scene/reader.hpp"
@@ -23,10 +23,7 @@ constexpr uint32_t kSize = 72;  // more than two blocks, the last clipped
 class SessionTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("kiloband_session_" + std::to_string(getpid()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
+    folder_ = make_temporary_folder("kiloband_session");
     const std::string xml =
         "<scene version=\"3.0.0\">" + test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSize) +
         "<shape type=\"sphere\"/><emitter type=\"point\"><spectrum name=\"intensity\" value=\"400:1, "

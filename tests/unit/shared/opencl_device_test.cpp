@@ -6,7 +6,6 @@
 // known.
 #include <CL/cl.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/temporary_folder.hpp"
 #include "tests/unit/shared/opencl_probe.h"
 
 namespace {
@@ -45,8 +45,7 @@ Results host_results() {
 class OpenClDevice : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    cache_ = std::filesystem::temp_directory_path() / ("kiloband_pocl_" + std::to_string(getpid()));
-    std::filesystem::create_directories(cache_);
+    cache_ = kiloband::make_temporary_folder("kiloband_pocl");
     setenv("POCL_CACHE_DIR", cache_.c_str(), 1);
     setenv("POCL_WORK_GROUP_METHOD", "loops", 0);
   }

@@ -1,7 +1,6 @@
 // Every header of src/shared compiles as OpenCL C 1.2, without a warning. Checked with clang, which needs no
 // device.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -9,16 +8,15 @@
 #include <sstream>
 #include <string>
 
+#include "base/temporary_folder.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 
 class OpenClSyntax : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("kiloband_opencl_syntax_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
+  void SetUp() override { folder_ = kiloband::make_temporary_folder("kiloband_opencl_syntax"); }
   void TearDown() override { fs::remove_all(folder_); }
 
   // Compiles a file that holds `text`; returns the compiler's status and its messages.

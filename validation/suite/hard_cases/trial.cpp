@@ -1,12 +1,12 @@
 #include "validation/suite/hard_cases/trial.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 
+#include "base/temporary_folder.hpp"
 #include "scene/reader.hpp"
 #include "shared/sampler.h"
 #include "src_cpu/evaluator.hpp"
@@ -209,11 +209,7 @@ std::vector<HardFigure> Trial::finish() {
   return std::move(figures_);
 }
 
-ScratchFolder::ScratchFolder() {
-  static std::atomic<int> count{0};
-  path_ = std::filesystem::temp_directory_path() / fmt::format("kiloband_hard_{}_{}", ::getpid(), count++);
-  std::filesystem::create_directories(path_);
-}
+ScratchFolder::ScratchFolder() : path_(make_temporary_folder("kiloband_hard")) {}
 
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
