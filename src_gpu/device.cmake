@@ -17,4 +17,4 @@ add_custom_command(
 kiloband_library(kiloband_opencl
   SOURCES context.cpp device.cpp errors.cpp kernel.cpp kernel_sources.cpp memory.cpp program.cpp program_cache.cpp
           ${embedded_kernels}
-  DEPENDS kiloband_base OpenCL::OpenCL OpenCL::HeadersCpp)
+  DEPENDS kiloband_base kiloband_film OpenCL::OpenCL OpenCL::HeadersCpp)

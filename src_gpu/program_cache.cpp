@@ -1,14 +1,14 @@
 #include "src_gpu/program_cache.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <string_view>
+
+#include "base/error.hpp"
+#include "film/atomic_file.hpp"
 
 namespace kiloband::gpu {
 namespace {
@@ -48,23 +48,6 @@ bool make_folder(const fs::path& folder) {
   if (folder.has_parent_path() && folder.parent_path() != folder && !make_folder(folder.parent_path()))
     return false;
   return mkdir(folder.c_str(), 0700) == 0 || fs::is_directory(folder, error);
-}
-
-bool write_all(int file, const void* data, std::size_t size) {
-  const char* next = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t written = write(file, next, size);
-    if (written <= 0) return false;
-    next += written;
-    size -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
-/// Beside the target, of this process and call alone.
-fs::path temporary_name(const fs::path& folder) {
-  static std::atomic<uint64_t> counter = 0;
-  return folder / (".kiloband-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".partial");
 }
 
 /// What an environment variable says, if it is an absolute path.
@@ -117,14 +100,13 @@ std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& 
 
 void ProgramCache::save(const std::string& key, const std::vector<unsigned char>& binary) const {
   if (folder_.empty() || binary.empty() || !make_folder(folder_)) return;
-  const fs::path temporary = temporary_name(folder_);
-  const int out = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (out < 0) return;
-  const std::string header = header_of(key, binary);
-  const bool written =
-      write_all(out, header.data(), header.size()) && write_all(out, binary.data(), binary.size());
-  if (close(out) != 0 || !written || rename(temporary.c_str(), file(key).c_str()) != 0)
-    unlink(temporary.c_str());
+  std::string text = header_of(key, binary);
+  text.append(reinterpret_cast<const char*>(binary.data()), binary.size());
+  try {
+    write_file_atomically(file(key), text);
+  } catch (const DeviceError&) {
+    // A program that is not kept is compiled again.
+  }
 }
 
 }  // namespace kiloband::gpu

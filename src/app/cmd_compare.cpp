@@ -10,7 +10,9 @@
 #include "app/compare_input.hpp"
 #include "app/compare_report.hpp"
 #include "app/messages.hpp"
+#include "app/output_files.hpp"
 #include "app/render_options.hpp"
+#include "app/standard_output.hpp"
 #include "base/error.hpp"
 #include "film/atomic_file.hpp"
 
@@ -168,10 +170,20 @@ stats::Comparison compare_independent(const CompareSide& a, const CompareSide& b
   return result;
 }
 
+/// Either side may be several files: FILE,FILE,...
+OutputFiles output_files(const CompareOptions& o) {
+  OutputFiles files;
+  for (const SideOptions* side : {&o.a, &o.b}) {
+    for (const std::string& file : split_files(side->files)) files.inputs.push_back({side->name, file});
+  }
+  if (o.json) files.others.push_back({"--json", *o.json});
+  return files;
+}
+
 int compare(const CompareOptions& o) {
   const DiagnosticSink sink = print_diagnostics(false);
   check_values(o);
-  if (o.json) const AtomicFile trial(*o.json);  // its temporary file vanishes at once
+  check_output_files(output_files(o));
   const CompareSide a(o.a, sink), b(o.b, sink);
   check_sides(o, a, b);
   warn_of_equal_seeds(o, a, b, sink);
@@ -189,9 +201,8 @@ int compare(const CompareOptions& o) {
         compare_replicates(exact ? stats::Kind::kTruth : stats::Kind::kPaired, a, b, options, report);
   else
     report.result = compare_independent(a, b, options, report);
-  const std::string text = compare_text(report);
-  std::fwrite(text.data(), 1, text.size(), stdout);
   if (o.json) write_file_atomically(*o.json, compare_json(report));
+  answer_text(compare_text(report));
   return report.result.passed ? kDone : kFailed;
 }
 

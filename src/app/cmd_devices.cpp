@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/commands.hpp"
+#include "app/standard_output.hpp"
 #include "src_gpu/device.hpp"
 
 namespace kiloband {
@@ -19,12 +20,12 @@ void print_table(const std::vector<gpu::DeviceInfo>& devices) {
     name = std::max(name, device.name.size());
     platform = std::max(platform, device.platform.size());
   }
-  fmt::print("{:>5}  {:<{}}  {:<11}  {:<{}}  {:>5}  {:>11}\n", "index", "name", name, "type", "platform",
-             platform, "units", "memory");
+  answer("{:>5}  {:<{}}  {:<11}  {:<{}}  {:>5}  {:>11}\n", "index", "name", name, "type", "platform",
+         platform, "units", "memory");
   for (const gpu::DeviceInfo& device : devices) {
-    fmt::print("{:>5}  {:<{}}  {:<11}  {:<{}}  {:>5}  {:>7.1f} GiB\n", device.index, device.name, name,
-               to_string(device.type), device.platform, platform, device.compute_units,
-               gibibytes(device.global_memory));
+    answer("{:>5}  {:<{}}  {:<11}  {:<{}}  {:>5}  {:>7.1f} GiB\n", device.index, device.name, name,
+           to_string(device.type), device.platform, platform, device.compute_units,
+           gibibytes(device.global_memory));
   }
 }
 
@@ -32,7 +33,7 @@ void print_table(const std::vector<gpu::DeviceInfo>& devices) {
 int devices() {
   const std::vector<gpu::DeviceInfo> found = gpu::list_devices();
   if (found.empty()) {
-    fmt::print(
+    answer(
         "no OpenCL device\n"
         "For a GPU install its vendor's OpenCL driver, for a processor PoCL (Debian: pocl-opencl-icd).\n"
         "Rendering on the CPU (--backend cpu) needs none.\n");

@@ -6,6 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/render_options.hpp"
+#include "app/standard_output.hpp"
 #include "film/spectral_film.hpp"
 #include "render/session.hpp"
 #include "scene/flat_scene.hpp"
@@ -33,11 +34,11 @@ const char* name_of_material(uint32_t type) {
 
 void print_channels(const LoadedScene& loaded) {
   const Channel range = hull(loaded.channels);
-  fmt::print("channels     {} from {:g} to {:g} nm\n", loaded.channels.size(), range.min_nm, range.max_nm);
+  answer("channels     {} from {:g} to {:g} nm\n", loaded.channels.size(), range.min_nm, range.max_nm);
   const Channel guide = hull(loaded.guide);
-  fmt::print("guide bands  {} from {:g} to {:g} nm\n", loaded.guide.size(), guide.min_nm, guide.max_nm);
+  answer("guide bands  {} from {:g} to {:g} nm\n", loaded.guide.size(), guide.min_nm, guide.max_nm);
   for (const auto& [name, response] : loaded.description.sensor.film.responses)
-    fmt::print("response     {}\n", name);
+    answer("response     {}\n", name);
 }
 
 const char* name_of_medium(uint32_t type) {
@@ -46,41 +47,40 @@ const char* name_of_medium(uint32_t type) {
 }
 
 void print_media(const FlatScene& scene) {
-  fmt::print("media        {}\n", scene.media.size());
+  answer("media        {}\n", scene.media.size());
   for (std::size_t m = 0; m < scene.media.size(); ++m) {
     const KbMedium& medium = scene.media[m];
     std::size_t knots = 0;
     if (medium.row != KB_NONE) knots = scene.spectra[medium.row].absorption->mu.size();
-    fmt::print("  {:<16} {}{}{}, {} points of absorption in all channels\n", name_of_medium(medium.type),
-               scene.medium_names[m], m == scene.atmosphere ? ", the atmosphere" : "",
-               medium.emit_row == KB_NONE ? "" : fmt::format(", up to {:g} K", medium.reference_k), knots);
+    answer("  {:<16} {}{}{}, {} points of absorption in all channels\n", name_of_medium(medium.type),
+           scene.medium_names[m], m == scene.atmosphere ? ", the atmosphere" : "",
+           medium.emit_row == KB_NONE ? "" : fmt::format(", up to {:g} K", medium.reference_k), knots);
   }
 }
 
 void print_contents(const FlatScene& scene) {
-  fmt::print("shapes       {} ({} triangles, {} vertices)\n", scene.shapes.size(), scene.triangles.size() / 3,
-             scene.positions.size() - 1);
-  fmt::print("bsdfs        {}\n", scene.materials.size());
+  answer("shapes       {} ({} triangles, {} vertices)\n", scene.shapes.size(), scene.triangles.size() / 3,
+         scene.positions.size() - 1);
+  answer("bsdfs        {}\n", scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    fmt::print("  {:<16} {}\n", name_of_material(scene.materials[m].type), scene.material_names[m]);
+    answer("  {:<16} {}\n", name_of_material(scene.materials[m].type), scene.material_names[m]);
   }
-  fmt::print("emitters     {}\n", scene.emitters.size());
+  answer("emitters     {}\n", scene.emitters.size());
   for (std::size_t e = 0; e < scene.emitters.size(); ++e) {
     const std::string& name = scene.emitter_names[e];
-    fmt::print("  {:<16} {}selected with probability {:.3g}\n", name_of(scene.emitters[e].type),
-               name.empty() ? "" : name + ", ", scene.emitters[e].select_pdf);
+    answer("  {:<16} {}selected with probability {:.3g}\n", name_of(scene.emitters[e].type),
+           name.empty() ? "" : name + ", ", scene.emitters[e].select_pdf);
   }
   std::size_t entries = 0;
   for (const SpectrumRow& row : scene.spectra) entries += row.table.values.size();
-  fmt::print("spectra      {} ({} table entries)\n", scene.spectra.size(), entries);
+  answer("spectra      {} ({} table entries)\n", scene.spectra.size(), entries);
   if (scene.features.gas) print_media(scene);
-  fmt::print("textures     {} ({} texels)\n", scene.textures.size(), scene.texel_bounds.size());
+  answer("textures     {} ({} texels)\n", scene.textures.size(), scene.texel_bounds.size());
   std::size_t values = 0;
   for (const SpectralTexels& texels : scene.spectral_texels) values += texels ? texels->size() : 0;
   if (values > 0)
-    fmt::print("spectral     {:.1f} MiB of bands and weights\n",
-               mebibytes(4.0 * static_cast<double>(values)));
-  fmt::print("features     {}\n", fmt::join(scene.features.names(), ", "));
+    answer("spectral     {:.1f} MiB of bands and weights\n", mebibytes(4.0 * static_cast<double>(values)));
+  answer("features     {}\n", fmt::join(scene.features.names(), ", "));
 }
 
 void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples) {
@@ -91,11 +91,11 @@ void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples)
     options.parts = replicates_in_parts(samples, options.replicates);
     return mebibytes(pixels * static_cast<double>(SpectralFilm::bytes_per_pixel(options)));
   };
-  fmt::print("image        {} x {} pixels\n", scene.film.crop_width, scene.film.crop_height);
-  fmt::print("film         {:.1f} MiB, with variance {:.1f} MiB (beyond 1024 MiB strips are streamed)\n",
-             film(false), film(true));
-  fmt::print("path vertex  {} bytes; textured values: {} bytes each, stored two to a {}-byte slot\n",
-             sizeof(KbPathVertex), sizeof(KbTextureSample), 2 * sizeof(KbTextureSample));
+  answer("image        {} x {} pixels\n", scene.film.crop_width, scene.film.crop_height);
+  answer("film         {:.1f} MiB, with variance {:.1f} MiB (beyond 1024 MiB strips are streamed)\n",
+         film(false), film(true));
+  answer("path vertex  {} bytes; textured values: {} bytes each, stored two to a {}-byte slot\n",
+         sizeof(KbPathVertex), sizeof(KbTextureSample), 2 * sizeof(KbTextureSample));
 }
 
 /// Vertices of the longest path: the last of max_depth segments ends on a light. Unlimited depth: as an
@@ -117,22 +117,22 @@ void print_path_memory(const FlatScene& scene) {
       gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots, scene.features);
   const uint64_t dpept =
       gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots, scene.features);
-  fmt::print(
+  answer(
       "opencl path  pt {} bytes with {} channels; dpept-path, dpept-batch {} bytes with {} vertices of {} "
       "bytes\n",
       pt, scene.channels.size(), dpept, vertices, slots * sizeof(KbPathVertex));
-  fmt::print("opencl pool  paths      pt MiB   dpept MiB\n");
+  answer("opencl pool  paths      pt MiB   dpept MiB\n");
   for (const uint64_t edge : {256, 512, 1024, 2048}) {
     const double paths = static_cast<double>(edge) * static_cast<double>(edge);
-    fmt::print("             {:>4}^2 {:>10.1f} {:>11.1f}\n", edge, mebibytes(paths * static_cast<double>(pt)),
-               mebibytes(paths * static_cast<double>(dpept)));
+    answer("             {:>4}^2 {:>10.1f} {:>11.1f}\n", edge, mebibytes(paths * static_cast<double>(pt)),
+           mebibytes(paths * static_cast<double>(dpept)));
   }
 }
 
 void print_family(const char* title, const std::vector<BuiltInMaterial>& materials) {
-  fmt::print("{:<14}{:>9} {:>9}  substance; source\n", title, "from nm", "to nm");
+  answer("{:<14}{:>9} {:>9}  substance; source\n", title, "from nm", "to nm");
   for (const BuiltInMaterial& m : materials)
-    fmt::print("  {:<12}{:>9.1f} {:>9.0f}  {}; {}\n", m.name, m.min_nm, m.max_nm, m.substance, m.source);
+    answer("  {:<12}{:>9.1f} {:>9.0f}  {}; {}\n", m.name, m.min_nm, m.max_nm, m.substance, m.source);
 }
 
 int print_materials() {
@@ -147,15 +147,15 @@ int info(const SceneOptions& options) {
   check_scene_file(options.scene);
   const LoadedScene loaded = load_scene(options, sink);
   const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
-  fmt::print("scene        {}\n", options.scene);
+  answer("scene        {}\n", options.scene);
   print_contents(scene);
   print_channels(loaded);
   print_memory(scene, loaded.description.sensor.film.responses.size(),
                loaded.description.sensor.sample_count);
   print_path_memory(scene);
   const Integrator& integrator = scene.integrator;
-  fmt::print("integrator   max_depth {}, rr_depth {}, {} samples per pixel\n", integrator.max_depth,
-             integrator.rr_depth, loaded.description.sensor.sample_count);
+  answer("integrator   max_depth {}, rr_depth {}, {} samples per pixel\n", integrator.max_depth,
+         integrator.rr_depth, loaded.description.sensor.sample_count);
   return kDone;
 }
 

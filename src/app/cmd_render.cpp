@@ -17,6 +17,7 @@
 #include "app/render_options.hpp"
 #include "app/render_statistics.hpp"
 #include "app/sampling_options.hpp"
+#include "app/stop_signals.hpp"
 #include "film/atomic_file.hpp"
 #include "render/checkpoint.hpp"
 #include "render/scene_metadata.hpp"
@@ -42,9 +43,10 @@ constexpr uint32_t kReplicates = 16;  // unless --replicates says otherwise
 /// The scene is not needed for these; reading it may take long.
 OutputFiles output_files(const RenderOptions& options) {
   OutputFiles files;
-  files.scene = options.scene.scene;
+  files.inputs = {{"the scene", options.scene.scene}};
   for (const std::string& output : options.outputs) files.cubes.emplace_back(output);
-  if (files.cubes.empty()) files.cubes.push_back(files.scene->stem().string() + ".exr");
+  if (files.cubes.empty())
+    files.cubes.push_back(std::filesystem::path(options.scene.scene).stem().string() + ".exr");
   files.preview = options.preview;
   files.stats = options.stats;
   files.checkpoint = options.checkpoint;

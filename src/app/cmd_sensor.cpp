@@ -6,6 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/messages.hpp"
+#include "app/output_files.hpp"
 #include "app/render_options.hpp"
 #include "app/signature_options.hpp"
 #include "film/convert.hpp"
@@ -75,9 +76,22 @@ void write_picture(const SensorOptions& o, const std::vector<NamedResponse>& res
   write_png(*o.png, cube->info().width, cube->info().height, rgb);
 }
 
+OutputFiles output_files(const SensorOptions& o) {
+  OutputFiles files;
+  for (const std::string& out : o.outputs) {
+    if (is_table(out))
+      files.others.push_back({"-o", out});
+    else
+      files.cubes.emplace_back(out);
+  }
+  if (o.png) files.others.push_back({"--png", *o.png});
+  return files;
+}
+
 int sensor(const SensorOptions& o) {
   const DiagnosticSink sink = print_diagnostics(false);
   check_options(o);
+  check_output_files(output_files(o));
   check_holds_radiances(o.cube, open_cube(o.cube)->info());
   const std::vector<NamedResponse> responses = load_responses(o.responses, sink);
   if (!responses.empty()) apply_responses(open_cube(o.cube, sink), responses);  // errors before warnings

@@ -11,6 +11,7 @@
 #include "app/messages.hpp"
 #include "app/render_options.hpp"
 #include "app/sampling_options.hpp"
+#include "app/standard_output.hpp"
 #include "render/traced_path.hpp"
 
 namespace kiloband {
@@ -52,32 +53,32 @@ std::string spectrum_name(const FlatScene& scene, uint32_t row, bool textured) {
 
 void print_hit(const FlatScene& scene, const std::string& what, const TracedHit& hit) {
   if (hit.shape == KB_NONE) {
-    fmt::print("{:<10} leaves the scene\n", what);
+    answer("{:<10} leaves the scene\n", what);
     return;
   }
-  fmt::print("{:<10} shape {} ({}) triangle {}  t {:.9g}  u {:.9g}  v {:.9g}\n", what, hit.shape,
-             scene.shape_names[hit.shape], hit.primitive, hit.t, hit.u, hit.v);
+  answer("{:<10} shape {} ({}) triangle {}  t {:.9g}  u {:.9g}  v {:.9g}\n", what, hit.shape,
+         scene.shape_names[hit.shape], hit.primitive, hit.t, hit.u, hit.v);
 }
 
 void print_gas(const FlatScene& scene, const KbPathVertex& v) {
-  fmt::print("vertex     gas, {}\n", spectrum_name(scene, v.row_a, false));
+  answer("vertex     gas, {}\n", spectrum_name(scene, v.row_a, false));
   if (v.head & KB_VERTEX_NEE) {
-    fmt::print("  light    through a column of {:.9g} m\n", v.nee0);
+    answer("  light    through a column of {:.9g} m\n", v.nee0);
     return;
   }
   if (v.head & KB_VERTEX_DEFER) {
-    fmt::print("  column   {:.9g} m in front of the next vertex's emission\n", v.scatter0);
+    answer("  column   {:.9g} m in front of the next vertex's emission\n", v.scatter0);
     return;
   }
-  fmt::print("  column   {:.9g} m\n", v.scatter0);
+  answer("  column   {:.9g} m\n", v.scatter0);
   const uint32_t cells = v.head >> KB_VERTEX_MATERIAL_SHIFT;
-  if (v.head & KB_VERTEX_EMIT) fmt::print("  emission of {}\n", spectrum_name(scene, v.emit_row, false));
+  if (v.head & KB_VERTEX_EMIT) answer("  emission of {}\n", spectrum_name(scene, v.emit_row, false));
   if (cells == 0) return;
-  fmt::print("  cells    {}, from {:.9g} K\n", cells, v.nee0);
+  answer("  cells    {}, from {:.9g} K\n", cells, v.nee0);
   for (uint32_t i = 0; i < cells; ++i) {
     KbPlumeCell cell;
     std::memcpy(&cell, reinterpret_cast<const char*>(&v + 1) + i * sizeof cell, sizeof cell);
-    fmt::print("    {:.9g} m to {:.9g} K\n", cell.column, cell.temperature_k);
+    answer("    {:.9g} m to {:.9g} K\n", cell.column, cell.temperature_k);
   }
 }
 
@@ -86,28 +87,28 @@ void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
   const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
   if (kind == KB_KIND_MEDIUM) return print_gas(scene, v);
   const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
-  fmt::print("vertex     {}", name_of_kind(kind));
+  answer("vertex     {}", name_of_kind(kind));
   const uint32_t material = v.head >> KB_VERTEX_MATERIAL_SHIFT;
   const bool reflects = v.head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
-  if (reflects && material < scene.material_names.size()) fmt::print(" '{}'", scene.material_names[material]);
-  fmt::print("\n");
+  if (reflects && material < scene.material_names.size()) answer(" '{}'", scene.material_names[material]);
+  answer("\n");
   if (v.head & KB_VERTEX_EMIT) {
-    fmt::print("  emission weight {:.9g} of {}\n", v.emit_weight,
-               spectrum_name(scene, v.emit_row, v.head & KB_VERTEX_TEX_EMIT));
+    answer("  emission weight {:.9g} of {}\n", v.emit_weight,
+           spectrum_name(scene, v.emit_row, v.head & KB_VERTEX_TEX_EMIT));
   }
   if (reflects) {
-    fmt::print("  factors  {}{}\n", spectrum_name(scene, v.row_a, v.head & KB_VERTEX_TEX_A),
-               two ? ", " + spectrum_name(scene, v.row_b, v.head & KB_VERTEX_TEX_B) : "");
+    answer("  factors  {}{}\n", spectrum_name(scene, v.row_a, v.head & KB_VERTEX_TEX_A),
+           two ? ", " + spectrum_name(scene, v.row_b, v.head & KB_VERTEX_TEX_B) : "");
   }
   if (v.head & KB_VERTEX_NEE) {
-    fmt::print("  light    weights {:.9g} {:.9g} of {}{}\n", v.nee0, v.nee1,
-               spectrum_name(scene, v.nee_row, v.head & KB_VERTEX_TEX_NEE),
-               v.head & KB_VERTEX_DEFER ? ", through gas" : "");
+    answer("  light    weights {:.9g} {:.9g} of {}{}\n", v.nee0, v.nee1,
+           spectrum_name(scene, v.nee_row, v.head & KB_VERTEX_TEX_NEE),
+           v.head & KB_VERTEX_DEFER ? ", through gas" : "");
   }
   if (v.head & KB_VERTEX_DEGRADE) {
-    fmt::print("  scatter  weight {:.9g}, only channel {} goes on\n", v.scatter0, kb_as_u32(v.scatter1));
+    answer("  scatter  weight {:.9g}, only channel {} goes on\n", v.scatter0, kb_as_u32(v.scatter1));
   } else if (v.head & KB_VERTEX_SCATTER) {
-    fmt::print("  scatter  weights {:.9g} {:.9g}\n", v.scatter0, v.scatter1);
+    answer("  scatter  weights {:.9g} {:.9g}\n", v.scatter0, v.scatter1);
   }
 }
 
@@ -118,9 +119,8 @@ void print_path(const FlatScene& scene, const TracedPath& path) {
     print_hit(scene, boundary ? "boundary" : fmt::format("bounce {}", bounce), hit);
     bounce += boundary ? 0 : 1;
   }
-  if (path.invalid)
-    fmt::print("invalid: a weight is not finite, or the path is endless; it leaves the mean\n");
-  if (path.slots.empty() && !path.invalid) fmt::print("no vertex contributes\n");
+  if (path.invalid) answer("invalid: a weight is not finite, or the path is endless; it leaves the mean\n");
+  if (path.slots.empty() && !path.invalid) answer("no vertex contributes\n");
   for (std::size_t i = 0; i < path.slots.size();) {
     print_vertex(scene, path.slots[i]);
     i += 1 + kb_vertex_extensions(path.slots[i].head);
@@ -141,8 +141,8 @@ int trace(const TraceOptions& options) {
   const SamplingSettings sampling = options.sampling.settings(options.replicates);
   const auto backend = make_backend(options.backend, scene, {}, sampling, sink);
   const SampleRange range{options.sample % options.replicates, options.sample / options.replicates, 1};
-  fmt::print("pixel {},{} sample {} (replicate {}, index {}) on {} ({})\n", pixel.x, pixel.y, options.sample,
-             range.replicate, range.first, backend->name(), backend->isa());
+  answer("pixel {},{} sample {} (replicate {}, index {}) on {} ({})\n", pixel.x, pixel.y, options.sample,
+         range.replicate, range.first, backend->name(), backend->isa());
   print_path(scene, backend->trace({pixel.x, pixel.y, 1, 1}, range).front());
   return kDone;
 }

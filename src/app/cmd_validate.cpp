@@ -12,6 +12,8 @@
 
 #include "app/commands.hpp"
 #include "app/messages.hpp"
+#include "app/standard_output.hpp"
+#include "app/stop_signals.hpp"
 #include "base/error.hpp"
 #include "scenes/generator/scenes.hpp"
 #include "src_gpu/device.hpp"
@@ -109,50 +111,50 @@ const char* word_of(bool passed, bool interrupted) {
 }
 
 void print_case(const CaseResult& c) {
-  if (!c.error.empty()) return fmt::print("FAILED  {}: {}\n", c.what.name, c.error);
+  if (!c.error.empty()) return answer("FAILED  {}: {}\n", c.what.name, c.error);
   double bias = -1;
   for (const PairingResult& r : c.pairings) {
     for (const stats::TestVerdict& v : r.comparison.tests)
       if (v.name == "mean/image" && v.detectable.typical > bias) bias = v.detectable.typical;
   }
-  fmt::print("{}  {}: {} comparisons, image means would show {}\n", word_of(c.passed, c.interrupted),
-             c.what.name, c.pairings.size(), bias < 0 ? "nothing" : fmt::format("{:.2g} %", 100 * bias));
+  answer("{}  {}: {} comparisons, image means would show {}\n", word_of(c.passed, c.interrupted), c.what.name,
+         c.pairings.size(), bias < 0 ? "nothing" : fmt::format("{:.2g} %", 100 * bias));
   for (const PairingResult& r : c.pairings) {
     if (r.passed) continue;
     const stats::TestVerdict& v = r.comparison.decisive();
-    fmt::print("        {} / {}: {} p {:.2g} (level {:.2g}), invalid samples {}\n", r.pairing.a.label(),
-               r.pairing.kind == Pairing::Kind::kClosedForm ? "closed form" : r.pairing.b.label(), v.name,
-               v.p, v.level, r.invalid_samples);
+    answer("        {} / {}: {} p {:.2g} (level {:.2g}), invalid samples {}\n", r.pairing.a.label(),
+           r.pairing.kind == Pairing::Kind::kClosedForm ? "closed form" : r.pairing.b.label(), v.name, v.p,
+           v.level, r.invalid_samples);
   }
 }
 
 void print_mitsuba(const MitsubaScene& s) {
-  if (!s.passed) return fmt::print("FAILED  mitsuba/{} on {}: {}\n", s.name, s.backend, s.failure);
-  fmt::print("passed  mitsuba/{} on {}: largest difference {:+.2g} %, would show {:.2g} %\n", s.name,
-             s.backend, 100 * s.largest_difference, 100 * s.detectable);
+  if (!s.passed) return answer("FAILED  mitsuba/{} on {}: {}\n", s.name, s.backend, s.failure);
+  answer("passed  mitsuba/{} on {}: largest difference {:+.2g} %, would show {:.2g} %\n", s.name, s.backend,
+         100 * s.largest_difference, 100 * s.detectable);
 }
 
 void print_verdict(const SuiteResult& result) {
   for (const CaseResult& c : result.cases) print_case(c);
   for (const HardCaseResult& h : result.hard_cases) {
-    fmt::print("{}  hard/{} on {}: {} figures\n", h.passed ? "passed" : "FAILED", h.name, h.backend,
-               h.figures.size());
+    answer("{}  hard/{} on {}: {} figures\n", h.passed ? "passed" : "FAILED", h.name, h.backend,
+           h.figures.size());
     for (const HardFigure& f : h.figures)
       if (!f.pass)
-        fmt::print("        {}: {:.6g} {} instead of {:.6g}, limit {:.2g}\n", f.name, f.value, f.unit,
-                   f.reference, f.limit);
-    if (!h.error.empty()) fmt::print("        {}\n", h.error);
+        answer("        {}: {:.6g} {} instead of {:.6g}, limit {:.2g}\n", f.name, f.value, f.unit,
+               f.reference, f.limit);
+    if (!h.error.empty()) answer("        {}\n", h.error);
   }
   for (const ConvergenceResult& c : result.convergence)
-    fmt::print("{}  {}: {} curves {}\n", word_of(c.passed, c.interrupted), c.name, c.curves.size(), c.note);
+    answer("{}  {}: {} curves {}\n", word_of(c.passed, c.interrupted), c.name, c.curves.size(), c.note);
   for (const MitsubaScene& s : result.mitsuba.scenes) print_mitsuba(s);
   std::size_t made = 0;
   for (const CaseResult& c : result.cases) made += c.pairings.size();
-  fmt::print("{}: {} of {} comparisons in {:.0f} s, family-wise error rate {:.0e}\n",
-             result.interrupted ? "interrupted"
-             : result.passed()  ? "all passed"
-                                : "FAILED",
-             made, result.comparisons, result.seconds, kRunRate);
+  answer("{}: {} of {} comparisons in {:.0f} s, family-wise error rate {:.0e}\n",
+         result.interrupted ? "interrupted"
+         : result.passed()  ? "all passed"
+                            : "FAILED",
+         made, result.comparisons, result.seconds, kRunRate);
 }
 
 /// The HTML page: by a Python script with matplotlib. Without them the results stand for themselves.
@@ -203,7 +205,7 @@ int validate(const ValidateOptions& options) {
   const SuiteSettings settings = settings_of(options);
   const std::vector<std::string> names = planned_names(settings);
   if (options.list) {
-    for (const std::string& name : names) fmt::print("{}\n", name);
+    for (const std::string& name : names) answer("{}\n", name);
     return kDone;
   }
   const RunRecord record = record_of(settings.backends);
@@ -215,8 +217,8 @@ int validate(const ValidateOptions& options) {
   const SuiteResult result =
       run_suite(settings, watch, [&](const std::string& name) { progress.begin(name); });
   progress.end();
-  print_verdict(result);
   write_results(options.output, result, record);
+  print_verdict(result);
   if (!options.no_report) make_report(options);
   if (result.interrupted) return kInterrupted;
   return result.passed() ? kDone : kFailed;

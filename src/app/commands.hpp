@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <functional>
 
 namespace kiloband {
@@ -16,13 +15,6 @@ enum ExitCode {
   kInternalError = 70,
   kInterrupted = 130
 };
-
-/// Set by SIGINT and SIGTERM after catch_stop_signals().
-extern std::atomic<bool> stop_requested;
-
-/// To be called when there begins to be something to save: until then the signals end the program. The second
-/// one ends it at once again. Signals that the caller ignores (nohup, scripts) stay ignored.
-void catch_stop_signals();
 
 using Command = std::function<int()>;
 

@@ -13,17 +13,6 @@
 namespace kiloband {
 namespace {
 
-std::vector<std::string> split_files(const std::string& text) {
-  if (std::filesystem::exists(text)) return {text};
-  std::vector<std::string> files;
-  for (std::size_t first = 0; first <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', first), text.size());
-    files.push_back(text.substr(first, comma - first));
-    first = comma + 1;
-  }
-  return files;
-}
-
 std::string band_text(const Band& band) {
   if (band.derived) return fmt::format("the response '{}'", band.channel.name);
   return fmt::format("{:.10g}-{:.10g} nm", band.channel.min_nm, band.channel.max_nm);
@@ -59,6 +48,17 @@ bool is_missing(const std::vector<float>& values, std::size_t pixel, std::size_t
 }
 
 }  // namespace
+
+std::vector<std::string> split_files(const std::string& text) {
+  if (std::filesystem::exists(text)) return {text};
+  std::vector<std::string> files;
+  for (std::size_t first = 0; first <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', first), text.size());
+    files.push_back(text.substr(first, comma - first));
+    first = comma + 1;
+  }
+  return files;
+}
 
 void check_same_shape(const std::string& name_a, const CubeInfo& a, const std::string& name_b,
                       const CubeInfo& b) {

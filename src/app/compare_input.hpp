@@ -28,6 +28,9 @@ struct SideOptions {
   bool exact = false;
 };
 
+/// The files of SideOptions::files. A file whose name has a comma is one file.
+std::vector<std::string> split_files(const std::string& text);
+
 /// Opens a side and hands out strips of it, all values in one quantity.
 class CompareSide {
  public:

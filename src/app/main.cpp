@@ -1,10 +1,13 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <map>
 #include <new>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -12,6 +15,8 @@
 
 #include "app/commands.hpp"
 #include "app/messages.hpp"
+#include "app/standard_output.hpp"
+#include "app/stop_signals.hpp"
 #include "base/error.hpp"
 #include "scene/xml_values.hpp"
 #ifdef KILOBAND_FAULTS
@@ -19,14 +24,7 @@
 #endif
 
 namespace kiloband {
-
-std::atomic<bool> stop_requested{false};
-
 namespace {
-
-void on_signal(int) {
-  stop_requested = true;
-}
 
 int fail(int code, const std::string& message, const char* hint = "") {
   tell("kiloband: {}{}\n", message, hint);
@@ -99,7 +97,10 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& e) {
-    return program.exit(e);  // --help, --version
+    std::ostringstream text;  // --help, --version
+    const int code = program.exit(e, text, text);
+    answer_text(text.str());
+    return code;
   } catch (const CLI::ParseError& e) {
     const auto chosen = program.get_subcommands();
     const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
@@ -112,25 +113,10 @@ int run(int argc, char** argv) {
   return commands.at(program.get_subcommands().front()->get_name())();
 }
 
-}  // namespace
-
-void catch_stop_signals() {
-  struct sigaction action = {}, before = {};
-  action.sa_handler = on_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  for (const int signal : {SIGINT, SIGTERM}) {
-    sigaction(signal, nullptr, &before);
-    if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
-  }
-}
-
-}  // namespace kiloband
-
-int main(int argc, char** argv) {
-  using namespace kiloband;
-  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is to be an error message (EFBIG), not the end
+/// The exit code of an action; what it throws becomes a message.
+int attempt(const std::function<int()>& action) {
   try {
-    return run(argc, argv);
+    return action();
   } catch (const InputError& e) {
     return fail(kInputWrong, e.what());
   } catch (const DeviceError& e) {
@@ -142,4 +128,21 @@ int main(int argc, char** argv) {
   } catch (const std::exception& e) {
     return fail(kInternalError, e.what(), " (this is a bug of kiloband: please report it)");
   }
+}
+
+}  // namespace
+}  // namespace kiloband
+
+int main(int argc, char** argv) {
+  using namespace kiloband;
+  occupy_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is to be an error message (EFBIG), not the end
+  catch_ending_signals();
+  const int code = attempt([&] { return run(argc, argv); });
+  const int end = attempt([] {
+    finish_standard_output();
+    return kDone;
+  });
+  const bool answered = code == kDone || code == kFailed;  // an answer that nobody can read is none
+  return answered ? std::max(code, end) : code;
 }

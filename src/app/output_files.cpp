@@ -2,47 +2,51 @@
 
 #include <fmt/core.h>
 
-#include <set>
+#include <map>
 #include <string>
 
 #include "base/error.hpp"
 #include "film/atomic_file.hpp"
 #include "film/cube_io.hpp"
 #include "film/cube_text.hpp"
+#include "film/output_target.hpp"
 #include "film/replicated_cube.hpp"
 
 namespace kiloband {
 namespace {
 
-std::filesystem::path identity(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(file, error), error);
-  return error ? file : real;
-}
-
 std::string extension_of(const std::filesystem::path& file) {
   return to_lower(file.extension().string());
 }
 
-/// The names that are taken so far.
+std::filesystem::path plain_name(const std::filesystem::path& file) {
+  return std::filesystem::absolute(file).lexically_normal();
+}
+
+/// The files that are taken so far.
 class Claims {
  public:
-  explicit Claims(const std::optional<std::filesystem::path>& scene) {
-    if (scene) scene_ = identity(*scene);
+  explicit Claims(const std::vector<NamedFile>& inputs) {
+    for (const NamedFile& input : inputs)
+      if (const auto identity = output_identity(input.file)) inputs_.emplace(*identity, input);
   }
 
-  void claim(const char* option, const std::filesystem::path& file) {
-    const auto name = identity(file);
-    if (scene_ && name == *scene_)
-      throw InputError(fmt::format("{} {}: would replace the scene", option, file.string()));
-    if (!taken_.insert(name).second) {
+  void claim(const std::string& option, const std::filesystem::path& file) {
+    const auto identity = output_identity(file);
+    if (!identity) return;  // a pipe, a device
+    if (const auto input = inputs_.find(*identity); input != inputs_.end())
+      throw InputError(fmt::format("{} {}: would replace {}", option, file.string(), input->second.name));
+    const auto [other, fresh] = taken_.emplace(*identity, file);
+    if (fresh) return;
+    if (plain_name(other->second) == plain_name(file))
       throw InputError(fmt::format("{} {}: another output has this name", option, file.string()));
-    }
+    throw InputError(fmt::format("{} {}: a link makes this the same file as the output {}", option,
+                                 file.string(), other->second.string()));
   }
 
  private:
-  std::optional<std::filesystem::path> scene_;
-  std::set<std::filesystem::path> taken_;
+  std::map<std::string, NamedFile> inputs_;
+  std::map<std::string, std::filesystem::path> taken_;
 };
 
 /// All files of a cube: a writer of ENVI cubes also removes the parts that an earlier cube has left.
@@ -56,21 +60,21 @@ void claim_cube(Claims& claims, const std::filesystem::path& cube) {
 }  // namespace
 
 void check_output_files(const OutputFiles& files) {
-  Claims claims(files.scene);
+  Claims claims(files.inputs);
   for (const auto& cube : files.cubes) {
     claim_cube(claims, cube);
     for (uint32_t r = 0; r < files.kept_replicates; ++r) claim_cube(claims, replicate_path(cube, r));
   }
-  if (files.preview) claims.claim("--preview", *files.preview);
-  if (files.stats) claims.claim("--stats", *files.stats);
-  if (files.checkpoint) claims.claim("--checkpoint", *files.checkpoint);
+  std::vector<NamedFile> others = files.others;
+  if (files.preview) others.push_back({"--preview", *files.preview});
+  if (files.stats) others.push_back({"--stats", *files.stats});
+  if (files.checkpoint) others.push_back({"--checkpoint", *files.checkpoint});
+  for (const auto& [option, file] : others) claims.claim(option, file);
   for (const auto& cube : files.cubes) check_cube_name(cube);
   if (files.preview && extension_of(*files.preview) != ".png") {
     throw InputError(fmt::format("--preview {}: must end in .png", files.preview->string()));
   }
-  for (const auto& file : {files.preview, files.stats}) {
-    if (file) const AtomicFile trial(*file);  // its temporary file vanishes at once
-  }
+  for (const auto& [option, file] : others) check_writable(file);
 }
 
 }  // namespace kiloband

@@ -1,86 +1,51 @@
 #include "film/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <string>
 
 #include "base/error.hpp"
+#include "film/special_file.hpp"
 
 namespace kiloband {
-namespace {
 
-/// The file that a symbolic link leads to; the path itself if it is none or leads nowhere.
-std::filesystem::path follow_link(const std::filesystem::path& target) {
-  std::error_code error;
-  if (!std::filesystem::is_symlink(target, error)) return target;
-  const auto real = std::filesystem::canonical(target, error);
-  return error ? target : real;
-}
-
-std::filesystem::path temporary_name(const std::filesystem::path& target) {
-  static std::atomic<uint64_t> counter = 0;
-  const std::string name =
-      ".kiloband-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".partial";
-  return target.parent_path() / name;
-}
-
-/// Makes the rename itself durable. Some file systems cannot do this; the data are safe by then, so failure
-/// is no error.
-void flush_folder(const std::filesystem::path& folder) {
-  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
-}
-
-}  // namespace
-
-AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(follow_link(target)) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(target_, ignored)) fail(EISDIR);
-  do {  // a left-over of a killed process with our id is passed over
-    temporary_ = temporary_name(target_);
-    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (descriptor_ < 0 && errno == EEXIST);
-  if (descriptor_ < 0) fail(errno);
-}
-
-AtomicFile::~AtomicFile() {
-  close_quietly();
-}
-
-void AtomicFile::close_quietly() noexcept {
-  if (descriptor_ < 0) return;
-  close(descriptor_);
-  unlink(temporary_.c_str());
-  descriptor_ = -1;
+AtomicFile::AtomicFile(const std::filesystem::path& name) : name_(name), target_(find_output_target(name)) {
+  if (target_.error != 0) fail(target_.error);
+  const int error = target_.special ? file_.create_scratch() : file_.create(target_.file.parent_path());
+  if (error != 0) fail_before(error);
 }
 
 void AtomicFile::fail(int error) const {
-  throw DeviceError("cannot write '" + target_.string() + "': " + std::strerror(error));
+  throw DeviceError("cannot write '" + name_.string() + "': " + std::strerror(error));
+}
+
+void AtomicFile::fail_before(int error) const {
+  if (!target_.special) fail(error);
+  throw DeviceError("cannot write '" + name_.string() + "': scratch file in '" + file_.folder().string() +
+                    "': " + std::strerror(error));
 }
 
 void AtomicFile::preallocate(uint64_t bytes) {
   const auto size = static_cast<off_t>(bytes);
   // fallocate instead of posix_fallocate, which would write zeros where the file system cannot reserve space.
-  if (size > 0 && fallocate(descriptor_, 0, 0, size) != 0) {
-    if (errno != EOPNOTSUPP && errno != ENOSYS) fail(errno);
+  if (size > 0 && fallocate(file_.descriptor(), 0, 0, size) != 0) {
+    if (errno != EOPNOTSUPP && errno != ENOSYS) fail_before(errno);
   }
-  if (ftruncate(descriptor_, size) != 0) fail(errno);
+  if (ftruncate(file_.descriptor(), size) != 0) fail_before(errno);
 }
 
 void AtomicFile::write_at(uint64_t offset, std::span<const char> bytes) {
   constexpr std::size_t kLargest = std::size_t{1} << 30;  // Linux writes at most 2 GiB at once
   while (!bytes.empty()) {
-    const ssize_t written =
-        pwrite(descriptor_, bytes.data(), std::min(bytes.size(), kLargest), static_cast<off_t>(offset));
+    const ssize_t written = pwrite(file_.descriptor(), bytes.data(), std::min(bytes.size(), kLargest),
+                                   static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) fail(written < 0 ? errno : ENOSPC);
+    if (written <= 0) fail_before(written < 0 ? errno : ENOSPC);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
     offset += static_cast<uint64_t>(written);
     flushed_ = false;
@@ -88,28 +53,47 @@ void AtomicFile::write_at(uint64_t offset, std::span<const char> bytes) {
 }
 
 void AtomicFile::flush() {
-  if (fsync(descriptor_) != 0) fail(errno);
+  if (!flushed_ && !target_.special && fsync(file_.descriptor()) != 0) fail_before(errno);
   flushed_ = true;
 }
 
-void AtomicFile::commit() {
-  if (!flushed_) flush();
-  // Network file systems report late write errors here.
-  const int closed = close(descriptor_);
-  const int close_error = errno;
-  descriptor_ = -1;
-  if (closed != 0 || rename(temporary_.c_str(), target_.c_str()) != 0) {
-    const int error = closed != 0 ? close_error : errno;
-    unlink(temporary_.c_str());
-    fail(error);
-  }
-  flush_folder(target_.parent_path());
+void AtomicFile::publish() {
+  flush();
+  struct stat status = {};
+  if (fstat(file_.descriptor(), &status) != 0) fail(errno);
+  device_ = status.st_dev;
+  inode_ = status.st_ino;
+  const int error =
+      target_.special ? copy_to_special_file(file_.descriptor(), target_) : file_.publish(target_.file);
+  if (error != 0) fail(error);
 }
 
-void write_file_atomically(const std::filesystem::path& target, std::span<const char> bytes) {
-  AtomicFile file(target);
+void AtomicFile::commit() {
+  publish();
+  if (!target_.special) flush_folder(target_.file.parent_path());
+}
+
+bool AtomicFile::stands() const {
+  struct stat status = {};
+  if (target_.special) return true;
+  return stat(target_.file.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_;
+}
+
+void write_file_atomically(const std::filesystem::path& name, std::span<const char> bytes) {
+  AtomicFile file(name);
   file.write_at(0, bytes);
   file.commit();
+}
+
+void check_writable(const std::filesystem::path& name) {
+  const AtomicFile trial(name);  // vanishes at once
+}
+
+void flush_folder(const std::filesystem::path& folder) {
+  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
 }
 
 }  // namespace kiloband

@@ -3,6 +3,7 @@
 
 #include "film/cube_layout.hpp"
 #include "film/cube_text.hpp"
+#include "film/file_set.hpp"
 
 namespace kiloband {
 namespace {
@@ -13,6 +14,12 @@ namespace {
 }
 
 }  // namespace
+
+void CubeWriter::finish() {
+  FileSet files;
+  close(files);
+  files.commit();
+}
 
 void check_holds_radiances(const std::filesystem::path& file, const CubeInfo& info) {
   if (!info.holds_variances) return;

@@ -15,6 +15,8 @@
 
 namespace kiloband {
 
+class FileSet;
+
 /// Integral: W m^-2 sr^-1 over the band. Density: its mean, W m^-2 sr^-1 nm^-1 (value / width).
 enum class Quantity { kIntegral, kDensity };
 
@@ -45,13 +47,17 @@ struct CubeRows {
 };
 
 /// Writes a cube strip by strip in ascending order. Nothing stands under the final names before finish():
-/// files are written beside, flushed and renamed, the ENVI data before its header. A destroyed writer that
-/// was not finished leaves nothing behind.
+/// files are written beside, flushed and renamed, the ENVI data before its header, all of them as one
+/// (FileSet). A destroyed writer that was not finished leaves nothing behind.
 class CubeWriter {
  public:
   virtual ~CubeWriter() = default;
   virtual void write_rows(const CubeRows& rows) = 0;
-  virtual void finish() = 0;
+  /// All rows have come: completes the data and adds the cube's files to the set, which several cubes may
+  /// share. The writer must outlive the set's commit().
+  virtual void close(FileSet& files) = 0;
+  /// close(), and the commit() of a set of this cube alone.
+  void finish();
 };
 
 /// throws InputError if create_cube_writer() does not know the extension

@@ -7,6 +7,7 @@
 #include "film/cube_layout.hpp"
 #include "film/cube_text.hpp"
 #include "film/envi_header.hpp"
+#include "film/file_set.hpp"
 
 namespace kiloband {
 namespace {
@@ -70,14 +71,14 @@ class EnviPart {
 void remove_stale(const std::filesystem::path& stem, EnviContent content) {
   const auto header = envi_file(stem, content, ".hdr");
   std::error_code ignored;
-  if (!std::filesystem::exists(header, ignored)) return;
+  if (!std::filesystem::is_regular_file(header, ignored)) return;
   try {
     if (!EnviHeader(header, read_small_file(header, 1u << 28)).find(kEnviLayoutKey)) return;
   } catch (const std::runtime_error&) {
     return;  // no header of ours
   }
-  std::filesystem::remove(header, ignored);
-  std::filesystem::remove(envi_file(stem, content, ".img"), ignored);
+  remove_output(header);
+  remove_output(envi_file(stem, content, ".img"));
 }
 
 class EnviWriter : public CubeWriter {
@@ -101,21 +102,20 @@ class EnviWriter : public CubeWriter {
     if (aux_) aux_->write_rows(strip.y0, strip.rows, strip.aux, [](std::size_t, float v) { return v; });
   }
 
-  /// Everything reaches the disk first. Then an older cube's header goes, so that no header ever describes
-  /// data that are not its own; data follow, the main header comes last.
-  void finish() override {
+  /// An older cube's header goes first, so that no header ever describes data that are not its own; data
+  /// follow, the main header comes last.
+  void close(FileSet& files) override {
     order_.finish();
+    files.before([this] {
+      remove_output(values_->header().name());
+      if (!variance_) remove_stale(stem_, EnviContent::kVariance);
+      if (!aux_) remove_stale(stem_, EnviContent::kAux);
+    });
     const auto parts = {variance_.get(), aux_.get(), values_.get()};
     for (EnviPart* part : parts)
-      if (part) part->data().flush(), part->header().flush();
-    std::error_code ignored;
-    std::filesystem::remove(values_->header().target(), ignored);
-    if (!variance_) remove_stale(stem_, EnviContent::kVariance);
-    if (!aux_) remove_stale(stem_, EnviContent::kAux);
+      if (part) files.add(part->data());
     for (EnviPart* part : parts)
-      if (part) part->data().commit();
-    for (EnviPart* part : parts)
-      if (part) part->header().commit();
+      if (part) files.add(part->header());
   }
 
  private:

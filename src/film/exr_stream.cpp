@@ -12,7 +12,7 @@ constexpr std::size_t kBufferBytes = 1u << 16;  // headers come byte by byte
 
 }  // namespace
 
-ExrOutputStream::ExrOutputStream(AtomicFile& file) : OStream(file.target().c_str()), file_(file) {
+ExrOutputStream::ExrOutputStream(AtomicFile& file) : OStream(file.name().c_str()), file_(file) {
   buffer_.reserve(kBufferBytes);
 }
 

@@ -11,6 +11,7 @@
 #include "film/cube_layout.hpp"
 #include "film/exr_layout.hpp"
 #include "film/exr_stream.hpp"
+#include "film/file_set.hpp"
 
 namespace kiloband {
 namespace {
@@ -73,11 +74,11 @@ class ExrWriter : public CubeWriter {
       }
   }
 
-  void finish() override {
+  void close(FileSet& files) override {
     order_.finish();
     output_.reset();  // writes the table of tile offsets
     guarded([&] { stream_.flush(); });
-    file_.commit();
+    files.add(file_);
   }
 
  private:

@@ -2,15 +2,14 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <string>
 
 #include "base/error.hpp"
+#include "film/temporary_file.hpp"
 
 namespace kiloband {
 namespace {
@@ -19,16 +18,12 @@ namespace {
   throw DeviceError("scratch memory: " + what + ": " + std::strerror(error));
 }
 
-/// An unnamed file of `bytes` bytes with its disk space claimed.
-int create_scratch_file(std::size_t bytes) {
-  const std::string folder = std::filesystem::temp_directory_path().string();
-  const int descriptor = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (descriptor < 0) fail("cannot create a file in '" + folder + "'", errno);
-  if (const int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes)); error != 0) {
-    close(descriptor);
-    fail("no space for " + std::to_string(bytes >> 20) + " MiB in '" + folder + "'", error);
-  }
-  return descriptor;
+/// Claims the file's disk space.
+void create_scratch_file(TemporaryFile& file, std::size_t bytes) {
+  if (const int error = file.create_scratch(); error != 0)
+    fail("cannot create a file in '" + file.folder().string() + "'", error);
+  if (const int error = posix_fallocate(file.descriptor(), 0, static_cast<off_t>(bytes)); error != 0)
+    fail("no space for " + std::to_string(bytes >> 20) + " MiB in '" + file.folder().string() + "'", error);
 }
 
 }  // namespace
@@ -36,12 +31,11 @@ int create_scratch_file(std::size_t bytes) {
 ScratchFloats::ScratchFloats(std::size_t count, std::size_t budget_bytes) : count_(count) {
   const bool in_file = count * sizeof(float) > budget_bytes;
   const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(float);
-  const int descriptor = in_file ? create_scratch_file(bytes) : -1;
+  TemporaryFile file;
+  if (in_file) create_scratch_file(file, bytes);
   const int flags = in_file ? MAP_SHARED : MAP_PRIVATE | MAP_ANONYMOUS;
-  void* address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, flags, descriptor, 0);
-  const int error = errno;
-  if (descriptor >= 0) close(descriptor);
-  if (address == MAP_FAILED) fail("cannot map " + std::to_string(bytes >> 20) + " MiB", error);
+  void* address = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, flags, file.descriptor(), 0);
+  if (address == MAP_FAILED) fail("cannot map " + std::to_string(bytes >> 20) + " MiB", errno);
   data_ = static_cast<float*>(address);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "film/cube_text.hpp"
+#include "film/file_set.hpp"
 #include "film/replicated_cube.hpp"
 
 namespace kiloband {
@@ -184,10 +185,12 @@ void CubeOutput::write_replicates(const SpectralFilm& film) {
 }
 
 void CubeOutput::finish(RenderReport& report) {
+  FileSet set;  // the mean of one render must not stand beside the replicates of another
   for (auto& replicate : replicate_writers_) {
-    for (auto& writer : replicate) writer->finish();
+    for (auto& writer : replicate) writer->close(set);
   }
-  for (auto& writer : writers_) writer->finish();
+  for (auto& writer : writers_) writer->close(set);
+  set.commit();
   if (settings_.preview) {
     const float exposure = auto_exposure(preview_);
     for (float& value : preview_) value *= exposure;

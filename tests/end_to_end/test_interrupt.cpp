@@ -1,10 +1,13 @@
 // Ctrl-C and SIGTERM: the samples in flight are finished and what there is is written, exit code 130.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <cmath>
 
 #include "tests/end_to_end/support/program.hpp"
+#include "tests/support/special_files.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -95,6 +98,40 @@ TEST(Interrupt, StreamedRender) {
   EXPECT_GT(missing, cube.pixels() / 2);
   EXPECT_LT(missing, cube.pixels());
   expect_warning(outcome, missing);
+}
+
+/// The first Ctrl-C stops the render, which then waits for somebody to read the pipe that it is to write to.
+TEST(Interrupt, TheSecondEndsAtOnceAndLeavesNothing) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const TemporaryFolder folder;
+    folder.write("b.exr", "old");
+    make_pipe(folder / "a.exr");
+    const Outcome outcome = run_program(
+        folder,
+        {"render", cornell_box(), "--size", "64x64", "--bands", "400:700:3", "--spp", "100000000", "-o",
+         "a.exr", "-o", "b.exr", "-o", "c.hdr", "--variance"},
+        {.signal = signal, .after_text = kRendering, .after_seconds = 0.2, .again_after_seconds = 1});
+    EXPECT_EQ(outcome.signal, signal) << outcome.code << outcome.err;
+    EXPECT_EQ(folder.list(), (std::vector<std::string>{"a.exr", "b.exr"}));
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / "a.exr"));
+    EXPECT_EQ(folder.read("b.exr"), "old");
+  }
+}
+
+/// Files have no name before they are complete, where the file system can do that.
+TEST(Interrupt, AKillLeavesNothing) {
+  const TemporaryFolder folder;
+  const int nameless = open(folder.path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+  if (nameless < 0) return;
+  close(nameless);
+  // Streamed: the outputs are open during the render.
+  folder.write("scene.xml", complete_scene(""));
+  const Outcome outcome = run_program(folder,
+                                      {"render", "scene.xml", "--size", "1024x1024", "--bands", "400:700:700",
+                                       "--spp", "100000", "-o", "a.hdr", "-o", "a.exr"},
+                                      {.signal = SIGKILL, .after_text = kRendering, .after_seconds = 0.3});
+  EXPECT_EQ(outcome.signal, SIGKILL) << outcome.code << outcome.err;
+  EXPECT_EQ(folder.list(), std::vector<std::string>{"scene.xml"});
 }
 
 }  // namespace

@@ -144,9 +144,9 @@ void prepare_results(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw DeviceError(directory.string() + ": " + error.message());
-  { const AtomicFile trial(directory / "results.json"); }  // its temporary file vanishes at once
+  check_writable(directory / "results.json");
   for (const char* name : {"results.json", "junit.xml", "mitsuba.json", "report.html"}) {
-    fs::remove(directory / name, error);
+    error = remove_output(directory / name);
     if (error) throw DeviceError((directory / name).string() + ": " + error.message());
   }
 }

@@ -24,6 +24,24 @@ struct Pipe {
   int ends[2];
 };
 
+bool redirect(const Treatment& treatment, const Pipe& out, const Pipe& err) {
+  if (dup2(err.ends[1], STDERR_FILENO) < 0) return false;
+  if (treatment.err_closed) close(STDERR_FILENO);
+  switch (treatment.out) {
+    case StandardOutput::kRead:
+      return dup2(out.ends[1], STDOUT_FILENO) >= 0;
+    case StandardOutput::kFull:
+      return dup2(open("/dev/full", O_WRONLY | O_CLOEXEC), STDOUT_FILENO) >= 0;
+    case StandardOutput::kClosed:
+      return close(STDOUT_FILENO) == 0;
+    case StandardOutput::kBrokenPipe:
+      break;
+  }
+  const Pipe broken;
+  close(broken.ends[0]);
+  return dup2(broken.ends[1], STDOUT_FILENO) >= 0;
+}
+
 [[noreturn]] void become_program(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
                                  const Treatment& treatment, const Pipe& out, const Pipe& err) {
   std::vector<char*> argv;
@@ -34,8 +52,7 @@ struct Pipe {
   for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ})
     signal(number, SIG_DFL);  // whatever runs the tests
   for (const auto& [name, value] : treatment.environment) setenv(name.c_str(), value.c_str(), 1);
-  bool ready = chdir(folder.path().c_str()) == 0 && dup2(out.ends[1], STDOUT_FILENO) >= 0 &&
-               dup2(err.ends[1], STDERR_FILENO) >= 0;
+  bool ready = chdir(folder.path().c_str()) == 0 && redirect(treatment, out, err);
   if (treatment.file_size_limit) {
     const rlimit limit{*treatment.file_size_limit, *treatment.file_size_limit};
     ready = ready && setrlimit(RLIMIT_FSIZE, &limit) == 0;
@@ -61,7 +78,7 @@ void follow(pid_t process, const Treatment& treatment, int out, int err, Outcome
     return std::chrono::duration<double>(Clock::now() - since).count();
   };
   std::optional<Clock::time_point> trigger;
-  bool sent = treatment.signal == 0;
+  bool sent = treatment.signal == 0, sent_again = sent || !treatment.again_after_seconds;
   pollfd pipes[2] = {{out, POLLIN, 0}, {err, POLLIN, 0}};
   std::string* texts[2] = {&outcome.out, &outcome.err};
   while (pipes[0].fd >= 0 || pipes[1].fd >= 0) {
@@ -72,6 +89,10 @@ void follow(pid_t process, const Treatment& treatment, int out, int err, Outcome
     if (!trigger && outcome.err.find(treatment.after_text) != std::string::npos) trigger = Clock::now();
     if (!sent && trigger && passed(*trigger) >= treatment.after_seconds) {
       sent = true;
+      kill(process, treatment.signal);
+      trigger = Clock::now();
+    } else if (sent && !sent_again && passed(*trigger) >= *treatment.again_after_seconds) {
+      sent_again = true;
       kill(process, treatment.signal);
     }
     if (passed(start) > kTimeout) kill(process, SIGKILL);

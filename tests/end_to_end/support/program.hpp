@@ -14,11 +14,18 @@
 
 namespace kiloband::test {
 
+/// Where the program's standard output goes: to the test, to a device that is full, nowhere (`>&-`), into a
+/// pipe that nobody reads.
+enum class StandardOutput { kRead, kFull, kClosed, kBrokenPipe };
+
 /// What is done to the running program.
 struct Treatment {
   int signal = 0;  // sent once `after_text` has appeared on standard error, then `after_seconds`
   std::string after_text;
   double after_seconds = 0;
+  std::optional<double> again_after_seconds;  // sent a second time
+  StandardOutput out = StandardOutput::kRead;
+  bool err_closed = false;                  // `2>&-`
   std::optional<uint64_t> file_size_limit;  // bytes, as `ulimit -f`: what a full disk is tried with
   std::vector<std::pair<std::string, std::string>> environment;  // added to that of the tests
   std::vector<std::string> under;  // command that starts the program, such as a checker with its options

@@ -1,0 +1,160 @@
+// Outputs that are links, pipes and devices: written to, never replaced.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "tests/end_to_end/support/program.hpp"
+#include "tests/support/special_files.hpp"
+
+namespace kiloband::test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// A named pipe that is open at both ends here, so that neither side waits; it holds 64 KiB.
+class OpenPipe {
+ public:
+  explicit OpenPipe(const std::filesystem::path& file) : file_(file) {
+    make_pipe(file);
+    descriptor_ = open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  }
+  ~OpenPipe() { close(descriptor_); }
+  OpenPipe(const OpenPipe&) = delete;
+
+  /// What has come so far.
+  std::string read_all() const {
+    std::string text(65536, '\0');
+    const ssize_t size = read(descriptor_, text.data(), text.size());
+    text.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+    return text;
+  }
+  bool stands() const { return std::filesystem::is_fifo(file_); }
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_;
+};
+
+/// 8 x 8 pixels in 3 channels with replicates: box.hdr and what it takes.
+void render_box(const TemporaryFolder& folder) {
+  const Outcome outcome = run_program(
+      folder,
+      quiet_render(cornell_box(), {"--size", "8x8", "--bands", "400:700:3", "--spp", "8", "--replicates", "2",
+                                   "--keep-replicates", "--variance", "-o", "box.hdr"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+}
+
+struct Command {
+  Names arguments;  // that write "out.TYPE"
+  std::string name, begins;
+};
+
+std::vector<Command> commands() {
+  const Names render = quiet_render(cornell_box(), {"--size", "8x8", "--bands", "400:700:3", "--spp", "1"});
+  const auto with = [](Names arguments, const Names& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  return {
+      {with(render, {"-o", "x.exr", "--stats", "out.json"}), "out.json", "{"},
+      {with(render, {"-o", "x.exr", "--preview", "out.png"}), "out.png", "\x89PNG"},
+      {with(render, {"-o", "out.exr"}), "out.exr", "\x76\x2f\x31\x01"},
+      {with(render, {"-o", "out.hdr"}), "out.hdr", "ENVI"},
+      {{"convert", "box.hdr", "out.csv", "--pixel", "1,1"}, "out.csv", "channel,"},
+      {{"convert", "box.hdr", "out.exr"}, "out.exr", "\x76\x2f\x31\x01"},
+      {{"sensor", "box.hdr", "--response", "xyz", "-o", "out.csv", "--pixel", "1,1"}, "out.csv", "channel,"},
+      {{"sensor", "box.hdr", "--png", "out.png"}, "out.png", "\x89PNG"},
+      {{"compare", "box.hdr", "box.hdr", "--paired", "--json", "out.json"}, "out.json", "{"},
+      {{"sky", "out.exr", "--size", "8x5", "--bands", "400:700:3"}, "out.exr", "\x76\x2f\x31\x01"},
+      {{"sky", "x.exr", "--size", "8x5", "--bands", "400:700:3", "--preview", "out.png"},
+       "out.png",
+       "\x89PNG"}};
+}
+
+TEST(SpecialOutputs, EveryCommandWritesToPipes) {
+  const TemporaryFolder folder;
+  render_box(folder);
+  for (const Command& command : commands()) {
+    const OpenPipe pipe(folder / command.name);
+    const Outcome outcome = run_program(folder, command.arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(pipe.read_all().substr(0, command.begins.size()), command.begins) << command.arguments.front();
+    EXPECT_TRUE(pipe.stands()) << command.arguments.front();
+    for (const char* end : {".exr", ".hdr", ".img", ".json", ".csv", ".png"}) {
+      std::filesystem::remove(folder / (std::string("out") + end));
+      std::filesystem::remove(folder / (std::string("x") + end));
+    }
+  }
+}
+
+TEST(SpecialOutputs, AFullDeviceIsAnErrorOfEveryCommand) {
+  const TemporaryFolder folder;
+  render_box(folder);
+  for (const Command& command : commands()) {
+    make_full_device(folder / command.name);
+    const Outcome outcome = run_program(folder, command.arguments);
+    EXPECT_EQ(outcome.code, 3) << command.arguments.front();
+    expect_text(outcome.err, "kiloband: cannot write '" + command.name + "': No space left on device\n");
+    EXPECT_TRUE(std::filesystem::is_character_file(folder / command.name)) << command.arguments.front();
+    std::filesystem::remove(folder / command.name);
+    for (const char* rest : {"x.exr", "out.img"}) std::filesystem::remove(folder / rest);
+  }
+}
+
+TEST(SpecialOutputs, StandardOutputByItsName) {
+  const TemporaryFolder folder;
+  render_box(folder);
+  const Names arguments{"compare", "box.hdr", "box.hdr", "--paired", "--json"};
+  const auto json_to = [&](const std::string& file) {
+    Names all = arguments;
+    all.push_back(file);
+    const Outcome outcome = run_program(folder, all);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string text = json_to("a.json");
+  EXPECT_EQ(json_to("/dev/stdout"), folder.read("a.json") + text);
+  EXPECT_EQ(json_to("/dev/fd/1"), folder.read("a.json") + text);
+}
+
+TEST(SpecialOutputs, OneFileByTwoNamesIsRefused) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  folder.write("old.json", "old");
+  std::filesystem::create_symlink("out.img", folder / "link.json");
+  std::filesystem::create_symlink("scene.xml", folder / "scene.json");
+  std::filesystem::create_hard_link(folder / "old.json", folder / "same.png");
+  std::filesystem::create_directory_symlink(".", folder / "here");
+  const Names before = folder.list();
+  const auto refused = [&](const Names& arguments, const std::string& message) {
+    const Outcome outcome = run_program(folder, arguments);
+    EXPECT_EQ(outcome.code, 2) << message;
+    EXPECT_EQ(outcome.err, "kiloband: " + message + "\n");
+    EXPECT_EQ(folder.list(), before);
+  };
+  const auto render = [&](const Names& outputs) { return quiet_render("scene.xml", outputs); };
+  refused(render({"-o", "out.hdr", "--stats", "link.json"}),
+          "--stats link.json: a link makes this the same file as the output out.img");
+  refused(render({"-o", "a.exr", "-o", "here/a.exr"}),
+          "-o here/a.exr: a link makes this the same file as the output a.exr");
+  refused(render({"-o", "a.exr", "--preview", "same.png", "--stats", "old.json"}),
+          "--stats old.json: a link makes this the same file as the output same.png");
+  refused(render({"-o", "a.exr", "--stats", "scene.json"}), "--stats scene.json: would replace the scene");
+}
+
+TEST(SpecialOutputs, SensorAndCompareCheckTheirOutputs) {
+  const TemporaryFolder folder;
+  render_box(folder);
+  const auto refused = [&](const Names& arguments, const std::string& message) {
+    const Outcome outcome = run_program(folder, arguments);
+    EXPECT_EQ(outcome.code, 2) << message;
+    EXPECT_EQ(outcome.err, "kiloband: " + message + "\n");
+  };
+  refused({"sensor", "box.hdr", "--response", "xyz", "-o", "a.exr", "-o", "./a.exr"},
+          "-o ./a.exr: another output has this name");
+  refused({"compare", "box.hdr", "box.hdr", "--paired", "--json", "box.hdr"},
+          "--json box.hdr: would replace A");
+}
+
+}  // namespace
+}  // namespace kiloband::test
