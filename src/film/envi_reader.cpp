@@ -51,6 +51,18 @@ class EnviPixels {
                        " bytes, its header needs " + std::to_string(storage.offset + storage.bytes()));
   }
 
+  /// Ours have nothing behind the numbers: what has is of another cube than the header. Other programs may
+  /// put there what they like.
+  void check_end(bool own, const DiagnosticSink& sink) const {
+    const uint64_t end = storage_.offset + storage_.bytes();
+    if (file_.size() == end) return;
+    const std::string file = file_.path().string();
+    const std::string sizes =
+        "the file has " + std::to_string(file_.size()) + " bytes, its header says " + std::to_string(end);
+    if (own) throw InputError(file + ": " + sizes + ": it belongs to another header, or is damaged");
+    warn(sink, {file}, sizes + ": the rest is ignored");
+  }
+
   /// out is [row][x][band].
   void read_rows(uint32_t y0, uint32_t rows, float* out) {
     const bool bsq = storage_.interleave == EnviInterleave::kBsq;
@@ -174,6 +186,7 @@ class EnviReader : public CubeReader {
     info_ = read_envi_info(header, storage, sink);
     values_.emplace(find_data(path), storage, ignore_value(header));
     const bool own = header.find(kEnviLayoutKey) != nullptr;
+    values_->check_end(own, sink);
     if (own && header.count(kEnviVarianceKey, 1, 0) == 1) open_variance(envi_stem(path));
     if (own && header.count(kEnviAuxKey, 1, 0) == 1) open_aux(envi_stem(path));
     check_cube_info(info_, path.string());
@@ -207,6 +220,7 @@ class EnviReader : public CubeReader {
                        " values do not fit the cube's " + std::to_string(info_.width) + "x" +
                        std::to_string(info_.height) + "x" + std::to_string(info_.bands.size()));
     pixels.emplace(envi_file(stem, content, ".img"), storage, std::nullopt);
+    pixels->check_end(true, {});  // only our own cubes have parts
     return header;
   }
 

@@ -110,6 +110,8 @@ TEST(WrongConversion, DamagedCubes) {
   folder.write("empty.exr", "");
   folder.write("spoiled.exr", "x" + exr.substr(1));
   folder.write("short.img", std::string(100, '\0'));
+  folder.write("long.hdr", header);
+  folder.write("long.img", std::string(1028, '\0'));
   folder.write("nodata.hdr", header);
   folder.write("brace.hdr", header.substr(0, header.find("fwhm") + 12));
   folder.write("word.hdr", "word\n");
@@ -133,6 +135,10 @@ TEST(WrongConversion, DamagedCubes) {
           {"convert: short.hdr",
            {"convert", "short.hdr", "out.exr"},
            "short.img: the file has 100 bytes, its header needs 1024"},
+          {"convert: long.hdr",
+           {"convert", "long.hdr", "out.exr"},
+           "long.img: the file has 1028 bytes, its header says 1024: it belongs to another header, or is "
+           "damaged"},
           {"convert: brace.hdr", {"convert", "brace.hdr", "out.exr"}, "brace.hdr:13: fwhm: '{' without '}'"},
           {"convert: word.hdr",
            {"convert", "word.hdr", "out.exr"},

@@ -93,6 +93,25 @@ TEST(BrokenEnvi, FilesThatAreMissingOrShort) {
             "'" + base + ".tif': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)");
 }
 
+/// In our own files nothing stands behind the numbers: a header of a smaller cube is not theirs.
+TEST(BrokenEnvi, DataThatAreLongerThanTheirHeaderSays) {
+  const TemporaryFolder folder;
+  const std::string reason = " bytes, its header says 48: it belongs to another header, or is damaged";
+  for (const char* part : {"f.img", "f.var.img"}) {
+    write_cube_file(make_cube(2, 3, equal_bands(400, 500, 2), true), folder / "f.hdr");
+    std::filesystem::resize_file(folder / part, 52);
+    EXPECT_EQ(error_of<InputError>([&] { open_cube(folder / "f.hdr"); }),
+              (folder / part).string() + ": the file has 52" + reason);
+  }
+  write_file(folder / "f.hdr", kGoodHeader);  // another program's
+  Messages messages;
+  EXPECT_EQ(open_cube(folder / "f.hdr", messages.sink())->info().width, 2u);
+  EXPECT_FALSE(messages.contain("bytes"));
+  std::filesystem::resize_file(folder / "f.img", 50);
+  open_cube(folder / "f.hdr", messages.sink());
+  EXPECT_TRUE(messages.contain("the file has 50 bytes, its header says 48: the rest is ignored"));
+}
+
 class BrokenExr : public testing::Test {
  protected:
   void SetUp() override {
