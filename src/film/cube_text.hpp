@@ -1,6 +1,7 @@
 // Numbers and names as cube headers spell them: locale-free, exact, and safe against foreign bytes.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -19,7 +20,10 @@ std::optional<uint64_t> parse_unsigned(std::string_view text);
 
 std::string_view trim(std::string_view text);
 std::string to_lower(std::string_view text);
+/// The parts look into `text`, which must outlive them: not a temporary string.
 std::vector<std::string_view> split(std::string_view text, char separator);
+template <std::same_as<std::string> Temporary>
+std::vector<std::string_view> split(Temporary&& text, char separator) = delete;
 
 /// Replaces control characters, '%' and those in `special` by %XX, and blanks at both ends; decode_text
 /// undoes it.

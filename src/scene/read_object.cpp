@@ -1,7 +1,6 @@
 #include "scene/read_object.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include "scene/xml_values.hpp"
 
@@ -36,9 +35,8 @@ std::string describe_kind(const Node& node) {
 }
 
 ObjectReader::ObjectReader(Node& object) : object_(object) {
-  std::set<std::string_view> names;
   for (const auto& child : object.children) {
-    if (names.insert(child->name).second) continue;
+    if (children_.try_emplace(child->name, child.get()).second) continue;
     fail(child->name_place, label() + ": parameter '" + child->name + "' is given twice");
   }
 }
@@ -49,12 +47,11 @@ std::string ObjectReader::label() const {
 }
 
 Node* ObjectReader::find(std::string_view name) const {
-  if (std::find(object_.asked.begin(), object_.asked.end(), name) == object_.asked.end())
-    object_.asked.push_back(name);
-  for (const auto& child : object_.children) {
-    if (child->name == name) return child->used = true, child.get();
-  }
-  return nullptr;
+  if (!object_.asked.contains(name)) object_.asked.emplace(name, object_.asked.size());
+  const auto child = children_.find(name);
+  if (child == children_.end()) return nullptr;
+  child->second->used = true;
+  return child->second;
 }
 
 std::vector<Node*> ObjectReader::nested(std::string_view tag) const {
@@ -201,8 +198,14 @@ void ObjectReader::finish() const {
     if (!child->is_named())
       fail(child->place, label() + ": " + describe_kind(*child) + " is not allowed here");
     fail(child->name_place,
-         label() + ": unknown parameter '" + child->name + "'" + suggestion(child->name, object_.asked));
+         label() + ": unknown parameter '" + child->name + "'" + suggestion(child->name, known_names()));
   }
+}
+
+std::vector<std::string_view> ObjectReader::known_names() const {
+  std::vector<std::string_view> names(object_.asked.size());
+  for (const auto& [name, order] : object_.asked) names[order] = name;
+  return names;
 }
 
 }  // namespace kiloband

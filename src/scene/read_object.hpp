@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -62,10 +63,13 @@ class ObjectReader {
   const Node* value_of(std::string_view name, std::string_view expected,
                        std::initializer_list<std::string_view> tags) const;
 
+  /// What the object's readers asked for, in that order; views of the node's own strings.
+  std::vector<std::string_view> known_names() const;
   /// "label: name: ", which stands before what is wrong with a value.
   std::string context(std::string_view name) const;
 
   Node& object_;
+  std::map<std::string_view, Node*> children_;  // by name; the tree owns names and nodes
 };
 
 /// First byte of a value: its 'value' or 'filename' attribute, the id of a reference, the type of an object.

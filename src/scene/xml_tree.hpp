@@ -4,6 +4,8 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -28,9 +30,11 @@ struct Node {
   std::vector<std::unique_ptr<Node>> children;
   Node* target = nullptr;  // references: the object meant
 
-  bool used_as_part = false;            // another object has read this one
-  bool used = false;                    // somebody asked for this parameter
-  std::vector<std::string_view> asked;  // parameter names that readers of this object know
+  bool used_as_part = false;  // another object has read this one
+  bool used = false;          // somebody asked for this parameter
+  /// Parameter names that readers of this object know, numbered in the order of asking. The node owns them:
+  /// names like "endmember_3" are put together for one call.
+  std::map<std::string, std::size_t, std::less<>> asked;
 
   bool is_named() const { return !name.starts_with("_arg_"); }
   const XmlAttribute* find(std::string_view attribute) const;

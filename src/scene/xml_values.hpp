@@ -1,6 +1,7 @@
 // Words and numbers in attribute values, and suggestions for misspelt names.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,8 +13,11 @@
 
 namespace kiloband {
 
-/// Splits at blanks and commas; empty tokens vanish, as in Mitsuba.
+/// Splits at blanks and commas; empty tokens vanish, as in Mitsuba. The tokens look into `text`, which must
+/// outlive them: not a temporary string.
 std::vector<std::string_view> split_tokens(std::string_view text);
+template <std::same_as<std::string> Temporary>
+std::vector<std::string_view> split_tokens(Temporary&& text) = delete;
 
 /// Whole-text conversions. `context` stands before the message.
 /// throws InputError at `place`, e.g. "'abc' is not a number", "'nan' is not finite"
