@@ -155,9 +155,16 @@ Transform ObjectReader::get_transform(std::string_view name) const {
   return node ? evaluate_transform(*node) : Transform(1.0);
 }
 
-glm::dmat3 ObjectReader::get_uv_transform(std::string_view name) const {
+glm::dmat3 ObjectReader::get_uv_transform(std::string_view name, const DiagnosticSink& sink) const {
   const Node* node = value_of(name, "transform", {"transform"});
-  return node ? evaluate_uv_transform(*node) : glm::dmat3(1.0);
+  if (object_.legacy) {
+    const glm::dvec2 scale(get_float("uscale", 1), get_float("vscale", 1));
+    const glm::dvec2 offset(get_float("uoffset", 0), get_float("voffset", 0));
+    for (const std::string_view part : {"uscale", "vscale", "uoffset", "voffset"})
+      if (node && has(part)) fail_at(part, std::string(part) + " together with " + std::string(name));
+    if (!node) return {{scale.x, 0, 0}, {0, scale.y, 0}, glm::dvec3(scale * offset, 1)};
+  }
+  return node ? evaluate_uv_transform(*node, sink) : glm::dmat3(1.0);
 }
 
 std::size_t ObjectReader::get_choice(std::string_view name,

@@ -41,8 +41,10 @@ class ObjectReader {
   std::string get_string(std::string_view name, const std::string& fallback) const;
   std::string require_string(std::string_view name) const;
   glm::dvec3 get_vector(std::string_view name, const glm::dvec3& fallback) const;
-  Transform get_transform(std::string_view name) const;      // identity by default
-  glm::dmat3 get_uv_transform(std::string_view name) const;  // identity by default
+  Transform get_transform(std::string_view name) const;  // identity by default
+  /// Of texture coordinates; identity by default. In old files u' = uscale (u + uoffset) too, as Mitsuba 3
+  /// reads them. `sink`: see evaluate_uv_transform().
+  glm::dmat3 get_uv_transform(std::string_view name, const DiagnosticSink& sink) const;
   /// One of `choices` (compared without case); returns its index. The first is the default.
   std::size_t get_choice(std::string_view name, const std::vector<std::string_view>& choices) const;
 
@@ -80,8 +82,10 @@ std::string describe_kind(const Node& node);
 /// Transforms of a <transform>: identity, each step multiplied from the left.
 /// throws InputError  singular, not affine, wrong number of values
 Transform evaluate_transform(const Node& node);
-/// The same in two dimensions, for texture coordinates: translate (x, y), scale (x, y), rotate about z,
-/// matrix of 9 numbers.
-glm::dmat3 evaluate_uv_transform(const Node& node);
+/// The same for texture coordinates, as Mitsuba 3.9 applies it: the steps act on (u, v, 0, 1) and the first
+/// two coordinates of the result count. A matrix of 9 numbers acts on (u, v, 1), which Mitsuba takes
+/// otherwise: a note says so where it matters. A warning names matrices with entries for the coordinate that
+/// textures lack.
+glm::dmat3 evaluate_uv_transform(const Node& node, const DiagnosticSink& sink);
 
 }  // namespace kiloband

@@ -100,7 +100,7 @@ Texture read_spectral_bitmap(ReadContext& context, const ObjectReader& object) {
   texture->nearest = object.get_choice("filter_type", {"bilinear", "nearest"}) == 1;
   constexpr WrapMode kModes[] = {WrapMode::kRepeat, WrapMode::kMirror, WrapMode::kClamp};
   texture->wrap = kModes[object.get_choice("wrap_mode", {"repeat", "mirror", "clamp"})];
-  texture->to_uv = object.get_uv_transform("to_uv");
+  texture->to_uv = object.get_uv_transform("to_uv", context.sink);
   const bool weights = object.has("weights");
   if (weights && object.has("filename")) object.fail_at("weights", "'weights' together with 'filename'");
   const char* parameter = weights ? "weights" : "filename";

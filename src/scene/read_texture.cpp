@@ -14,7 +14,7 @@ Texture read_bitmap(ReadContext& context, const ObjectReader& object) {
   bitmap->nearest = object.get_choice("filter_type", {"bilinear", "nearest"}) == 1;
   constexpr WrapMode kModes[] = {WrapMode::kRepeat, WrapMode::kMirror, WrapMode::kClamp};
   bitmap->wrap = kModes[object.get_choice("wrap_mode", {"repeat", "mirror", "clamp"})];
-  bitmap->to_uv = object.get_uv_transform("to_uv");
+  bitmap->to_uv = object.get_uv_transform("to_uv", context.sink);
   object.get_choice("format", {"auto", "variant", "fp16"});  // how Mitsuba stores it: no meaning here
   object.finish();
   bitmap->image = context.image(bitmap->file, bitmap->raw, object.value_place("filename"));
@@ -27,7 +27,7 @@ Texture read_checkerboard(ReadContext& context, const ObjectReader& object) {
   board->position = object.node().place.position();
   board->color0 = read_spectrum(context, object, "color0", SpectrumUse::kReflectance, board->color0);
   board->color1 = read_spectrum(context, object, "color1", SpectrumUse::kReflectance, board->color1);
-  board->to_uv = object.get_uv_transform("to_uv");
+  board->to_uv = object.get_uv_transform("to_uv", context.sink);
   object.finish();
   return std::shared_ptr<const CheckerboardTexture>(std::move(board));
 }

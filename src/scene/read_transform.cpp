@@ -106,28 +106,42 @@ Transform step_matrix(const XmlElement& step) {
   return lookat(step);
 }
 
-/// One step in two dimensions.
-glm::dmat3 uv_step_matrix(const XmlElement& step) {
-  glm::dmat3 result(1.0);
-  if (step.tag == "matrix") {
-    const XmlAttribute& value = *step.find("value");
-    const std::vector<double> n = parse_numbers(value.value, value.value_place);
-    if (n.size() != 9)
-      fail(value.value_place,
-           "a texture transform's <matrix> needs 9 numbers, found " + std::to_string(n.size()));
-    for (int i = 0; i < 9; ++i) result[i % 3][i / 3] = n[static_cast<std::size_t>(i)];
-    if (n[6] != 0 || n[7] != 0 || n[8] != 1)
-      fail(value.value_place, "the last row of the matrix must be 0 0 1");
-    return result;
-  }
+/// 9 numbers, row by row: a matrix of (u, v, 1). Mitsuba takes them for the part of a 4 x 4 matrix without
+/// translation, so that its third column, which acts on a coordinate that textures lack, has no effect there.
+Transform planar_matrix(const XmlElement& step, const std::vector<double>& n, const DiagnosticSink& sink) {
+  const Place& place = step.find("value")->value_place;
+  if (n[6] != 0 || n[7] != 0 || n[8] != 1) fail(place, "the last row of the matrix must be 0 0 1");
+  if (n[2] != 0 || n[5] != 0)
+    note(sink, place.position(),
+         "a texture transform's <matrix> of 9 numbers: its third column is the translation, which Mitsuba 3 "
+         "ignores (16 numbers mean the same to both)");
+  return {glm::dvec4(n[0], n[3], 0, 0), glm::dvec4(n[1], n[4], 0, 0), glm::dvec4(0, 0, 1, 0),
+          glm::dvec4(n[2], n[5], 0, 1)};
+}
+
+Transform uv_matrix(const XmlElement& step, const DiagnosticSink& sink) {
+  const XmlAttribute& value = *step.find("value");
+  const std::vector<double> n = parse_numbers(value.value, value.value_place);
+  if (n.size() == 9) return planar_matrix(step, n, sink);
+  const Transform result = matrix(step);
+  const glm::dvec4 &u = result[0], &v = result[1], &w = result[2], &origin = result[3];
+  if (w.x != 0 || w.y != 0 || u.z != 0 || v.z != 0 || origin.z != 0)
+    warn(
+        sink, value.value_place.position(),
+        "a texture has no third coordinate: of the matrix only the first two rows count, without their third "
+        "column (translations stand in the fourth)");
+  return result;
+}
+
+/// One step on texture coordinates (u, v, 0, 1).
+Transform uv_step_matrix(const XmlElement& step, const DiagnosticSink& sink) {
+  if (step.tag == "matrix") return uv_matrix(step, sink);
   if (step.tag == "lookat") fail(step.place, "<lookat> is not allowed in a texture transform");
   const Transform full = step_matrix(step);
   if (full[0][2] != 0 || full[1][2] != 0 || full[2][0] != 0 || full[2][1] != 0 || full[3][2] != 0) {
     fail(step.place, "<" + step.tag + "> leaves the plane of the texture");
   }
-  for (int column = 0; column < 2; ++column) result[column] = glm::dvec3(full[column].x, full[column].y, 0);
-  result[2] = glm::dvec3(full[3].x, full[3].y, 1);
-  return result;
+  return full;
 }
 
 bool is_finite(const double* first, int count) {
@@ -154,9 +168,11 @@ Transform evaluate_transform(const Node& node) {
   return result;
 }
 
-glm::dmat3 evaluate_uv_transform(const Node& node) {
-  glm::dmat3 result(1.0);
-  for (const XmlElement& step : node.steps) result = uv_step_matrix(step) * result;
+glm::dmat3 evaluate_uv_transform(const Node& node, const DiagnosticSink& sink) {
+  Transform full(1.0);
+  for (const XmlElement& step : node.steps) full = uv_step_matrix(step, sink) * full;
+  const glm::dmat3 result(glm::dvec3(full[0].x, full[0].y, 0), glm::dvec3(full[1].x, full[1].y, 0),
+                          glm::dvec3(full[3].x, full[3].y, 1));
   const glm::dmat2 linear(result);
   check_regular(is_finite(&result[0][0], 9), glm::determinant(linear),
                 glm::length(linear[0]) * glm::length(linear[1]), node);

@@ -17,10 +17,14 @@ Transform transform_of(const std::string& steps) {
       .to_world;
 }
 
-glm::dmat3 uv_transform_of(const std::string& steps) {
-  const SceneDescription result = read(scene(
+std::string textured_scene(const std::string& steps) {
+  return scene(
       R"(<shape type="rectangle"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"><transform name="to_uv">)" +
-      steps + "</transform></texture></bsdf></shape>" + kSensor + kLight));
+      steps + "</transform></texture></bsdf></shape>" + kSensor + kLight);
+}
+
+glm::dmat3 uv_transform_of(const std::string& steps, std::vector<std::string>* diagnostics = nullptr) {
+  const SceneDescription result = read(textured_scene(steps), "/nonexistent", {}, diagnostics);
   const auto& diffuse = std::get<DiffuseBsdf>(result.shapes.at(0).bsdf->model);
   return std::get<std::shared_ptr<const CheckerboardTexture>>(diffuse.reflectance)->to_uv;
 }
@@ -60,6 +64,78 @@ TEST(SceneTransform, TextureTransformsAreTwoDimensional) {
   EXPECT_EQ(m * glm::dvec3(1, 1, 1), glm::dvec3(8.5, 4, 1));
   EXPECT_EQ(uv_transform_of(R"(<matrix value="1 2 3 4 5 6 0 0 1"/>)") * glm::dvec3(1, 1, 1),
             glm::dvec3(6, 15, 1));
+}
+
+/// Rows of [2][3]: u and v of Mitsuba 3.9.1 as affine functions of (u, v, 1), measured on a bitmap of ramps.
+void expect_uv(const std::string& steps, const std::vector<double>& expected) {
+  const glm::dmat3 m = uv_transform_of(steps);
+  for (int i = 0; i < 6; ++i)
+    EXPECT_NEAR(m[i % 3][i / 3], expected[static_cast<std::size_t>(i)], 1e-12) << steps << " entry " << i;
+}
+
+TEST(SceneTransform, TextureMatricesOfSixteenNumbersActAsInMitsuba) {
+  const std::string matrix = R"(<matrix value=".7 .1 0 .02, .2 .8 0 .04, 0 0 1 0, 0 0 0 1"/>)";
+  const std::string scale = R"(<scale x=".5" y=".8"/>)", translate = R"(<translate x=".1" y=".2"/>)";
+  expect_uv(matrix, {.7, .1, .02, .2, .8, .04});
+  expect_uv(matrix + scale, {.35, .05, .01, .16, .64, .032});
+  expect_uv(scale + matrix, {.35, .08, .02, .1, .64, .04});
+  expect_uv(translate + matrix, {.7, .1, .11, .2, .8, .22});
+  expect_uv(matrix + translate, {.7, .1, .12, .2, .8, .24});
+  expect_uv(R"(<matrix value="10 0 0 0, 0 10 0 0, 0 0 1 0, 0 0 0 1"/>)", {10, 0, 0, 0, 10, 0});
+}
+
+TEST(SceneTransform, TexturesHaveNoThirdCoordinate) {
+  std::vector<std::string> diagnostics;
+  const std::string warning =
+      "warning: a texture has no third coordinate: of the matrix only the first two rows count, without "
+      "their "
+      "third column (translations stand in the fourth)";
+  const glm::dmat3 m =
+      uv_transform_of(R"(<matrix value=".7 .1 .5 0, .2 .8 .6 0, 0 0 1 0, 0 0 0 1"/>)", &diagnostics);
+  EXPECT_EQ(m * glm::dvec3(1, 1, 1), glm::dvec3(.7 + .1, .2 + .8, 1));
+  ASSERT_EQ(diagnostics.size(), 1u);
+  EXPECT_EQ(diagnostics[0], "scene.xml:2:133: " + warning);
+  uv_transform_of(R"(<matrix value="1 0 0 0, 0 1 0 0, 0 .5 1 0, 0 0 0 1"/>)", &diagnostics);
+  ASSERT_EQ(diagnostics.size(), 2u);
+  EXPECT_EQ(diagnostics[1], "scene.xml:2:133: " + warning);
+  uv_transform_of(R"(<matrix value="1 0 .5 0 1 0 0 0 1"/>)", &diagnostics);
+  ASSERT_EQ(diagnostics.size(), 3u);
+  EXPECT_EQ(diagnostics[2],
+            "scene.xml:2:133: note: a texture transform's <matrix> of 9 numbers: its third column is the "
+            "translation, which Mitsuba 3 ignores (16 numbers mean the same to both)");
+  uv_transform_of(
+      R"(<matrix value="4 0 0 0 4 0 0 0 1"/><matrix value="2 0 0 1, 0 1 0 2, 0 0 3 0, 0 0 0 1"/>)",
+      &diagnostics);
+  EXPECT_EQ(diagnostics.size(), 3u);
+}
+
+TEST(SceneTransform, OldTexturesHaveScalesAndOffsets) {
+  const auto old_scene = [](const std::string& parameters) {
+    return R"(<scene version="0.6.0"><shape type="disk"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance">)" +
+           parameters + "</texture></bsdf></shape>" + kSensor + kLight + "</scene>";
+  };
+  const std::string scale = R"(<float name="uscale" value="2"/>)";
+  const SceneDescription result =
+      read(old_scene(scale + R"(<float name="vscale" value="3"/><float name="uoffset" value="0.5"/>)"));
+  const auto& diffuse = std::get<DiffuseBsdf>(result.shapes.at(0).bsdf->model);
+  const glm::dmat3 m = std::get<std::shared_ptr<const CheckerboardTexture>>(diffuse.reflectance)->to_uv;
+  EXPECT_EQ(m * glm::dvec3(1, 1, 1), glm::dvec3(3, 3, 1));
+  EXPECT_EQ(error_of(old_scene(scale + R"(<transform name="toUV"><scale x="2"/></transform>)")),
+            "scene.xml:1:140: error: checkerboard texture: uscale together with to_uv");
+}
+
+TEST(SceneTransform, WrongTextureMatrices) {
+  const std::string at = "scene.xml:2:133: error: ";
+  EXPECT_EQ(error_of(textured_scene(R"(<matrix value="1 0 0 0, 0 1 0 0, 0 0 1 0, 0 0 0 2"/>)")),
+            at + "the last row of the matrix must be 0 0 0 1");
+  EXPECT_EQ(error_of(textured_scene(R"(<matrix value="1 0 0 0 1 0 0 1 1"/>)")),
+            at + "the last row of the matrix must be 0 0 1");
+  EXPECT_EQ(error_of(textured_scene(R"(<matrix value="1 0 0 0 1 0"/>)")),
+            at + "<matrix> needs 16 or 9 numbers, found 6");
+  EXPECT_EQ(error_of(textured_scene(R"(<matrix value="1 2 0 0, 2 4 0 0, 0 0 1 0, 0 0 0 1"/>)")),
+            "scene.xml:2:95: error: transform 'to_uv' is singular");
+  EXPECT_EQ(error_of(textured_scene(R"(<rotate y="1" angle="10"/>)")),
+            "scene.xml:2:119: error: <rotate> leaves the plane of the texture");
 }
 
 TEST(SceneValues, IntegersServeAsFloatsAndBooleansIgnoreCase) {
