@@ -49,10 +49,26 @@ Integrator read_path(const ObjectReader& object) {
   return result;
 }
 
+/// Mitsuba's integrator around another, which adds an image of second moments. Its first image is that of the
+/// nested one.
+std::pair<Integrator, uint64_t> read_moment(ReadContext& context, const ObjectReader& object) {
+  Node* nested = object.nested_one("integrator");
+  if (!nested) object.fail_here("needs a nested integrator");
+  object.get_bool("hide_emitters", false);  // without effect in Mitsuba: the nested one has its own
+  object.finish();
+  note(
+      context.sink, object.node().type_place.position(),
+      object.label() +
+          ": read as the integrator in it: second moments are not written, --variance writes the variance of "
+          "the mean");
+  return read_integrator(context, *nested);
+}
+
 }  // namespace
 
-std::pair<Integrator, uint64_t> read_integrator(ReadContext&, Node& node) {
+std::pair<Integrator, uint64_t> read_integrator(ReadContext& context, Node& node) {
   const ObjectReader object(node);
+  if (node.type == "moment") return read_moment(context, object);
   Integrator integrator;
   uint64_t splitting = 1;
   if (node.type == "direct") {
@@ -61,7 +77,7 @@ std::pair<Integrator, uint64_t> read_integrator(ReadContext&, Node& node) {
   } else if (node.type == "path" || node.type == "volpath" || node.type == "volpathmis") {
     integrator = read_path(object);
   } else {
-    object.refuse_type({"path", "direct", "volpath", "volpathmis"});
+    object.refuse_type({"path", "direct", "volpath", "volpathmis", "moment"});
   }
   integrator.hide_emitters = object.get_bool("hide_emitters", false);
   object.finish();
