@@ -24,6 +24,10 @@ struct ReadContext {
   /// By file and whether its values are weights.
   std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const SpectralImage>> spectral_images;
   std::map<const Node*, std::shared_ptr<const Medium>> media;
+  /// Spectra and textures that passed the checks of their use (SpectrumUse): what many objects refer to is
+  /// read once.
+  std::map<std::pair<const Node*, int>, Texture> checked = {};
+  std::map<std::pair<std::filesystem::path, int>, Spectrum> spectrum_files = {};  // by file and use
 
   /// The existing file that a parameter names. throws InputError at its value
   std::filesystem::path file(const ObjectReader& object, std::string_view parameter);

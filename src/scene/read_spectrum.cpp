@@ -117,7 +117,10 @@ bool is_emission(SpectrumUse use) {
 }
 
 Spectrum read_used_file(ReadContext& context, const std::filesystem::path& file, SpectrumUse use) {
-  return read_spectrum_file(file, kind_of(use), context.sink);
+  const std::pair<std::filesystem::path, int> key(file, static_cast<int>(use));
+  const auto known = context.spectrum_files.find(key);
+  if (known != context.spectrum_files.end()) return known->second;
+  return context.spectrum_files.emplace(key, read_spectrum_file(file, kind_of(use), context.sink)).first->second;
 }
 
 void check_spectrum(const Spectrum& spectrum, const std::string& label, SpectrumUse use, const Place& place) {
@@ -152,6 +155,8 @@ Texture read_texture_node(ReadContext& context, Node& parameter, const std::stri
   if (node.tag != "spectrum" && !(node.tag == "texture" && is_object)) {
     fail(place, label + ": expected a spectrum, found " + describe_kind(parameter));
   }
+  const std::pair<const Node*, int> key(&node, static_cast<int>(use));
+  if (const auto known = context.checked.find(key); known != context.checked.end()) return known->second;
   const Texture texture =
       is_object ? from_object(context, node, label, use) : Texture(from_spectrum(context, node, label, use));
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) {
@@ -159,6 +164,7 @@ Texture read_texture_node(ReadContext& context, Node& parameter, const std::stri
   } else if (use == SpectrumUse::kReflectance) {
     check_reflectance_texture(texture, label, place);
   }
+  context.checked.emplace(key, texture);
   return texture;
 }
 

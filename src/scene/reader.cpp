@@ -49,6 +49,8 @@ class SceneReader {
     const std::string& tag = node.tag;
     if (is_part(node) || is_thermal(node)) return;
     child.used = true;
+    if ((tag == "shape" || tag == "emitter") && !placed_.insert(&node).second)
+      fail(child.place, scene.label() + ": " + ObjectReader(node).label() + " is in the scene already");
     if (tag == "shape") {
       scene_.shapes.push_back(read_shape(context_, node));
     } else if (tag == "emitter") {
@@ -145,6 +147,7 @@ class SceneReader {
 
   SceneTree& tree_;
   DiagnosticSink sink_;
+  std::set<const Node*> placed_;  // shapes and emitters of the scene
   ReadContext context_;
   SceneDescription scene_;
   Integrator integrator_;

@@ -64,6 +64,27 @@ void check_characters(std::string_view text, const LineTable& lines) {
   }
 }
 
+/// Counts elements by their start tags before memory is taken for any; comments are passed over.
+void count_elements(std::string_view text, const LineTable& lines, XmlTotals& totals) {
+  for (std::size_t i = text.find('<'); i < text.size(); i = text.find('<', i + 1)) {
+    if (text.substr(i).starts_with("<!--")) {
+      i = text.find("-->", i + 4);
+      if (i == std::string_view::npos) return;  // pugixml says what is wrong
+    } else if (i + 1 < text.size() && text[i + 1] != '/' && text[i + 1] != '!' && text[i + 1] != '?' &&
+               ++totals.elements > kMaxElements) {
+      fail(lines.at(i + 1), "more than " + std::to_string(kMaxElements) +
+                                " elements, those of included files counted each time");
+    }
+  }
+}
+
+void check_size(std::string_view text, const LineTable& lines, XmlTotals& totals) {
+  if (text.size() > kMaxFileBytes) fail(lines.at(0), "larger than 256 MiB");
+  totals.bytes += text.size();
+  if (totals.bytes > kMaxSceneBytes)
+    fail(lines.at(0), "the files of the scene are larger than 1 GiB together");
+}
+
 /// Appends a code point as UTF-8.
 void append_utf8(std::string& out, uint32_t code) {
   if (code < 0x80) {
@@ -175,10 +196,11 @@ class Converter {
     XmlElement result{node.name(), place(node), {}, {}};
     if (depth > kMaxNesting)
       fail(result.place, "nested more than " + std::to_string(kMaxNesting) + " levels deep");
-    if (++count_ > kMaxElements)
-      fail(result.place, "more than " + std::to_string(kMaxElements) + " elements");
     for (const pugi::xml_attribute source : node.attributes()) {
       result.attributes.push_back(attribute(result, source));
+      if (result.attributes.size() > kMaxAttributes)
+        fail(result.attributes.back().place,
+             "<" + result.tag + ">: more than " + std::to_string(kMaxAttributes) + " attributes");
     }
     for (const pugi::xml_node child : node.children()) {
       if (child.type() != pugi::node_element) refuse(child);
@@ -189,7 +211,6 @@ class Converter {
 
   const char* base_;
   const LineTable& lines_;
-  std::size_t count_ = 0;
 };
 
 }  // namespace
@@ -209,10 +230,11 @@ const XmlAttribute* XmlElement::find(std::string_view attribute) const {
   return nullptr;
 }
 
-XmlElement parse_xml(std::string text, const std::string* file) {
+XmlElement parse_xml(std::string text, const std::string* file, XmlTotals& totals) {
   const LineTable lines(text, file);
-  if (text.size() > kMaxSceneBytes) fail(lines.at(0), "larger than 256 MiB");
+  check_size(text, lines, totals);
   check_characters(text, lines);
+  count_elements(text, lines, totals);
   // No escapes, no white space conversion: the buffer stays as it is, and undefined entities remain visible.
   constexpr unsigned kFlags =
       pugi::parse_fragment | pugi::parse_cdata | pugi::parse_doctype | pugi::parse_declaration;

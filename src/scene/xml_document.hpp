@@ -39,14 +39,22 @@ struct XmlElement {
   const XmlAttribute* find(std::string_view attribute) const;
 };
 
-/// Limits against hostile input.
+/// Limits against hostile input. Those of a scene count an included file as often as it is included.
 inline constexpr int kMaxNesting = 64;                  // levels of elements, includes and references
-inline constexpr std::size_t kMaxElements = 2'000'000;  // of a scene, includes counted as often as they occur
-inline constexpr std::size_t kMaxSceneBytes = std::size_t{256} << 20;
+inline constexpr std::size_t kMaxElements = 2'000'000;  // of a scene, of every kind
+inline constexpr std::size_t kMaxAttributes = 16;       // of an element; none has a use for more than 5
+inline constexpr std::size_t kMaxFileBytes = std::size_t{256} << 20;
+inline constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 30;
 
-/// Parses one file. Refused besides what pugixml refuses: bad UTF-8, control characters, DOCTYPE, encodings
-/// other than UTF-8, text between elements, no or several roots, duplicate attributes, unknown entities,
-/// nesting over kMaxNesting. throws InputError with position
-XmlElement parse_xml(std::string text, const std::string* file);
+/// What the files of a scene have amounted to so far.
+struct XmlTotals {
+  std::size_t elements = 0;
+  std::size_t bytes = 0;
+};
+
+/// Parses one file and adds it to `totals`. Refused besides what pugixml refuses: bad UTF-8, control
+/// characters, DOCTYPE, encodings other than UTF-8, text between elements, no or several roots, duplicate
+/// attributes, unknown entities, what passes a limit above. throws InputError with position
+XmlElement parse_xml(std::string text, const std::string* file, XmlTotals& totals);
 
 }  // namespace kiloband

@@ -8,6 +8,7 @@ namespace {
 // Defaults may contain earlier defaults, so that lengths can double with each line: both limits are needed.
 constexpr std::size_t kMaxValueBytes = std::size_t{16} << 20;
 constexpr std::size_t kMaxTotalBytes = std::size_t{256} << 20;
+constexpr std::size_t kMostSuggestions = 1000;  // names that a misspelt one is compared with
 
 bool is_name_start(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -43,7 +44,9 @@ const Substitution::Parameter& Substitution::look_up(const std::string& name, co
   const auto found = parameters_.find(name);
   if (found == parameters_.end()) {
     std::vector<std::string_view> names;
-    for (const auto& entry : parameters_) names.push_back(entry.first);
+    for (const auto& entry : parameters_) {
+      if (names.size() < kMostSuggestions) names.push_back(entry.first);
+    }
     fail(place, "parameter '$" + name + "' is not defined (neither by <default> nor by -D)" +
                     suggestion(name, names));
   }
@@ -78,7 +81,7 @@ std::string Substitution::apply(const std::string& text, const Place& place) {
 void Substitution::check_all_known(const Place& scene) const {
   std::vector<std::string_view> names;
   for (const auto& [name, parameter] : parameters_) {
-    if (parameter.known) names.push_back(name);
+    if (parameter.known && names.size() < kMostSuggestions) names.push_back(name);
   }
   for (const auto& [name, parameter] : parameters_) {
     if (!parameter.known)

@@ -12,17 +12,15 @@ namespace kiloband {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxIncludes =
-    1000;  // of a scene; with kMaxElements this bounds what files that include twice can do
-
+constexpr int kMaxIncludes = 1000;
 constexpr std::size_t kMaxAliases = 1000;
+constexpr std::size_t kMaxFolders = 100;  // each file name is looked for in all of them
 
 /// What holds for one file while it is expanded.
 struct FileState {
   bool legacy = false;
-  int depth = 1;                // levels above, those of including files included
-  bool at_root = true;          // directly under the main scene's root
-  std::vector<fs::path> chain;  // files being read, outermost first
+  int depth = 1;        // levels above, those of including files included
+  bool at_root = true;  // directly under the main scene's root
 };
 
 /// "3.0.0" or "0.6": the first number; files before version 2 have camelCase names.
@@ -54,11 +52,11 @@ class Expander {
   void run(std::string text, const std::string& name, const fs::path& directory) {
     tree_.files.push_back(name);
     tree_.search.push_back(directory);
-    const XmlElement root = parse_xml(std::move(text), &tree_.files.back());
+    const XmlElement root = parse_xml(std::move(text), &tree_.files.back(), totals_);
     if (root.tag != "scene") fail(root.place, "the root element must be <scene>, found <" + root.tag + ">");
     FileState state;
     std::error_code error;
-    state.chain.push_back(fs::weakly_canonical(directory / fs::path(name).filename(), error));
+    chain_.push_back(fs::weakly_canonical(directory / fs::path(name).filename(), error));
     tree_.root = object(root, state);
     substitution_.check_all_known(root.place);
     resolve_references(*tree_.root, aliases_);
@@ -101,8 +99,6 @@ class Expander {
   }
 
   std::unique_ptr<Node> object(const XmlElement& source, const FileState& outer) {
-    if (++elements_ > kMaxElements)
-      fail(source.place, "more than " + std::to_string(kMaxElements) + " elements");
     if (outer.depth > kMaxNesting) {
       fail(source.place, "nested more than " + std::to_string(kMaxNesting) + " levels deep");
     }
@@ -140,8 +136,6 @@ class Expander {
 
   void add_steps(const XmlElement& element, Node& node, const FileState& state) {
     for (const XmlElement& child : element.children) {
-      if (++elements_ > kMaxElements)
-        fail(child.place, "more than " + std::to_string(kMaxElements) + " elements");
       XmlElement step = substituted(child, state.legacy);
       if (check_element(step).kind != TagKind::kStep) {
         fail(step.place, "<" + step.tag + "> is not allowed in a transform");
@@ -194,6 +188,8 @@ class Expander {
 
   void add_search_folder(const XmlElement& directive, const FileState& state) {
     if (!state.at_root) fail(directive.place, "<path> is allowed directly under <scene> only");
+    if (tree_.search.size() > kMaxFolders)
+      fail(directive.place, "more than " + std::to_string(kMaxFolders) + " folders");
     const XmlAttribute& value = *directive.find("value");
     const fs::path folder = tree_.search.front() / value.value;
     std::error_code error;
@@ -209,14 +205,14 @@ class Expander {
     std::error_code error;
     const fs::path canonical = fs::weakly_canonical(file, error);
     FileState state = outer;
-    if (std::find(state.chain.begin(), state.chain.end(), canonical) != state.chain.end()) {
+    if (std::find(chain_.begin(), chain_.end(), canonical) != chain_.end()) {
       fail(place, "file '" + name.value + "' includes itself");
     }
     if (++includes_ > kMaxIncludes) fail(place, "more than " + std::to_string(kMaxIncludes) + " includes");
-    state.chain.push_back(canonical);
+    chain_.push_back(canonical);
     ++state.depth;
     tree_.files.push_back(file.string());
-    const XmlElement root = parse_xml(read_text_file(file, place), &tree_.files.back());
+    const XmlElement root = parse_xml(read_text_file(file, place), &tree_.files.back(), totals_);
     if (root.tag == "scene") {
       state.legacy = scene_version(root);
       check_element(root);
@@ -224,13 +220,15 @@ class Expander {
     } else {
       add_child(root, parent, state);
     }
+    chain_.pop_back();
   }
 
   SceneTree& tree_;
   Substitution substitution_;
   AliasList aliases_;
   std::map<const Node*, int> unnamed_;
-  std::size_t elements_ = 0;
+  std::vector<fs::path> chain_;  // files being read, outermost first
+  XmlTotals totals_;
   int includes_ = 0;
 };
 
@@ -266,7 +264,7 @@ std::string read_text_file(const fs::path& file, const Place& place) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
   if (error) fail(place, "cannot read '" + file.string() + "': " + error.message());
-  if (size > kMaxSceneBytes) fail(place, "'" + file.string() + "' is larger than 256 MiB");
+  if (size > kMaxFileBytes) fail(place, "'" + file.string() + "' is larger than 256 MiB");
   std::string text(size, '\0');
   std::ifstream in(file, std::ios::binary);
   if (!in.read(text.data(), static_cast<std::streamsize>(size)))

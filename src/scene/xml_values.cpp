@@ -96,6 +96,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string_view
   std::size_t best = (size < 2 ? 0 : size < 4 ? 1 : std::clamp<std::size_t>(size / 3, 2, 3)) + 1;
   std::string_view nearest;
   for (const std::string_view candidate : candidates) {
+    const std::size_t longer = std::max(size, candidate.size()), shorter = std::min(size, candidate.size());
+    if (longer - shorter >= best) continue;  // the distance is at least that
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < best) best = distance, nearest = candidate;
   }
