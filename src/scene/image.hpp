@@ -15,7 +15,8 @@ struct Image {
   uint32_t width = 0;
   uint32_t height = 0;
   uint32_t channels = 0;      // 1 or 3 (alpha is dropped)
-  std::vector<float> pixels;  // [y][x][channel]
+  std::vector<float> pixels;  // [y][x][channel], finite and >= 0
+  float lowest = 0;           // the smallest value of the file where that was negative and became 0
 };
 
 /// Reads an image file: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, BMP, PNM, PFM (told by their first bytes) and
@@ -24,9 +25,10 @@ struct Image {
 /// linear. Colours are never multiplied by alpha. Channels by name: R, G, B; else Y; else the R, G, B of the
 /// first layer that has them ("layer.R" ...); else the only channel besides alpha. Anything else (X Y Z,
 /// spectral channels) is an error. Of several parts or levels the first one is read, of an EXR file the data
-/// window. raw    true: no colour conversion of integer formats throws InputError  naming the file: missing,
-/// unreadable, truncated, not finite or negative values, larger than 65535
-///                    in a dimension
-Image read_image(const std::filesystem::path& file, bool raw);
+/// window. Slightly negative values (negative_values.hpp; the mean is that of all channels) become 0, with
+/// one warning. raw                true: no colour conversion of integer formats throws InputError  naming
+/// the file: missing, unreadable, truncated, values that are not finite or clearly
+///                    negative, larger than 65535 in a dimension
+Image read_image(const std::filesystem::path& file, bool raw, const DiagnosticSink& sink = {});
 
 }  // namespace kiloband

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "scene/image.hpp"
 #include "scene/image_channels.hpp"
 #include "scene/image_format.hpp"
+#include "scene/negative_values.hpp"
 
 namespace kiloband {
 namespace {
@@ -55,7 +58,7 @@ class Reader {
     if (!input_->open(file.name, spec_, hints)) fail_input();
   }
 
-  Image read(bool raw) {
+  Image read(bool raw, const DiagnosticSink& sink) {
     check();
     const ChannelChoice choice = choose();
     Image image{static_cast<uint32_t>(spec_.width),
@@ -68,7 +71,7 @@ class Reader {
       read_strip(image, choice, row, std::min(spec_.height, row + strip));
     }
     if (!raw && is_encoded()) decode(image);
-    check_values(image);
+    settle_values(image, sink);
     return image;
   }
 
@@ -155,15 +158,36 @@ class Reader {
     }
   }
 
-  void check_values(const Image& image) const {
+  static std::string place_in(const Image& image, std::size_t index) {
+    const std::size_t pixel = index / image.channels;
+    return "pixel (" + std::to_string(pixel % image.width) + ", " + std::to_string(pixel / image.width) +
+           "), channel " + std::to_string(index % image.channels);
+  }
+
+  /// Refuses what is no light and sets slightly negative values to 0.
+  void settle_values(Image& image, const DiagnosticSink& sink) const {
+    NegativeValues negative;
     for (size_t i = 0; i < image.pixels.size(); ++i) {
-      const float value = image.pixels[i];
-      if (value >= 0 && std::isfinite(value)) continue;
-      const size_t pixel = i / image.channels;
-      file_.fail("pixel (" + std::to_string(pixel % image.width) + ", " +
-                 std::to_string(pixel / image.width) + "), channel " + std::to_string(i % image.channels) +
-                 ": " + std::to_string(value) + ": must be finite and not negative");
+      if (!std::isfinite(image.pixels[i])) refuse_value(image, i, "must be finite and >= 0");
+      negative.add(image.pixels[i], i);
     }
+    if (negative.negative() == 0) return;
+    if (!negative.acceptable()) refuse_value(image, negative.lowest_index(), negative.rule());
+    image.lowest = negative.lowest();
+    uint64_t texels = 0;
+    for (size_t first = 0; first < image.pixels.size(); first += image.channels) {
+      const std::span<float> texel(&image.pixels[first], image.channels);
+      texels += std::ranges::any_of(texel, [](float v) { return v < 0; });
+      for (float& value : texel) value = std::max(value, 0.0f);
+    }
+    warn(sink, {file_.name},
+         std::to_string(texels) + (texels == 1 ? " texel is" : " texels are") +
+             " slightly negative and taken as 0, the lowest at " + place_in(image, negative.lowest_index()) +
+             ": " + format_number(negative.lowest()));
+  }
+
+  [[noreturn]] void refuse_value(const Image& image, std::size_t index, const std::string& rule) const {
+    file_.fail(place_in(image, index) + ": " + format_number(image.pixels[index]) + ": " + rule);
   }
 
   [[noreturn]] void fail_input() { file_.fail("cannot be read: " + reason(input_->geterror())); }
@@ -175,10 +199,10 @@ class Reader {
 
 }  // namespace
 
-Image read_image(const std::filesystem::path& path, bool raw) {
+Image read_image(const std::filesystem::path& path, bool raw, const DiagnosticSink& sink) {
   const ImageFile file = examine_image(path);
   try {
-    return Reader(file).read(raw);
+    return Reader(file).read(raw, sink);
   } catch (const std::bad_alloc&) {
     throw DeviceError(file.name + ": not enough memory for the image");
   }

@@ -14,5 +14,5 @@ endforeach()
 set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${_oiio_existing}")
 
 kiloband_library(kiloband_images
-  SOURCES image_format.cpp image_channels.cpp image_oiio.cpp spectral_image.cpp
+  SOURCES image_format.cpp image_channels.cpp image_oiio.cpp negative_values.cpp spectral_image.cpp
   DEPENDS kiloband_base kiloband_film OpenImageIO::OpenImageIO)

@@ -34,6 +34,10 @@ std::shared_ptr<const BitmapTexture> read_temperature_image(ReadContext& context
     fail(place, label + ": an image of temperatures has one channel, " + file + " has " +
                     std::to_string(image.channels));
   }
+  // What is a rounding error of light is none of a temperature.
+  if (image.lowest < 0)
+    fail(place, label + " " + format_number(static_cast<double>(image.lowest)) + " in " + file + ": " +
+                    kTemperatureRule);
   const auto wrong = std::find_if_not(image.pixels.begin(), image.pixels.end(), is_temperature);
   if (wrong == image.pixels.end()) return bitmap;
   const auto pixel = static_cast<std::size_t>(wrong - image.pixels.begin());

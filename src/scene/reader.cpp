@@ -165,7 +165,8 @@ std::filesystem::path ReadContext::file(const ObjectReader& object, std::string_
 std::shared_ptr<const Image> ReadContext::image(const std::filesystem::path& file, bool raw,
                                                 const Place& place) {
   auto& image = images[{file, raw}];
-  if (!image) image = load_at(place, [&] { return std::make_shared<const Image>(read_image(file, raw)); });
+  if (!image)
+    image = load_at(place, [&] { return std::make_shared<const Image>(read_image(file, raw, sink)); });
   return image;
 }
 

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <span>
 #include <string_view>
 
 #include "base/text.hpp"
 #include "film/cube_io.hpp"
 #include "scene/image.hpp"
+#include "scene/negative_values.hpp"
 
 namespace kiloband {
 namespace {
@@ -60,19 +62,63 @@ BandChoice all_bands(const CubeInfo& info) {
   return choice;
 }
 
-[[noreturn]] void refuse(const std::string& where, const std::string& name, float value, std::size_t pixel,
-                         uint32_t width) {
-  throw InputError(where + ": " + name + " at pixel (" + std::to_string(pixel % width) + ", " +
-                   std::to_string(pixel / width) + "): " + format_number(value) +
-                   ": must be finite and >= 0");
-}
+/// Values of an image on their way in: those that are no light are refused, and bands remember what is
+/// negative in them.
+class ValueCheck {
+ public:
+  ValueCheck(const BandChoice& choice, uint32_t width, const std::string& where)
+      : names_(choice.names), width_(width), where_(where), bands_(choice.names.size()) {}
+
+  /// The n-th of the chosen values of a pixel; `value` as in the file, `kept` as it is used.
+  void add(std::size_t n, std::size_t pixel, float value, float kept) {
+    if (!std::isfinite(value)) refuse(n, value, pixel, "must be finite and >= 0");
+    bands_[n].add(kept, pixel);
+  }
+
+  /// After the last value: sets the negative ones of `values` [pixel][n] to 0, with one warning.
+  void settle(std::vector<float>& values, const DiagnosticSink& sink) const {
+    std::size_t lowest = 0;
+    for (std::size_t n = 0; n < bands_.size(); ++n) {
+      if (!bands_[n].acceptable()) refuse(n, bands_[n].lowest(), bands_[n].lowest_index(), bands_[n].rule());
+      if (bands_[n].lowest() < bands_[lowest].lowest()) lowest = n;
+    }
+    if (bands_[lowest].negative() == 0) return;
+    uint64_t texels = 0;
+    for (std::size_t first = 0; first < values.size(); first += bands_.size()) {
+      const std::span<float> texel(&values[first], bands_.size());
+      texels += std::ranges::any_of(texel, [](float v) { return v < 0; });
+      for (float& value : texel) value = std::max(value, 0.0f);
+    }
+    const NegativeValues& band = bands_[lowest];
+    warn(sink, {where_},
+         std::to_string(texels) + (texels == 1 ? " texel has" : " texels have") +
+             " slightly negative values, which are taken as 0; the lowest: " +
+             describe(lowest, band.lowest(), band.lowest_index()));
+  }
+
+ private:
+  std::string describe(std::size_t n, float value, std::size_t pixel) const {
+    return names_[n] + " at pixel (" + std::to_string(pixel % width_) + ", " +
+           std::to_string(pixel / width_) + "): " + format_number(value);
+  }
+  [[noreturn]] void refuse(std::size_t n, float value, std::size_t pixel, const std::string& rule) const {
+    throw InputError(where_ + ": " + describe(n, value, pixel) + ": " + rule);
+  }
+
+  const std::vector<std::string>& names_;
+  uint32_t width_;
+  const std::string& where_;
+  std::vector<NegativeValues> bands_;
+};
 
 /// The chosen bands of all pixels; strip by strip, so that there is one copy of the image only.
-std::vector<float> read_values(CubeReader& cube, const BandChoice& choice, const std::string& where) {
+std::vector<float> read_values(CubeReader& cube, const BandChoice& choice, const std::string& where,
+                               const DiagnosticSink& sink) {
   const CubeInfo& info = cube.info();
   const std::size_t bands = info.bands.size(), kept = choice.index.size();
   std::vector<float> out(std::size_t{info.width} * info.height * kept);
   std::vector<float> strip;
+  ValueCheck check(choice, info.width, where);
   float* to = out.data();
   for (uint32_t y = 0; y < info.height; y += kRowsAtOnce) {
     const uint32_t rows = std::min(kRowsAtOnce, info.height - y);
@@ -82,12 +128,12 @@ std::vector<float> read_values(CubeReader& cube, const BandChoice& choice, const
     for (std::size_t p = 0; p < pixels; ++p) {
       for (std::size_t n = 0; n < kept; ++n) {
         const float value = strip[p * bands + choice.index[n]];
-        if (!(value >= 0) || std::isinf(value))
-          refuse(where, choice.names[n], value, std::size_t{y} * info.width + p, info.width);
-        *to++ = static_cast<float>(value / choice.divisor[n]);
+        *to = static_cast<float>(value / choice.divisor[n]);
+        check.add(n, std::size_t{y} * info.width + p, value, *to++);
       }
     }
   }
+  check.settle(out, sink);
   return out;
 }
 
@@ -109,7 +155,7 @@ SpectralImage read_cube(const std::filesystem::path& file, bool weights, const D
   if (!weights)
     for (const std::size_t i : choice.index) image.bands.push_back(info.bands[i].channel);
   try {
-    image.values = std::make_shared<const std::vector<float>>(read_values(*cube, choice, where));
+    image.values = std::make_shared<const std::vector<float>>(read_values(*cube, choice, where, sink));
   } catch (const std::bad_alloc&) {
     throw DeviceError(where + ": not enough memory for the image");
   }
@@ -141,7 +187,7 @@ SpectralImage read_spectral_image(const std::filesystem::path& file, const Diagn
 
 SpectralImage read_weight_image(const std::filesystem::path& file, const DiagnosticSink& sink) {
   if (is_envi(file)) return read_cube(file, true, sink);
-  Image picture = read_image(file, true);
+  Image picture = read_image(file, true, sink);
   SpectralImage image;
   image.file = file;
   image.width = picture.width;

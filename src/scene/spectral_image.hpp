@@ -25,8 +25,9 @@ struct SpectralImage {
 /// files that hold integrals are divided by the bands' widths. Bands without wavelengths (sensor responses)
 /// are left out, with a note. throws InputError   naming the file: what open_cube() refuses, no band with
 /// wavelengths, equal centres, more than
-///                     65535 pixels in a dimension; a value that is negative or not finite, with pixel and
-///                     band
+///                     65535 pixels in a dimension; a value that is not finite or clearly negative, with
+///                     pixel and band. Slightly negative ones (negative_values.hpp, of each band by its own
+///                     mean) become 0, with one warning.
 ///        DeviceError  not enough memory
 SpectralImage read_spectral_image(const std::filesystem::path& file, const DiagnosticSink& sink);
 

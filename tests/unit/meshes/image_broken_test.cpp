@@ -42,10 +42,37 @@ TEST_F(BrokenImages, Values) {
     return write_image(folder / "a.exr", 4, 3, kRgb, pixels, OIIO::TypeFloat);
   };
   EXPECT_EQ(error(write(0.0f)), "no error");
-  EXPECT_EQ(error(write(-0.25f)),
-            "a.exr: pixel (1, 2), channel 2: -0.250000: must be finite and not negative");
-  EXPECT_EQ(error(write(kNan)), "a.exr: pixel (1, 2), channel 2: nan: must be finite and not negative");
-  EXPECT_EQ(error(write(kInfinity)), "a.exr: pixel (1, 2), channel 2: inf: must be finite and not negative");
+  EXPECT_EQ(
+      error(write(-0.25f)),
+      "a.exr: pixel (1, 2), channel 2: -0.25: must be finite and >= 0 (down to -0.00486, 1 % of the "
+      "mean, is taken as 0)");
+  EXPECT_EQ(error(write(kNan)), "a.exr: pixel (1, 2), channel 2: nan: must be finite and >= 0");
+  EXPECT_EQ(error(write(kInfinity)), "a.exr: pixel (1, 2), channel 2: inf: must be finite and >= 0");
+  EXPECT_EQ(error(write_image(folder / "b.exr", 1, 1, kRgb, {0, -1e-30f, 0}, OIIO::TypeFloat)),
+            "b.exr: pixel (0, 0), channel 1: -1e-30: must be finite and >= 0");
+}
+
+TEST_F(BrokenImages, SlightlyNegativeValuesAreTakenAsZero) {
+  const std::vector<float> pixels = {1, -5e-6f, 0.5f, -1e-3f, 1, -2e-3f, 1, 1, 1};
+  const auto path = write_image(folder / "a.exr", 3, 1, kRgb, pixels, OIIO::TypeFloat);
+  std::vector<std::string> messages;
+  const Image image =
+      read_image(path, false, [&](const Diagnostic& d) { messages.push_back(d.to_string()); });
+  EXPECT_EQ(image.pixels, (std::vector<float>{1, 0, 0.5f, 0, 1, 0, 1, 1, 1}));
+  EXPECT_EQ(image.lowest, -2e-3f);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0],
+            path.string() +
+                ": warning: 2 texels are slightly negative and taken as 0, the lowest at pixel (1, 0), "
+                "channel 2: -0.002");
+  // The mean decides, not the maximum: one bright texel excuses little.
+  std::vector<float> sun(3000, 0.01f);
+  sun[0] = 1000;
+  sun[4] = -0.01f;
+  EXPECT_EQ(
+      error(write_image(folder / "sun.exr", 1000, 1, kRgb, sun, OIIO::TypeFloat)),
+      "sun.exr: pixel (1, 0), channel 1: -0.01: must be finite and >= 0 (down to -0.00343, 1 % of the "
+      "mean, is taken as 0)");
 }
 
 TEST_F(BrokenImages, Channels) {

@@ -78,6 +78,7 @@ TEST(SceneThermal, WrongInput) {
   const TemporaryFolder folder;
   folder.write("t.ply", kPly);
   folder.write("hot.pfm", pfm({300, 123456}));
+  folder.write("cold.pfm", pfm({300, -1}));
   folder.write("rgb.pfm", pfm({300, 300, 300}, 3));
   expect_messages(
       {
@@ -105,6 +106,8 @@ TEST(SceneThermal, WrongInput) {
            "scene.xml:2:61: error: thermal emitter: temperature 123456 at pixel (1, 0) of 'hot.pfm': must be "
            "from 0 to "
            "100000 K"},
+          {"slightly negative image", in_sphere(image("cold.pfm")),
+           "scene.xml:2:61: error: thermal emitter: temperature -1 in 'cold.pfm': must be from 0 to 100000 K"},
           {"coloured image", in_sphere(image("rgb.pfm")),
            "scene.xml:2:61: error: thermal emitter: temperature: an image of temperatures has one channel, "
            "'rgb.pfm' "

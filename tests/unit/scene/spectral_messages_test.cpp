@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/spectral_image.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {
@@ -34,7 +35,8 @@ struct WrongValue {
 TEST(SpectralMessages, ValuesNameBandAndPixel) {
   const TemporaryFolder folder;
   const WrongValue wrong[] = {
-      {"negative", -0.5, "-0.5: must be finite and >= 0"},
+      {"negative", -0.5,
+       "-0.5: must be finite and >= 0 (down to -0.00417, 1 % of the mean, is taken as 0)"},
       {"nan", std::nan(""), "nan: must be finite and >= 0"},
       {"infinite", std::numeric_limits<double>::infinity(), "inf: must be finite and >= 0"}};
   for (const WrongValue& w : wrong) {
@@ -47,6 +49,35 @@ TEST(SpectralMessages, ValuesNameBandAndPixel) {
                 kSkyValue + file + ": band 450-500 nm at pixel (2, 1): " + w.message);
     }
   }
+}
+
+TEST(SpectralMessages, SlightlyNegativeValuesAreTakenAsZero) {
+  const TemporaryFolder folder;
+  write_cube(folder / "a.exr", 3, 2, kBands, [&](uint32_t x, uint32_t y, std::size_t b) {
+    return x == 2 && b == 1 ? (y == 1 ? -2e-3 : -1e-6) : 0.5;
+  });
+  std::vector<std::string> messages;
+  const SpectralImage image =
+      read_spectral_image(folder / "a.exr", [&](const Diagnostic& d) { messages.push_back(d.message); });
+  const std::size_t bands = kBands.size();
+  EXPECT_EQ((*image.values)[2 * bands + 1], 0);
+  EXPECT_EQ((*image.values)[5 * bands + 1], 0);
+  EXPECT_EQ((*image.values)[5 * bands], 0.5f);
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_EQ(messages[0],
+            "2 texels have slightly negative values, which are taken as 0; the lowest: band 450-500 nm at "
+            "pixel (2, "
+            "1): -0.002");
+}
+
+TEST(SpectralMessages, EachBandHasItsOwnMean) {
+  const TemporaryFolder folder;
+  write_cube(folder / "dark.exr", 3, 2, kBands,
+             [&](uint32_t x, uint32_t, std::size_t b) { return b == 1 ? (x == 0 ? -1e-4 : 1e-4) : 1000; });
+  EXPECT_EQ(error_of(sky("dark.exr"), folder),
+            kSkyValue +
+                "dark.exr: band 450-500 nm at pixel (0, 0): -1e-04: must be finite and >= 0 (down to "
+                "-6.67e-07, 1 % of the mean, is taken as 0)");
 }
 
 TEST(SpectralMessages, ReflectanceAboveOne) {
