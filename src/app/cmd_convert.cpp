@@ -2,6 +2,8 @@
 // CSV.
 #include <fmt/core.h>
 
+#include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "app/commands.hpp"
@@ -17,7 +19,7 @@ namespace {
 
 struct ConvertOptions {
   std::string in, out;
-  std::optional<std::string> select, range, rebin, crop, quantity;
+  std::optional<std::string> wavelengths, select, range, rebin, crop, quantity;
   PlaceOptions places;
 };
 
@@ -27,8 +29,19 @@ WavelengthRange parse_range(const std::string& text) {
   return {one.front().min_nm, one.front().max_nm};
 }
 
+/// The option's value, or what stands in the file that it names.
+std::string text_or_file(const std::string& value) {
+  if (!std::filesystem::is_regular_file(value)) return value;
+  std::ifstream in(value, std::ios::binary);
+  std::string text(std::filesystem::file_size(value), '\0');
+  if (!in.read(text.data(), static_cast<std::streamsize>(text.size())))
+    throw InputError(fmt::format("--wavelengths {}: cannot be read", value));
+  return text;
+}
+
 CubeSelection selection_of(const ConvertOptions& options, const CubeInfo& info) {
   CubeSelection selection;
+  if (options.wavelengths) selection.wavelengths = parse_band_wavelengths(text_or_file(*options.wavelengths));
   if (options.select) selection.bands = parse_band_indices(*options.select, info.bands.size());
   if (options.range) selection.range = parse_range(*options.range);
   if (options.rebin) selection.rebin = parse_channels_option("--rebin", *options.rebin);
@@ -70,6 +83,10 @@ Command add_convert(CLI::App& program) {
       "convert", "Convert a cube: EXR, ENVI, coarser channels; pixels, regions and signatures to CSV");
   command->add_option("IN", o->in, "spectral EXR or ENVI cube")->required();
   command->add_option("OUT", o->out, ".exr, .hdr (ENVI) or .csv")->required();
+  command->add_option(
+      "--wavelengths", o->wavelengths,
+      "wavelengths in nm for bands that have names only: red=600-700,green=500-600, or a file of "
+      "such entries");
   command->add_option("--select", o->select, "channels by index from 0, such as 0-9,20");
   command->add_option("--range", o->range, "channels inside an interval in nm, such as 400-500");
   command->add_option("--rebin", o->rebin, "coarser channels, unions of whole ones: 400:700:10");

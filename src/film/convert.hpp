@@ -21,6 +21,7 @@ struct WavelengthRange {
 
 /// What is wanted of a cube; the steps apply in this order.
 struct CubeSelection {
+  ChannelList wavelengths;               // for bands that have names only; empty: none are given
   std::vector<std::size_t> bands;        // indices from 0 in the wanted order; empty: all
   std::optional<WavelengthRange> range;  // bands that lie inside as a whole; derived bands are dropped
   std::optional<ChannelList>
@@ -32,6 +33,12 @@ struct CubeSelection {
 /// "0-9,20,5": indices from 0 in the order given.
 /// throws InputError  not such a list, an index >= count, an index given twice
 std::vector<std::size_t> parse_band_indices(std::string_view text, std::size_t count);
+
+/// "red=600-700, green=500-600": wavelengths in nm for bands that have names only; entries are separated by
+/// commas or line breaks, '#' begins a comment. The bands become ordinary ones, whose values are what the
+/// cube's quantity says, and stand first, in this order. throws InputError  not such a list, a name given
+/// twice
+ChannelList parse_band_wavelengths(std::string_view text);
 
 /// throws InputError  the region is empty or not inside the image
 void check_region(const CubeInfo& info, const PixelRect& region);

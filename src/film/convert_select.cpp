@@ -6,6 +6,7 @@
 
 #include "film/camera_geometry.hpp"
 #include "film/convert.hpp"
+#include "film/convert_bands.hpp"
 #include "film/convert_rebin.hpp"
 #include "film/cube_layout.hpp"
 #include "film/cube_text.hpp"
@@ -20,7 +21,8 @@ struct Recipe {
 };
 
 /// Steps 1 and 2 of CubeSelection: indices, then the wavelength range.
-std::vector<Recipe> select_bands(const std::vector<Band>& bands, const CubeSelection& selection) {
+std::vector<Recipe> select_bands(const NamedBands& source, const CubeSelection& selection) {
+  const std::vector<Band>& bands = source.bands;
   std::vector<Recipe> chosen;
   const auto take = [&](std::size_t k) {
     const Channel& c = bands[k].channel;
@@ -32,10 +34,7 @@ std::vector<Recipe> select_bands(const std::vector<Band>& bands, const CubeSelec
     if (k >= bands.size())
       throw InputError("band index " + std::to_string(k) + ": the cube has " + std::to_string(bands.size()) +
                        " bands, counted from 0");
-  if (selection.bands.empty())
-    for (std::size_t k = 0; k < bands.size(); ++k) take(k);
-  else
-    for (const std::size_t k : selection.bands) take(k);
+  for (const std::size_t k : selection.bands.empty() ? source.order : selection.bands) take(k);
   if (chosen.empty())
     throw InputError("no band lies inside " + format_short(selection.range->min_nm) + "-" +
                      format_short(selection.range->max_nm) + " nm");
@@ -67,13 +66,15 @@ PixelRect choose_crop(const CubeInfo& info, const std::optional<PixelRect>& want
 /// for.
 class SelectedCube : public CubeReader {
  public:
-  SelectedCube(std::unique_ptr<CubeReader> source, std::vector<Recipe> recipes, PixelRect crop,
-               Quantity quantity)
+  /// bands  those of the source, with the wavelengths that they were given
+  SelectedCube(std::unique_ptr<CubeReader> source, std::vector<Band> bands, std::vector<Recipe> recipes,
+               PixelRect crop, Quantity quantity)
       : source_(std::move(source)),
+        bands_(std::move(bands)),
         recipes_(std::move(recipes)),
         crop_(crop),
         info_(source_->info()),
-        conversion_(source_->info().bands, source_->info().quantity, quantity) {
+        conversion_(bands_, source_->info().quantity, quantity) {
     info_.width = crop.width;
     info_.height = crop.height;
     info_.quantity = quantity;
@@ -133,10 +134,10 @@ class SelectedCube : public CubeReader {
   /// One band keeps its bits (or is converted once); several are added as integrals in double precision.
   float value(const Recipe& recipe, const float* values) const {
     if (recipe.sources.size() == 1) return conversion_.value(recipe.sources[0], values[recipe.sources[0]]);
-    const CubeInfo& from = source_->info();
+    const Quantity from = source_->info().quantity;
     double integral = 0;
     for (const std::size_t k : recipe.sources)
-      integral += values[k] * (from.quantity == Quantity::kDensity ? from.bands[k].channel.width_nm() : 1.0);
+      integral += values[k] * (from == Quantity::kDensity ? bands_[k].channel.width_nm() : 1.0);
     return static_cast<float>(info_.quantity == Quantity::kDensity ? integral / recipe.band.channel.width_nm()
                                                                    : integral);
   }
@@ -147,6 +148,7 @@ class SelectedCube : public CubeReader {
   }
 
   std::unique_ptr<CubeReader> source_;
+  std::vector<Band> bands_;
   std::vector<Recipe> recipes_;
   PixelRect crop_;
   CubeInfo info_;
@@ -203,7 +205,8 @@ std::unique_ptr<CubeReader> select(std::unique_ptr<CubeReader> source, const Cub
                                    bool replicated, const DiagnosticSink& sink) {
   const CubeInfo& info = source->info();
   const PixelRect crop = choose_crop(info, selection.crop);
-  std::vector<Recipe> recipes = select_bands(info.bands, selection);
+  NamedBands bands = give_wavelengths(info.bands, selection.wavelengths);
+  std::vector<Recipe> recipes = select_bands(bands, selection);
   if (selection.rebin) {
     const auto derived =
         std::count_if(recipes.begin(), recipes.end(), [](const Recipe& r) { return r.band.derived; });
@@ -212,7 +215,8 @@ std::unique_ptr<CubeReader> select(std::unique_ptr<CubeReader> source, const Cub
     if (info.variance && !replicated) note_lost_variances(recipes, sink);
   }
   const Quantity quantity = selection.quantity.value_or(info.quantity);
-  return std::make_unique<SelectedCube>(std::move(source), std::move(recipes), crop, quantity);
+  return std::make_unique<SelectedCube>(std::move(source), std::move(bands.bands), std::move(recipes), crop,
+                                        quantity);
 }
 
 }  // namespace

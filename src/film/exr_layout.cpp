@@ -114,6 +114,39 @@ void read_foreign_bands(const Imf::Header& header, ExrLayout& layout, const std:
   if (guessed) note(sink, {where}, "no sensitivities: bands are taken to reach half-way to their neighbours");
 }
 
+/// The bands of a file by Mitsuba 3's specfilm, which states neither wavelengths nor units: channels have the
+/// names of the film's spectra. Images of nested integrators and auxiliary ones are "NAME.CHANNEL". Nothing
+/// but R, G, B ... is the picture of an hdrfilm.
+std::vector<std::string> find_specfilm_bands(const Imf::Header& header) {
+  const auto program = text_attribute(header, "generatedBy");
+  if (!program || !program->starts_with("Mitsuba")) return {};
+  const std::set<std::string_view> kPicture = {"R", "G", "B", "A", "X", "Y", "Z"};
+  std::vector<std::string> bands;
+  bool picture = true;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+    const std::string_view name = c.name();
+    if (parse_spectral_name(name)) return {};  // the scene's names are those of the spectral layout
+    if (name.find('.') != std::string_view::npos) continue;
+    picture = picture && kPicture.contains(name);
+    bands.emplace_back(name);
+  }
+  return picture ? std::vector<std::string>() : bands;
+}
+
+/// Fills bands with names only. A pixel of specfilm is the integral of radiance times response.
+bool read_specfilm_bands(const Imf::Header& header, ExrLayout& layout, const std::string& where,
+                         const DiagnosticSink& sink) {
+  layout.means = find_specfilm_bands(header);
+  if (layout.means.empty()) return false;
+  layout.info.bands.clear();
+  for (const std::string& name : layout.means) layout.info.bands.push_back({{0, 0, name}, true});
+  layout.info.quantity = Quantity::kIntegral;
+  note(sink, {where},
+       "written by Mitsuba, which states no wavelengths: the bands have names only (kiloband convert "
+       "--wavelengths gives them some); values are integrals of radiance times response, W.m^-2.sr^-1");
+  return true;
+}
+
 /// Variances count only if every band has one.
 void read_variances(const Imf::Header& header, ExrLayout& layout) {
   for (const std::string& name : layout.means)
@@ -174,7 +207,7 @@ ExrLayout read_exr_layout(const Imf::Header& header, const std::string& where, c
   layout.info.width = static_cast<uint32_t>(int64_t{window.max.x} - window.min.x + 1);
   layout.info.height = static_cast<uint32_t>(int64_t{window.max.y} - window.min.y + 1);
   layout.info.quantity = read_quantity(header, where, sink);
-  if (!read_own_bands(header, layout)) {
+  if (!read_own_bands(header, layout) && !read_specfilm_bands(header, layout, where, sink)) {
     if (text_attribute(header, kExrBandsAttribute))
       warn(sink, {where},
            "the band list does not fit the channels any more: bands are taken from the channel names");

@@ -116,6 +116,10 @@ class SensorCube : public CubeReader {
   /// Weights for values as they are on disk.
   std::vector<double> integral_weights(const Spectrum& response, const std::string& name) const {
     const CubeInfo& info = source_->info();
+    if (channels_of(info.bands).empty())
+      throw InputError(
+          "response '" + name +
+          "': no band of the cube has wavelengths: give them with kiloband convert --wavelengths");
     std::vector<double> weight = sensor_weights(response, info.bands).weight;
     if (std::all_of(weight.begin(), weight.end(), [](double w) { return w == 0; }))
       throw InputError("response '" + name + "': is 0 in all channels of the cube");

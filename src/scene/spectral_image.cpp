@@ -35,7 +35,8 @@ BandChoice choose_bands(const CubeInfo& info, const std::string& where, const Di
   BandChoice choice;
   for (std::size_t i = 0; i < info.bands.size(); ++i)
     if (!info.bands[i].derived) choice.index.push_back(i);
-  if (choice.index.empty()) throw InputError(where + ": no band has wavelengths");
+  if (choice.index.empty())
+    throw InputError(where + ": no band has wavelengths: give them with kiloband convert --wavelengths");
   if (choice.index.size() < info.bands.size()) {
     note(sink, {where},
          std::to_string(info.bands.size() - choice.index.size()) + " bands without wavelengths are left out");

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "cube_support.hpp"
+#include "film/convert.hpp"
+#include "film/sensor_cube.hpp"
 
 namespace kiloband {
 namespace {
@@ -133,6 +135,108 @@ TEST(ForeignExr, WhatIsNoCubeIsRefused) {
   EXPECT_EQ(
       error_of<InputError>([&] { open_cube(file); }),
       file.string() + ": sensitivity of channel 'S0.550nm': 'wide' is no spectrum such as 545nm:1;555nm:1;");
+}
+
+/// As Mitsuba 3.9.1 writes a specfilm's file: the names of the film's spectra, HALF, PIZ, one attribute.
+ExrMaker mitsuba_file(const std::vector<std::string>& names) {
+  ExrMaker maker;
+  maker.type = Imf::HALF;
+  maker.header.compression() = Imf::PIZ_COMPRESSION;
+  maker.header.insert("generatedBy", Imf::StringAttribute("Mitsuba version 3.9.1"));
+  for (const std::string& name : names) maker.add(name);
+  return maker;
+}
+
+TEST(MitsubaExr, BandsOfASpecfilmHaveNamesOnly) {
+  const TemporaryFolder folder;
+  mitsuba_file({"red", "green", "img.R", "m2_img.X", "dd.T", "A"}).write(folder / "f.exr", false);
+  Messages messages;
+  const auto reader = open_cube(folder / "f.exr", messages.sink());
+  const Cube cube = read_cube(*reader);
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_EQ(messages.texts[0],
+            "written by Mitsuba, which states no wavelengths: the bands have names only (kiloband convert "
+            "--wavelengths gives them some); values are integrals of radiance times response, W.m^-2.sr^-1");
+  EXPECT_EQ(cube.info.quantity, Quantity::kIntegral);
+  ASSERT_EQ(cube.info.bands.size(), 3u);  // in the order of an EXR file: of the names
+  const char* names[] = {"A", "green", "red"};
+  const float first[] = {500, 100, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_TRUE(cube.info.bands[k].derived);
+    EXPECT_EQ(cube.info.bands[k].channel.name, names[k]);
+    EXPECT_EQ(cube.info.bands[k].channel.width_nm(), 0);
+    EXPECT_EQ(cube.mean[3 * 6 + k], first[k] + 12);  // pixel (2, 1)
+  }
+  EXPECT_EQ(cube.info.aux, (std::vector<std::string>{"dd.T", "img.R", "m2_img.X"}));
+  EXPECT_FALSE(cube.info.variance);
+}
+
+TEST(MitsubaExr, APictureIsNoCube) {
+  const TemporaryFolder folder;
+  const auto file = folder / "f.exr";
+  const std::string refusal =
+      file.string() + ": no spectral channels: names such as S0.550,0nm or T.550,0nm are expected";
+  mitsuba_file({"R", "G", "B", "A", "dd.T"}).write(file, false);
+  EXPECT_EQ(error_of<InputError>([&] { open_cube(file); }), refusal);
+  ExrMaker other;  // names of unknown origin say nothing
+  other.add("red");
+  other.write(file, false);
+  EXPECT_EQ(error_of<InputError>([&] { open_cube(file); }), refusal);
+  mitsuba_file({"R", "G", "B", "infrared"}).write(file, false);
+  EXPECT_EQ(open_cube(file)->info().bands.size(), 4u);
+}
+
+TEST(MitsubaExr, SpectralNamesAreThoseOfTheSpectralLayout) {
+  const TemporaryFolder folder;
+  mitsuba_file({"S0.550nm", "S0.560nm", "red"}).write(folder / "f.exr", false);
+  const auto cube = open_cube(folder / "f.exr");
+  ASSERT_EQ(cube->info().bands.size(), 2u);
+  EXPECT_EQ(cube->info().bands[1].channel.min_nm, 555);
+  EXPECT_EQ(cube->info().quantity, Quantity::kDensity);
+}
+
+TEST(MitsubaExr, WavelengthsCanBeGiven) {
+  const TemporaryFolder folder;
+  mitsuba_file({"red", "green", "all"}).write(folder / "f.exr", false);
+  CubeSelection selection;
+  selection.wavelengths = parse_band_wavelengths("red=600-700,  green = 500-600");
+  convert_cube(folder / "f.exr", folder / "g.exr", selection);
+  const Cube cube = read_cube_file(folder / "g.exr");
+  ASSERT_EQ(cube.info.bands.size(), 3u);
+  EXPECT_EQ(cube.info.bands[0].channel.name, "red");
+  EXPECT_EQ(cube.info.bands[0].channel.min_nm, 600);
+  EXPECT_EQ(cube.info.bands[1].channel.max_nm, 600);
+  EXPECT_FALSE(cube.info.bands[1].derived);
+  EXPECT_TRUE(cube.info.bands[2].derived);
+  // EXR holds densities: integrals of 0, 100 and 200 + 12 at pixel (2, 1), the first two over 100 nm.
+  EXPECT_FLOAT_EQ(cube.mean[6 * 3], 0.12f);
+  EXPECT_FLOAT_EQ(cube.mean[6 * 3 + 1], 1.12f);
+  EXPECT_EQ(cube.mean[6 * 3 + 2], 212);
+}
+
+TEST(MitsubaExr, WrongWavelengths) {
+  const auto parse = [](const char* text) {
+    return error_of<InputError>([&] { parse_band_wavelengths(text); });
+  };
+  EXPECT_EQ(parse("# nothing\n"), "wavelengths: none are given (NAME=MIN-MAX in nm, such as red=600-700)");
+  EXPECT_EQ(parse("600-700"), "wavelengths '600-700': must be NAME=MIN-MAX in nm, such as red=600-700");
+  EXPECT_EQ(parse("a=400:500:2"), "wavelengths 'a=400:500:2': must be one interval such as 600-700");
+  EXPECT_EQ(parse("a=400-500\na=500-600"), "wavelengths of band 'a': given twice");
+  const TemporaryFolder folder;
+  mitsuba_file({"red", "green"}).write(folder / "f.exr", false);
+  mitsuba_file({"S0.550nm"}).write(folder / "s.exr", false);
+  const auto give = [&](const char* file, const char* text) {
+    CubeSelection selection;
+    selection.wavelengths = parse_band_wavelengths(text);
+    return error_of<InputError>([&] { select_from_cube(open_cube(folder / file), selection); });
+  };
+  EXPECT_EQ(give("f.exr", "blue=400-500"),
+            "wavelengths of band 'blue': the cube has no such band; without wavelengths are 'green', 'red'");
+  EXPECT_EQ(give("s.exr", "blue=400-500"),
+            "wavelengths of band 'blue': the cube has no such band; all of its bands have wavelengths");
+  EXPECT_EQ(
+      error_of<InputError>([&] { apply_responses(open_cube(folder / "f.exr"), xyz_responses()); }),
+      "response 'X': no band of the cube has wavelengths: give them with kiloband convert --wavelengths");
 }
 
 TEST(ForeignExr, AFileThatWasNeverFinishedIsIncomplete) {

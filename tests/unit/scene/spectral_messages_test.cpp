@@ -115,7 +115,10 @@ TEST(SpectralMessages, Files) {
   EXPECT_EQ(error_of(sky("empty.hdr"), folder), kSkyValue + "empty.hdr:7: samples '0': must be at least 1");
   folder.write("names.hdr", header + "samples = 2\nband names = {soil}\n");
   folder.write("names.img", "1234");
-  EXPECT_EQ(error_of(sky("names.hdr"), folder), kSkyValue + "names.hdr: no band has wavelengths");
+  EXPECT_EQ(error_of(sky("names.hdr"), folder),
+            kSkyValue +
+                "names.hdr: no band has wavelengths: give them with kiloband "
+                "convert --wavelengths");
   folder.write(
       "wide.hdr",
       "ENVI\nlines = 1\nbands = 1\ndata type = 1\ninterleave = bip\nbyte order = 0\nsamples = 70000\n"
