@@ -158,6 +158,14 @@ void print_problems(const RenderReport& report, const Backend& backend) {
   if (report.underflowed_values > 0) {
     tell("warning: {} values are too small for float32 and became 0\n", report.underflowed_values);
   }
+  if (report.overflowed_values > 0) {
+    tell("warning: {} values are too large for float32 and became infinite or NaN\n",
+         report.overflowed_values);
+  }
+  if (report.overflowed_variances > 0) {
+    tell("warning: {} variances are too large for float32 and became infinite\n",
+         report.overflowed_variances);
+  }
   if (report.pixels_without_sample > 0) {
     tell("warning: {} pixels have no sample: NaN\n", report.pixels_without_sample);
   }

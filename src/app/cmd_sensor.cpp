@@ -46,6 +46,8 @@ void check_options(const SensorOptions& o) {
   if (o.responses.empty() && o.picture == "sensor") throw InputError("--picture sensor needs --response");
   if (o.exposure && !(*o.exposure > 0 && std::isfinite(*o.exposure)))
     throw InputError(fmt::format("--exposure {}: must be a number > 0", *o.exposure));
+  if (o.exposure && *o.exposure > 1e30)
+    throw InputError(fmt::format("--exposure {}: must be <= 1e+30", *o.exposure));
   bool table = false;
   for (const std::string& out : o.outputs) {
     table = table || is_table(out);
@@ -104,7 +106,8 @@ int sensor(const SensorOptions& o) {
     if (is_table(out)) {
       write_places(o.places, o.cube, change, out, sink);
     } else {
-      write_cube(*with_replicate_variance(change(open_replicated_cube(o.cube))), out, Quantity::kIntegral);
+      write_cube(*with_replicate_variance(change(open_replicated_cube(o.cube))), out, Quantity::kIntegral,
+                 sink);
     }
     tell("wrote {}\n", out);
   }

@@ -54,6 +54,8 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["mean_relative_error"] = nullptr;
   if (report.mean_relative_error) json["mean_relative_error"] = *report.mean_relative_error;
   json["underflowed_values"] = report.underflowed_values;
+  json["overflowed_values"] = report.overflowed_values;
+  json["overflowed_variances"] = report.overflowed_variances;
   json["streamed"] = report.streamed;
   json["interrupted"] = report.interrupted;
   json["features"] = context.features;

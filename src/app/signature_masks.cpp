@@ -144,6 +144,8 @@ std::vector<SignatureMask> signature_masks(const PlaceOptions& options, CubeRead
     throw InputError("--distance: the camera is orthographic: intensities do not depend on it");
   if (options.distance_m && !(*options.distance_m > 0 && std::isfinite(*options.distance_m)))
     throw InputError(fmt::format("--distance {}: must be > 0 and finite", *options.distance_m));
+  if (options.distance_m && *options.distance_m > 1e15)
+    throw InputError(fmt::format("--distance {}: must be <= 1e+15 m", *options.distance_m));
   std::vector<NamedMask> masks = chosen_masks(options, cube);
   std::vector<double> distances;
   for (NamedMask& mask : masks) {

@@ -1,6 +1,7 @@
 #include "film/convert.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "film/cube_layout.hpp"
 #include "film/cube_text.hpp"
@@ -17,15 +18,28 @@ uint32_t strip_rows(const CubeInfo& info) {
   return static_cast<uint32_t>(std::min<uint64_t>(std::max<uint64_t>(rows / 32 * 32, 32), info.height));
 }
 
+uint64_t count_infinite(const std::vector<float>& values) {
+  return static_cast<uint64_t>(std::ranges::count_if(values, [](float v) { return std::isinf(v); }));
+}
+
+void warn_of_infinite(const std::filesystem::path& out, const char* what, uint64_t count,
+                      const DiagnosticSink& sink) {
+  if (count == 0) return;
+  warn(sink, {out.string(), 0, 0},
+       std::to_string(count) + " " + what + " are infinite: too large for float32");
+}
+
 }  // namespace
 
-void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity quantity_on_disk) {
+void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity quantity_on_disk,
+                const DiagnosticSink& sink) {
   CubeInfo info = source.info();
   const Quantity given = info.quantity;
   info.quantity = quantity_on_disk;
   const uint32_t strip = strip_rows(info);
   const auto writer = create_cube_writer_from(out, info, strip, given);
   std::vector<float> mean, variance, aux;
+  uint64_t values = 0, variances = 0;
   for (uint32_t y = 0; y < info.height; y += strip) {
     const uint32_t rows = std::min(strip, info.height - y);
     const std::size_t pixels = std::size_t{rows} * info.width;
@@ -34,9 +48,13 @@ void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity q
     aux.resize(pixels * info.aux.size());
     source.read_rows(y, rows, mean, variance);
     source.read_aux(y, rows, aux);
+    values += count_infinite(mean);
+    variances += count_infinite(variance);
     writer->write_rows({y, rows, mean, variance, aux});
   }
   writer->finish();
+  warn_of_infinite(out, "values", values + writer->overflowed_values(), sink);
+  warn_of_infinite(out, "variances", variances + writer->overflowed_variances(), sink);
 }
 
 void convert_cube(const std::filesystem::path& in, const std::filesystem::path& out,
@@ -49,7 +67,7 @@ void convert_cube(const std::filesystem::path& in, const std::filesystem::path& 
   const auto source =
       part.rebin ? with_replicate_variance(select_from_cube(open_replicated_cube(in, sink), part, sink))
                  : select_from_cube(open_cube(in, sink), part, sink);
-  write_cube(*source, out, quantity);
+  write_cube(*source, out, quantity, sink);
 }
 
 }  // namespace kiloband

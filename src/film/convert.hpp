@@ -55,8 +55,10 @@ ReplicatedCube select_from_cube(ReplicatedCube source, const CubeSelection& sele
                                 const DiagnosticSink& sink = {});
 
 /// Copies a cube to a file by extension, a strip of rows at a time (about 128 MiB, at least 32 rows). Values
-/// keep their bits where the quantity does not change.
-void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity quantity_on_disk);
+/// keep their bits where the quantity does not change. Values that are infinite, in the source or for
+/// float32, are a warning.
+void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity quantity_on_disk,
+                const DiagnosticSink& sink = {});
 
 /// Opens a cube with its replicates if there are any, select_from_cube, write_cube. Without
 /// selection.quantity, EXR gets densities and ENVI integrals. Sums of channels have the variance that the

@@ -58,6 +58,9 @@ class CubeWriter {
   virtual void close(FileSet& files) = 0;
   /// close(), and the commit() of a set of this cube alone.
   void finish();
+  /// Finite values (variances) that the change of quantity made infinite.
+  virtual uint64_t overflowed_values() const = 0;
+  virtual uint64_t overflowed_variances() const = 0;
 };
 
 /// throws InputError if create_cube_writer() does not know the extension

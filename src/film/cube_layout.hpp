@@ -2,6 +2,8 @@
 // strips.
 #pragma once
 
+#include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -30,15 +32,22 @@ class QuantityConversion {
   QuantityConversion(const std::vector<Band>& bands, Quantity from, Quantity to);
 
   /// Rounded once: integral -> density is float(value / width).
-  float value(std::size_t band, float v) const {
-    return divide_ ? static_cast<float>(v / width_[band]) : static_cast<float>(v * width_[band]);
-  }
+  float value(std::size_t band, float v) const { return changed(v, width_[band], overflowed_values_); }
   float variance(std::size_t band, float v) const {
-    const double square = width_[band] * width_[band];
-    return divide_ ? static_cast<float>(v / square) : static_cast<float>(v * square);
+    return changed(v, width_[band] * width_[band], overflowed_variances_);
   }
+  /// Finite values and variances that became infinite so far.
+  uint64_t overflowed_values() const { return overflowed_values_; }
+  uint64_t overflowed_variances() const { return overflowed_variances_; }
 
  private:
+  float changed(float v, double factor, std::atomic<uint64_t>& overflowed) const {
+    const auto result = divide_ ? static_cast<float>(v / factor) : static_cast<float>(v * factor);
+    if (std::isinf(result) && !std::isinf(v)) ++overflowed;
+    return result;
+  }
+
+  mutable std::atomic<uint64_t> overflowed_values_ = 0, overflowed_variances_ = 0;
   bool divide_;
   std::vector<double> width_;  // nm; 1 where nothing changes
 };

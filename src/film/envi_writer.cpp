@@ -102,6 +102,9 @@ class EnviWriter : public CubeWriter {
     if (aux_) aux_->write_rows(strip.y0, strip.rows, strip.aux, [](std::size_t, float v) { return v; });
   }
 
+  uint64_t overflowed_values() const override { return conversion_.overflowed_values(); }
+  uint64_t overflowed_variances() const override { return conversion_.overflowed_variances(); }
+
   /// An older cube's header goes first, so that no header ever describes data that are not its own; data
   /// follow, the main header comes last.
   void close(FileSet& files) override {

@@ -74,6 +74,9 @@ class ExrWriter : public CubeWriter {
       }
   }
 
+  uint64_t overflowed_values() const override { return conversion_.overflowed_values(); }
+  uint64_t overflowed_variances() const override { return conversion_.overflowed_variances(); }
+
   void close(FileSet& files) override {
     order_.finish();
     output_.reset();  // writes the table of tile offsets

@@ -82,6 +82,14 @@ CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
 float CubeOutput::scaled(float value, double scale) {
   const auto result = static_cast<float>(value * scale);
   underflowed_ += value > 0 && result == 0;
+  overflowed_ += !std::isfinite(result);
+  return result;
+}
+
+/// NaN is no overflow: fewer than two replicates have no variance.
+float CubeOutput::scaled_variance(float value, double scale) {
+  const auto result = static_cast<float>(double{value} * scale * scale);
+  overflowed_variances_ += std::isinf(result);
   return result;
 }
 
@@ -102,7 +110,7 @@ void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
       mean_.push_back(value);
       if (settings_.variance) {
         const double variance = double{film_variance_[x * channels + c]} * scale_[c] * scale_[c];
-        variance_.push_back(static_cast<float>(variance));
+        variance_.push_back(scaled_variance(film_variance_[x * channels + c], scale_[c]));
         if (samples > 0) errors_.add(b, double{film_mean_[x * channels + c]} * scale_[c], variance);
       }
       if (settings_.preview && samples > 0) {
@@ -177,6 +185,7 @@ void CubeOutput::write_replicates(const SpectralFilm& film) {
         const bool empty = film.replicate_samples(r, pixel) == 0;
         for (const std::size_t c : bands_.film_channels) {
           rows.push_back(empty ? kMissing : static_cast<float>(mean[c] * scale_[c]));
+          overflowed_ += !empty && !std::isfinite(rows.back());
         }
       }
       for (auto& writer : replicate_writers_[r]) writer->write_rows({image_row + y, count, rows, {}, {}});
@@ -186,10 +195,15 @@ void CubeOutput::write_replicates(const SpectralFilm& film) {
 
 void CubeOutput::finish(RenderReport& report) {
   FileSet set;  // the mean of one render must not stand beside the replicates of another
+  const auto close = [&](CubeWriter& writer) {
+    writer.close(set);
+    overflowed_ += writer.overflowed_values();
+    overflowed_variances_ += writer.overflowed_variances();
+  };
   for (auto& replicate : replicate_writers_) {
-    for (auto& writer : replicate) writer->close(set);
+    for (auto& writer : replicate) close(*writer);
   }
-  for (auto& writer : writers_) writer->close(set);
+  for (auto& writer : writers_) close(*writer);
   set.commit();
   if (settings_.preview) {
     const float exposure = auto_exposure(preview_);
@@ -201,6 +215,8 @@ void CubeOutput::finish(RenderReport& report) {
   report.largest_samples_per_pixel = most_;
   report.pixels_without_sample = missing_;
   report.underflowed_values = underflowed_;
+  report.overflowed_values = overflowed_;
+  report.overflowed_variances = overflowed_variances_;
   if (settings_.variance) report.mean_relative_error = errors_.relative_error();
   report.written = files_;
 }

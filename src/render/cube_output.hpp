@@ -31,6 +31,7 @@ class CubeOutput {
   void flush_strip();
   void write_replicates(const SpectralFilm& film);
   float scaled(float value, double scale);
+  float scaled_variance(float value, double scale);
 
   const BandSelection bands_;
   std::vector<double> scale_;  // per film channel
@@ -45,7 +46,8 @@ class CubeOutput {
   std::vector<std::array<float, 3>> preview_weights_;
   std::vector<float> preview_;
   ErrorSums errors_;
-  uint64_t missing_ = 0, least_ = ~0ull, most_ = 0, underflowed_ = 0;
+  uint64_t missing_ = 0, least_ = ~0ull, most_ = 0, underflowed_ = 0, overflowed_ = 0,
+           overflowed_variances_ = 0;
   std::vector<std::filesystem::path> files_;
 };
 

@@ -56,6 +56,9 @@ struct RenderReport {
   std::optional<double> mean_relative_error;
   uint64_t pixels_without_sample = 0;
   uint64_t underflowed_values = 0;  // positive in the film, 0 as the file's float
+  uint64_t overflowed_values =
+      0;  // means (of replicates too) that are infinite or NaN, their pixel having samples
+  uint64_t overflowed_variances = 0;
   uint64_t resumed_samples = 0;     // pixel samples that came from a checkpoint
   bool interrupted = false;
   bool streamed = false;  // strips, since the film did not fit the budget

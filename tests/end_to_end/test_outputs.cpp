@@ -171,7 +171,8 @@ TEST(Outputs, StatisticsHaveTheNamesOfTheContract) {
                        "resumed_samples",
                        "mean_relative_error"};
   Names expected = contract;
-  expected.insert(expected.end(), {"underflowed_values", "streamed", "interrupted", "features"});
+  expected.insert(expected.end(), {"underflowed_values", "overflowed_values", "overflowed_variances",
+                                   "streamed", "interrupted", "features"});
   std::sort(expected.begin(), expected.end());
   Names found;
   for (const auto& [name, value] : stats.items()) found.push_back(name);

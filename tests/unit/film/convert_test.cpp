@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "cube_support.hpp"
 
@@ -52,6 +53,28 @@ TEST_F(Convert, ThereAndBackKeepsEveryBit) {
   EXPECT_EQ(back.info.metadata, cube.info.metadata);
   EXPECT_EQ(back.info.replicates, 4u);
   EXPECT_EQ(read_file(folder / "c.hdr"), read_file(folder / "a.hdr"));
+}
+
+TEST_F(Convert, InfiniteValuesAreWarnedOf) {
+  Cube cube = make_cube(2, 1, equal_bands(400, 500, 2), true);
+  cube.info.quantity = Quantity::kDensity;
+  cube.mean = {50, 3e38f, 50, 50};  // 50 nm wide: the density of 3e38 is 6e36, its integral in the file fits
+  cube.variance = {1, 1, 1, 1};
+  const auto in = write(cube, "a.exr");
+  converted(in, "b.exr");
+  EXPECT_TRUE(notes.empty());
+  cube.mean[1] = std::numeric_limits<float>::infinity();
+  converted(write(cube, "c.exr"), "d.exr");
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], "1 values are infinite: too large for float32");
+  notes.clear();
+  // Densities of others that are too large as integrals.
+  cube = make_cube(2, 1, equal_bands(400, 400.5, 2), true);
+  cube.mean = {1, 3e38f, 1, 1};  // 0.25 nm wide
+  cube.variance = {1, 1, 1e38f, 1};
+  converted(write(cube, "e.hdr"), "f.exr");
+  EXPECT_EQ(notes, (std::vector<std::string>{"1 values are infinite: too large for float32",
+                                             "1 variances are infinite: too large for float32"}));
 }
 
 TEST_F(Convert, DensitiesAreCopiedWithoutRounding) {

@@ -1,0 +1,58 @@
+// Values that do not fit into the files' floats are counted, not silent.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/cube_io.hpp"
+#include "film/replicated_cube.hpp"
+#include "render/session.hpp"
+#include "scene/reader.hpp"
+#include "src_cpu/cpu_backend.hpp"
+#include "tests/support/render_harness.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr uint32_t kSide = 16;  // pixels
+constexpr std::size_t kBands = 5;
+
+uint64_t count_infinite(const std::vector<float>& values) {
+  return static_cast<uint64_t>(std::ranges::count_if(values, [](float v) { return std::isinf(v); }));
+}
+
+TEST(Overflow, IsCounted) {
+  const test::TemporaryFolder folder;
+  const std::string xml = "<scene version=\"3.0.0\">" +
+                          test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSide) +
+                          "<shape type=\"sphere\"/><emitter type=\"constant\"/></scene>";
+  SceneDescription description = read_scene_text(xml, "test.xml", ".");
+  // Beyond what the reader lets through: 2e37 per nm are 1.2e39 in a band of 60 nm.
+  std::get<ConstantEmitter>(description.emitters.at(0).model).radiance = Spectrum::constant(2e37);
+  const FlatScene scene = flatten(description, {parse_channels("400:700:5"), {}, {}});
+  SessionSettings settings;
+  settings.stop.samples_per_pixel = 8;
+  settings.variance = settings.keep_replicates = true;
+  settings.outputs = {folder.path() / "bright.hdr"};
+  SamplingSettings sampling;
+  sampling.replicates = session_replicates(settings);
+  const auto backend = make_cpu_backend(scene, {}, sampling, {});
+  const RenderReport report = run_session(scene, {}, *backend, settings, false, {});
+
+  std::vector<float> mean(kSide * kSide * kBands), variance(mean.size());
+  open_cube(settings.outputs[0])->read_rows(0, kSide, mean, variance);
+  EXPECT_GT(count_infinite(mean), 0u);
+  EXPECT_GT(count_infinite(variance), 0u);
+  EXPECT_EQ(report.overflowed_variances, count_infinite(variance));
+  uint64_t expected = count_infinite(mean);
+  for (uint32_t r = 0; r < report.replicates; ++r) {
+    open_cube(replicate_path(settings.outputs[0], r))->read_rows(0, kSide, mean, {});
+    expected += count_infinite(mean);
+  }
+  EXPECT_EQ(report.overflowed_values, expected);
+  EXPECT_EQ(report.underflowed_values, 0u);
+}
+
+}  // namespace
+}  // namespace kiloband
