@@ -28,6 +28,7 @@ Flattener::Flattener(const SceneDescription& description, const FlattenOptions& 
 FlatScene Flattener::run() {
   out_.film = in_.sensor.film;
   out_.integrator = in_.integrator;
+  check_places();
   set_origin();
   add_shapes();
   compute_bounds();

@@ -85,6 +85,8 @@ class Flattener {
   double reference_estimate(uint32_t ref, double lambda_nm) const;
 
   // flatten_place.cpp
+  /// throws InputError  places and sizes that single precision cannot take
+  void check_places() const;
   void set_origin();
   Transform placed(const Transform& to_world) const;
 

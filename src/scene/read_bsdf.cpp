@@ -1,6 +1,7 @@
 // <bsdf type=...>
 #include <algorithm>
 
+#include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/read_ior.hpp"
 #include "scene/xml_values.hpp"
@@ -10,6 +11,11 @@ namespace {
 
 using Model = decltype(Bsdf::model);
 
+void check_alpha(const ObjectReader& object, std::string_view name, double alpha) {
+  object.check(alpha > 0, name, alpha, "must be > 0");
+  object.check(alpha >= kMinAlpha && alpha <= kMaxAlpha, name, alpha, "must be from 1e-06 to 100");
+}
+
 /// distribution, alpha or alpha_u and alpha_v, sample_visible. One alpha: isotropic.
 Roughness read_roughness(const ObjectReader& object, bool anisotropic) {
   Roughness result;
@@ -17,14 +23,14 @@ Roughness read_roughness(const ObjectReader& object, bool anisotropic) {
       object.get_choice("distribution", {"beckmann", "ggx"}) == 1 ? Microfacet::kGgx : Microfacet::kBeckmann;
   result.sample_visible = object.get_bool("sample_visible", true);
   const double alpha = object.get_float("alpha", 0.1);
-  object.check(alpha > 0, "alpha", alpha, "must be > 0");
+  check_alpha(object, "alpha", alpha);
   result.alpha_u = result.alpha_v = alpha;
   if (!anisotropic || !(object.has("alpha_u") || object.has("alpha_v"))) return result;
   if (object.has("alpha")) object.fail_at("alpha", "'alpha' together with 'alpha_u' or 'alpha_v'");
   result.alpha_u = object.require_float("alpha_u");
   result.alpha_v = object.require_float("alpha_v");
-  object.check(result.alpha_u > 0, "alpha_u", result.alpha_u, "must be > 0");
-  object.check(result.alpha_v > 0, "alpha_v", result.alpha_v, "must be > 0");
+  check_alpha(object, "alpha_u", result.alpha_u);
+  check_alpha(object, "alpha_v", result.alpha_v);
   return result;
 }
 
@@ -44,6 +50,8 @@ void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf&
   const bool explicit_index = object.has("eta") || object.has("k");
   bsdf.eta = read_spectrum(context, object, "eta", SpectrumUse::kQuantity, bsdf.eta);
   bsdf.k = read_spectrum(context, object, "k", SpectrumUse::kQuantity, bsdf.k);
+  check_metal_index(bsdf.eta, object.label() + ": eta", object.value_place("eta"));
+  check_metal_index(bsdf.k, object.label() + ": k", object.value_place("k"));
   const std::string material = object.get_string("material", "none");
   if (object.has("material") && explicit_index)
     object.fail_at("material", "'material' together with 'eta' or 'k'");

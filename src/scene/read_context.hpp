@@ -70,7 +70,8 @@ Texture read_texture(ReadContext& context, const ObjectReader& object, std::stri
                      const Texture& fallback);
 /// Any spectrum or texture element or parameter. `label` and `name` are for messages.
 Texture read_texture_node(ReadContext& context, Node& parameter, const std::string& label, SpectrumUse use);
-/// throws InputError at `place`  "label 0.3 at 550 nm: must be ..." for the first value that `use` forbids
+/// throws InputError at `place`  "label 0.3 at 550 nm: must be ..." for the first value that `use` forbids,
+/// or the largest if that is beyond the limit (limits.hpp)
 void check_spectrum(const Spectrum& spectrum, const std::string& label, SpectrumUse use, const Place& place);
 
 /// A <spectrum> or <texture> object whose type is a spectrum; nullopt for texture types.
@@ -82,6 +83,13 @@ Texture read_spectral_bitmap(ReadContext& context, const ObjectReader& object);
 /// throws InputError  values or mixtures above 1, endmembers that describe emission
 void check_spectral_reflectance(const SpectralBitmapTexture& texture, const std::string& label,
                                 const Place& place);
+/// throws InputError  values above kMaxEmission
+void check_emission_texture(const Texture& texture, const std::string& label, const Place& place);
+/// throws InputError  pixels of an image that, times `scale`, are above kMaxEmission
+void check_emission_image(const Image& image, const std::filesystem::path& file, double scale,
+                          const std::string& label, const Place& place);
+void check_emission_image(const SpectralImage& image, double scale, const std::string& label,
+                          const Place& place);
 /// throws InputError  a bitmap with values above 1
 void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place);
 

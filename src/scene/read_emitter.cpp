@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
 #include "spectral/colour.hpp"
@@ -22,10 +23,14 @@ Spectrum emission(ReadContext& context, const ObjectReader& object, std::string_
 
 /// The transform of an emitter that is not a surface.
 Transform rotation_and_position(const ObjectReader& object) {
-  const Transform to_world = object.get_transform("to_world");
+  Transform to_world = object.get_transform("to_world");
   if (!is_similarity(glm::dmat3(to_world))) {
     object.fail_at("to_world", "to_world must only rotate, move, mirror and scale uniformly");
   }
+  // Its size means nothing here, but its square would have to fit into single precision.
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(glm::length(glm::dvec3(to_world[axis])) - 1) > 1e-6)
+      to_world[axis] = glm::dvec4(unit_vector(glm::dvec3(to_world[axis])), 0);
   return to_world;
 }
 
@@ -45,11 +50,13 @@ Model read_envmap(ReadContext& context, const ObjectReader& object) {
   envmap.file = context.file(object, "filename");
   envmap.scale = object.get_float("scale", 1);
   object.check(envmap.scale >= 0, "scale", envmap.scale, "must be >= 0");
+  check_at_most(object, "scale", envmap.scale, kMaxQuantity);
   envmap.to_world = rotation_and_position(object);
   object.get_bool("mis_compensation", false);  // only concerns the noise of Mitsuba's sampling
   const Place place = object.value_place("filename");
   envmap.image = context.image(envmap.file, false, place);
   check_map_size(object, envmap.file, envmap.image->width, envmap.image->height);
+  check_emission_image(*envmap.image, envmap.file, envmap.scale, object.label() + ": scale times", place);
   return envmap;
 }
 
@@ -58,9 +65,12 @@ Model read_spectral_envmap(ReadContext& context, const ObjectReader& object) {
   const std::filesystem::path file = context.file(object, "filename");
   envmap.scale = object.get_float("scale", 1);
   object.check(envmap.scale >= 0, "scale", envmap.scale, "must be >= 0");
+  check_at_most(object, "scale", envmap.scale, kMaxQuantity);
   envmap.to_world = rotation_and_position(object);
   envmap.image = context.spectral_image(file, false, object.value_place("filename"));
   check_map_size(object, file, envmap.image->width, envmap.image->height);
+  check_emission_image(*envmap.image, envmap.scale, object.label() + ": scale times",
+                       object.value_place("filename"));
   return envmap;
 }
 
@@ -97,10 +107,9 @@ Model read_directional(ReadContext& context, const ObjectReader& object) {
   }
   const glm::dvec3 direction = object.has("direction") ? object.get_vector("direction", {})
                                                        : glm::dvec3(object.get_transform("to_world")[2]);
-  const double length = glm::length(direction);
-  if (!(length > 0) || !std::isfinite(length))
-    object.fail_at("direction", "direction: its length must be > 0");
-  directional.direction = direction / length;
+  const glm::dvec3 unit = unit_vector(direction);
+  if (unit == glm::dvec3(0)) object.fail_at("direction", "direction: its length must be > 0");
+  directional.direction = unit;
   return directional;
 }
 

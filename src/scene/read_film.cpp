@@ -10,6 +10,7 @@ namespace kiloband {
 namespace {
 
 constexpr int64_t kMaxSide = 65535;       // pixels
+constexpr double kMinFilter = 1e-3;       // pixels: finer than positions in a film of 65535
 constexpr double kSubChannelNm = 5;       // widest sub-channel of a response that is not constant
 constexpr std::size_t kMaxBands = 65536;  // spectra of a specfilm
 
@@ -68,12 +69,12 @@ void read_filter(const ObjectReader& film_object, Film& film) {
   } else if (node->type == "tent") {
     film.filter = FilterType::kTent;
     film.filter_radius = object.get_float("radius", 1);
-    object.check(film.filter_radius > 0 && film.filter_radius <= 100, "radius", film.filter_radius,
-                 "must be in (0, 100] pixels");
+    object.check(film.filter_radius >= kMinFilter && film.filter_radius <= 100, "radius", film.filter_radius,
+                 "must be from 0.001 to 100 pixels");
   } else if (node->type == "gaussian") {
     film.filter_stddev = object.get_float("stddev", 0.5);
-    object.check(film.filter_stddev > 0 && film.filter_stddev <= 25, "stddev", film.filter_stddev,
-                 "must be in (0, 25] pixels");
+    object.check(film.filter_stddev >= kMinFilter && film.filter_stddev <= 25, "stddev", film.filter_stddev,
+                 "must be from 0.001 to 25 pixels");
     film.filter_radius = 4 * film.filter_stddev;
   } else {
     object.refuse_type({"box", "tent", "gaussian"});

@@ -1,5 +1,6 @@
 #include "scene/read_ior.hpp"
 
+#include "scene/limits.hpp"
 #include "scene/xml_values.hpp"
 #include "spectral/materials/materials.hpp"
 
@@ -73,16 +74,33 @@ std::string names_near(const std::string& value, MaterialFamily family) {
                            " nor a file" + names_near(value, family));
 }
 
-void check_index(const OpticalConstants& constants, const std::string& label, const Place& place) {
-  for (std::size_t i = 0; i < constants.n.knots_nm().size(); ++i) {
-    if (constants.n.knot_values()[i] > 0) continue;
-    fail(place, label + " index " + format_number(constants.n.knot_values()[i]) + " at " +
-                    format_number(constants.n.knots_nm()[i]) + " nm: must be > 0");
+/// Every point of a table within [least, most].
+void check_range(const Spectrum& spectrum, double least, double most, const std::string& label,
+                 const Place& place) {
+  for (std::size_t i = 0; i < spectrum.knots_nm().size(); ++i) {
+    const double value = spectrum.knot_values()[i];
+    if (value >= least && value <= most) continue;
+    fail(place, label + " " + format_number(value) + " at " + format_number(spectrum.knots_nm()[i]) +
+                    " nm: must be from " + format_number(least) + " to " + format_number(most));
   }
-  if (constants.k) check_spectrum(*constants.k, label + " extinction", SpectrumUse::kQuantity, place);
+}
+
+void check_index(const OpticalConstants& constants, MaterialFamily family, const std::string& label,
+                 const Place& place) {
+  const bool metal = family == MaterialFamily::kMetal;
+  check_range(constants.n, metal ? 0 : kMinIndex, metal ? kMaxMetalIndex : kMaxIndex, label + " index",
+              place);
+  if (metal && constants.k) check_range(*constants.k, 0, kMaxMetalIndex, label + " extinction", place);
 }
 
 }  // namespace
+
+void check_metal_index(const Spectrum& spectrum, const std::string& label, const Place& place) {
+  check_range(spectrum, 0, kMaxMetalIndex, label, place);
+  const double largest = spectrum.max_over(1, 1e9);
+  if (largest > kMaxMetalIndex)
+    fail(place, label + " " + format_number(largest) + ": " + at_most(kMaxMetalIndex));
+}
 
 double read_ior(const ObjectReader& object, std::string_view name, double fallback) {
   const Node* node = object.find(name);
@@ -94,6 +112,7 @@ double read_ior(const ObjectReader& object, std::string_view name, double fallba
   }
   const double index = object.get_float(name, fallback);
   object.check(index > 0, name, index, "must be > 0");
+  object.check(index >= kMinIndex && index <= kMaxIndex, name, index, "must be from 0.001 to 1000");
   return index;
 }
 
@@ -105,7 +124,7 @@ std::optional<OpticalConstants> read_material(ReadContext& context, const Object
   std::optional<OpticalConstants> constants;
   if (const auto file = material_file(context, value, place)) {
     constants = load_at(place, [&] { return read_optical_constants(*file, context.sink); });
-    check_index(*constants, object.label() + ": " + std::string(name), place);
+    check_index(*constants, family, object.label() + ": " + std::string(name), place);
     if (family == MaterialFamily::kMetal && !constants->k)
       object.fail_at(name, std::string(name) + ": the file gives no extinction k");
   } else {

@@ -22,4 +22,7 @@ enum class MaterialFamily { kMetal, kDielectric };
 std::optional<OpticalConstants> read_material(ReadContext& context, const ObjectReader& object,
                                               std::string_view name, MaterialFamily family);
 
+/// throws InputError at `place`  n or k of a conductor is above kMaxMetalIndex
+void check_metal_index(const Spectrum& spectrum, const std::string& label, const Place& place);
+
 }  // namespace kiloband

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
 #include "spectral/number_table.hpp"
@@ -11,16 +12,21 @@ namespace kiloband {
 namespace {
 
 constexpr std::size_t kMaxGridNodes = std::size_t{1} << 26;
+constexpr double kMinGasK = 1;  // colder gas does not exist, and hc / (k lambda T) would overflow
+const char* const kGasRule = "must be from 1 to 100000 K";
+constexpr double kMaxSpread = 1000;
 
 double kelvin(const ObjectReader& object, std::string_view name) {
   const double value = object.require_float(name);
   object.check(value > 0, name, value, "must be > 0 K");
+  object.check(value >= kMinGasK && value <= kMaxTemperatureK, name, value, kGasRule);
   return value;
 }
 
 double length(const ObjectReader& object, std::string_view name) {
   const double value = object.require_float(name);
   object.check(value > 0, name, value, "must be > 0 m");
+  check_at_most(object, name, value, kMaxLength, "m");
   return value;
 }
 
@@ -32,6 +38,7 @@ JetField read_jet(const ObjectReader& object) {
   jet.length = length(object, "length");
   jet.spread = object.get_float("spread", 0);
   object.check(jet.spread >= 0, "spread", jet.spread, "must be >= 0");
+  check_at_most(object, "spread", jet.spread, kMaxSpread);
   jet.to_world = object.get_transform("to_world");
   return jet;
 }
@@ -70,9 +77,15 @@ std::vector<GridField::Node> load_grid(const std::filesystem::path& file,
     if (!(temperature > 0) || !std::isfinite(temperature))
       throw InputError(
           at_line(file, table.lines[row], "temperature " + to_text(table.at(row, 0)) + ": must be > 0 K"));
+    if (temperature < kMinGasK || temperature > kMaxTemperatureK)
+      throw InputError(
+          at_line(file, table.lines[row], "temperature " + to_text(table.at(row, 0)) + ": " + kGasRule));
     if (!(scale >= 0) || !std::isfinite(scale))
       throw InputError(
           at_line(file, table.lines[row], "scale " + to_text(table.at(row, 1)) + ": must be >= 0"));
+    if (scale > kMaxAbsorptionScale)
+      throw InputError(at_line(file, table.lines[row],
+                               "scale " + to_text(table.at(row, 1)) + ": " + at_most(kMaxAbsorptionScale)));
     values.push_back({temperature, scale});
   }
   return values;
@@ -94,9 +107,23 @@ void read_gas(ReadContext& context, const ObjectReader& object, Medium& medium) 
       read_spectrum(context, object, "absorption", SpectrumUse::kAbsorption, Spectrum::constant(0));
   medium.scale = object.get_float("scale", 1);
   object.check(medium.scale >= 0, "scale", medium.scale, "must be >= 0");
+  check_at_most(object, "scale", medium.scale, kMaxAbsorptionScale);
   medium.spectrum = object.get_choice("spectral", {"sampled", "correlated_k"}) == 1
                         ? GasSpectrum::kCorrelatedK
                         : GasSpectrum::kSampled;
+}
+
+/// The product of all factors of the absorption.
+void check_absorption(const ObjectReader& object, const Medium& medium) {
+  double node_scale = 1;
+  if (const auto* grid = std::get_if<GridField>(&medium.field))
+    for (const GridField::Node& node : grid->values) node_scale = std::max(node_scale, double{node.scale});
+  const double largest = medium.absorption.max_over(1, 1e9) * medium.scale * node_scale;
+  object.check(medium.scale * node_scale <= kMaxAbsorptionScale, "scale", medium.scale * node_scale,
+               at_most(kMaxAbsorptionScale) + " with the field's scales");
+  if (largest > kMaxAbsorption)
+    object.fail_at("absorption", "absorption times scale " + format_number(largest) + ": " +
+                                     at_most(kMaxAbsorption, "1/m"));
 }
 
 }  // namespace
@@ -120,6 +147,7 @@ std::shared_ptr<const Medium> read_medium(ReadContext& context, Node& node) {
   } else {
     object.refuse_type({"absorbing", "plume"});
   }
+  check_absorption(object, *medium);
   object.finish();
   context.media.emplace(&node, medium);
   return medium;

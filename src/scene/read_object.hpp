@@ -74,6 +74,10 @@ class ObjectReader {
   std::map<std::string_view, Node*> children_;  // by name; the tree owns names and nodes
 };
 
+/// v over its length, also where the squares of its coordinates leave double's range; 0 for no or no finite
+/// length.
+glm::dvec3 unit_vector(const glm::dvec3& v);
+
 /// First byte of a value: its 'value' or 'filename' attribute, the id of a reference, the type of an object.
 Place place_of_value(const Node& node);
 /// "a float", "a string", "a bsdf" ...: what a node is, for messages.

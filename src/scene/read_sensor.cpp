@@ -2,11 +2,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
 
 namespace kiloband {
 namespace {
+
+constexpr double kMinFocus = 1e-6;  // m
+constexpr double kMaxOffset = 1000;
 
 enum class FovAxis { kX, kY, kDiagonal, kSmaller, kLarger };
 
@@ -57,8 +61,11 @@ ThinLensSensor read_lens(const ObjectReader& object, const Sensor& sensor, doubl
   lens.fov_x = fov;
   lens.aperture_radius = object.require_float("aperture_radius");
   object.check(lens.aperture_radius > 0, "aperture_radius", lens.aperture_radius, "must be > 0");
+  check_at_most(object, "aperture_radius", lens.aperture_radius, kMaxLength, "m");
   lens.focus_distance = object.get_float("focus_distance", sensor.far_clip);
   object.check(lens.focus_distance > 0, "focus_distance", lens.focus_distance, "must be > 0");
+  object.check(lens.focus_distance >= kMinFocus && lens.focus_distance <= kMaxLength, "focus_distance",
+               lens.focus_distance, "must be from 1e-06 to 1e+09 m");
   return lens;
 }
 
@@ -69,6 +76,7 @@ void read_common(ReadContext& context, const ObjectReader& object, Sensor& senso
   sensor.near_clip = object.get_float("near_clip", 0.01);
   sensor.far_clip = object.get_float("far_clip", 1e4);
   object.check(sensor.near_clip > 0, "near_clip", sensor.near_clip, "must be > 0");
+  check_at_most(object, "near_clip", sensor.near_clip, kMaxLength, "m");
   object.check(sensor.far_clip > sensor.near_clip, "far_clip", sensor.far_clip,
                "must be larger than near_clip");
   const double open = object.get_float("shutter_open", 0);  // nothing moves: the times have no effect
@@ -110,6 +118,10 @@ Sensor read_sensor(ReadContext& context, Node& node) {
     check_rigid(object, sensor.to_world);
     sensor.principal_point_x = object.get_float("principal_point_offset_x", 0);
     sensor.principal_point_y = object.get_float("principal_point_offset_y", 0);
+    check_at_most(object, "principal_point_offset_x", sensor.principal_point_x, kMaxOffset,
+                  "widths of the film");
+    check_at_most(object, "principal_point_offset_y", sensor.principal_point_y, kMaxOffset,
+                  "heights of the film");
     const double fov = read_fov(object, sensor.film);
     if (thin_lens) {
       sensor.model = read_lens(object, sensor, fov);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
 #include "spectral/colour.hpp"
@@ -11,6 +12,24 @@
 namespace kiloband {
 namespace {
 
+/// What the numbers in a file are.
+ValueKind kind_of(SpectrumUse use) {
+  switch (use) {
+    case SpectrumUse::kReflectance:
+      return ValueKind::kPlain;
+    case SpectrumUse::kEmission:
+      return ValueKind::kRadiance;
+    case SpectrumUse::kIrradiance:
+      return ValueKind::kIrradiance;
+    case SpectrumUse::kIntensity:
+      return ValueKind::kIntensity;
+    case SpectrumUse::kAbsorption:
+      return ValueKind::kAbsorption;
+    default:
+      return ValueKind::kAny;
+  }
+}
+
 std::string_view rule(SpectrumUse use) {
   return use == SpectrumUse::kReflectance ? "must be in [0, 1]" : "must be >= 0";
 }
@@ -19,9 +38,41 @@ bool is_allowed(double value, SpectrumUse use) {
   return value >= 0 && (use != SpectrumUse::kReflectance || value <= 1);
 }
 
+struct Limit {
+  double most;
+  std::string unit;
+};
+
+Limit limit_of(SpectrumUse use) {
+  if (is_emission(use)) return {kMaxEmission, unit_of(kind_of(use))};
+  if (use == SpectrumUse::kAbsorption) return {kMaxAbsorption, unit_of(kind_of(use))};
+  return {kMaxQuantity, ""};
+}
+
+/// The largest value anywhere: of emission by formula, its peak.
+void check_peak(const Spectrum& spectrum, const std::string& label, SpectrumUse use, const Place& place) {
+  constexpr double kShortestNm = 1, kLongestNm = 1e9;
+  const Limit limit = limit_of(use);
+  const bool has_data = !spectrum.knots_nm().empty();
+  const double peak = has_data ? *std::ranges::max_element(spectrum.knot_values())
+                               : spectrum.max_over(kShortestNm, kLongestNm);
+  if (peak <= limit.most) return;
+  const auto at =
+      has_data ? std::ranges::max_element(spectrum.knot_values()) - spectrum.knot_values().begin() : 0;
+  const std::string where =
+      has_data ? " at " + format_number(spectrum.knots_nm()[static_cast<std::size_t>(at)]) + " nm" : "";
+  fail(place, label + " " + format_number(peak) + where + ": " + at_most(limit.most, limit.unit));
+}
+
 /// A number: flat, or times D65 on emitters.
 Spectrum from_number(double value, SpectrumUse use) {
   return is_emission(use) ? illuminant_d65().scaled(value) : Spectrum::constant(value);
+}
+
+/// The same; what no such parameter can be is refused.
+Spectrum checked_number(double value, const std::string& label, SpectrumUse use, const Place& place) {
+  check_spectrum(Spectrum::constant(value), label, use, place);
+  return from_number(value, use);
 }
 
 Rgb parse_rgb(const XmlAttribute& value, const std::string& context) {
@@ -40,6 +91,10 @@ Spectrum from_rgb(const XmlAttribute& value, const std::string& label, SpectrumU
       fail(value.value_place,
            label + " rgb component " + format_number(component) + ": " + std::string(rule(use)));
     }
+    const Limit limit = limit_of(use);
+    if (component > limit.most)
+      fail(value.value_place,
+           label + " rgb component " + format_number(component) + ": " + at_most(limit.most, limit.unit));
   }
   if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) return from_number(rgb[0], use);
   return load_at(value.value_place, [&] {
@@ -71,24 +126,6 @@ Spectrum from_pairs(const XmlAttribute& value, const std::string& context) {
   if (lambda.size() < 2)
     fail(value.value_place, context + "a spectrum needs at least 2 pairs wavelength:value");
   return Spectrum::tabulated(std::move(lambda), std::move(values));
-}
-
-/// What the numbers in a file are.
-ValueKind kind_of(SpectrumUse use) {
-  switch (use) {
-    case SpectrumUse::kReflectance:
-      return ValueKind::kPlain;
-    case SpectrumUse::kEmission:
-      return ValueKind::kRadiance;
-    case SpectrumUse::kIrradiance:
-      return ValueKind::kIrradiance;
-    case SpectrumUse::kIntensity:
-      return ValueKind::kIntensity;
-    case SpectrumUse::kAbsorption:
-      return ValueKind::kAbsorption;
-    default:
-      return ValueKind::kAny;
-  }
 }
 
 /// <spectrum value= | filename=>. A single number is flat, on emitters too.
@@ -131,10 +168,10 @@ void check_spectrum(const Spectrum& spectrum, const std::string& label, Spectrum
     fail(place, label + " " + format_number(values[i]) + " at " + format_number(lambda[i]) +
                     " nm: " + std::string(rule(use)));
   }
-  if (!spectrum.is_constant()) return;
-  const double value = spectrum(550);
+  const double value = spectrum.is_constant() ? spectrum(550) : 0;
   if (!is_allowed(value, use))
     fail(place, label + " " + format_number(value) + ": " + std::string(rule(use)));
+  check_peak(spectrum, label, use, place);
 }
 
 Texture read_texture_node(ReadContext& context, Node& parameter, const std::string& label, SpectrumUse use) {
@@ -146,9 +183,7 @@ Texture read_texture_node(ReadContext& context, Node& parameter, const std::stri
     const double number = node.tag == "float"
                               ? parse_number(value.value, place, label + ": ")
                               : static_cast<double>(parse_integer(value.value, place, label + ": "));
-    if (!is_allowed(number, use))
-      fail(place, label + " " + format_number(number) + ": " + std::string(rule(use)));
-    return from_number(number, use);
+    return checked_number(number, label, use, place);
   }
   if (node.tag == "rgb") return from_rgb(*node.find("value"), label, use);
   const bool is_object = node.kind == TagKind::kObject;
@@ -163,6 +198,8 @@ Texture read_texture_node(ReadContext& context, Node& parameter, const std::stri
     check_spectrum(*spectrum, label, use, place);
   } else if (use == SpectrumUse::kReflectance) {
     check_reflectance_texture(texture, label, place);
+  } else {
+    check_emission_texture(texture, label, place);
   }
   context.checked.emplace(key, texture);
   return texture;

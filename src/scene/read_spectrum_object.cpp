@@ -1,5 +1,6 @@
 // <spectrum type=...> objects: regular, irregular, uniform, blackbody, d65, srgb, and our own planck and
 // file.
+#include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
 #include "spectral/colour.hpp"
@@ -59,6 +60,7 @@ Spectrum read_uniform(ReadContext&, const ObjectReader& object, SpectrumUse) {
 double temperature(const ObjectReader& object) {
   const double kelvin = object.require_float("temperature");
   object.check(kelvin >= 0, "temperature", kelvin, "must be >= 0 K");
+  check_at_most(object, "temperature", kelvin, kMaxTemperatureK, "K");
   return kelvin;
 }
 
@@ -73,6 +75,7 @@ Spectrum read_blackbody(ReadContext&, const ObjectReader& object, SpectrumUse) {
 Spectrum read_planck(ReadContext&, const ObjectReader& object, SpectrumUse) {
   const double scale = object.get_float("scale", 1);
   object.check(scale >= 0, "scale", scale, "must be >= 0");
+  check_at_most(object, "scale", scale, kMaxQuantity);
   return Spectrum::planck(temperature(object), scale);
 }
 
@@ -106,6 +109,7 @@ Node* nested_texture(const ObjectReader& object) {
 Texture read_d65(ReadContext& context, const ObjectReader& object) {
   const double scale = object.get_float("scale", 1);
   object.check(scale >= 0, "scale", scale, "must be >= 0");
+  check_at_most(object, "scale", scale, kMaxQuantity);
   Node* nested = nested_texture(object);
   Node* color = object.find("color");
   if (nested && color && &color->resolved() != nested) object.fail_here("both 'color' and a nested texture");

@@ -1,6 +1,11 @@
 // <texture type="bitmap"> and <texture type="checkerboard">.
+#include <algorithm>
+#include <span>
+
+#include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
+#include "spectral/value_scale.hpp"
 
 namespace kiloband {
 namespace {
@@ -43,6 +48,43 @@ Texture read_texture_object(ReadContext& context, Node& node) {
                                                      : read_checkerboard(context, object);
   context.textures.emplace(&node, texture);
   return texture;
+}
+
+namespace {
+
+/// "label 1e+20 at pixel (1, 2) of 'sky.exr': must be <= ...": the first value that is too large.
+void check_pixels(std::span<const float> values, std::size_t values_per_pixel, uint32_t width, double scale,
+                  const std::string& file, const std::string& label, const Place& place) {
+  const auto found = std::ranges::find_if(values, [&](float v) { return v * scale > kMaxEmission; });
+  if (found == values.end()) return;
+  const std::size_t pixel = static_cast<std::size_t>(found - values.begin()) / values_per_pixel;
+  fail(place, label + " " + format_number(*found * scale) + " at pixel (" + std::to_string(pixel % width) +
+                  ", " + std::to_string(pixel / width) + ") of '" + file +
+                  "': " + at_most(kMaxEmission, unit_of(ValueKind::kRadiance)));
+}
+
+}  // namespace
+
+void check_emission_image(const Image& image, const std::filesystem::path& file, double scale,
+                          const std::string& label, const Place& place) {
+  check_pixels(image.pixels, image.channels, image.width, scale, file.filename().string(), label, place);
+}
+
+void check_emission_image(const SpectralImage& image, double scale, const std::string& label,
+                          const Place& place) {
+  check_pixels(*image.values, image.values_per_pixel, image.width, scale, image.file.filename().string(),
+               label, place);
+}
+
+void check_emission_texture(const Texture& texture, const std::string& label, const Place& place) {
+  if (const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture))
+    check_emission_image(*(*bitmap)->image, (*bitmap)->file, 1, label, place);
+  const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture);
+  if (!spectral) return;
+  double largest = 1;  // of the endmembers, if the values are weights
+  for (const Spectrum& endmember : (*spectral)->endmembers)
+    largest = std::max(largest, endmember.max_over(1, 1e9));
+  check_emission_image(*(*spectral)->image, largest, label, place);
 }
 
 void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place) {

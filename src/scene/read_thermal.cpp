@@ -1,15 +1,12 @@
 // <emitter type="thermal">: in a shape, or directly under the scene (the ambient temperature).
 #include <algorithm>
 
+#include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"
 
 namespace kiloband {
 namespace {
-
-/// Beyond this no material exists, and Planck's law would not need what is special about emission here.
-constexpr double kMaxTemperatureK = 1e5;
-const char* const kTemperatureRule = "must be from 0 to 100000 K";
 
 bool is_temperature(double value) {
   return value >= 0 && value <= kMaxTemperatureK;  // false for NaN

@@ -1,4 +1,5 @@
 // <transform>: steps to matrices. The first step acts first, so each one multiplies from the left.
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -47,8 +48,9 @@ Transform rotation(const XmlElement& step) {
   const glm::dvec3 axis = read_xyz(step, 0, false);
   const XmlAttribute& angle = *step.find("angle");
   const double degrees = parse_number(angle.value, angle.value_place);
-  if (!(glm::length(axis) > 0)) fail(step.place, "<rotate> needs an axis that is not zero");
-  return glm::rotate(Transform(1.0), radians(degrees), glm::normalize(axis));
+  const glm::dvec3 unit = unit_vector(axis);
+  if (unit == glm::dvec3(0)) fail(step.place, "<rotate> needs an axis that is not zero");
+  return glm::rotate(Transform(1.0), radians(degrees), unit);
 }
 
 /// 16 or 9 numbers, row by row.
@@ -83,13 +85,13 @@ glm::dvec3 perpendicular(const glm::dvec3& d) {
 Transform lookat(const XmlElement& step) {
   const glm::dvec3 origin = read_triple(*step.find("origin"));
   const glm::dvec3 to_target = read_triple(*step.find("target")) - origin;
-  const double distance = glm::length(to_target);
-  if (!(distance > 0)) fail(step.find("target")->value_place, "lookat: origin and target are equal");
-  const glm::dvec3 direction = to_target / distance;
+  const glm::dvec3 direction = unit_vector(to_target);
+  if (direction == glm::dvec3(0))
+    fail(step.find("target")->value_place, "lookat: origin and target are equal");
   const XmlAttribute* up_attribute = step.find("up");
-  glm::dvec3 up = up_attribute ? read_triple(*up_attribute) : perpendicular(direction);
-  if (!(glm::length(up) > 0)) up = perpendicular(direction);
-  const glm::dvec3 left = glm::cross(glm::normalize(up), direction);
+  glm::dvec3 up = up_attribute ? unit_vector(read_triple(*up_attribute)) : perpendicular(direction);
+  if (up == glm::dvec3(0)) up = perpendicular(direction);
+  const glm::dvec3 left = glm::cross(up, direction);
   if (!(glm::length(left) > 1e-9))
     fail(up_attribute->value_place, "lookat: up is parallel to the view direction");
   const glm::dvec3 unit_left = glm::normalize(left);
@@ -158,6 +160,12 @@ void check_regular(bool finite, double determinant, double scale, const Node& no
 }
 
 }  // namespace
+
+glm::dvec3 unit_vector(const glm::dvec3& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(largest > 0) || !std::isfinite(largest)) return glm::dvec3(0);
+  return glm::normalize(v / largest);
+}
 
 Transform evaluate_transform(const Node& node) {
   Transform result(1.0);

@@ -14,11 +14,17 @@
 namespace kiloband {
 namespace {
 
+// From gamma rays to radio waves, and Planck's law stays a number.
+constexpr double kMinWavelengthNm = 1e-3, kMaxWavelengthNm = 1e9;
+
 /// One interval's rules; `where` is put in front of the message.
 void check_interval(const std::string& where, double min_nm, double max_nm) {
   for (const double edge_nm : {min_nm, max_nm})
     if (!std::isfinite(edge_nm) || edge_nm <= 0)
       throw InputError(where + ": wavelength " + to_text(edge_nm) + " nm: must be finite and positive");
+  for (const double edge_nm : {min_nm, max_nm})
+    if (edge_nm < kMinWavelengthNm || edge_nm > kMaxWavelengthNm)
+      throw InputError(where + ": wavelength " + to_text(edge_nm) + " nm: must be from 0.001 to 1e+09 nm");
   if (min_nm == max_nm) throw InputError(where + ": the interval is empty");
   if (min_nm > max_nm)
     throw InputError(where + ": the interval is reversed: " + to_text(min_nm) + " nm is above " +

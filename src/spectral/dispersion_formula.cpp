@@ -10,6 +10,8 @@
 namespace kiloband {
 namespace {
 
+constexpr double kLargestIndex = 1e5;  // as metals at 1 mm, by far
+
 /// Coefficients with the database's numbering: C(1) is the first; missing ones are 0.
 class Coefficients {
  public:
@@ -100,6 +102,9 @@ Spectrum tabulate_formula(const std::string& where, int number, const std::vecto
     if (!std::isfinite(n) || n <= 0)
       throw InputError(where + ": formula " + std::to_string(number) + " gives n = " + to_text(n) + " at " +
                        to_text(lambda_um) + " um: must be positive and finite");
+    if (n > kLargestIndex)
+      throw InputError(where + ": formula " + std::to_string(number) + " gives n = " + to_text(n) + " at " +
+                       to_text(lambda_um) + " um: must be <= " + to_text(kLargestIndex));
     return n;
   };
   return tabulate_function(index, min_um, max_um, {.absolute = 1e-6}, [&](double lambda_um) {

@@ -107,6 +107,16 @@ std::vector<std::pair<std::string, Spectrum>> modis_responses(const NumberTable&
   return result;
 }
 
+/// Sums over channels are single precision in the end.
+void check_response(const std::filesystem::path& file, const std::string& name, const Spectrum& response) {
+  constexpr double kLargest = 1e15;
+  for (std::size_t i = 0; i < response.knots_nm().size(); ++i)
+    if (std::abs(response.knot_values()[i]) > kLargest)
+      throw InputError(file.string() + ": response " + quote_text(name) + " " +
+                       to_text(response.knot_values()[i]) + " at " + to_text(response.knots_nm()[i]) +
+                       " nm: must be from -1e+15 to 1e+15");
+}
+
 /// Names of the responses: the header's, or the file's stem (numbered if there are several).
 std::vector<std::string> response_names(const NumberTable& table) {
   std::vector<std::string> names;
@@ -155,6 +165,7 @@ std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::file
   for (std::size_t column = 1; column < table.columns; ++column) {
     const ValueScale scale = scale_of_column(table, column, ValueKind::kAny, sink);
     result.emplace_back(names[column - 1], column_spectrum(table, axis, column, scale));
+    check_response(file, result.back().first, result.back().second);
   }
   return result;
 }

@@ -118,7 +118,8 @@ TEST(SceneSpectra, UnitsOfFilesFollowTheParameter) {
     return read_scene(folder.write("units.xml", scene(kSphere + kSensor + light + light)), options);
   };
   std::vector<Diagnostic> messages;
-  const auto& sun = std::get<DirectionalEmitter>(read_sun("sun.csv", messages).emitters.at(0).model);
+  const SceneDescription sunny = read_sun("sun.csv", messages);
+  const auto& sun = std::get<DirectionalEmitter>(sunny.emitters.at(0).model);
   EXPECT_DOUBLE_EQ(sun.irradiance(400), 1.7);
   EXPECT_TRUE(messages.empty());
   read_sun("bare.csv", messages);

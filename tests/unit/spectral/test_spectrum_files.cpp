@@ -191,6 +191,8 @@ TEST(ResponseFile, WrongFilesHaveTheirMessages) {
       {"wavelength_nm,a,b\n400,1,2\n500,1\n", "f.csv:3: 2 columns: must be 3"},
       {"wavelength_nm,a,b\n400,1,2\n500,1,2,3\n", "f.csv:3: 4 columns: must be 3"},
       {"wavelength_nm,a,b\n400,1,nan\n", "f.csv:2: value nan: must be finite"},
+      {"wavelength_nm,a,b\n400,1,-3e38\n",
+       "f.csv: response 'b' -3e+38 at 400 nm: must be from -1e+15 to 1e+15"},
       {wide + "\n", "f.csv:1: more than 4097 columns"},
       {"# Band Channel Wavelength RSR\n1 1 500 -99\n", "f.csv: no data"},
       {"# Band Channel Wavelength RSR\n1 1 500 1\n1 1 500 1\n", "f.csv:3: wavelength 500 nm is repeated"},
