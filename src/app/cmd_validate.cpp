@@ -159,10 +159,10 @@ void print_verdict(const SuiteResult& result) {
 
 /// The HTML page: by a Python script with matplotlib. Without them the results stand for themselves.
 void make_report(const ValidateOptions& options) {
-  const fs::path script = fs::path(options.scenes) / "validation/report/report.py";
+  const fs::path script = fs::absolute(options.scenes) / "validation/report/report.py";
   for (const char* python : {"python3", "/usr/bin/python3"}) {
     if (run_child({python, "-c", "import matplotlib, numpy"}, {}, {}).code != 0) continue;
-    const ChildEnd end = run_child({python, script.string(), options.output}, {}, {});
+    const ChildEnd end = run_child({python, script.string(), fs::absolute(options.output).string()}, {}, {});
     tell("{}{}", end.out, end.err);
     if (end.code == 0) return;
     break;
@@ -175,7 +175,7 @@ void make_report(const ValidateOptions& options) {
 
 /// The independent renderer is optional, unless a name asks for it.
 std::optional<MitsubaDriver> mitsuba_of(const ValidateOptions& options) {
-  const fs::path script = fs::path(options.scenes) / "validation/mitsuba/compare_with_mitsuba.py";
+  const fs::path script = fs::absolute(options.scenes) / "validation/mitsuba/compare_with_mitsuba.py";
   auto driver = find_mitsuba({.script = script}, options.names, effort_of(options));
   if (!driver && wants_mitsuba(options.names, effort_of(options)))
     tell("note: Mitsuba 3 is not there (pip install mitsuba): no case mitsuba/...\n");
@@ -184,8 +184,9 @@ std::optional<MitsubaDriver> mitsuba_of(const ValidateOptions& options) {
 
 SuiteSettings settings_of(const ValidateOptions& options) {
   if (options.quick && options.thorough) throw InputError("--quick together with --thorough");
-  const fs::path root = options.scenes;
-  if (!fs::is_directory(root / "scenes/analytic"))
+  const fs::path root = fs::absolute(options.scenes);
+  std::error_code unknown;
+  if (!fs::is_directory(root / "scenes/analytic", unknown))
     throw InputError(options.scenes +
                      ": no folder scenes/analytic there (--root must name kiloband's source folder)");
   SuiteSettings settings;

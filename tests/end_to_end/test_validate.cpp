@@ -183,7 +183,9 @@ Outcome validate_with_mitsuba(const TemporaryFolder& folder, const std::string& 
   std::filesystem::create_directories(folder / "scenes/analytic");
   std::filesystem::create_directories(folder / "bin");
   folder.write("bin/python3",
-               "#!/bin/sh\ncase $2 in --probe) echo 9.8.7; exit;; --list) echo box; exit;; esac\n"
+               "#!/bin/sh\ncase $2 in --probe) echo 9.8.7; exit;; --list) echo box; exit;; esac\ncd '" +
+                   folder.path().string() +
+                   "'\n"
                "\"$2\" --version > version\ncp passed.json \"$4/mitsuba.json\"\necho row\n" +
                    last + "\n");
   std::filesystem::permissions(folder / "bin/python3", std::filesystem::perms::owner_all);
@@ -231,6 +233,20 @@ TEST(Validate, StopEndsTheScriptAgainstMitsuba) {
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_LT(outcome.seconds, 60);
   EXPECT_EQ(read_json(folder, "out dir/results.json")["interrupted"], true);
+}
+
+/// A folder of somebody else's files: modules of the interpreter's and a program of its name.
+TEST(Validate, NothingOfTheCurrentFolderIsExecuted) {
+  const TemporaryFolder folder;
+  folder.write("python3", "#!/bin/sh\necho program >> '" + (folder / "executed").string() + "'\n");
+  std::filesystem::permissions(folder / "python3", std::filesystem::perms::owner_all);
+  for (const char* module : {"numpy.py", "matplotlib.py", "json.py"})
+    folder.write(module, "open('" + (folder / "executed").string() + "', 'a').write(__name__)\n");
+  const Outcome outcome =
+      run_program(folder, {"validate", "--quick", "--quiet", "analytic/planck", "--backends", "cpu", "-o", "out"},
+                  {.environment = {{"PATH", ":.:/usr/bin:/bin"}, {"PYTHONPATH", ":."}}});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "executed")) << folder.read("executed");
 }
 
 TEST(Validate, WrongArguments) {

@@ -26,7 +26,8 @@ std::string first_comment_line(const fs::path& scene) {
 
 std::vector<Case> analytic_cases(const fs::path& folder) {
   std::vector<Case> cases;
-  if (!fs::is_directory(folder)) throw InputError(folder.string() + ": no such folder of scenes");
+  std::error_code unknown;
+  if (!fs::is_directory(folder, unknown)) throw InputError(folder.string() + ": no such folder of scenes");
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() != ".xml") continue;
     const std::string stem = entry.path().stem().string();

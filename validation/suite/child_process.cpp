@@ -44,7 +44,7 @@ class Pipe {
   int ends_[2] = {-1, -1};
 };
 
-/// posix_spawnp with the pipes as output. Returns an error number, 0 for none.
+/// posix_spawnp with the pipes as output, in "/". Returns an error number, 0 for none.
 int spawn(const std::vector<std::string>& command, const Pipe& out, const Pipe& err, pid_t& process) {
   std::vector<char*> arguments;
   for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
@@ -56,6 +56,7 @@ int spawn(const std::vector<std::string>& command, const Pipe& out, const Pipe& 
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, out.write_end(), 1);
   posix_spawn_file_actions_adddup2(&actions, err.write_end(), 2);
+  posix_spawn_file_actions_addchdir_np(&actions, "/");
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   posix_spawnattr_setpgroup(&attributes, 0);
   const int error = posix_spawnp(&process, arguments[0], &actions, &attributes, arguments.data(), environ);

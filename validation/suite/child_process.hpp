@@ -20,6 +20,9 @@ struct ChildEnd {
 };
 
 /// command: the program (looked for in PATH where it has no slash) and its arguments, passed on as they are.
+/// The child starts in "/", so files must be named by absolute paths: an interpreter takes modules from the
+/// current folder (`python3 -c`, an empty entry of PYTHONPATH), matplotlib its matplotlibrc, PATH may name it,
+/// and there may be anything in it.
 /// heard: called with every complete line of its standard output; may be empty.
 /// The child is the head of a process group of its own; once the watch says stop, the group is sent SIGTERM
 /// and, if the child is still there kStopSeconds later, SIGKILL.

@@ -35,6 +35,10 @@ TEST(ChildProcess, OutputsAreCaughtAndLinesAreTold) {
   EXPECT_FALSE(end.stopped);
 }
 
+TEST(ChildProcess, StartsInTheRootFolder) {
+  EXPECT_EQ(run_child({"pwd"}, {}, {}).out, "/\n");
+}
+
 TEST(ChildProcess, MuchOutput) {
   const ChildEnd end = run_child(shell("yes 0123456789 | head -n 50000"), {}, {});
   EXPECT_EQ(end.code, 0);
