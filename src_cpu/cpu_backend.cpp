@@ -8,6 +8,7 @@
 #include <fstream>
 #include <mutex>
 
+#include "base/threads.hpp"
 #include "src_cpu/block_worker.hpp"
 #include "src_cpu/boundary.hpp"
 #include "src_cpu/camera.hpp"
@@ -48,6 +49,13 @@ class DenormalsToZero {
   unsigned saved_;
 };
 
+/// OpenMP starts all threads but the caller's, and so does TBB, which Embree builds with, and one per processor
+/// when Embree lets go of its limit. Both end the process where they cannot.
+void check_threads(int threads) {
+  const int others = threads - 1, of_tbb = std::max({1, others, omp_get_num_procs() - 1});
+  require_threads(static_cast<unsigned>(others + of_tbb), "the CPU backend", "give fewer --threads");
+}
+
 class CpuBackend final : public Backend {
  public:
   CpuBackend(const FlatScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
@@ -57,6 +65,7 @@ class CpuBackend final : public Backend {
         settings_(settings),
         isa_(resolve_isa(options.isa)),
         threads_(options.threads > 0 ? options.threads : omp_get_num_procs()) {
+    check_threads(threads_);
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
     tracer_scene_ = TracerScene(scene_, *embree_);
     for (int i = 0; i < threads_; ++i) {

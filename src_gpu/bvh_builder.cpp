@@ -12,9 +12,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <thread>
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "base/threads.hpp"
 #include "src_gpu/bvh_primitives.hpp"
 
 namespace kiloband::gpu {
@@ -192,7 +194,14 @@ class Flattener {
                                 static_cast<int>(rtcGetDeviceError(device))));
 }
 
+/// TBB, which Embree runs on, ends the process where it cannot have its threads.
+void check_threads(int threads) {
+  const unsigned all = threads > 0 ? static_cast<unsigned>(threads) : std::thread::hardware_concurrency();
+  require_threads(std::max(2u, all) - 1, "Embree", "use fewer processors (taskset)");
+}
+
 Bvh build_from(const std::vector<KbPrimitive>& primitives, const FlatScene& scene, int threads) {
+  check_threads(threads);
   const Handle<RTCDevice> device(rtcNewDevice(fmt::format("threads={}", threads).c_str()));
   if (!device) fail(nullptr);
   const Handle<RTCBVH> tree(rtcNewBVH(device.get()));

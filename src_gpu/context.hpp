@@ -65,6 +65,12 @@ class DeviceContext {
   /// Built programs by the hash of source and options; build_program looks here first.
   std::map<std::string, cl::Program>& programs() { return programs_; }
 
+  /// Why built programs could not be kept on disk, the first time; empty: no reason, or not tried.
+  const std::string& cache_problem() const { return cache_problem_; }
+  void note_cache_problem(const std::string& problem) {
+    if (cache_problem_.empty()) cache_problem_ = problem;
+  }
+
  private:
   void create();
   void settle() noexcept;
@@ -74,6 +80,7 @@ class DeviceContext {
   cl::Context context_;
   cl::CommandQueue queue_;
   std::map<std::string, cl::Program> programs_;
+  std::string cache_problem_;
   struct Launch {
     LaunchScale scale;
     std::string kernel;

@@ -15,6 +15,7 @@ add_custom_command(
   VERBATIM)
 
 kiloband_library(kiloband_opencl
-  SOURCES context.cpp device.cpp errors.cpp kernel.cpp kernel_sources.cpp memory.cpp program.cpp program_cache.cpp
+  SOURCES context.cpp device.cpp errors.cpp kernel.cpp kernel_sources.cpp memory.cpp
+          neutral_folder.cpp pocl_cache.cpp program.cpp program_cache.cpp
           ${embedded_kernels}
   DEPENDS kiloband_base kiloband_film OpenCL::OpenCL OpenCL::HeadersCpp)

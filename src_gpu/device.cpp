@@ -4,8 +4,11 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <thread>
 
+#include "base/threads.hpp"
 #include "src_gpu/errors.hpp"
+#include "src_gpu/pocl_cache.hpp"
 
 namespace kiloband::gpu {
 namespace {
@@ -24,8 +27,19 @@ std::string trimmed(std::string text) {
   return text;
 }
 
+/// PoCL ends the process where it cannot have a thread per processor, and starts a linker.
+void check_threads_of_drivers() {
+  static const bool kChecked = [] {  // before they have started theirs
+    require_threads(std::thread::hardware_concurrency() + 1, "the OpenCL drivers",
+                    "use --backend cpu with fewer --threads");
+    return true;
+  }();
+  static_cast<void>(kChecked);
+}
+
 std::vector<cl::Platform> list_platforms() {
   prepare_opencl_environment();
+  check_threads_of_drivers();
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);
@@ -150,6 +164,7 @@ const char* to_string(DeviceType type) {
 void prepare_opencl_environment() {
   static const int kDone = setenv("POCL_WORK_GROUP_METHOD", "loops", 0);
   static_cast<void>(kDone);
+  prepare_pocl_cache();
 }
 
 std::vector<DeviceInfo> list_devices() {
@@ -160,7 +175,11 @@ std::vector<DeviceInfo> list_devices() {
 }
 
 DeviceInfo select_device(const std::vector<DeviceInfo>& devices, const std::optional<std::string>& choice) {
-  if (devices.empty()) throw DeviceError("no OpenCL device: the OpenCL drivers here have none");
+  if (devices.empty()) {
+    const std::string problem = pocl_cache_problem();
+    throw DeviceError("no OpenCL device: the OpenCL drivers here have none" +
+                      (problem.empty() ? "" : "; " + problem));
+  }
   if (!choice) return default_device(devices);
   const bool is_number = !choice->empty() && std::all_of(choice->begin(), choice->end(),
                                                          [](unsigned char c) { return std::isdigit(c); });

@@ -35,12 +35,13 @@ struct DeviceInfo {
 
 /// To be called before the first OpenCL call of the process (list_devices and select_device do). PoCL's
 /// default way of running work-groups traverses 7 to 9 times slower than "loops": POCL_WORK_GROUP_METHOD is
-/// set unless the user has set it. Other platforms do not read it. Not to be called while other threads read
-/// the environment.
+/// set unless the user has set it; and it gets a folder that it can compile in (pocl_cache.hpp). Other
+/// platforms read neither. Not to be called while other threads read the environment.
 void prepare_opencl_environment();
 
 /// All devices of all platforms; empty without a platform or a device. A platform whose devices cannot be
-/// listed is passed over. throws DeviceError  the loader itself fails
+/// listed is passed over.
+/// throws DeviceError  the loader itself fails; too few threads can be started (PoCL would end the process)
 std::vector<DeviceInfo> list_devices();
 
 /// The device to use.

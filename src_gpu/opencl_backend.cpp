@@ -9,6 +9,8 @@
 #include "shared/planted_faults.h"
 #include "src_gpu/device.hpp"
 #include "src_gpu/group_renderer.hpp"
+#include "src_gpu/neutral_folder.hpp"
+#include "src_gpu/pocl_cache.hpp"
 
 namespace kiloband {
 namespace {
@@ -20,6 +22,7 @@ using gpu::GroupRenderer;
 using gpu::GroupResult;
 using gpu::HostScene;
 using gpu::ImagePixel;
+using gpu::NeutralFolder;
 using gpu::RunTally;
 
 constexpr std::size_t kReportedInvalid = 16;
@@ -45,7 +48,9 @@ class Renderer final : public Backend {
         method_(options.method.value_or(gpu::kDefaultMethod)),
         context_(gpu::select_device(options.device), {.profiling = true}) {
     limit_memory();
+    const NeutralFolder neutral;
     repeated([] {});
+    warn_of_cache();
   }
 
   void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
@@ -53,6 +58,7 @@ class Renderer final : public Backend {
   std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override;
 
   std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
+    const NeutralFolder neutral;
     return repeated([&] { return groups_->trace(pixels_of(rect), range); });
   }
 
@@ -75,6 +81,7 @@ class Renderer final : public Backend {
   struct Delivery;
 
   void limit_memory();
+  void warn_of_cache() const;
   void make_device();
   void recover(const DeviceLost& loss);
   void retreat(const gpu::DeviceOutOfMemory& refusal);
@@ -107,6 +114,17 @@ void Renderer::limit_memory() {
        fmt::format("device memory: device '{}' has {} MiB, not {} MiB: these are used",
                    context_.device().name, most >> 20, *options_.device_memory >> 20));
   options_.device_memory = most;
+}
+
+/// One warning: without a cache the render goes on, and the next one compiles again.
+void Renderer::warn_of_cache() const {
+  const std::string pocl = context_.device().is_pocl() ? gpu::pocl_cache_problem() : "";
+  if (!pocl.empty()) {
+    warn(options_.sink, {}, pocl);
+  } else if (!context_.cache_problem().empty()) {
+    warn(options_.sink, {},
+         context_.cache_problem() + ": compiled kernels are not kept, and every run compiles anew");
+  }
 }
 
 void Renderer::make_device() {
@@ -231,6 +249,9 @@ struct Renderer::Delivery {
 
 void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) {
+  const NeutralFolder neutral;
+  std::function<void(uint64_t)> told;
+  if (progress) told = [&](uint64_t samples) { neutral.from_outside([&] { progress(samples); }); };
   std::vector<ImagePixel> pixels;
   for (const uint32_t block : blocks) {
     const std::vector<ImagePixel> some = pixels_of(film.blocks()[block]);
@@ -247,7 +268,7 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
     if (in_block) part.count = delivery.attempted.front();
     try {
       delivery.add(
-          render_group(std::span(pixels).subspan(at, number), part, in_block ? never : stop, progress));
+          render_group(std::span(pixels).subspan(at, number), part, in_block ? never : stop, told));
       at += number;
     } catch (const gpu::DeviceOutOfMemory& refusal) {
       retreat(refusal);  // and the same pixels again, fewer at a time
@@ -256,6 +277,7 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
 }
 
 std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
+  const NeutralFolder neutral;
   return repeated([&] { return state_->auxiliary(rect); });
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "shared/planted_faults.h"
+#include "src_gpu/pocl_cache.hpp"
 #include "src_gpu/program_cache.hpp"
 
 namespace kiloband::gpu {
@@ -57,16 +58,20 @@ cl::Program from_source(const DeviceContext& context, const std::string& main, c
   const cl_int code = build(program, context.cl_device(), options);
   if (code == CL_BUILD_PROGRAM_FAILURE || code == CL_INVALID_BUILD_OPTIONS) {
     throw ProgramBuildError(error_message(site, "clBuildProgram", code) + " with " + options + "\n" +
-                            build_log(program, context.cl_device()));
+                            build_log(program, context.cl_device()) +
+                            (context.device().is_pocl() ? pocl_build_hint() : ""));
   }
   if (code != CL_SUCCESS) throw_device_error(site, "clBuildProgram", code);
   return program;
 }
 
-void save_binary(const ProgramCache& cache, const std::string& key, const cl::Program& program) {
+void save_binary(DeviceContext& context, const ProgramCache& cache, const std::string& key,
+                 const cl::Program& program) {
   try {
     const cl::Program::Binaries binaries = program.getInfo<CL_PROGRAM_BINARIES>();
-    if (binaries.size() == 1) cache.save(key, binaries.front());
+    if (binaries.size() != 1) return;
+    if (const std::string problem = cache.save(key, binaries.front()); !problem.empty())
+      context.note_cache_problem(problem);
   } catch (const cl::Error&) {
     return;  // a driver without binaries: the program is built from source each time
   }
@@ -100,7 +105,7 @@ Program build_program(DeviceContext& context, const SourceMap& sources, const st
     }
   }
   const cl::Program program = from_source(context, main, source, flags);
-  if (options.disk_cache) save_binary(cache, key, program);
+  if (options.disk_cache) save_binary(context, cache, key, program);
   context.programs()[key] = program;
   return Program(context, program, ProgramOrigin::kSource);
 }

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -41,13 +42,17 @@ std::string header_of(const std::string& key, const std::vector<unsigned char>& 
   return header;
 }
 
-/// Made with all its parents, for this user alone.
+/// Made with all its parents, for this user alone. false: errno says why.
 bool make_folder(const fs::path& folder) {
   std::error_code error;
   if (fs::is_directory(folder, error)) return true;
   if (folder.has_parent_path() && folder.parent_path() != folder && !make_folder(folder.parent_path()))
     return false;
-  return mkdir(folder.c_str(), 0700) == 0 || fs::is_directory(folder, error);
+  if (mkdir(folder.c_str(), 0700) == 0) return true;
+  const int reason = errno == EEXIST ? ENOTDIR : errno;
+  if (fs::is_directory(folder, error)) return true;  // made by another process meanwhile
+  errno = reason;
+  return false;
 }
 
 /// What an environment variable says, if it is an absolute path.
@@ -98,15 +103,17 @@ std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& 
   return binary;
 }
 
-void ProgramCache::save(const std::string& key, const std::vector<unsigned char>& binary) const {
-  if (folder_.empty() || binary.empty() || !make_folder(folder_)) return;
+std::string ProgramCache::save(const std::string& key, const std::vector<unsigned char>& binary) const {
+  if (folder_.empty() || binary.empty()) return {};
+  if (!make_folder(folder_)) return "cannot write '" + folder_.string() + "': " + std::strerror(errno);
   std::string text = header_of(key, binary);
   text.append(reinterpret_cast<const char*>(binary.data()), binary.size());
   try {
     write_file_atomically(file(key), text);
-  } catch (const DeviceError&) {
-    // A program that is not kept is compiled again.
+  } catch (const DeviceError& refusal) {
+    return refusal.what();
   }
+  return {};
 }
 
 }  // namespace kiloband::gpu

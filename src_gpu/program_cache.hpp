@@ -15,7 +15,7 @@ namespace kiloband::gpu {
 std::string text_hash(const std::string& text);
 
 /// Files of one folder, named by key. Whatever goes wrong (no folder, no permission, a full disk, a damaged
-/// or foreign file) is no error: load gives nothing and save does nothing. Files are written under another
+/// or foreign file) is no error: load gives nothing, and save says why it did nothing. Files are written under another
 /// name and renamed, so that processes side by side never see half of one.
 class ProgramCache {
  public:
@@ -29,7 +29,8 @@ class ProgramCache {
   static std::string key(const std::string& source, const std::string& options, const DeviceInfo& device);
 
   std::optional<std::vector<unsigned char>> load(const std::string& key) const;
-  void save(const std::string& key, const std::vector<unsigned char>& binary) const;
+  /// Returns why the binary could not be kept, "cannot write '/cache/kiloband/programs': Permission denied"; empty if it was, or if there is no cache.
+  std::string save(const std::string& key, const std::vector<unsigned char>& binary) const;
   std::filesystem::path file(const std::string& key) const { return folder_ / (key + ".bin"); }
 
  private:

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <thread>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "base/threads.hpp"
 #include "scene/image.hpp"
 #include "scene/image_channels.hpp"
 #include "scene/image_format.hpp"
@@ -46,9 +48,16 @@ std::string reason(std::string text) {
   return text.empty() ? "the data is damaged or truncated" : text;
 }
 
+/// OpenEXR would fail for want of its threads; it reads as well without.
+void spare_threads(ImageFormat format) {
+  if (format == ImageFormat::kExr && !can_start_threads(std::thread::hardware_concurrency()))
+    OIIO::attribute("exr_threads", -1);
+}
+
 class Reader {
  public:
   explicit Reader(const ImageFile& file) : file_(file) {
+    spare_threads(file.format);
     input_ = OIIO::ImageInput::create(reader_name(file.format));
     if (!input_)
       throw DeviceError(std::string("OpenImageIO was built without its ") + reader_name(file.format) +

@@ -2,6 +2,9 @@
 // stays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <thread>
+
 #include "tests/end_to_end/support/program.hpp"
 
 namespace kiloband::test {
@@ -56,6 +59,50 @@ TEST(MachineFailure, ReadOnlyFolder) {
     expect_failure(folder, quiet_render("scene.xml", {"--spp", "1", "-o", output}),
                    "cannot write '" + file + "': Permission denied", treatment);
   }
+}
+
+constexpr const char* kRefusal =
+    "the system starts no more (Resource temporarily unavailable): the limit of processes and threads of this "
+    "user (ulimit -u: ";
+
+/// The smallest limit under which the program starts at all (libraries that read images have threads); 0 where
+/// that cannot be tried.
+uint64_t least_process_limit(const TemporaryFolder& folder) {
+  for (uint64_t limit = 1; limit <= 20; ++limit) {
+    const Outcome outcome = run_program(folder, {"--version"}, {.process_limit = limit});
+    if (outcome.code == 0) return limit;
+    if (outcome.code == 126) return 0;  // no root, or a build folder that user 65533 cannot enter
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_EQ(outcome.err, std::string("kiloband: cannot start a thread: ") + kRefusal +
+                               std::to_string(limit) + ") or of its container is reached\n");
+  }
+  return 0;
+}
+
+TEST(MachineFailure, NoThreads) {
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms(0777));
+  const uint64_t least = least_process_limit(folder);
+  if (least == 0) return;
+  const auto render = [&](const std::string& threads, uint64_t limit) {
+    return run_program(folder, box({"-o", "a.exr", "--backend", "cpu", "--threads", threads}),
+                       {.process_limit = limit});
+  };
+  // 3 of OpenMP beside the first, and as many of TBB, at least one per processor.
+  const uint64_t processors = std::thread::hardware_concurrency();
+  const uint64_t one = std::max<uint64_t>(1, processors - 1), four = 3 + std::max<uint64_t>(3, processors - 1);
+  for (const uint64_t limit : {least, least + four - 1}) {
+    const Outcome outcome = render("4", limit);
+    EXPECT_EQ(outcome.code, 3);
+    EXPECT_EQ(outcome.err, "kiloband: cannot start " + std::to_string(four) + " threads for the CPU backend: " +
+                               kRefusal + std::to_string(limit) +
+                               ") or of its container is reached; raise it, end other programs, or give fewer "
+                               "--threads\n");
+  }
+  EXPECT_EQ(folder.list(), Names{});
+  EXPECT_EQ(render("1", least).code, 3);
+  EXPECT_EQ(render("1", least + one).err, "");
+  EXPECT_EQ(render("4", least + four).err, "");
 }
 
 /// A file size limit stands for a full disk: the system refuses the space in the same way, with another

@@ -82,12 +82,12 @@ class CachedPrograms : public ::testing::Test {
     ASSERT_EQ(render({}), image_);
   }
   /// Bytes of the image; empty after a failure.
-  std::string render(Environment environment) const {
+  std::string render(Environment environment, const std::string& warning = "") const {
     const TemporaryFolder folder;
     environment.emplace_back("XDG_CACHE_HOME", cache_.path().string());
     const Outcome outcome = run_program(folder, kRender, {.environment = environment});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(outcome.err, warning);
     return outcome.code == 0 ? folder.read("a.img") : "";
   }
   void write(const fs::path& file, const std::string& bytes) const {
@@ -125,7 +125,48 @@ TEST_F(CachedPrograms, RefusedByTheDriver) {
 TEST_F(CachedPrograms, FolderThatIsNone) {
   fs::remove_all(cache_ / "kiloband");
   cache_.write("kiloband", "a file");
-  EXPECT_EQ(render({}), image_);
+  EXPECT_EQ(render({}, "warning: cannot write '" + (cache_ / "kiloband/programs").string() +
+                           "': Not a directory: compiled kernels are not kept, and every run compiles anew\n"),
+            image_);
+}
+
+/// PoCL has no device where its folder cannot be written: it gets another one, which is removed.
+TEST_F(CachedPrograms, FolderOfTheDriverThatIsNone) {
+  const TemporaryFolder folder, temporary;
+  const Outcome outcome = run_program(
+      folder, kRender,
+      {.environment = {{"POCL_CACHE_DIR", "/dev/null/x"}, {"TMPDIR", temporary.path().string()}}});
+  EXPECT_EQ(outcome.code, 0);
+  const std::string first =
+      "warning: PoCL's folder for compiled kernels '/dev/null/x' cannot be written (Not a directory): '" +
+      (temporary / "kiloband-pocl-").string();
+  ASSERT_EQ(outcome.err.substr(0, first.size()), first);
+  EXPECT_EQ(outcome.err.substr(std::min(first.size() + 6, outcome.err.size())),
+            "' is used until this program ends, and every run compiles anew; set POCL_CACHE_DIR to a folder "
+            "that can be written\n");
+  EXPECT_EQ(folder.read("a.img"), image_);
+  EXPECT_EQ(temporary.list(), Names{});
+}
+
+TEST(OpenclProgram, NoFolderForTheDriver) {
+  expect_failure({{"POCL_CACHE_DIR", "/dev/null/x"}, {"TMPDIR", "/dev/null"}},
+                 "kiloband: no OpenCL device: the OpenCL drivers here have none; PoCL's folder for compiled "
+                 "kernels '/dev/null/x' cannot be written (Not a directory), and neither can a folder of temporary "
+                 "files: set POCL_CACHE_DIR to one that can\n");
+}
+
+/// PoCL's linker looks there first for a library that its own scripts name. Relative names of the driver's folder
+/// still mean the user's.
+TEST(OpenclProgram, NothingIsTakenFromTheCurrentFolder) {
+  const TemporaryFolder folder;
+  folder.write("libgcc_s.so.1", "this is not the library");
+  std::filesystem::create_directory(folder / "cache");
+  const Outcome outcome =
+      run_program(folder, kRender,
+                  {.environment = {{"POCL_CACHE_DIR", "cache"}, {"XDG_CACHE_HOME", (folder / "own").string()}}});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_FALSE(std::filesystem::is_empty(folder / "cache"));
 }
 
 }  // namespace

@@ -57,6 +57,10 @@ bool redirect(const Treatment& treatment, const Pipe& out, const Pipe& err) {
     const rlimit limit{*treatment.file_size_limit, *treatment.file_size_limit};
     ready = ready && setrlimit(RLIMIT_FSIZE, &limit) == 0;
   }
+  if (treatment.process_limit) {
+    const rlimit limit{*treatment.process_limit, *treatment.process_limit};
+    ready = ready && setrlimit(RLIMIT_NPROC, &limit) == 0 && setgid(65533) == 0 && setuid(65533) == 0;
+  }
   if (treatment.unprivileged && geteuid() == 0) ready = ready && setgid(65534) == 0 && setuid(65534) == 0;
   if (ready && treatment.under.empty()) execv(KILOBAND_PROGRAM, argv.data());
   if (ready) execvp(argv.front(), argv.data());

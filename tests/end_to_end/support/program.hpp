@@ -30,6 +30,7 @@ struct Treatment {
   std::vector<std::pair<std::string, std::string>> environment;  // added to that of the tests
   std::vector<std::string> under;  // command that starts the program, such as a checker with its options
   bool unprivileged = false;       // as user 65534 if we are root, to whom no folder is read-only
+  std::optional<uint64_t> process_limit;  // as `ulimit -u`, for user 65533, who runs nothing else; needs root
 };
 
 struct Outcome {

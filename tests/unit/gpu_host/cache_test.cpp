@@ -24,7 +24,7 @@ TEST(ProgramCache, KeepsBytes) {
   const std::string key = text_hash("program");
   EXPECT_FALSE(cache.load(key).has_value());
   const Bytes binary{1, 2, 3, 0, 255};
-  cache.save(key, binary);
+  EXPECT_EQ(cache.save(key, binary), "");
   EXPECT_EQ(cache.load(key), binary);
   cache.save(key, {9});
   EXPECT_EQ(cache.load(key), Bytes{9});
@@ -52,7 +52,7 @@ TEST(ProgramCache, WhatIsNoFileIsNotTaken) {
   const std::string key = text_hash("program");
   std::filesystem::create_directory(cache.file(key));
   EXPECT_FALSE(cache.load(key).has_value());
-  cache.save(key, {1});  // cannot replace a folder
+  EXPECT_EQ(cache.save(key, {1}), "cannot write '" + cache.file(key).string() + "': Is a directory");
   EXPECT_FALSE(cache.load(key).has_value());
   const std::string pipe = text_hash("pipe");
   ASSERT_EQ(mkfifo(cache.file(pipe).c_str(), 0600), 0);
