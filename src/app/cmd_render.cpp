@@ -116,7 +116,7 @@ void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const
                         const Backend& backend, const DerivedChannels& derived) {
   if (!settings.checkpoint) return;
   settings.fingerprint = render_fingerprint(scene, sampling, backend.isa(), derived);
-  if (settings.resume && !std::filesystem::exists(*settings.checkpoint)) {
+  if (settings.resume && !checkpoint_exists(*settings.checkpoint)) {
     tell("note: no checkpoint {}: starting afresh\n", settings.checkpoint->string());
   }
 }

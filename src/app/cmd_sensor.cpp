@@ -29,7 +29,8 @@ struct SensorOptions {
 std::vector<NamedResponse> load_responses(const std::vector<std::string>& names, const DiagnosticSink& sink) {
   std::vector<NamedResponse> responses;
   for (const std::string& name : names) {
-    const bool built_in = to_lower(name) == "xyz" && !std::filesystem::exists(name);
+    std::error_code unknown;
+    const bool built_in = to_lower(name) == "xyz" && !std::filesystem::exists(name, unknown);
     for (auto& response : built_in ? xyz_responses() : read_response_file(name, sink))
       responses.push_back(std::move(response));
   }

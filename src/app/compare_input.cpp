@@ -50,7 +50,8 @@ bool is_missing(const std::vector<float>& values, std::size_t pixel, std::size_t
 }  // namespace
 
 std::vector<std::string> split_files(const std::string& text) {
-  if (std::filesystem::exists(text)) return {text};
+  std::error_code error;  // a list may be longer than a file name can be: what cannot be looked at is no file
+  if (std::filesystem::exists(text, error)) return {text};
   std::vector<std::string> files;
   for (std::size_t first = 0; first <= text.size();) {
     const std::size_t comma = std::min(text.find(',', first), text.size());
@@ -78,6 +79,8 @@ void check_same_shape(const std::string& name_a, const CubeInfo& a, const std::s
 CompareSide::CompareSide(const SideOptions& options, const DiagnosticSink& sink)
     : name_(options.name), files_(options.files) {
   const std::vector<std::string> files = split_files(options.files);
+  if (files.size() > 1 && std::ranges::count(files, std::string()) > 0)
+    throw InputError(fmt::format("{} '{}': a name in the list is empty", name_, options.files));
   if (files.size() == 1) {
     open_single(options, sink);
     return;

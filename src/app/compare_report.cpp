@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +50,50 @@ std::string test_line(const TestVerdict& test, const std::vector<std::string>& n
   const WorstUnit& w = *test.worst;
   return line + fmt::format(" {}, {}: {:.6g} and {:.6g}, t = {:.3g}", place_text(w), names[w.channel], w.a,
                             w.b, w.t);
+}
+
+/// What the means of a scale would have shown.
+struct ScaleBias {
+  const char *test, *scale, *typical;
+};
+constexpr ScaleBias kScales[] = {{"mean/image", "image", "in the median channel"},
+                                 {"mean/tile", "tile", "of the median value"},
+                                 {"mean/pixel", "pixel", "of the median value"}};
+
+const TestVerdict* find_test(const stats::Comparison& r, const char* name) {
+  const auto test = std::ranges::find(r.tests, name, &TestVerdict::name);
+  return test != r.tests.end() && std::isfinite(test->detectable.typical) ? &*test : nullptr;
+}
+
+/// A pass says as much as what would have failed.
+std::string detectable_text(const stats::Comparison& r, const std::vector<std::string>& names) {
+  std::string text;
+  for (const ScaleBias& scale : kScales) {
+    const TestVerdict* test = find_test(r, scale.test);
+    if (!test) continue;
+    text += fmt::format("  {:<5}  {} {}, {} in the worst ({})\n", scale.scale,
+                        percent(test->detectable.typical), scale.typical, percent(test->detectable.largest),
+                        names[test->detectable.largest_channel]);
+  }
+  if (text.empty()) return "detectable bias: none, no test of means had anything to test\n";
+  return fmt::format(
+             "detectable bias: from these differences on, relative to the mean of A there, a difference is found "
+             "with a probability of {:g} % or more, at a rate of false alarms of {:g} for all tests together\n",
+             100 * stats::kPower, r.alpha) +
+         text;
+}
+
+nlohmann::ordered_json detectable_json(const stats::Comparison& r, const std::vector<std::string>& names) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const ScaleBias& scale : kScales) {
+    json[scale.scale] = nullptr;
+    if (const TestVerdict* test = find_test(r, scale.test))
+      json[scale.scale] = {{"median", number(test->detectable.typical)},
+                           {"worst", number(test->detectable.largest)},
+                           {"worst_channel", test->detectable.largest_channel},
+                           {"worst_channel_name", names[test->detectable.largest_channel]}};
+  }
+  return json;
 }
 
 nlohmann::ordered_json worst_json(const WorstUnit& worst, const std::vector<std::string>& names) {
@@ -128,6 +173,7 @@ std::string compare_text(const CompareReport& report) {
         "note: {} replicate means of pixels have no samples (an interrupted render) and were left out\n",
         report.missing_replicates);
   for (const std::string& note : r.notes) text += "note: " + note + "\n";
+  text += detectable_text(r, names);
   if (r.passed) return text + "no difference found\n";
   return text + fmt::format("DIFFERENT: {} (p = {:.3g}, level {:.3g})\n", r.decisive().name, r.decisive().p,
                             r.decisive().level);
@@ -142,6 +188,8 @@ std::string compare_json(const CompareReport& report) {
   json["kind"] = kind_text(r.kind);
   json["alpha"] = r.alpha;
   json["passed"] = r.passed;
+  json["power"] = stats::kPower;
+  json["detectable_bias"] = detectable_json(r, names);
   json["width"] = r.width;
   json["height"] = r.height;
   json["quantity"] = report.quantity == Quantity::kIntegral ? "integral" : "density";

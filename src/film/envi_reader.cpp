@@ -151,8 +151,9 @@ std::filesystem::path find_header(const std::filesystem::path& file) {
   if (to_lower(file.extension().string()) == ".hdr") return file;
   const std::filesystem::path replaced = envi_stem(file) += ".hdr",
                               appended = std::filesystem::path(file) += ".hdr";
+  std::error_code unknown;  // a name that is too long is no file
   for (const auto& candidate : {replaced, appended})
-    if (std::filesystem::is_regular_file(candidate)) return candidate;
+    if (std::filesystem::is_regular_file(candidate, unknown)) return candidate;
   throw InputError("'" + file.string() + "': no header '" + replaced.filename().string() + "' or '" +
                    appended.filename().string() + "' beside it");
 }
@@ -160,10 +161,11 @@ std::filesystem::path find_header(const std::filesystem::path& file) {
 /// X.hdr -> X.img or what other programs write; X.img.hdr -> X.img.
 std::filesystem::path find_data(const std::filesystem::path& header) {
   const auto stem = envi_stem(header);
+  std::error_code unknown;
   for (const char* extension : {".img", "", ".dat", ".raw", ".bsq", ".bil", ".bip"}) {
     std::filesystem::path candidate = stem;
     candidate += extension;
-    if (std::filesystem::is_regular_file(candidate)) return candidate;
+    if (std::filesystem::is_regular_file(candidate, unknown)) return candidate;
   }
   throw InputError("'" + header.string() + "': no data file '" + stem.filename().string() +
                    ".img' beside it");

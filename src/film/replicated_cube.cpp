@@ -120,11 +120,12 @@ ReplicatedCube ReplicatedCube::transformed(
 ReplicatedCube open_replicated_cube(const fs::path& file, const DiagnosticSink& sink) {
   ReplicatedCube cube{open_cube(file, sink), {}, {}};
   const CubeInfo& info = cube.mean->info();
-  if (info.replicates < 2 || !fs::exists(replicate_path(file, 0))) return cube;
+  std::error_code unknown;  // a name that is too long for a replicate has none
+  if (info.replicates < 2 || !fs::exists(replicate_path(file, 0), unknown)) return cube;
   const ReplicatePlan plan{info.samples_per_pixel, info.replicates};
   for (uint32_t r = 0; r < info.replicates; ++r) {
     const fs::path path = replicate_path(file, r);
-    if (!fs::exists(path))
+    if (!fs::exists(path, unknown))
       throw InputError(path.string() + ": is missing: the cube has " + std::to_string(info.replicates) +
                        " replicates");
     cube.replicates.push_back(open_cube(path));

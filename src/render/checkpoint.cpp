@@ -212,8 +212,15 @@ void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& fil
   out.finish();
 }
 
+bool checkpoint_exists(const std::filesystem::path& file) {
+  std::error_code error;
+  const bool exists = std::filesystem::exists(file, error);
+  if (error) throw InputError(fmt::format("checkpoint {}: cannot be looked for: {}", file.string(), error.message()));
+  return exists;
+}
+
 std::optional<uint32_t> checkpoint_replicates(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
+  if (!checkpoint_exists(file)) return std::nullopt;
   const uint64_t replicates = Reader(file).get_header()[kReplicatesEntry];
   if (replicates < 1 || replicates > kMostReplicates) return std::nullopt;  // read_checkpoint() says so
   return static_cast<uint32_t>(replicates);

@@ -21,8 +21,12 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
 /// Writes the film to `file`, whole or not at all, with a checksum. throws DeviceError
 void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint);
 
+/// Whether there is something under that name.
+/// throws InputError  that cannot be said: the name is too long, or a folder of its path may not be entered
+bool checkpoint_exists(const std::filesystem::path& file);
+
 /// How many replicates the film in `file` has; nothing: there is no such file, or its number is damaged.
-/// throws InputError  it is no checkpoint
+/// throws InputError  it is no checkpoint, or as checkpoint_exists()
 std::optional<uint32_t> checkpoint_replicates(const std::filesystem::path& file);
 
 /// Fills a fresh film from `file` and returns the number of pixel samples it holds.

@@ -77,7 +77,7 @@ class Session {
     make_output(
         settings_.stop.samples_per_pixel.value_or(0));  // hours of rendering must not end at a file name
     SpectralFilm film(image, options);
-    if (settings_.resume && std::filesystem::exists(*settings_.checkpoint)) {
+    if (settings_.resume && checkpoint_exists(*settings_.checkpoint)) {
       report_.resumed_samples = read_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
     }
     passes_.expect(image.pixels() * settings_.stop.samples_per_pixel.value_or(0), report_.resumed_samples);

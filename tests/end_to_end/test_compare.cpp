@@ -1,4 +1,5 @@
 // `kiloband compare`: renders of one scene agree, changed ones do not; what it says and refuses.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/end_to_end/support/wrong_input.hpp"
@@ -30,6 +31,28 @@ void scale_cube(const TemporaryFolder& folder, const std::string& from, const st
   }
 }
 
+/// The verdict says what it would have found, in the text as in the JSON.
+void expect_detectable(const std::string& text, const nlohmann::json& json) {
+  EXPECT_TRUE(json["passed"]);
+  EXPECT_EQ(json["power"], 0.9);
+  expect_text(text,
+              "detectable bias: from these differences on, relative to the mean of A there, a difference is found "
+              "with a probability of 90 % or more, at a rate of false alarms of 0.001 for all tests together\n");
+  const auto percent = [](const nlohmann::json& share) { return fmt::format("{:.2g} %", 100 * share.get<double>()); };
+  for (const auto& [scale, typical] : {std::pair{"image", "in the median channel"},
+                                       std::pair{"tile", "of the median value"},
+                                       std::pair{"pixel", "of the median value"}}) {
+    const auto& bias = json["detectable_bias"][scale];
+    ASSERT_TRUE(bias["median"].is_number()) << scale;
+    EXPECT_GT(bias["median"].get<double>(), 0);
+    EXPECT_GE(bias["worst"].get<double>(), bias["median"].get<double>());
+    const auto& channel = json["channels"][bias["worst_channel"].get<std::size_t>()];
+    EXPECT_EQ(bias["worst_channel_name"], channel["name"]);
+    expect_text(text, fmt::format("  {:<5}  {} {}, {} in the worst ({})\n", scale, percent(bias["median"]), typical,
+                                  percent(bias["worst"]), channel["name"].get<std::string>()));
+  }
+}
+
 /// Level of a comparison: 1e-3, so a right program fails with probability 2e-3 at most, for any seeds; these
 /// are fixed.
 TEST(Compare, OtherSeedsAgreeAndHalfAsMuchAgainIsFound) {
@@ -42,7 +65,7 @@ TEST(Compare, OtherSeedsAgreeAndHalfAsMuchAgainIsFound) {
               "A: a.hdr, 16 replicates\nB: b.hdr, 16 replicates\n16x16 pixels, 3 channels, independent, "
               "alpha 0.001\n");
   expect_text(same.out, "no difference found\n");
-  EXPECT_TRUE(read_json(folder, "same.json")["passed"]);
+  expect_detectable(same.out, read_json(folder, "same.json"));
 
   scale_cube(folder, "b", "c", 1.5f, 16);
   const Outcome other = compare(folder, {"a.hdr", "c.hdr", "--json", "other.json"});
@@ -99,6 +122,40 @@ TEST(Compare, EveryKindOfCube) {
   expect_text(truth.out, "B: a.exr, taken as exact\n");
   scale_cube(folder, "a", "c", 3, 0);
   EXPECT_EQ(compare(folder, {"a.hdr", "c.hdr", "--dof-b", "15", "--independent-pixels"}).code, 1);
+}
+
+/// 2 x 2 pixels in one channel.
+void write_small_cube(const std::filesystem::path& file, float value) {
+  CubeInfo info;
+  info.width = info.height = 2;
+  info.bands = {{{400, 500, ""}, false}};
+  auto writer = create_cube_writer(file, info, 2);
+  const std::vector<float> values{value, 2 * value, value, value};
+  writer->write_rows({0, 2, values, {}, {}});
+  writer->finish();
+}
+
+/// Longer than a file name may be (255 bytes), and than a path (4096).
+TEST(Compare, ListsOfAnyLength) {
+  const TemporaryFolder folder;
+  std::string list, missing;
+  for (int i = 0; i < 40; ++i) {
+    const std::string name = std::string(110, 'n') + std::to_string(i) + ".hdr";
+    write_small_cube(folder / name, 1 + 0.01f * static_cast<float>(i % 7));
+    list += (i > 0 ? "," : "") + name;
+    missing += (i > 0 ? ",a_" : "a_") + std::to_string(i) + ".hdr";
+  }
+  const Outcome outcome = compare(folder, {list, list, "--paired"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  expect_text(outcome.out, "A: 40 independent renders\nB: 40 independent renders\n");
+  expect_refused(folder, std::vector<WrongCommand>{
+                             {"compare: a long list of nothing",
+                              {"compare", missing, list},
+                              "cannot open 'a_0.hdr': No such file or directory"},
+                             {"compare: nothing between two commas",
+                              {"compare", list, "a.hdr,,b.hdr"},
+                              "B 'a.hdr,,b.hdr': a name in the list is empty"},
+                         });
 }
 
 TEST(Compare, WrongInput) {
