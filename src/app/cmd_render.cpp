@@ -196,7 +196,7 @@ int render(const RenderOptions& options) {
 
   ProgressBar bar(!options.quiet);
   Progress last;
-  const RenderReport report = run_session(scene, derived.names, *backend, settings, stop_requested,
+  const RenderReport report = run_session(scene, derived.bands, *backend, settings, stop_requested,
                                           [&](const Progress& progress) { bar.update(last = progress); });
   if (last.pixel_samples > 0) bar.finish(last);
   if (!options.quiet) print_summary(report, *backend, setup);

@@ -9,6 +9,7 @@
 #include "app/messages.hpp"
 #include "base/error.hpp"
 #include "film/cube_text.hpp"
+#include "film/effective_band.hpp"
 #include "film/sensor_cube.hpp"
 #include "spectral/spectrum_files.hpp"
 
@@ -128,6 +129,8 @@ DerivedChannels load_responses(const std::vector<std::string>& files, const Load
     }
     derived.names.push_back(name);
     derived.responses.push_back(resample(response, range.min_nm, range.max_nm));
+    derived.bands.push_back(effective_band(response, scene.channels));
+    derived.bands.back().name = name;
   }
   return derived;
 }

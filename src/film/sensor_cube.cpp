@@ -8,6 +8,7 @@
 
 #include "film/cube_layout.hpp"
 #include "film/cube_text.hpp"
+#include "film/effective_band.hpp"
 #include "spectral/colour.hpp"
 
 namespace kiloband {
@@ -82,8 +83,9 @@ class SensorCube : public CubeReader {
       own = own || band;
       own_.push_back(band);
       weights_.push_back(band ? std::vector<double>{} : integral_weights(response, name));
-      const Channel range = band ? bands[*band].channel : hull(channels);
-      info_.bands.push_back({{range.min_nm, range.max_nm, name}, true});
+      Channel range = band ? bands[*band].channel : effective_band(response, channels);
+      range.name = name;
+      info_.bands.push_back({range, true});
     }
     info_.quantity = Quantity::kIntegral;
     info_.variance = info_.variance && own;

@@ -20,15 +20,15 @@ double seconds_since(Clock::time_point start) {
 /// One session: the state that its steps share.
 class Session {
  public:
-  Session(const FlatScene& scene, const std::vector<std::string>& derived_names, Backend& backend,
+  Session(const FlatScene& scene, const ChannelList& derived, Backend& backend,
           const SessionSettings& settings, const std::atomic<bool>& stop,
           const std::function<void(const Progress&)>& progress)
       : scene_(scene),
         backend_(backend),
         settings_(settings),
         stop_(stop),
-        bands_(select_bands(scene, derived_names)),
-        channels_(scene.channels.size() + derived_names.size()),
+        bands_(select_bands(scene, derived)),
+        channels_(scene.channels.size() + derived.size()),
         replicates_(session_replicates(settings)),
         passes_(backend, settings, replicates_, stop, progress) {}
 
@@ -164,7 +164,7 @@ uint32_t session_replicates(const SessionSettings& settings) {
   return ReplicatePlan::deal(*settings.stop.samples_per_pixel, settings.replicates).replicates;
 }
 
-BandSelection select_bands(const FlatScene& scene, const std::vector<std::string>& derived_names) {
+BandSelection select_bands(const FlatScene& scene, const ChannelList& derived) {
   BandSelection selection;
   const bool named_only =
       !scene.film.responses.empty();  // sub-channels of a specfilm's responses are not output
@@ -173,18 +173,17 @@ BandSelection select_bands(const FlatScene& scene, const std::vector<std::string
     selection.bands.push_back({scene.channels[k], false});
     selection.film_channels.push_back(k);
   }
-  const Channel range = hull(scene.channels);
-  for (std::size_t d = 0; d < derived_names.size(); ++d) {
-    selection.bands.push_back({{range.min_nm, range.max_nm, derived_names[d]}, true});
+  for (std::size_t d = 0; d < derived.size(); ++d) {
+    selection.bands.push_back({derived[d], true});
     selection.film_channels.push_back(scene.channels.size() + d);
   }
   return selection;
 }
 
-RenderReport run_session(const FlatScene& scene, const std::vector<std::string>& derived_names,
-                         Backend& backend, const SessionSettings& settings, const std::atomic<bool>& stop,
+RenderReport run_session(const FlatScene& scene, const ChannelList& derived, Backend& backend,
+                         const SessionSettings& settings, const std::atomic<bool>& stop,
                          const std::function<void(const Progress&)>& progress) {
-  return Session(scene, derived_names, backend, settings, stop, progress).run();
+  return Session(scene, derived, backend, settings, stop, progress).run();
 }
 
 }  // namespace kiloband

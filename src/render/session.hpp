@@ -73,13 +73,13 @@ struct BandSelection {
   std::vector<Band> bands;
   std::vector<std::size_t> film_channels;  // per band, index into the film's channels
 };
-BandSelection select_bands(const FlatScene& scene, const std::vector<std::string>& derived_names);
+BandSelection select_bands(const FlatScene& scene, const ChannelList& derived);
 
-/// Renders and writes. `make_backend` gets the replicates that the stop rule leaves
+/// Renders and writes. derived: DerivedChannels::bands. `make_backend` gets the replicates that the stop rule leaves
 /// (SamplingSettings::replicates). throws InputError, DeviceError; nothing half written is left under the
 /// final names
-RenderReport run_session(const FlatScene& scene, const std::vector<std::string>& derived_names,
-                         Backend& backend, const SessionSettings& settings, const std::atomic<bool>& stop,
+RenderReport run_session(const FlatScene& scene, const ChannelList& derived, Backend& backend,
+                         const SessionSettings& settings, const std::atomic<bool>& stop,
                          const std::function<void(const Progress&)>& progress);
 
 /// The replicates that a session will use, to be given to the backend's SamplingSettings.

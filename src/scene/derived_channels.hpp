@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 
 namespace kiloband {
@@ -14,6 +15,7 @@ namespace kiloband {
 struct DerivedChannels {
   std::vector<std::string> names;
   std::vector<RegularTable> responses;
+  ChannelList bands = {};  // what the outputs state of each, with its name: effective_band() of the response
 };
 
 }  // namespace kiloband

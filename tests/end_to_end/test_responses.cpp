@@ -78,6 +78,27 @@ TEST(Responses, FilesAreAccumulatedBesideTheChannels) {
   expect_band(cube, 21, "ramp", 50, stratified_bound(0.01, 100));
 }
 
+/// Programs that read ENVI take a band for what `wavelength` and `fwhm` say, not for the middle of the render.
+TEST(Responses, BandsStateTheirOwnWavelengths) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", sky_scene("hdrfilm", ""));
+  folder.write("camera.csv", "wavelength_nm,red,peak\n614,1,0\n648,1,1\n682,1,0\n");
+  ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "380:2540:2", "--response",
+                                                           "camera.csv", "-o", "a.hdr", "-o", "a.exr"}))
+                .code,
+            0);
+  ASSERT_EQ(run_program(folder, {"sensor", "a.hdr", "--response", "camera.csv", "-o", "b.hdr"}).code, 0);
+  expect_text(folder.read("b.hdr"), "wavelength = {648, 648}\nfwhm = {68, 34}\n");
+  for (const char* file : {"a.hdr", "a.exr", "b.hdr"}) {
+    const std::vector<Band> bands = read_cube(folder / file).info.bands;
+    const Channel &red = bands[bands.size() - 2].channel, &peak = bands.back().channel;
+    EXPECT_EQ(red.min_nm, 614) << file;
+    EXPECT_EQ(red.max_nm, 682) << file;
+    EXPECT_EQ(peak.min_nm, 631) << file;
+    EXPECT_EQ(peak.max_nm, 665) << file;
+  }
+}
+
 /// Two channels from 400 to 500 nm, and a response that is 1 in a range.
 Outcome render_response(const std::string& first_nm, const std::string& last_nm) {
   const TemporaryFolder folder;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cube_support.hpp"
+#include "film/effective_band.hpp"
 #include "film/picture.hpp"
 #include "film/sensor_cube.hpp"
 
@@ -50,12 +51,37 @@ TEST_F(Sensor, OverlappingChannelsCountOnce) {
   ASSERT_EQ(seen.info.bands.size(), 2u);
   EXPECT_TRUE(seen.info.bands[0].derived);
   EXPECT_EQ(seen.info.bands[0].channel.min_nm, 400);
+  EXPECT_NEAR(seen.info.bands[1].channel.centre_nm(), 400 + 200.0 / 3, 1e-6);
   EXPECT_FALSE(seen.info.variance);
   EXPECT_NEAR(seen.mean[0], 200, 1e-4);
   EXPECT_NEAR(seen.mean[1], 50, 1e-5);
   auto density =
       apply_responses(open(cube_of({40, 30, 40, 7}, Quantity::kDensity), "d.hdr"), {{"flat", kFlat}});
   EXPECT_NEAR(read_cube(*density).mean[0], 200, 1e-4);
+}
+
+void expect_band(const Spectrum& response, const ChannelList& channels, double min_nm, double max_nm) {
+  const Channel band = effective_band(response, channels);
+  EXPECT_NEAR(band.min_nm, min_nm, 1e-6);
+  EXPECT_NEAR(band.max_nm, max_nm, 1e-6);
+}
+
+/// Centroid and equivalent width by hand.
+TEST(EffectiveBand, IsCentroidAndEquivalentWidth) {
+  const ChannelList all{{380, 2540, ""}};
+  const Channel box = effective_band(Spectrum::tabulated({614, 682}, {0.3, 0.3}), all);
+  EXPECT_EQ(box.min_nm, 614) << "as it was given";
+  EXPECT_EQ(box.max_nm, 682);
+  expect_band(Spectrum::tabulated({500, 510, 530}, {0, 4, 0}), all, 540.0 / 3 + 1000.0 / 3 - 7.5,
+              540.0 / 3 + 1000.0 / 3 + 7.5);
+  expect_band(kRamp, all, 400 + 200.0 / 3 - 25, 400 + 200.0 / 3 + 25);
+  // Two lobes; one of them negative; and only one where channels are.
+  expect_band(Spectrum::tabulated({500, 510, 510.001, 589.999, 590, 600}, {1, 1, 0, 0, 1, 1}), all, 550 - 10.0005,
+              550 + 10.0005);
+  expect_band(Spectrum::tabulated({500, 510, 520, 530, 540}, {0, 1, 0, -1, 0}), all, 510, 530);
+  expect_band(Spectrum::constant(2), {{500, 510, ""}, {505, 520, ""}, {700, 701, ""}}, 10900.5 / 21 - 10.5,
+              10900.5 / 21 + 10.5);
+  expect_band(Spectrum::constant(0), {{500, 510, ""}, {700, 701, ""}}, 500, 701);
 }
 
 TEST_F(Sensor, WeightsAndTheirDeviationByHand) {

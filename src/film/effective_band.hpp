@@ -1,0 +1,16 @@
+// The wavelength and the width that a sensor response is stated by.
+#pragma once
+
+#include "spectral/channels.hpp"
+#include "spectral/spectrum.hpp"
+
+namespace kiloband {
+
+/// Where a response sees light, as an interval without name, nm. Over the wavelengths that `channels` cover (not
+/// empty), its centre is the centroid of |response|, and its width the equivalent width: the integral of
+/// |response| over its largest value. A box gives itself, a triangle its width at half maximum about its
+/// centroid; the interval never reaches beyond where the response is. The hull of the channels where the
+/// response is 0 in all of them.
+Channel effective_band(const Spectrum& response, const ChannelList& channels);
+
+}  // namespace kiloband
