@@ -71,6 +71,9 @@ void report_replicates(const RenderOptions& options, const SessionSettings& sett
   const uint32_t replicates = session_replicates(settings);
   if (replicates >= settings.replicates) return;
   const uint64_t samples = *settings.stop.samples_per_pixel;  // without it nothing is lowered
+  if (options.target_error && replicates < 2)
+    throw InputError(fmt::format(
+        "--target-error needs error bars: --spp {} makes 1 replicate, at least 4 are needed", samples));
   if (options.variance && replicates < 2) {
     warn(sink, {},
          fmt::format("--variance: {} samples per pixel make 1 replicate: no error bars (the variance "
@@ -89,9 +92,9 @@ SessionSettings session_settings(const RenderOptions& options, const OutputFiles
   if (options.time) settings.stop.seconds = parse_duration("--time", *options.time);
   if (options.target_error)
     settings.stop.relative_error = parse_error("--target-error", *options.target_error);
-  if (!settings.stop.seconds && !settings.stop.relative_error) {
-    settings.stop.samples_per_pixel = options.spp.value_or(scene.sensor.sample_count);
-  }
+  settings.stop.samples_per_pixel = options.spp;
+  if (!options.spp && settings.stop.is_fixed())
+    settings.stop.samples_per_pixel = scene.sensor.sample_count;
   settings.replicates = options.replicates.value_or(kReplicates);
   if (options.resume && !options.replicates)  // more samples than before might be dealt to more replicates
     settings.replicates = checkpoint_replicates(*options.checkpoint).value_or(settings.replicates);
@@ -143,8 +146,24 @@ void print_summary(const RenderReport& report, const Backend& backend, double se
        backend.isa(), setup_seconds, report.output_seconds);
   if (report.replicates < 2)
     tell("1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
-  if (report.mean_relative_error) tell("mean relative error {:.3g} %\n", 100 * *report.mean_relative_error);
+  if (report.errors.worst) tell("{}\n", describe_errors(report));
   for (const auto& file : report.written) tell("wrote {}\n", file.string());
+}
+
+/// Two rules and more, or one whose end is not its own.
+void print_end(const RenderOptions& options, const RenderReport& report) {
+  const int rules = options.spp.has_value() + options.time.has_value() + options.target_error.has_value();
+  if (report.ended_by == StopReason::kDark || (rules > 1 && !report.interrupted))
+    tell("ended by {}\n", to_string(report.ended_by));
+}
+
+/// The target was set, and something else ended the render.
+void warn_of_missed_target(const RenderOptions& options, const RenderReport& report,
+                           const DiagnosticSink& sink) {
+  if (!options.target_error || report.ended_by == StopReason::kError) return;
+  warn(sink, {},
+       fmt::format("--target-error {} was not reached: ended by {}; {}", *options.target_error,
+                   to_string(report.ended_by), describe_errors(report)));
 }
 
 void print_problems(const RenderReport& report, const Backend& backend) {
@@ -199,7 +218,11 @@ int render(const RenderOptions& options) {
   const RenderReport report = run_session(scene, derived.bands, *backend, settings, stop_requested,
                                           [&](const Progress& progress) { bar.update(last = progress); });
   if (last.pixel_samples > 0) bar.finish(last);
-  if (!options.quiet) print_summary(report, *backend, setup);
+  if (!options.quiet) {
+    print_summary(report, *backend, setup);
+    print_end(options, report);
+  }
+  warn_of_missed_target(options, report, sink);
   print_problems(report, *backend);
   if (options.stats) {
     const RenderContext context{
@@ -213,12 +236,13 @@ int render(const RenderOptions& options) {
 void add_sampling_options(CLI::App& command, RenderOptions& o) {
   o.backend.add_to(command);
   o.sampling.add_to(command);
-  auto* spp = command.add_option("--spp", o.spp, "samples per pixel (default: the scene's)")
-                  ->check(CLI::Range(uint64_t{1}, uint64_t{0xffffffff}));
-  auto* time = command.add_option("--time", o.time, "render for this long: 60s, 5min, 2h")->excludes(spp);
-  command.add_option("--target-error", o.target_error, "render until the mean relative error is below: 1%")
-      ->excludes(spp)
-      ->excludes(time);
+  command
+      .add_option("--spp", o.spp,
+                  "samples per pixel; with --time or --target-error at most (default without these: the scene's)")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{0xffffffff}));
+  command.add_option("--time", o.time, "render for (at most) this long: 60s, 5min, 2h");
+  command.add_option("--target-error", o.target_error,
+                     "render until the relative error of the worst channel is below: 1%");
   command
       .add_option("--replicates", o.replicates,
                   "independent replicates that error bars come from (default: 16)")

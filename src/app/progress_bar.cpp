@@ -31,7 +31,7 @@ std::string describe(const Progress& progress) {
   if (progress.fraction > 0.001 && progress.fraction < 1) {
     text += "  " + duration(progress.seconds * (1 - progress.fraction) / progress.fraction) + " left";
   }
-  if (progress.error) text += fmt::format("  error {:.2g} %", 100 * *progress.error);
+  if (progress.error) text += fmt::format("  worst channel's error {:.2g} %", 100 * *progress.error);
   return text;
 }
 

@@ -25,7 +25,7 @@ class ProgressBar {
   Progress last_;
 };
 
-/// "38 %  1.20 Mpaths/s  12 s left  error 0.8 %"
+/// "38 %  1.20 Mpaths/s  12 s left  worst channel's error 0.8 %"
 std::string describe(const Progress& progress);
 
 }  // namespace kiloband

@@ -2,12 +2,32 @@
 
 #include <sys/resource.h>
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
+
+#include "film/cube_layout.hpp"
+#include "stats/comparison_json.hpp"
 
 namespace kiloband {
 
 const char* to_string(WavelengthMode mode) {
   return mode == WavelengthMode::kShared ? "shared" : "per-path";
+}
+const char* to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::kSamples:
+      return "--spp";
+    case StopReason::kTime:
+      return "--time";
+    case StopReason::kError:
+      return "--target-error";
+    case StopReason::kDark:
+      return "darkness: no channel has light";
+    case StopReason::kInterrupt:
+      break;
+  }
+  return "an interruption";
 }
 const char* to_string(SamplerType sampler) {
   return sampler == SamplerType::kSobol ? "sobol" : "independent";
@@ -18,6 +38,57 @@ uint64_t peak_memory_bytes() {
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
+
+std::string describe_errors(const RenderReport& report) {
+  const BandErrors& errors = report.errors;
+  if (!errors.worst) return "no relative error: no channel has light";
+  std::string text = fmt::format(
+      "relative error (RMS of the pixels over the image's mean): {:.3g} % in the worst channel ({}), {:.3g} % in "
+      "the median one",
+      100 * *errors.worst, band_text(report.bands[errors.worst_band]), 100 * errors.median);
+  if (errors.dark_bands > 0) text += fmt::format("; channels without light, left out: {}", errors.dark_bands);
+  return text;
+}
+
+namespace {
+
+/// The errors; null: there are none. JSON has no infinity.
+void add_errors(nlohmann::ordered_json& json, const RenderReport& report) {
+  constexpr auto number = stats::number_json;
+  const BandErrors& errors = report.errors;
+  json["mean_relative_error"] = nullptr;  // the same as worst_relative_error, under its name of version 0.1
+  json["worst_relative_error"] = nullptr;
+  json["worst_channel"] = nullptr;
+  json["median_relative_error"] = nullptr;
+  if (errors.worst) {
+    const Band& band = report.bands[errors.worst_band];
+    json["mean_relative_error"] = json["worst_relative_error"] = number(*errors.worst);
+    json["worst_channel"] = {{"index", errors.worst_band},
+                             {"name", band_text(band)},
+                             {"min_nm", band.channel.min_nm},
+                             {"max_nm", band.channel.max_nm}};
+    json["median_relative_error"] = number(errors.median);
+  }
+  json["dark_channels"] = errors.dark_bands;
+}
+
+const char* json_text(StopReason reason) {
+  switch (reason) {
+    case StopReason::kSamples:
+      return "spp";
+    case StopReason::kTime:
+      return "time";
+    case StopReason::kError:
+      return "target-error";
+    case StopReason::kDark:
+      return "darkness";
+    case StopReason::kInterrupt:
+      break;
+  }
+  return "interruption";
+}
+
+}  // namespace
 
 std::string statistics_json(const RenderContext& context, const RenderReport& report,
                             const Backend& backend) {
@@ -51,13 +122,13 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["device_losses"] = backend.device_losses();
   json["invalid_samples"] = counters.invalid_samples.load();
   json["resumed_samples"] = report.resumed_samples;
-  json["mean_relative_error"] = nullptr;
-  if (report.mean_relative_error) json["mean_relative_error"] = *report.mean_relative_error;
+  add_errors(json, report);
   json["underflowed_values"] = report.underflowed_values;
   json["overflowed_values"] = report.overflowed_values;
   json["overflowed_variances"] = report.overflowed_variances;
   json["streamed"] = report.streamed;
   json["interrupted"] = report.interrupted;
+  json["ended_by"] = json_text(report.ended_by);
   json["features"] = context.features;
   return json.dump(2) + "\n";
 }

@@ -18,6 +18,13 @@ struct RenderContext {
   std::vector<std::string> features;
 };
 
+/// "--spp", "--time", "--target-error" ...: the rule, as the user knows it.
+const char* to_string(StopReason reason);
+
+/// "relative error (RMS of the pixels over the image's mean): 2.3 % in the worst channel (400-410 nm), 1.1 % in the
+/// median one; 2 channels without light are left out". Without errors it says that there are none.
+std::string describe_errors(const RenderReport& report);
+
 /// Pretty-printed JSON.
 std::string statistics_json(const RenderContext& context, const RenderReport& report, const Backend& backend);
 const char* to_string(WavelengthMode mode);

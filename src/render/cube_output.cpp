@@ -217,7 +217,7 @@ void CubeOutput::finish(RenderReport& report) {
   report.underflowed_values = underflowed_;
   report.overflowed_values = overflowed_;
   report.overflowed_variances = overflowed_variances_;
-  if (settings_.variance) report.mean_relative_error = errors_.relative_error();
+  if (settings_.variance) report.errors = errors_.errors();
   report.written = files_;
 }
 

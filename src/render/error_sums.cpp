@@ -13,14 +13,28 @@ void ErrorSums::add(std::size_t band, double mean, double variance) {
   ++sums.pixels;
 }
 
-std::optional<double> ErrorSums::relative_error() const {
-  std::optional<double> largest;
-  for (const Sums& sums : bands_) {
-    if (!(sums.mean > 0)) continue;
+BandErrors ErrorSums::errors() const {
+  BandErrors result;
+  std::vector<double> all;
+  for (std::size_t band = 0; band < bands_.size(); ++band) {
+    const Sums& sums = bands_[band];
+    if (sums.pixels == 0) continue;
     const auto n = static_cast<double>(sums.pixels);
-    largest = std::max(largest.value_or(0), std::sqrt(sums.variance / n) / (sums.mean / n));
+    const double mean = std::abs(sums.mean / n);  // responses may be negative
+    if (!(mean > 0)) {
+      ++result.dark_bands;
+      continue;
+    }
+    all.push_back(std::sqrt(sums.variance / n) / mean);
+    if (result.worst && !(all.back() > *result.worst)) continue;
+    result.worst = all.back();
+    result.worst_band = band;
   }
-  return largest;
+  if (all.empty()) return result;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::ranges::nth_element(all, middle);
+  result.median = *middle;
+  return result;
 }
 
 }  // namespace kiloband

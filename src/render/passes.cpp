@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "render/checkpoint.hpp"
-#include "render/error_sums.hpp"
 
 namespace kiloband {
 namespace {
@@ -23,15 +22,18 @@ std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
   return blocks;
 }
 
-std::optional<double> film_error(const SpectralFilm& film) {
-  const std::size_t channels = film.options().channels;
-  std::vector<float> mean(film.rect().width * channels), variance(mean.size());
-  ErrorSums sums(channels);
+BandErrors film_errors(const SpectralFilm& film, const std::vector<std::size_t>& channels) {
+  const std::size_t stride = film.options().channels;
+  std::vector<float> mean(film.rect().width * stride), variance(mean.size());
+  ErrorSums sums(channels.size());
   for (uint32_t y = 0; y < film.rect().height; ++y) {
     film.row(y, mean, variance);
-    for (std::size_t i = 0; i < mean.size(); ++i) sums.add(i % channels, mean[i], variance[i]);
+    for (std::size_t first = 0; first < mean.size(); first += stride) {
+      for (std::size_t band = 0; band < channels.size(); ++band)
+        sums.add(band, mean[first + channels[band]], variance[first + channels[band]]);
+    }
   }
-  return sums.relative_error();
+  return sums.errors();
 }
 
 }  // namespace
@@ -41,13 +43,15 @@ bool replicates_in_parts(uint64_t samples_per_pixel, uint32_t replicates) {
 }
 
 Passes::Passes(Backend& backend, const SessionSettings& settings, uint32_t replicates,
-               const std::atomic<bool>& stop, const std::function<void(const Progress&)>& progress)
+               const std::vector<std::size_t>& channels, const std::atomic<bool>& stop,
+               const std::function<void(const Progress&)>& progress)
     : backend_(backend),
       settings_(settings),
       replicates_(replicates),
+      channels_(channels),
       stop_(stop),
       progress_(progress),
-      in_parts_(settings.stop.samples_per_pixel &&
+      in_parts_(settings.stop.is_fixed() &&
                 replicates_in_parts(*settings.stop.samples_per_pixel, replicates)) {}
 
 void Passes::expect(uint64_t total, uint64_t resumed) {
@@ -57,8 +61,14 @@ void Passes::expect(uint64_t total, uint64_t resumed) {
 
 void Passes::render(SpectralFilm& film) {
   start_ = last_checkpoint_ = Clock::now();
-  settings_.stop.samples_per_pixel ? render_fixed(film) : render_passes(film);
-  if (settings_.stop.relative_error && !stop_) tell_progress(1);
+  if (settings_.stop.is_fixed()) {
+    render_fixed(film);
+  } else {
+    ended_by_ = render_passes(film);
+    if (settings_.stop.relative_error && errors_done_ != done_) update_errors(film);
+    if (!stop_) tell_progress(1);
+  }
+  if (stop_) ended_by_ = StopReason::kInterrupt;
   seconds_ += seconds_since(start_);
 }
 
@@ -122,8 +132,12 @@ void Passes::save_now_and_then(const SpectralFilm& film, double step_seconds) {
   last_checkpoint_ = Clock::now();
 }
 
-/// Passes over all replicates, each as long as all before it, until the rule is met.
-void Passes::render_passes(SpectralFilm& film) {
+/// Passes over all replicates, each as long as all before it, until a rule is met. Where the number of samples
+/// has a limit, it is dealt to the replicates as if there were no other rule.
+StopReason Passes::render_passes(SpectralFilm& film) {
+  const auto& samples = settings_.stop.samples_per_pixel;
+  const ReplicatePlan plan{samples.value_or(uint64_t{replicates_} << 31), replicates_};
+  const auto most = static_cast<uint32_t>(plan.size(0));
   std::atomic<bool> halt{false};
   const auto on_samples = [&](uint64_t pixels) {
     advance(pixels);
@@ -131,14 +145,25 @@ void Passes::render_passes(SpectralFilm& film) {
   };
   uint32_t done = least_attempted(film);
   const uint32_t begin = done;
-  if (done > 0 && error_is_small(film)) return;
-  while (!halt) {
-    uint32_t count = std::max(1u, done);
-    if (settings_.stop.seconds) count = samples_that_fit(done - begin, count);
-    done += count;
-    for (uint32_t r = 0; r < replicates_ && !halt; ++r) bring_to(film, r, done, halt, on_samples);
-    if (!halt && error_is_small(film)) return;
+  if (done > 0) {
+    if (const auto reason = look_at_error(film)) return *reason;
   }
+  while (!halt && done < most) {
+    done += pass_samples(done, begin, most);
+    for (uint32_t r = 0; r < replicates_ && !halt; ++r) {
+      const auto target = static_cast<uint32_t>(std::min<uint64_t>(done, plan.size(r)));
+      bring_to(film, r, target, halt, on_samples);
+    }
+    if (halt) break;
+    if (const auto reason = look_at_error(film)) return *reason;
+  }
+  return halt ? StopReason::kTime : StopReason::kSamples;
+}
+
+/// Samples per replicate of the next pass.
+uint32_t Passes::pass_samples(uint32_t done, uint32_t begin, uint32_t most) const {
+  const uint32_t count = std::min(std::max(1u, done), most - done);
+  return settings_.stop.seconds ? samples_that_fit(done - begin, count) : count;
 }
 
 uint32_t Passes::least_attempted(const SpectralFilm& film) const {
@@ -149,15 +174,21 @@ uint32_t Passes::least_attempted(const SpectralFilm& film) const {
   return least;
 }
 
-bool Passes::error_is_small(const SpectralFilm& film) {
-  if (!settings_.stop.relative_error) return false;
-  error_ = film_error(film);
-  error_done_ = done_;
+void Passes::update_errors(const SpectralFilm& film) {
+  errors_ = film_errors(film, channels_);
+  errors_done_ = done_;
+}
+
+/// Whether the errors end the render, where there is a target.
+std::optional<StopReason> Passes::look_at_error(const SpectralFilm& film) {
+  if (!settings_.stop.relative_error) return std::nullopt;
+  update_errors(film);
+  if (errors_.worst && *errors_.worst <= *settings_.stop.relative_error) return StopReason::kError;
   // Without any light there is no relative error: a black image is given up after this many samples per
   // pixel.
   constexpr uint64_t kBlackSamples = 1024;
-  if (!error_) return uint64_t{least_attempted(film)} * replicates_ >= kBlackSamples;
-  return *error_ <= *settings_.stop.relative_error;
+  const bool dark = !errors_.worst && uint64_t{least_attempted(film)} * replicates_ >= kBlackSamples;
+  return dark ? std::optional(StopReason::kDark) : std::nullopt;
 }
 
 /// Samples per replicate of the next pass, so that it ends near the time limit: all replicates stay even.
@@ -172,14 +203,19 @@ bool Passes::out_of_time() const {
   return settings_.stop.seconds && seconds_since(start_) >= *settings_.stop.seconds;
 }
 
-/// Part of the work that is done. The error goes with 1 / sqrt(samples): of the samples that a target error
-/// takes, those at the last look at the error were (target / error)^2; 1 is for the end alone.
+/// Part of the work that is done, by the rule that is nearest to its end. The error goes with 1 / sqrt(samples):
+/// of the samples that a target error takes, those at the last look at the error were (target / error)^2; 1 is
+/// for the end alone.
 double Passes::fraction() const {
-  if (settings_.stop.seconds) return std::min(1.0, seconds_since(start_) / *settings_.stop.seconds);
-  if (total_ > 0) return static_cast<double>(done_) / static_cast<double>(total_);
-  if (!error_ || error_done_ == 0) return 0;
-  const double ratio = *settings_.stop.relative_error / *error_;
-  return std::min(0.99, ratio * ratio * static_cast<double>(done_) / static_cast<double>(error_done_));
+  const auto done = static_cast<double>(done_);
+  double fraction = 0;
+  if (settings_.stop.seconds) fraction = std::min(1.0, seconds_since(start_) / *settings_.stop.seconds);
+  if (total_ > 0) fraction = std::max(fraction, done / static_cast<double>(total_));
+  if (settings_.stop.relative_error && errors_.worst && errors_done_ > 0) {
+    const double ratio = *settings_.stop.relative_error / *errors_.worst;
+    fraction = std::max(fraction, std::min(0.99, ratio * ratio * done / static_cast<double>(errors_done_)));
+  }
+  return fraction;
 }
 
 void Passes::advance(uint64_t pixels) {
@@ -194,7 +230,7 @@ void Passes::tell_progress(double fraction) const {
   state.pixel_samples = done_;
   state.seconds = seconds_ + seconds_since(start_);
   state.rate = state.seconds > 0 ? static_cast<double>(done_ - resumed_) / state.seconds : 0;
-  state.error = error_;
+  state.error = errors_.worst;
   progress_(state);
 }
 

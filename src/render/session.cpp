@@ -30,7 +30,7 @@ class Session {
         bands_(select_bands(scene, derived)),
         channels_(scene.channels.size() + derived.size()),
         replicates_(session_replicates(settings)),
-        passes_(backend, settings, replicates_, stop, progress) {}
+        passes_(backend, settings, replicates_, bands_.film_channels, stop, progress) {}
 
   RenderReport run() {
     const PixelRect image{scene_.film.crop_x, scene_.film.crop_y, scene_.film.crop_width,
@@ -39,8 +39,7 @@ class Session {
     options.channels = channels_;
     options.replicates = replicates_;
     options.variance = settings_.variance;
-    const bool revisits =
-        settings_.checkpoint || !settings_.stop.samples_per_pixel;  // passes come back to replicates
+    const bool revisits = settings_.checkpoint || !settings_.stop.is_fixed();  // passes come back to replicates
     options.held = settings_.keep_replicates || revisits;
     options.memory_bytes = settings_.memory_budget_bytes;
     options.parts = !options.held && replicates_in_parts(*settings_.stop.samples_per_pixel, replicates_);
@@ -48,12 +47,13 @@ class Session {
         image.width * (SpectralFilm::bytes_per_pixel(options) + output_bytes_per_pixel());
     const std::size_t strip = strip_rows(row_bytes, image.height);
     report_.replicates = replicates_;
+    report_.bands = bands_.bands;
     const bool whole = revisits || row_bytes * image.height <= settings_.memory_budget_bytes;
     strip_ = static_cast<uint32_t>(strip);
     whole ? run_whole(image, options) : run_strips(image, options);
     report_.interrupted = stop_;
-    if (!report_.mean_relative_error)
-      report_.mean_relative_error = passes_.error();  // --target-error without --variance
+    report_.ended_by = passes_.ended_by();
+    if (!settings_.variance) report_.errors = passes_.errors();  // of a target error
     report_.sampling_seconds = passes_.seconds();
     finish_image_moments();
     return report_;

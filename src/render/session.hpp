@@ -10,14 +10,28 @@
 
 #include "film/cube_io.hpp"
 #include "render/backend.hpp"
+#include "render/error_sums.hpp"
 
 namespace kiloband {
 
-/// When a render stops: exactly one is set.
+/// When a render stops: at the first that is reached of those that are set, at least one.
 struct StopRule {
   std::optional<uint64_t> samples_per_pixel;
   std::optional<double> seconds;
-  std::optional<double> relative_error;  // as RenderReport::mean_relative_error
+  std::optional<double> relative_error;  // of the worst band: BandErrors::worst
+
+  /// The number of samples is known before: every replicate is rendered to its end before the next. Otherwise
+  /// passes come back to all replicates.
+  bool is_fixed() const { return !seconds && !relative_error; }
+};
+
+/// What ended a render.
+enum class StopReason {
+  kSamples,
+  kTime,
+  kError,
+  kDark,      // a target error, and nothing but darkness after 1024 samples per pixel
+  kInterrupt  // the caller
 };
 
 struct SessionSettings {
@@ -38,9 +52,9 @@ struct SessionSettings {
                                     << 30;  // for the film; beyond it strips of rows are streamed
 };
 
-/// How far a render is. error is the last known mean_relative_error.
+/// How far a render is. error is the last known BandErrors::worst.
 struct Progress {
-  double fraction = 0;  // of the work (time rule: of the time)
+  double fraction = 0;  // of the work, by the rule that is nearest to its end (time rule: of the time)
   uint64_t pixel_samples = 0;
   double seconds = 0;
   double rate = 0;  // pixel samples per second, those of a checkpoint not counted
@@ -52,8 +66,10 @@ struct RenderReport {
   uint64_t largest_samples_per_pixel = 0;
   uint32_t replicates = 0;
   double sampling_seconds = 0, output_seconds = 0;
-  /// RMS standard error over image mean, the largest over channels; needs variance and two replicates.
-  std::optional<double> mean_relative_error;
+  std::vector<Band> bands;  // of the output
+  /// Of these bands; needs two replicates, and variance or a target error.
+  BandErrors errors;
+  StopReason ended_by = StopReason::kSamples;
   uint64_t pixels_without_sample = 0;
   uint64_t underflowed_values = 0;  // positive in the film, 0 as the file's float
   uint64_t overflowed_values =

@@ -171,8 +171,9 @@ TEST(Outputs, StatisticsHaveTheNamesOfTheContract) {
                        "resumed_samples",
                        "mean_relative_error"};
   Names expected = contract;
-  expected.insert(expected.end(), {"underflowed_values", "overflowed_values", "overflowed_variances",
-                                   "streamed", "interrupted", "features"});
+  expected.insert(expected.end(), {"underflowed_values", "overflowed_values", "overflowed_variances", "streamed",
+                                   "interrupted", "features", "ended_by", "worst_relative_error",
+                                   "worst_channel", "median_relative_error", "dark_channels"});
   std::sort(expected.begin(), expected.end());
   Names found;
   for (const auto& [name, value] : stats.items()) found.push_back(name);
@@ -196,6 +197,10 @@ TEST(Outputs, StatisticsHaveTheNamesOfTheContract) {
   EXPECT_GT(stats["peak_memory_bytes"].get<uint64_t>(), uint64_t{1} << 20);
   EXPECT_GT(stats["mean_relative_error"].get<double>(), 0);
   EXPECT_LT(stats["mean_relative_error"].get<double>(), 1);
+  EXPECT_EQ(stats["worst_relative_error"], stats["mean_relative_error"]);
+  EXPECT_LE(stats["median_relative_error"], stats["worst_relative_error"]);
+  EXPECT_EQ(stats["dark_channels"], 0);
+  EXPECT_EQ(stats["ended_by"], "spp");
 }
 
 TEST(Outputs, DefaultNameIsTheScenesStem) {

@@ -1,0 +1,73 @@
+// A small scene rendered by sessions, in a folder of its own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/temporary_folder.hpp"
+#include "film/cube_io.hpp"
+#include "render/session.hpp"
+#include "scene/reader.hpp"
+#include "src_cpu/cpu_backend.hpp"
+#include "tests/support/render_harness.hpp"
+
+namespace kiloband {
+
+inline constexpr uint32_t kSize = 72;  // more than two blocks, the last clipped
+
+class SessionTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = make_temporary_folder("kiloband_session");
+    const std::string xml =
+        "<scene version=\"3.0.0\">" + test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSize) +
+        "<shape type=\"sphere\"/><emitter type=\"point\"><spectrum name=\"intensity\" value=\"400:1, "
+        "700:9\"/>"
+        "<point name=\"position\" x=\"3\" y=\"2\" z=\"4\"/></emitter>"
+        "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0.5\"/></emitter></scene>";
+    scene_ = flatten(read_scene_text(xml, "test.xml", "."), {parse_channels("400:700:5"), {}, {}});
+    settings_.stop.samples_per_pixel = 40;
+    settings_.variance = true;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::unique_ptr<Backend> backend(uint64_t seed = 3) const {
+    SamplingSettings sampling;
+    sampling.seed = seed;
+    sampling.replicates = session_replicates(settings_);
+    return make_cpu_backend(scene_, {}, sampling, {});
+  }
+
+  struct Values {
+    std::vector<float> mean, variance;
+  };
+
+  RenderReport run(Backend& backend, const std::string& name, const std::atomic<bool>& stop = false,
+                   const std::function<void(const Progress&)>& progress = {}) {
+    SessionSettings settings = settings_;
+    settings.outputs = {folder_ / name};
+    return run_session(scene_, {}, backend, settings, stop, progress);
+  }
+
+  Values read(const std::string& name) const {
+    const auto cube = open_cube(folder_ / name);
+    const std::size_t size = std::size_t{kSize} * kSize * cube->info().bands.size();
+    Values values{std::vector<float>(size), std::vector<float>(size)};
+    cube->read_rows(0, kSize, values.mean, values.variance);
+    return values;
+  }
+
+  std::filesystem::path folder_;
+  FlatScene scene_;
+  SessionSettings settings_;
+};
+
+inline void expect_same(const std::vector<float>& a, const std::vector<float>& b, double tolerance) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_LE(std::abs(a[i] - b[i]), tolerance * std::abs(a[i])) << i;
+}
+
+}  // namespace kiloband
