@@ -157,7 +157,8 @@ Spectrum read_used_file(ReadContext& context, const std::filesystem::path& file,
   const std::pair<std::filesystem::path, int> key(file, static_cast<int>(use));
   const auto known = context.spectrum_files.find(key);
   if (known != context.spectrum_files.end()) return known->second;
-  return context.spectrum_files.emplace(key, read_spectrum_file(file, kind_of(use), context.sink)).first->second;
+  return context.spectrum_files.emplace(key, read_spectrum_file(file, kind_of(use), context.sink))
+      .first->second;
 }
 
 void check_spectrum(const Spectrum& spectrum, const std::string& label, SpectrumUse use, const Place& place) {
