@@ -6,6 +6,9 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <system_error>
+
+#include "base/temporary_folder.hpp"
 
 namespace kiloband::gpu {
 namespace {
@@ -14,27 +17,30 @@ namespace fs = std::filesystem;
 
 constexpr const char* kVariable = "POCL_CACHE_DIR";
 constexpr off_t kProbeBytes = 1 << 20;  // a few kernels of ours
-const std::string kRandomPart(6, 'X');  // that mkdtemp and mkostemp replace
 
 /// A folder of this process among the temporary files, removed at the end; empty if there can be none.
 class TemporaryCache {
  public:
   TemporaryCache() {
-    std::error_code error;
-    const fs::path temporary = fs::absolute(fs::temp_directory_path(error), error);
-    if (error || !why_not_writable(temporary).empty()) return;
-    std::string name = (temporary / ("kiloband-pocl-" + kRandomPart)).string();
-    if (mkdtemp(name.data())) folder_ = name;
+    try {
+      folder_ = std::filesystem::absolute(make_temporary_folder("kiloband_pocl"));
+    } catch (const std::system_error&) {
+      return;
+    }
+    if (!why_not_writable(folder_).empty()) remove();
   }
-  ~TemporaryCache() {
-    std::error_code ignored;
-    if (!folder_.empty()) fs::remove_all(folder_, ignored);
-  }
+  ~TemporaryCache() { remove(); }
   TemporaryCache(const TemporaryCache&) = delete;
   TemporaryCache& operator=(const TemporaryCache&) = delete;
   const fs::path& folder() const { return folder_; }
 
  private:
+  void remove() {
+    std::error_code ignored;
+    if (!folder_.empty()) fs::remove_all(folder_, ignored);
+    folder_.clear();
+  }
+
   fs::path folder_;
 };
 
@@ -83,7 +89,7 @@ std::string why_not_writable(const fs::path& folder) {
   std::error_code error;
   while (place.has_relative_path() && fs::status(place, error).type() == fs::file_type::not_found)
     place = place.parent_path();
-  std::string name = (place / (".kiloband-" + kRandomPart)).string();
+  std::string name = (place / (".kiloband-" + std::string(6, 'X'))).string();
   const int file = mkostemp(name.data(), O_CLOEXEC);
   if (file < 0) return std::strerror(errno);
   const int code = posix_fallocate(file, 0, kProbeBytes);

@@ -139,7 +139,7 @@ TEST_F(CachedPrograms, FolderOfTheDriverThatIsNone) {
   EXPECT_EQ(outcome.code, 0);
   const std::string first =
       "warning: PoCL's folder for compiled kernels '/dev/null/x' cannot be written (Not a directory): '" +
-      (temporary / "kiloband-pocl-").string();
+      (temporary / "kiloband_pocl_").string();
   ASSERT_EQ(outcome.err.substr(0, first.size()), first);
   EXPECT_EQ(outcome.err.substr(std::min(first.size() + 6, outcome.err.size())),
             "' is used until this program ends, and every run compiles anew; set POCL_CACHE_DIR to a folder "
