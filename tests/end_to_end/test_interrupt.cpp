@@ -72,17 +72,22 @@ TEST(Interrupt, LongReplicateReachesEveryPixel) {
   expect_warning(outcome, missing);
 }
 
-/// Beyond the budget of 1 GiB strips are streamed; what was not reached is NaN. A response of 700 points
-/// makes 699 sub-channels, 3 GB for 1024 x 1024 pixels, but only one band on disk.
-TEST(Interrupt, StreamedRender) {
-  const TemporaryFolder folder;
+/// Beyond the budget of 1 GiB strips are streamed. A response of 700 points makes 699 sub-channels, 3 GB for
+/// 1024 x 1024 pixels, but only one band on disk.
+std::string streamed_scene() {
   std::string response;
   for (int i = 0; i < 700; ++i)
     response += std::to_string(400 + 0.4 * i) + ":" + (i % 2 == 0 ? "0.5 " : "1 ");
-  folder.write("scene.xml", scene_text(R"(<sensor type="perspective"><film type="specfilm">
+  return scene_text(R"(<sensor type="perspective"><film type="specfilm">
 <integer name="width" value="1024"/><integer name="height" value="1024"/>
-<spectrum name="comb" value=")" + response +
-                                       R"("/></film></sensor><emitter type="constant"/>)"));
+<spectrum name="comb" value=")" +
+                    response + R"("/></film></sensor><emitter type="constant"/>)");
+}
+
+/// What was not reached is NaN.
+TEST(Interrupt, StreamedRender) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", streamed_scene());
   const Outcome outcome =
       run_program(folder, {"render", "scene.xml", "--spp", "100000", "-o", "a.hdr", "--stats", "a.json"},
                   {.signal = SIGINT, .after_text = kRendering, .after_seconds = 0.5});
@@ -124,12 +129,10 @@ TEST(Interrupt, AKillLeavesNothing) {
   const int nameless = open(folder.path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
   if (nameless < 0) return;
   close(nameless);
-  // Streamed: the outputs are open during the render.
-  folder.write("scene.xml", complete_scene(""));
-  const Outcome outcome = run_program(folder,
-                                      {"render", "scene.xml", "--size", "1024x1024", "--bands", "400:700:700",
-                                       "--spp", "100000", "-o", "a.hdr", "-o", "a.exr"},
-                                      {.signal = SIGKILL, .after_text = kRendering, .after_seconds = 0.3});
+  folder.write("scene.xml", streamed_scene());  // whose outputs are open during the render
+  const Outcome outcome =
+      run_program(folder, {"render", "scene.xml", "--spp", "100000", "-o", "a.hdr", "-o", "a.exr"},
+                  {.signal = SIGKILL, .after_text = kRendering, .after_seconds = 0.3});
   EXPECT_EQ(outcome.signal, SIGKILL) << outcome.code << outcome.err;
   EXPECT_EQ(folder.list(), std::vector<std::string>{"scene.xml"});
 }
