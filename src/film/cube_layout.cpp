@@ -66,7 +66,7 @@ std::string band_text(const Band& band) {
 }
 
 QuantityConversion::QuantityConversion(const std::vector<Band>& bands, Quantity from, Quantity to)
-    : divide_(from == Quantity::kIntegral) {
+    : divide_(from == Quantity::kIntegral), same_(from == to) {
   width_.reserve(bands.size());
   for (const Band& band : bands) width_.push_back(from == to || band.derived ? 1.0 : band.channel.width_nm());
 }

@@ -2,6 +2,7 @@
 // strips.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -40,6 +41,16 @@ class QuantityConversion {
   uint64_t overflowed_values() const { return overflowed_values_; }
   uint64_t overflowed_variances() const { return overflowed_variances_; }
 
+  /// value() and variance() of `count` bands from `first` on.
+  void values(std::size_t first, const float* from, float* to, std::size_t count) const {
+    if (same_) return void(std::copy_n(from, count, to));
+    for (std::size_t k = 0; k < count; ++k) to[k] = value(first + k, from[k]);
+  }
+  void variances(std::size_t first, const float* from, float* to, std::size_t count) const {
+    if (same_) return void(std::copy_n(from, count, to));
+    for (std::size_t k = 0; k < count; ++k) to[k] = variance(first + k, from[k]);
+  }
+
  private:
   float changed(float v, double factor, std::atomic<uint64_t>& overflowed) const {
     const auto result = divide_ ? static_cast<float>(v / factor) : static_cast<float>(v * factor);
@@ -48,7 +59,7 @@ class QuantityConversion {
   }
 
   mutable std::atomic<uint64_t> overflowed_values_ = 0, overflowed_variances_ = 0;
-  bool divide_;
+  bool divide_, same_;
   std::vector<double> width_;  // nm; 1 where nothing changes
 };
 

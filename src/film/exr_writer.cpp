@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "film/atomic_file.hpp"
+#include "film/band_planes.hpp"
 #include "film/cube_layout.hpp"
 #include "film/exr_layout.hpp"
 #include "film/exr_stream.hpp"
@@ -135,25 +136,15 @@ class ExrWriter : public CubeWriter {
     const std::size_t aux = layout_.info.aux.size(), variances = layout_.variances.size();
     for (uint32_t y = 0; y < rows; ++y) {
       const std::size_t pixel = std::size_t{y0 + y} * width + x0;
-      const auto value = [&](std::size_t k, float v) { return conversion_.value(k, v); };
-      const auto variance = [&](std::size_t k, float v) { return conversion_.variance(k, v); };
-      const auto plain = [](std::size_t, float v) { return v; };
-      transpose(strip.mean.data() + pixel * bands_, columns, bands_, staging_row(y, 0), value);
-      transpose(strip.variance.data() + pixel * variances, columns, variances, staging_row(y, bands_),
-                variance);
+      const auto put = [&](std::span<const float> values, std::size_t planes, std::size_t slot, auto change) {
+        to_planes(values.data() + pixel * planes, columns, planes, 0, planes, staging_row(y, slot), edge_,
+                  change);
+      };
+      put(strip.mean, bands_, 0, [&](auto... band) { conversion_.values(band...); });
+      put(strip.variance, variances, bands_, [&](auto... band) { conversion_.variances(band...); });
       stage_preview(strip.mean.data() + pixel * bands_, columns, staging_row(y, bands_ + variances));
-      transpose(strip.aux.data() + pixel * aux, columns, aux, staging_row(y, bands_ + variances + 3), plain);
-    }
-  }
-
-  /// [x][plane] to [plane][x] in blocks of 16 planes, one cache line of each pixel.
-  template <class Change>
-  void transpose(const float* from, uint32_t columns, std::size_t planes, float* to, Change change) const {
-    constexpr std::size_t kBlock = 16;
-    for (std::size_t first = 0; first < planes; first += kBlock) {
-      const std::size_t last = std::min(first + kBlock, planes);
-      for (uint32_t x = 0; x < columns; ++x)
-        for (std::size_t k = first; k < last; ++k) to[k * edge_ + x] = change(k, from[x * planes + k]);
+      put(strip.aux, aux, bands_ + variances + 3,
+          [](std::size_t, const float* from, float* to, std::size_t n) { std::copy_n(from, n, to); });
     }
   }
 

@@ -138,6 +138,9 @@ void CubeOutput::write(const SpectralFilm& film, Backend& backend) {
   const PixelRect& rect = film.rect();
   for (uint32_t y = 0; y < rect.height; y += strip_) {
     const uint32_t rows = std::min(strip_, rect.height - y);
+    const std::size_t values = std::size_t{rows} * width_ * bands_.bands.size();
+    mean_.reserve(values);  // growing would copy every value twice and touch twice the memory
+    if (settings_.variance) variance_.reserve(values);
     for (uint32_t i = 0; i < rows; ++i) add_row(film, y + i);
     add_aux(backend, {rect.x0, rect.y0 + y, rect.width, rows});
     flush_strip();
