@@ -131,12 +131,11 @@ SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on) {
                           glm::vec3(0), 0);
 }
 
-float area_light_pdf(const FlatScene& scene, uint32_t shape, glm::vec3 origin, glm::vec3 hit_point,
-                     glm::vec3 normal) {
-  const KbShape& record = scene.shapes[shape];
+float area_light_pdf(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 origin) {
+  const KbShape& record = scene.shapes[hit.shape];
   if (record.emitter == KB_NONE) return 0;
   const float select_pdf = KB_PLANTED(MIS_SELECTION) ? 1 : scene.emitters[record.emitter].select_pdf;
-  return select_pdf > 0 ? select_pdf * area_light_density(record, origin, hit_point, normal) : 0;
+  return select_pdf > 0 ? select_pdf * area_light_density(record, hit, origin) : 0;
 }
 
 float environment_pdf(const FlatScene& scene, glm::vec3 direction) {

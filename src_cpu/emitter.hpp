@@ -44,19 +44,17 @@ struct LightSample {
 /// Selects an emitter by FlatScene::emitter_cdf (u_select.x), a triangle of a mesh (u_select.y), a point or
 /// direction on it (u_position). Spheres are sampled over the cone that they subtend from outside, over their
 /// area from inside; other shapes over their area; environment maps by their texels; constant environments
-/// over the sphere. Points behind a one-sided area light give pdf 0.
+/// over the sphere. Points that a one-sided area light does not shine to give pdf 0.
 LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position);
 
 /// The surface that a thermal light's sample lies on; apart from the sample, which most lights do without.
 SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on);
 
-/// Density with which sample_light() gives the direction from `origin` to `hit_point` on the area light of
-/// shape `shape`; selection included [1/sr]. 0 where the light does not emit (its back) or cannot be sampled.
-/// origin  the `point` that was given to sample_light(): for spheres the density depends on which side it is
-/// on normal  meshes: unit geometric normal of the triangle, turned by KB_SHAPE_FLIP_NORMALS (front); other
-/// shapes: ignored
-float area_light_pdf(const FlatScene& scene, uint32_t shape, glm::vec3 origin, glm::vec3 hit_point,
-                     glm::vec3 normal);
+/// Density with which sample_light() gives the direction from `origin` to a hit of an area light (its shape,
+/// point and normals); selection included [1/sr]. 0 where the light does not emit to there (on_front()) or
+/// cannot be sampled.
+/// origin  the `point` that was given to sample_light(): for spheres the density depends on its side
+float area_light_pdf(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 origin);
 
 /// Density with which sample_light() gives a direction that escapes to the environment; 0 without environment
 /// [1/sr].

@@ -32,23 +32,28 @@ bool lit_on_both_sides(const KbShape& shape) {
   return shape.flags & KB_SHAPE_LIT_BOTH_SIDES;
 }
 
-/// A light that shines on both sides lies edge-on to whatever is in its plane, itself too; only rounding
-/// would say which side is seen. Below this cosine it is not sampled: BSDF samples find it.
+/// A light that shines on both sides, or by tilted vertex normals, lies edge-on to whatever is in its plane,
+/// itself too; only rounding would say which side is seen. Below this cosine it is not sampled: BSDF samples
+/// find it.
 constexpr float kEdgeOn = 1e-6f;
 
-/// The side that is seen of a light that shines on both; 0: edge-on.
-glm::vec3 facing_normal(const KbShape& shape, glm::vec3 to_light, glm::vec3 normal) {
-  if (!lit_on_both_sides(shape)) return normal;
-  const float away = glm::dot(to_light, normal);
+/// The geometric normal of the side that is seen; 0: it does not emit to there, or is edge-on. Vertex normals
+/// may let a triangle shine to the back of its winding: the density goes with the geometric cosine all the
+/// same.
+glm::vec3 lit_side(const KbShape& shape, glm::vec3 to_light, glm::vec3 geometric_normal,
+                   glm::vec3 shading_normal) {
+  if (!lit_on_both_sides(shape) && !on_front(shading_normal, -to_light)) return glm::vec3(0);
+  const float away = glm::dot(to_light, geometric_normal);
   if (!(std::fabs(away) > kEdgeOn * glm::length(to_light))) return glm::vec3(0);
-  return away > 0 ? -normal : normal;
+  return away > 0 ? -geometric_normal : geometric_normal;
 }
 
-/// Completes a sample whose position and normal are known.
-void finish_by_area(AreaLightSample& sample, const KbShape& shape, glm::vec3 point) {
+/// Completes a sample whose position and geometric normal are known.
+void finish_by_area(AreaLightSample& sample, const KbShape& shape, glm::vec3 point,
+                    glm::vec3 shading_normal) {
   const glm::vec3 to_light = sample.position - point;
   const float distance = glm::length(to_light), area = shape.area;
-  sample.normal = facing_normal(shape, to_light, sample.normal);
+  sample.normal = lit_side(shape, to_light, sample.normal, shading_normal);
   sample.pdf = area_to_solid_angle(to_light, distance, sample.normal, area);
   if (sample.pdf > 0) sample.direction = to_light * (1 / distance);
 }
@@ -85,10 +90,9 @@ AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::v
   const glm::vec2 b = warp_uniform_triangle(u);
   AreaLightSample sample;
   sample.position = p0 + b.x * e1 + b.y * e2;
-  sample.normal = glm::normalize(glm::cross(e1, e2));
-  if (shape.flags & KB_SHAPE_FLIP_NORMALS) sample.normal = -sample.normal;
+  sample.normal = triangle_normal(shape, e1, e2);
   sample.offset = surface_offset(largest_coordinates(p0, p1, p2), sample.normal);
-  finish_by_area(sample, shape, point);
+  finish_by_area(sample, shape, point, triangle_shading_normal(scene, shape, indices, b, sample.normal));
   sample.triangle = triangle;
   sample.barycentric = b;
   sample.factor = triangle_area(p0, p1, p2) / shape.area / (cdf[triangle + 1] - cdf[triangle]);
@@ -102,7 +106,7 @@ AreaLightSample sample_by_area(const KbShape& shape, glm::vec3 point, glm::vec2 
   sample.position = on_light.position;
   sample.normal = on_light.normal;
   sample.offset = surface_offset(largest_coordinates(shape), sample.normal);
-  finish_by_area(sample, shape, point);
+  finish_by_area(sample, shape, point, sample.normal);
   if (need_uv && sample.pdf > 0) sample.uv = analytic_uv(shape.type, on_light.local);
   return sample;
 }
@@ -206,17 +210,12 @@ AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, 
                                        : sample_by_area(shape, point, u, need_uv);
 }
 
-float area_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point, glm::vec3 normal) {
-  if (shape.type == KB_SHAPE_SPHERE) return sphere_density(shape, origin, hit_point);
-  if (shape.type == KB_SHAPE_MESH) {
-    return shape.first_cdf == KB_NONE
-               ? 0
-               : area_to_solid_angle(hit_point - origin, facing_normal(shape, hit_point - origin, normal),
-                                     shape.area);
-  }
-  const glm::vec3 front = analytic_surface(shape, glm::dvec3(hit_point)).normal;
-  const glm::vec3 to_light = hit_point - origin;
-  return area_to_solid_angle(to_light, facing_normal(shape, to_light, front), shape.area);
+float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin) {
+  if (shape.type == KB_SHAPE_SPHERE) return sphere_density(shape, origin, hit.point);
+  if (shape.type == KB_SHAPE_MESH && shape.first_cdf == KB_NONE) return 0;
+  const glm::vec3 to_light = hit.point - origin;
+  return area_to_solid_angle(to_light, lit_side(shape, to_light, hit.geometric_normal, hit.shading_normal),
+                             shape.area);
 }
 
 }  // namespace kiloband

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "scene/flat_scene.hpp"
+#include "src_cpu/surface_hit.hpp"
 
 namespace kiloband {
 
@@ -27,7 +28,7 @@ struct AreaLightSample {
                      // are chosen with a whole number of steps of 2^-24
   glm::vec3 direction{0};  // unit, towards the light
   glm::vec3 position{0};   // on the light
-  glm::vec3 normal{0};     // unit, of the side that is seen: of the light's front, unless both sides are lit
+  glm::vec3 normal{0};     // unit, geometric, of the side that is seen
   float offset = 0;        // m, of rays that leave the light there (ray_offset.hpp)
   glm::vec2 uv{0};         // filled in if asked for
   uint32_t triangle = 0;   // meshes: in the shape, and the point's barycentric coordinates
@@ -37,8 +38,8 @@ struct AreaLightSample {
 AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,
                                   float u_triangle, glm::vec2 u, bool need_uv);
 
-/// The same density for a given hit; 0 where sample_area_light() cannot give it. Arguments as
+/// The same density for a given hit of the shape; 0 where sample_area_light() cannot give it. Arguments as
 /// area_light_pdf().
-float area_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point, glm::vec3 normal);
+float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin);
 
 }  // namespace kiloband

@@ -202,12 +202,11 @@ void PathTracer::add_emission(Draft& draft, const Path& path, const SurfaceHit& 
                               uint32_t bounce) {
   const uint32_t emitter = flat_.shapes[hit.shape].emitter;
   if (emitter == KB_NONE) return;
-  if (!KB_PLANTED(LIGHT_BACK) && glm::dot(hit.geometric_normal, direction) >= 0) return;
+  if (!KB_PLANTED(LIGHT_BACK) && !on_front(hit.shading_normal, -direction)) return;
   if (bounce == 0 && flat_.integrator.hide_emitters) return;
   float weight = 1;
   if (!path.previous_delta && !KB_PLANTED(MIS_DOUBLE)) {
-    weight = power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit.shape, path.previous_point,
-                                                               hit.point, hit.geometric_normal));
+    weight = power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit, path.previous_point));
   }
   set_flag(draft.vertex, KB_VERTEX_EMIT);
   draft.vertex.emit_weight = weight;

@@ -17,8 +17,7 @@ void PathTracer::add_thermal_emission(Draft& draft, const Path& path, const Surf
   if (!(emitted.weight > 0)) return;
   float weight = emitted.weight;
   if (light && !path.previous_delta) {
-    weight *= power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit.shape, path.previous_point,
-                                                                hit.point, hit.geometric_normal));
+    weight *= power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit, path.previous_point));
   }
   draft.vertex.head |= KB_VERTEX_EMIT;
   draft.vertex.emit_weight = weight;

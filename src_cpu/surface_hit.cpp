@@ -36,22 +36,10 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
   hit.point = w * p0 + u * p1 + v * p2;
   const glm::vec3 e1 = p1 - p0;
   const glm::vec3 e2 = p2 - p0;
-  const float flip = shape.flags & KB_SHAPE_FLIP_NORMALS ? -1.0f : 1.0f;
-  const glm::vec3 cross = glm::cross(e1, e2);
-  const float length2 = glm::dot(cross, cross);
-  // Tiny triangles: the squared length may underflow where the cross product does not.
-  hit.geometric_normal = length2 > 1e-30f
-                             ? cross * (flip / std::sqrt(length2))
-                             : glm::vec3(glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2)))) * flip;
+  hit.geometric_normal = triangle_normal(shape, e1, e2);
   hit.offset = surface_offset(largest_coordinates(p0, p1, p2), hit.geometric_normal);
-  hit.departure = off_the_edges(hit.point, {w, u, v}, {p0, p1, p2}, cross, hit.offset);
-  hit.shading_normal = hit.geometric_normal;
-  if (shape.flags & KB_SHAPE_HAS_NORMALS) {
-    const glm::vec3 n = w * to_glm(scene.normals[index[0]]) + u * to_glm(scene.normals[index[1]]) +
-                        v * to_glm(scene.normals[index[2]]);
-    const float n2 = glm::dot(n, n);
-    if (n2 > 0) hit.shading_normal = n * (flip / std::sqrt(n2));
-  }
+  hit.departure = off_the_edges(hit.point, {w, u, v}, {p0, p1, p2}, glm::cross(e1, e2), hit.offset);
+  hit.shading_normal = triangle_shading_normal(scene, shape, index, {u, v}, hit.geometric_normal);
   hit.uv = {u, v};
   if (shape.flags & KB_SHAPE_HAS_UVS) {
     const KbFloat2& uv0 = scene.uvs[index[0]];
@@ -63,6 +51,26 @@ void fill_mesh_hit(const FlatScene& scene, const KbShape& shape, uint32_t primit
 }
 
 }  // namespace
+
+glm::vec3 triangle_normal(const KbShape& shape, glm::vec3 e1, glm::vec3 e2) {
+  const float turn = kb_winding_is_turned(shape.flags) ? -1.0f : 1.0f;
+  const glm::vec3 cross = glm::cross(e1, e2);
+  const float length2 = glm::dot(cross, cross);
+  // Tiny triangles: the squared length may underflow where the cross product does not.
+  if (length2 > 1e-30f) return cross * (turn / std::sqrt(length2));
+  return glm::vec3(glm::normalize(glm::cross(glm::dvec3(e1), glm::dvec3(e2)))) * turn;
+}
+
+glm::vec3 triangle_shading_normal(const FlatScene& scene, const KbShape& shape, const uint32_t* index,
+                                  glm::vec2 barycentric, glm::vec3 geometric_normal) {
+  if (!(shape.flags & KB_SHAPE_HAS_NORMALS)) return geometric_normal;
+  const float u = barycentric.x, v = barycentric.y, w = 1 - u - v;
+  const glm::vec3 n = w * to_glm(scene.normals[index[0]]) + u * to_glm(scene.normals[index[1]]) +
+                      v * to_glm(scene.normals[index[2]]);
+  const float n2 = glm::dot(n, n);
+  const float turn = shape.flags & KB_SHAPE_FLIP_NORMALS ? -1.0f : 1.0f;
+  return n2 > 0 ? n * (turn / std::sqrt(n2)) : geometric_normal;
+}
 
 SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape_index, uint32_t primitive, float u,
                             float v, glm::vec3 ray_origin, glm::vec3 direction, float t) {

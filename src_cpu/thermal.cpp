@@ -145,8 +145,7 @@ EmittedRadiance with_temperature(const EmittedRadiance& emissivity, float temper
 ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 towards,
                                  glm::vec2 u) {
   const KbSurface& surface = scene.surfaces[scene.shapes[hit.shape].surface];
-  const bool below = glm::dot(hit.shading_normal, towards) < 0;
-  const uint32_t index = below ? surface.back_thermal : surface.front_thermal;
+  const uint32_t index = on_front(hit.shading_normal, towards) ? surface.front_thermal : surface.back_thermal;
   if (index == KB_NONE) return {};
   const KbThermal& thermal = scene.thermals[index];
   const bool anisotropic = thermal.alpha_u != thermal.alpha_v;

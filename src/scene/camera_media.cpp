@@ -93,7 +93,7 @@ std::vector<Crossing> crossings(const FlatScene& scene, const KbShape& shape, co
     cross_mesh(scene, shape, ray, out);
   else
     cross_analytic(shape, ray, out);
-  if (shape.flags & KB_SHAPE_FLIP_NORMALS)
+  if (kb_winding_is_turned(shape.flags))
     for (Crossing& crossing : out) crossing.leaves = !crossing.leaves;
   return out;
 }

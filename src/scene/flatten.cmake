@@ -3,4 +3,4 @@ kiloband_library(kiloband_flatten
           flatten_shapes.cpp
           flatten_spectral.cpp flatten_textures.cpp flatten_thermal.cpp flatten_temperature.cpp band_set.cpp lattice_cdf.cpp
           spectrum_table_builder.cpp envmap_sampling.cpp facet_quadrature.cpp compensation.cpp metal_emissivity.cpp
-  DEPENDS kiloband_base kiloband_spectral glm::glm fmt::fmt)
+  DEPENDS kiloband_base kiloband_spectral kiloband_meshes glm::glm fmt::fmt)

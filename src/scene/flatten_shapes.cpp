@@ -28,6 +28,31 @@ double analytic_area(uint32_t type, const Transform& m) {
   return 2 * pi * glm::length(x) * glm::length(z);
 }
 
+bool mirrors(const Transform& to_world) {
+  return glm::determinant(glm::dmat3(to_world)) < 0;
+}
+
+/// Vertex normals in the world. Normals of the file are mapped; computed ones are those of the placed
+/// triangles.
+std::vector<KbFloat3> placed_normals(const Mesh& mesh, const Transform& to_world) {
+  const glm::dmat3 linear(to_world);
+  std::vector<KbFloat3> placed;
+  if (!mesh.front_by_normals && linear != glm::dmat3(1.0)) {
+    LinearMap map;
+    for (int column = 0; column < 3; ++column)
+      for (int axis = 0; axis < 3; ++axis) map[column][axis] = linear[column][axis];
+    for (const Vec3f& n : mapped_vertex_normals(mesh, map)) placed.push_back({n[0], n[1], n[2]});
+    return placed;
+  }
+  const glm::dmat3 normal_to_world = glm::transpose(glm::inverse(linear));
+  for (const Vec3f& n : mesh.normals) {
+    const glm::dvec3 world = normal_to_world * glm::dvec3(n[0], n[1], n[2]);
+    const double length = glm::length(world);
+    placed.push_back(to_record(length > 0 ? world / length : glm::dvec3(0)));
+  }
+  return placed;
+}
+
 /// World-space corners that enclose an analytic shape.
 void extend_bounds(const KbShape& shape, glm::dvec3& low, glm::dvec3& high) {
   const float* m = shape.to_world;
@@ -65,6 +90,8 @@ void Flattener::add_shapes() {
                     : std::holds_alternative<DiskShape>(shape.geometry) ? KB_SHAPE_DISK
                                                                         : KB_SHAPE_CYLINDER;
       record.area = static_cast<float>(analytic_area(record.type, shape.to_world));
+      // A mirrored sphere shows its inside, as in Mitsuba, where disks and cylinders do not turn over.
+      if (record.type == KB_SHAPE_SPHERE && mirrors(shape.to_world)) record.flags ^= KB_SHAPE_FLIP_NORMALS;
       out_.features.analytic_shapes = true;
     }
     out_.shapes.push_back(record);
@@ -89,27 +116,18 @@ void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) 
   if (!mesh.normals.empty()) {
     record.flags |= KB_SHAPE_HAS_NORMALS;
     out_.normals.resize(first, KbFloat3{0, 0, 0});
-    const glm::dmat3 to_world = glm::transpose(glm::inverse(glm::dmat3(shape.to_world)));
-    for (const Vec3f& n : mesh.normals) {
-      const glm::dvec3 world = to_world * glm::dvec3(n[0], n[1], n[2]);
-      const double length = glm::length(world);
-      out_.normals.push_back(to_record(length > 0 ? world / length : glm::dvec3(0)));
-    }
+    const std::vector<KbFloat3> normals = placed_normals(mesh, shape.to_world);
+    out_.normals.insert(out_.normals.end(), normals.begin(), normals.end());
   }
   if (!mesh.uvs.empty()) {
     record.flags |= KB_SHAPE_HAS_UVS;
     out_.uvs.resize(first, KbFloat2{0, 0});
     for (const Vec2f& uv : mesh.uvs) out_.uvs.push_back({uv[0], uv[1]});
   }
-  // A mirroring transform turns the winding: swap two indices so that the geometric normal is the transformed
-  // one.
-  const bool mirrored = glm::determinant(glm::dmat3(shape.to_world)) < 0;
-  for (const auto& triangle : mesh.triangles) {
-    const auto base = static_cast<uint32_t>(first);
-    out_.triangles.push_back(base + triangle[0]);
-    out_.triangles.push_back(base + triangle[mirrored ? 2 : 1]);
-    out_.triangles.push_back(base + triangle[mirrored ? 1 : 2]);
-  }
+  // A mirroring transform turns the winding; corners keep their order, which barycentric uv follow.
+  if (mesh.front_by_normals && mirrors(shape.to_world)) record.flags |= KB_SHAPE_MIRRORED;
+  for (const auto& triangle : mesh.triangles)
+    for (const uint32_t corner : triangle) out_.triangles.push_back(static_cast<uint32_t>(first) + corner);
   if (!out_.normals.empty()) out_.normals.resize(out_.positions.size(), KbFloat3{0, 0, 0});
   if (!out_.uvs.empty()) out_.uvs.resize(out_.positions.size(), KbFloat2{0, 0});
   add_areas(record, shape);

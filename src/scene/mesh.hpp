@@ -16,12 +16,16 @@ using Vec3f = std::array<float, 3>;
 using Vec2f = std::array<float, 2>;
 
 /// Indexed triangles, counter-clockwise seen from outside. normals (unit length) and uvs are empty or one per
-/// position.
+/// position. Vertex normals, where there are any, say which side is the front, whatever the winding.
 struct Mesh {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;
   std::vector<Vec2f> uvs;
   std::vector<std::array<uint32_t, 3>> triangles;
+  /// What a mirroring transform does to the front. true: takes it along, since it was given by normals: a
+  /// file's vertex normals, or those that rectangles and cubes have by definition. false: it follows from the
+  /// winding, and so do computed vertex normals: the mirrored triangles show the other side. Mitsuba's rule.
+  bool front_by_normals = false;
   /// Every further vertex property of a PLY file by name ("temperature", "red" ...), one value per position.
   std::map<std::string, std::vector<float>> vertex_attributes;
 };
@@ -72,5 +76,15 @@ Mesh read_serialized(const std::filesystem::path& file, const MeshOptions& optio
 /// triangle is taken; where no triangle has an area, (0, 0, 1). source  Thürmer, Wüthrich, Computing vertex
 /// normals from polygonal facets, JGT 3(1), 1998 (Mitsuba's choice too)
 void compute_vertex_normals(Mesh& mesh);
+
+/// The columns of a linear map.
+using LinearMap = std::array<std::array<double, 3>, 3>;
+
+/// What compute_vertex_normals() gives for the mesh with all positions mapped: where angles change or the map
+/// mirrors, not its image of the normals.
+std::vector<Vec3f> mapped_vertex_normals(const Mesh& mesh, const LinearMap& to_world);
+
+/// Triangles whose vertex normals' sum points against their winding.
+size_t count_opposed_triangles(const Mesh& mesh);
 
 }  // namespace kiloband

@@ -36,7 +36,10 @@ void finish_mesh(Mesh& mesh, const MeshFile& file, bool face_normals, const Diag
     mesh.normals.clear();
   } else if (mesh.normals.empty()) {
     compute_vertex_normals(mesh);
-  } else if (const size_t replaced = repair_vertex_normals(mesh); replaced > 0) {
+  } else {
+    mesh.front_by_normals = true;
+    const size_t replaced = repair_vertex_normals(mesh);
+    if (replaced == 0) return;
     warn(sink, {file.name},
          std::to_string(replaced) + " of " + std::to_string(mesh.normals.size()) +
              " vertex normals are missing or zero: computed from the triangles");

@@ -20,12 +20,14 @@ void add_quad(Mesh& mesh, const Vec3f& centre, const Vec3f& u, const Vec3f& v) {
 
 Mesh make_rectangle() {
   Mesh mesh;
+  mesh.front_by_normals = true;
   add_quad(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   return mesh;
 }
 
 Mesh make_cube() {
   Mesh mesh;
+  mesh.front_by_normals = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Vec3f n{0, 0, 0}, u{0, 0, 0}, v{0, 0, 0};
     n[axis] = u[(axis + 1) % 3] = v[(axis + 2) % 3] = 1;

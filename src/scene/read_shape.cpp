@@ -155,6 +155,20 @@ bool lets_light_in(const Bsdf& bsdf) {
          std::holds_alternative<MaskBsdf>(bsdf.model);
 }
 
+/// Gas is told apart by the winding, glass by vertex normals: where these differ, the two have different
+/// insides.
+void warn_of_opposed_normals(ReadContext& context, const ObjectReader& object, const Shape& shape) {
+  const auto* mesh = std::get_if<MeshShape>(&shape.geometry);
+  if (!mesh || !shape.interior || std::holds_alternative<NullBsdf>(shape.bsdf->model)) return;
+  const std::size_t opposed = count_opposed_triangles(*mesh->mesh);
+  if (opposed == 0) return;
+  warn(context.sink, shape.position,
+       object.label() + ": the vertex normals of " + std::to_string(opposed) + " of " +
+           std::to_string(mesh->mesh->triangles.size()) +
+           " triangles point against their winding: the winding says where its interior medium is, the "
+           "normals say what is inside for its bsdf");
+}
+
 }  // namespace
 
 Shape read_shape(ReadContext& context, Node& node) {
@@ -184,6 +198,7 @@ Shape read_shape(ReadContext& context, Node& node) {
     warn(context.sink, shape.position,
          object.label() + ": its bsdf is opaque, so that its interior medium has no effect");
   }
+  warn_of_opposed_normals(context, object, shape);
   object.finish();
   return shape;
 }

@@ -118,11 +118,17 @@ KB_STATIC_ASSERT(sizeof(KbCheckerboard) == 32, checkerboard_size);
 /* ---- shapes ----------------------------------------------------------------------------------------------------- */
 enum KbShapeType { KB_SHAPE_MESH = 0, KB_SHAPE_SPHERE = 1, KB_SHAPE_DISK = 2, KB_SHAPE_CYLINDER = 3 };
 
-#define KB_SHAPE_FLIP_NORMALS 1u
+#define KB_SHAPE_FLIP_NORMALS 1u /* turns all normals; spheres: also set by a to_world that mirrors */
 #define KB_SHAPE_HAS_NORMALS 2u /* mesh: interpolated normals */
 #define KB_SHAPE_HAS_UVS 4u
 #define KB_SHAPE_LIT_BOTH_SIDES 8u /* as a light: both sides are sampled */
 #define KB_SHAPE_NULL 16u /* its surface is KB_SURFACE_NULL */
+#define KB_SHAPE_MIRRORED 32u /* mesh: its corners stand clockwise seen from its front (before KB_SHAPE_FLIP_NORMALS) */
+
+/* Whether the normal that the order of a triangle's corners gives points to its back. */
+KB_FN bool kb_winding_is_turned(kb_u32 shape_flags) {
+  return ((shape_flags & KB_SHAPE_FLIP_NORMALS) != 0u) != ((shape_flags & KB_SHAPE_MIRRORED) != 0u);
+}
 
 /* Rectangles and cubes are meshes. For sphere, disk and cylinder, to_world maps the canonical shape (unit sphere;
    unit disk in z = 0; unit-radius cylinder along z in [0, 1]) to the world. */

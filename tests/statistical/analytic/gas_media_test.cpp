@@ -14,6 +14,15 @@ struct Placed {
   double depth;  // optical, between camera and lamp
 };
 
+/// A box from z = 0.5 to 5, and a ball of radius 0.3 whose flipped normals a mirror turns outwards again.
+std::string mirrored_box(const std::string& content) {
+  return shape("cube", to_world("<scale x=\"-1\" z=\"2.25\"/><translate z=\"2.75\"/>") + content);
+}
+std::string mirrored_ball(const std::string& content) {
+  return shape("sphere", number("float", "radius", 0.3) + "<boolean name=\"flip_normals\" value=\"true\"/>" +
+                             to_world("<scale y=\"-1\"/><translate value=\"0.0123, 0.0057, 1\"/>") + content);
+}
+
 /// The camera's rays begin at z = 2. kappa of the atmosphere 0.1, of boxes 0.5, if there are any.
 TEST(Gas, FollowsTheMediumThatARayIsIn) {
   const std::string air = gas("atmosphere", flat("absorption", 0.1));
@@ -38,7 +47,9 @@ TEST(Gas, FollowsTheMediumThatARayIsIn) {
       {"box in a box", slab(0.4, 1.6, kNull + thick) + slab(0.5, 1.5, kNull + thin), 0.5 * 0.2 + 0.02},
       {"overlapping boxes", slab(0.4, 1.1, kNull + thick) + slab(0.9, 1.5, kNull + thin),
        0.02 * 0.4 + 0.5 * 0.7},
+      {"camera in a mirrored box", air + mirrored_box(kNull + thick), 0.05 + 0.75},
       {"ball", shape("sphere", ball + kNull + thick), 0.3},
+      {"mirrored ball turned back", mirrored_ball(kNull + thick), 0.3},
       {"glass body in an atmosphere", air + shape("sphere", ball + clear), 0.1 * 1.4},
       {"gas in a glass body", air + shape("sphere", ball + clear + thick), 0.1 * 1.4 + 0.3},
       {"volume of two shapes",

@@ -48,9 +48,7 @@ double expect_area_light(const FlatScene& scene, glm::vec3 point, const Directio
                          double min_cosine = 0) {
   const auto density = [&](glm::dvec3 direction) -> double {
     const Hit hit = trace(scene, point, direction);
-    if (!hit.found) return 0;
-    return area_light_pdf(scene, 0, point, glm::vec3(glm::dvec3(point) + hit.t * direction),
-                          glm::vec3(hit.normal));
+    return hit.found ? area_light_pdf(scene, surface_at(scene, hit, point, direction), point) : 0;
   };
   Uniform uniform(seed + 1000);
   for (int i = 0; i < 2000; ++i) {
@@ -99,13 +97,27 @@ TEST(MeshLight, BackAndFlippedNormals) {
   const std::vector<KbFloat3> positions{{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}};
   const FlatScene away = scene_with_mesh(positions, {0, 1, 2, 0, 2, 3});
   EXPECT_EQ(sample_light(away, glm::vec3(0), {0.5f, 0.5f}, {0.3f, 0.7f}).pdf, 0);
-  EXPECT_EQ(area_light_pdf(away, 0, glm::vec3(0), {0, 0, 2}, {0, 0, 1}), 0);
+  EXPECT_EQ(area_light_pdf(away, facing_hit({0, 0, 2}, {0, 0, 1}), glm::vec3(0)), 0);
   const FlatScene flipped = scene_with_mesh(positions, {0, 1, 2, 0, 2, 3}, KB_SHAPE_FLIP_NORMALS);
   const LightSample sample = sample_light(flipped, glm::vec3(0), {0.5f, 0.5f}, {0.3f, 0.7f});
   EXPECT_GT(sample.pdf, 0);
   EXPECT_LT(sample.target.z, 2);  // moved to the front
   EXPECT_GT(sample.target.z, 1.999f);
-  EXPECT_NEAR(area_light_pdf(flipped, 0, glm::vec3(0), {0, 0, 2}, {0, 0, -1}), 1, 1e-6);  // 2^2 / (4 * 1)
+  // 2^2 / (4 * 1)
+  EXPECT_NEAR(area_light_pdf(flipped, facing_hit({0, 0, 2}, {0, 0, -1}), glm::vec3(0)), 1, 1e-6);
+}
+
+// Tilted normals: parts of the mesh shine to a point, behind the winding too, and the density there is that
+// of the area that is seen.
+TEST(MeshLight, TiltedVertexNormals) {
+  for (const bool winding_faces_point : {false, true}) {
+    const float x = winding_faces_point ? -0.8f : 0.8f, z = winding_faces_point ? -0.6f : 0.6f;
+    const FlatScene scene = quad_with_normals(winding_faces_point, x, z);
+    const double integral =
+        expect_area_light(scene, {0.9f, 0.2f, 1.5f}, DirectionBins({0, 0, 1}, 0.2, 16, 32), 11);
+    EXPECT_GT(integral, 0.1);
+    EXPECT_LT(integral, 0.9);
+  }
 }
 
 TEST(MeshLight, FoldedMeshIsHalfVisible) {
@@ -113,7 +125,7 @@ TEST(MeshLight, FoldedMeshIsHalfVisible) {
   const FlatScene scene = scene_with_mesh({{-1, -1, 2}, {1, -1, 2}, {0, 1, 2}}, {0, 1, 2, 0, 2, 1});
   const auto density = [&](glm::dvec3 d) -> double {
     const Hit hit = trace(scene, glm::dvec3(0), d);
-    return hit.found ? area_light_pdf(scene, 0, glm::vec3(0), glm::vec3(hit.t * d), {0, 0, -1}) : 0;
+    return hit.found ? area_light_pdf(scene, facing_hit(glm::vec3(hit.t * d), {0, 0, -1}), glm::vec3(0)) : 0;
   };
   const DirectionBins bins({0, 0, 1}, 0.7, 16, 32);
   EXPECT_NEAR(expect_distribution(scene, glm::vec3(0), bins, density, 2), 0.5, 3e-3);
@@ -146,9 +158,9 @@ TEST(SphereLight, InsideWithFlippedNormals) {
 TEST(SphereLight, BackSides) {
   const FlatScene scene = scene_with_light(make_shape(KB_SHAPE_SPHERE, identity()));
   EXPECT_EQ(sample_light(scene, glm::vec3(0.2f), {0, 0}, {0.5f, 0.5f}).pdf, 0);
-  EXPECT_EQ(area_light_pdf(scene, 0, glm::vec3(0.2f), {1, 0, 0}, {1, 0, 0}), 0);
-  EXPECT_GT(area_light_pdf(scene, 0, {3, 0, 0}, {1, 0, 0}, {1, 0, 0}), 0);
-  EXPECT_EQ(area_light_pdf(scene, 0, {3, 0, 0}, {-1, 0, 0}, {-1, 0, 0}), 0);  // the far side
+  EXPECT_EQ(area_light_pdf(scene, facing_hit({1, 0, 0}, {1, 0, 0}), glm::vec3(0.2f)), 0);
+  EXPECT_GT(area_light_pdf(scene, facing_hit({1, 0, 0}, {1, 0, 0}), {3, 0, 0}), 0);
+  EXPECT_EQ(area_light_pdf(scene, facing_hit({-1, 0, 0}, {-1, 0, 0}), {3, 0, 0}), 0);  // the far side
 }
 
 TEST(SphereLight, TinyAndFar) {

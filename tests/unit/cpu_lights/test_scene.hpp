@@ -6,6 +6,7 @@
 
 #include "scene/flat_scene.hpp"
 #include "src_cpu/shape_geometry.hpp"
+#include "src_cpu/surface_hit.hpp"
 
 namespace kiloband::testing {
 
@@ -90,22 +91,41 @@ inline FlatScene scene_with_mesh(const std::vector<KbFloat3>& positions,
   return scene;
 }
 
-/// What a ray finds of shape 0: the nearest hit, and for meshes the front normal.
+/// The normals of a mesh light's vertices.
+inline void set_normals(FlatScene& scene, const std::vector<KbFloat3>& normals) {
+  scene.normals = normals;
+  scene.shapes[0].flags |= KB_SHAPE_HAS_NORMALS;
+}
+
+/// A quad of the given winding and vertex normals (x, 0, z) and (-x, 0, z), as seen from (0, 0, 0).
+inline FlatScene quad_with_normals(bool winding_faces_point, float x, float z, uint32_t flags = 0) {
+  const std::vector<uint32_t> triangles =
+      winding_faces_point ? std::vector<uint32_t>{0, 2, 1, 0, 3, 2} : std::vector<uint32_t>{0, 1, 2, 0, 2, 3};
+  FlatScene scene = scene_with_mesh({{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}, triangles, flags);
+  set_normals(scene, {{x, 0, z}, {-x, 0, z}, {-x, 0, z}, {x, 0, z}});
+  return scene;
+}
+
+/// What a ray finds of shape 0: the nearest hit; meshes: of which triangle and where in it.
 struct Hit {
   bool found = false;
   double t = 1e30;
-  glm::dvec3 normal{0};
+  uint32_t triangle = 0;
+  glm::dvec2 barycentric{0};
 };
 
-inline void intersect_triangle(const glm::dvec3 (&p)[3], glm::dvec3 origin, glm::dvec3 direction, Hit& hit) {
+inline void intersect_triangle(const glm::dvec3 (&p)[3], uint32_t triangle, glm::dvec3 origin,
+                               glm::dvec3 direction, Hit& hit) {
   const glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
   const double t = glm::dot(n, p[0] - origin) / glm::dot(n, direction);
   if (!(t > 0 && t < hit.t)) return;
   const glm::dvec3 q = origin + t * direction;
+  double opposite[3];  // the part of the area that is opposite to a corner
   for (int i = 0; i < 3; ++i) {
-    if (glm::dot(glm::cross(p[(i + 1) % 3] - p[i], q - p[i]), n) < 0) return;
+    opposite[(i + 2) % 3] = glm::dot(glm::cross(p[(i + 1) % 3] - p[i], q - p[i]), n) / glm::dot(n, n);
+    if (opposite[(i + 2) % 3] < 0) return;
   }
-  hit = {true, t, glm::normalize(n)};
+  hit = {true, t, triangle, {opposite[1], opposite[2]}};
 }
 
 inline Hit trace(const FlatScene& scene, glm::dvec3 origin, glm::dvec3 direction) {
@@ -118,9 +138,25 @@ inline Hit trace(const FlatScene& scene, glm::dvec3 origin, glm::dvec3 direction
   for (std::size_t i = 0; i < scene.triangles.size(); i += 3) {
     const uint32_t* v = &scene.triangles[i];
     const glm::dvec3 p[3] = {position_of(scene, v[0]), position_of(scene, v[1]), position_of(scene, v[2])};
-    intersect_triangle(p, origin, direction, hit);
+    intersect_triangle(p, static_cast<uint32_t>(i / 3), origin, direction, hit);
   }
-  if (shape.flags & KB_SHAPE_FLIP_NORMALS) hit.normal = -hit.normal;
+  return hit;
+}
+
+/// The surface that a ray finds.
+inline SurfaceHit surface_at(const FlatScene& scene, const Hit& hit, glm::dvec3 origin,
+                             glm::dvec3 direction) {
+  return make_surface_hit(scene, 0, hit.triangle, static_cast<float>(hit.barycentric.x),
+                          static_cast<float>(hit.barycentric.y), glm::vec3(origin), glm::vec3(direction),
+                          static_cast<float>(hit.t));
+}
+
+/// A point of shape 0 that faces along `normal`.
+inline SurfaceHit facing_hit(glm::vec3 point, glm::vec3 normal) {
+  SurfaceHit hit;
+  hit.shape = 0;
+  hit.point = point;
+  hit.geometric_normal = hit.shading_normal = normal;
   return hit;
 }
 

@@ -28,7 +28,9 @@ __kernel void light(ARGS) {
 }
 __kernel void density(ARGS) {
   ITEM
-  out->f[0] = area_light_pdf(&scene, in->u[0], VEC3(0), VEC3(3), VEC3(6));
+  SurfaceHit hit;
+  hit.shape = in->u[0]; hit.point = VEC3(3); hit.geometric_normal = VEC3(6); hit.shading_normal = VEC3(12);
+  out->f[0] = area_light_pdf(&scene, &hit, VEC3(0));
   out->f[1] = environment_pdf(&scene, VEC3(9));
 }
 )";
@@ -104,15 +106,19 @@ void expect_densities(const FlatScene& scene, const std::vector<ItemIn>& points,
     const LightSample sample = cpu_sample(scene, point);
     if (!(sample.pdf > 0)) continue;
     ItemIn item = point;
+    const KbShape& shape = scene.shapes[0];
+    const bool mesh = shape.type == KB_SHAPE_MESH;
     put(item, 3, sample.target);
-    put(item, 6, -sample.direction);
+    put(item, 6, mesh ? -sample.direction : analytic_surface(shape, glm::dvec3(sample.target)).normal);
+    put(item, 12, get3(item, 6));
     item.u[0] = 0;
     in.push_back(item);
   }
   const std::vector<ItemOut> out = run_items(probe(), "density", scene, in);
   std::size_t parted = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
-    const float expected = area_light_pdf(scene, 0, get3(in[i], 0), get3(in[i], 3), get3(in[i], 6));
+    const float expected =
+        area_light_pdf(scene, testing::facing_hit(get3(in[i], 3), get3(in[i], 6)), get3(in[i], 0));
     if ((expected > 0) != (out[i].f[0] > 0)) {
       ++parted;
       continue;
@@ -173,7 +179,8 @@ TEST(GpuLights, DisksAndCylinders) {
   }
 }
 
-/// Meshes with uvs, a bitmap on them, triangles of very different areas and a sliver.
+/// Meshes with uvs, a bitmap on them, normals all over the place, triangles of very different areas and a
+/// sliver.
 FlatScene mesh_light(uint32_t flags) {
   FlatScene scene = testing::scene_with_mesh({{0, 0, 0},
                                               {1, 0, 0},
@@ -190,8 +197,11 @@ FlatScene mesh_light(uint32_t flags) {
   for (std::size_t i = 1; i < scene.area_cdf.size(); ++i)
     areas.push_back(double{scene.area_cdf[i]} - double{scene.area_cdf[i - 1]});
   scene.area_cdf = lattice_cdf(areas);
-  for (std::size_t i = 0; i < scene.positions.size(); ++i)
+  for (std::size_t i = 0; i < scene.positions.size(); ++i) {
     scene.uvs.push_back({random.unit(), random.unit()});
+    const glm::vec3 n(random.direction());
+    scene.normals.push_back({n.x, n.y, n.z});
+  }
   scene.textures.push_back({16, 8, 0, KB_WRAP_REPEAT, 0, KB_NONE, {1, 0, 0, 0, 1, 0}});
   scene.texels.assign(128, {0, 0, 1e10f, 1});
   if (flags & KB_SHAPE_HAS_UVS) scene.emitters[0].ref = KB_REF_BITMAP;
@@ -200,7 +210,8 @@ FlatScene mesh_light(uint32_t flags) {
 
 TEST(GpuLights, MeshesAndTheirTextures) {
   for (const uint32_t flags :
-       {0u, KB_SHAPE_FLIP_NORMALS, KB_SHAPE_HAS_UVS, KB_SHAPE_HAS_UVS | KB_SHAPE_FLIP_NORMALS}) {
+       {0u, KB_SHAPE_FLIP_NORMALS, KB_SHAPE_HAS_UVS, KB_SHAPE_HAS_UVS | KB_SHAPE_FLIP_NORMALS,
+        KB_SHAPE_HAS_NORMALS, KB_SHAPE_HAS_NORMALS | KB_SHAPE_FLIP_NORMALS, uint32_t{KB_SHAPE_MIRRORED}}) {
     const FlatScene scene = mesh_light(flags);
     const std::vector<ItemIn> in = points_around({0.5, 0.5, 0}, 6, 40000, 19);
     expect_samples(scene, in, {2e-6, 2e-6, 2e-6, 2, true});

@@ -38,14 +38,15 @@ OpenclProbe& probe() {
   return instance;
 }
 
-/// Meshes with and without normals, uvs and flipped normals, of several sizes; then analytic shapes.
+/// Meshes with and without normals, uvs, flipped normals and mirroring, of several sizes; then analytic
+/// shapes.
 FlatScene surface_scene() {
   FlatScene scene;
   Random random(9);
-  for (uint32_t flags = 0; flags < 8; ++flags) {
+  for (uint32_t flags = 0; flags < 16; ++flags) {
     KbShape shape{};
     shape.type = KB_SHAPE_MESH;
-    shape.flags = flags;
+    shape.flags = (flags & 7) | (flags & 8 ? KB_SHAPE_MIRRORED : 0);
     shape.first_triangle = static_cast<uint32_t>(scene.triangles.size() / 3);
     shape.triangle_count = 20;
     const double size = flags == 3 ? 1e-7 : flags == 5 ? 1e4 : 1;

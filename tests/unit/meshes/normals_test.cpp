@@ -61,6 +61,36 @@ TEST(VertexNormals, AreRadialOnASphere) {
     expect_near(mesh.normals[i], mesh.positions[i], 0.01);
 }
 
+// A pyramid whose apex stands aside, as Mitsuba 3.9.1 computes its normals under four transforms: those of
+// the placed triangles, whose angles are others, turned over where the transform mirrors.
+TEST(VertexNormals, OfPlacedTriangles) {
+  Mesh mesh;
+  mesh.positions = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0.3f, 0.1f, 1}};
+  mesh.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+  struct Case {
+    std::array<double, 3> scale;
+    Vec3f first, fourth;
+  };
+  for (const Case& c : {Case{{1, 1, 1}, {0.8180f, -0.0219f, 0.5748f}, {-0.0404f, -0.6661f, 0.7448f}},
+                        Case{{1, 1, 5}, {0.9903f, -0.0081f, 0.1388f}, {-0.0225f, -0.9761f, 0.2161f}},
+                        Case{{3, 1, 0.2}, {0.0947f, -0.0015f, 0.9955f}, {-0.0177f, -0.1648f, 0.9862f}},
+                        Case{{-3, 1, 0.2}, {0.0947f, 0.0015f, -0.9955f}, {-0.0177f, 0.1648f, -0.9862f}}}) {
+    const LinearMap map{{{c.scale[0], 0, 0}, {0, c.scale[1], 0}, {0, 0, c.scale[2]}}};
+    const std::vector<Vec3f> normals = mapped_vertex_normals(mesh, map);
+    expect_near(normals[0], c.first, 6e-5);
+    expect_near(normals[3], c.fourth, 6e-5);
+  }
+}
+
+TEST(VertexNormals, CountTrianglesThatTheyOppose) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_EQ(count_opposed_triangles(mesh), 0u);  // no normals
+  mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, -1}, {0, 0, -1}};
+  EXPECT_EQ(count_opposed_triangles(mesh), 1u);
+}
+
 TEST(VertexNormals, SurviveExtremeScales) {
   for (const float scale : {1e-30f, 1e30f}) {
     Mesh mesh;

@@ -202,5 +202,23 @@ TEST(SceneMedium, WhatHasNoEffectIsReported) {
       "scene.xml:2:2: warning: sphere shape: its bsdf is opaque, so that its interior medium has no effect");
 }
 
+TEST(SceneMedium, NormalsAgainstTheWindingAreReported) {
+  const TemporaryFolder folder;
+  folder.write(
+      "mesh.obj",
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 -1\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n");
+  std::vector<std::string> diagnostics;
+  for (const std::string bsdf : {"dielectric", "null"})
+    read(complete_scene("<shape type=\"obj\"><string name=\"filename\" value=\"mesh.obj\"/><bsdf type=\"" +
+                        bsdf + "\"/><medium type=\"absorbing\" name=\"interior\">" + kAbsorption +
+                        "</medium></shape>"),
+         folder.path(), {}, &diagnostics);
+  ASSERT_EQ(diagnostics.size(), 1u);  // a null boundary has no inside of its own
+  EXPECT_EQ(diagnostics[0],
+            "scene.xml:2:2: warning: obj shape: the vertex normals of 1 of 2 triangles point against their "
+            "winding: "
+            "the winding says where its interior medium is, the normals say what is inside for its bsdf");
+}
+
 }  // namespace
 }  // namespace kiloband::test
