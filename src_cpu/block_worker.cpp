@@ -1,11 +1,14 @@
 #include "src_cpu/block_worker.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <span>
+#include <stdexcept>
 
 #include "render/planted_helpers.hpp"
 #include "shared/planted_faults.h"
 #include "shared/sampler.h"
+#include "src_cpu/denormals.hpp"
 
 namespace kiloband {
 namespace {
@@ -32,34 +35,100 @@ BlockWorker::BlockWorker(const TracerScene& scene, const DerivedChannels& derive
       tracer_(scene, settings),
       evaluator_(*scene.flat, derived, isa) {}
 
+SumRule BlockWorker::sum_rule() {
+  return {SumRule::Kind::kFolded, kFoldInterval, kFoldInterval, 1};
+}
+
 BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, const SampleRange& range,
-                                 const std::atomic<bool>& stop,
-                                 const std::function<void(uint64_t)>& on_sample,
-                                 const std::function<void(const InvalidSample&)>& on_invalid) {
-  const std::size_t pixels = block.pixels();
-  sums_.assign(pixels * evaluator_.stride(), 0.0f);
+                                 const std::atomic<bool>& stop, const SampleEvents& events) {
+  sums_.assign(block.pixels() * evaluator_.stride(), 0.0f);
   folded_.clear();
-  counts_.assign(pixels, 0);
+  counts_.assign(block.pixels(), 0);
+  add_samples(block, range, stop, events);
+  finish_means(block.pixels());
+  if (KB_PLANTED_NUMBER != 0) plant_in_means(KB_PLANTED_NUMBER, block, sums_, evaluator_.stride());
+  return {block_index, range.replicate, counts_, sums_, evaluator_.stride()};
+}
+
+void BlockWorker::go_on(SpectralFilm& film, uint32_t block_index, const SampleRange& range,
+                        const std::atomic<bool>& stop, const SampleEvents& events) {
+  const PixelRect& block = film.blocks()[block_index];
+  film.open_replicate(range.replicate, block_index);
+  if (film.attempted(range.replicate, block_index) != range.first)
+    throw std::logic_error("BlockWorker: the samples do not follow those that the film has");
+  take_sums(film, block, range);
+  const uint32_t done = add_samples(block, range, stop, events);
+  put_sums(film, block, range.replicate);
+  film.set_attempted(range.replicate, block_index, range.first + done);
+}
+
+/// Adds the range's samples to the sums. Returns how many.
+uint32_t BlockWorker::add_samples(const PixelRect& block, const SampleRange& range,
+                                  const std::atomic<bool>& stop, const SampleEvents& events) {
+  const DenormalsToZero mode;
   uint32_t done = 0;
   for (; done < range.count && !stop; ++done) {
-    uint32_t index = range.first + done, replicate = range.replicate;
+    const uint32_t place = range.first + done;
+    uint32_t index = place, replicate = range.replicate;
     if (KB_PLANTED(SAMPLES_REPEATED)) index -= index % 2;
     if (KB_PLANTED(REPLICATES_EQUAL)) replicate = 0;
     const SampleId id{replicate + index * settings_.replicates, replicate, index};
-    if (done > 0 && done % kFoldInterval == 0) fold_sums();
+    if (place > 0 && place % kFoldInterval == 0) fold_sums();
     add_sample(block, id);
     if (KB_PLANTED(SAMPLE_DROPPED) && done == 0) std::ranges::fill(sums_, 0.0f);
     if (KB_PLANTED(FILM_STALLS)) cut_to_8_bits(sums_);
     for (uint32_t& count : counts_) ++count;
     for (const uint32_t pixel : invalid_) {
       --counts_[pixel];
-      on_invalid({block.x0 + pixel % block.width, block.y0 + pixel / block.width, id.sample});
+      events.on_invalid({block.x0 + pixel % block.width, block.y0 + pixel / block.width, id.sample});
     }
-    on_sample(pixels);
+    events.on_sample(block.pixels());
   }
-  finish_means(pixels);
-  if (KB_PLANTED_NUMBER != 0) plant_in_means(KB_PLANTED_NUMBER, block, sums_, evaluator_.stride());
-  return {block_index, range.replicate, counts_, sums_, evaluator_.stride(), done};
+  return done;
+}
+
+/// Derived channels stand behind the channels in the film, at derived_offset() in a row of sums.
+std::vector<BlockWorker::Columns> BlockWorker::columns_of_film() const {
+  const std::size_t channels = scene_.flat->channels.size();
+  std::vector<Columns> columns{{0, 0, channels}};
+  if (derived_count_ > 0) columns.push_back({channels, evaluator_.derived_offset(), derived_count_});
+  return columns;
+}
+
+/// The block's sums so far.
+void BlockWorker::take_sums(const SpectralFilm& film, const PixelRect& block, const SampleRange& range) {
+  const std::size_t stride = evaluator_.stride();
+  const std::vector<Columns> all_columns = columns_of_film();
+  sums_.assign(block.pixels() * stride, 0.0f);
+  folded_.assign(range.first > kFoldInterval ? sums_.size() : 0, 0.0);
+  counts_.assign(block.pixels(), 0);
+  for (std::size_t p = 0; p < block.pixels(); ++p) {
+    const PixelSumsView from = film.pixel_sums(range.replicate, film.pixel_index(block, p));
+    counts_[p] = from.count;
+    for (const Columns& columns : all_columns) {
+      const std::size_t to = p * stride + columns.here;
+      std::copy_n(&from.open[columns.film], columns.count, &sums_[to]);
+      if (folded_.empty()) continue;
+      for (std::size_t c = 0; c < columns.count; ++c)
+        folded_[to + c] = std::bit_cast<double>(from.closed[columns.film + c]);
+    }
+  }
+}
+
+void BlockWorker::put_sums(SpectralFilm& film, const PixelRect& block, uint32_t replicate) const {
+  const std::size_t stride = evaluator_.stride();
+  const std::vector<Columns> all_columns = columns_of_film();
+  for (std::size_t p = 0; p < block.pixels(); ++p) {
+    const PixelSums to = film.pixel_sums(replicate, film.pixel_index(block, p));
+    to.count = counts_[p];
+    for (const Columns& columns : all_columns) {
+      const std::size_t from = p * stride + columns.here;
+      std::copy_n(&sums_[from], columns.count, &to.open[columns.film]);
+      if (folded_.empty()) continue;
+      for (std::size_t c = 0; c < columns.count; ++c)
+        to.closed[columns.film + c] = std::bit_cast<ClosedSum>(folded_[from + c]);
+    }
+  }
 }
 
 /// The wavelength offsets of the block's paths: one (shared), or one per pixel.

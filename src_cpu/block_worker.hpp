@@ -11,17 +11,28 @@
 
 namespace kiloband {
 
+/// What is told while a block is rendered.
+struct SampleEvents {
+  std::function<void(uint64_t)> on_sample;  // after each sample of all pixels, with their number
+  std::function<void(const InvalidSample&)> on_invalid;
+};
+
 class BlockWorker {
  public:
   BlockWorker(const TracerScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
               Isa isa);
 
   /// Renders range.count samples (fewer if stop becomes true) of every pixel of the block; the result stays
-  /// valid until the next call. on_sample is called after each sample with the number of pixels; on_invalid
-  /// for every invalid sample.
+  /// valid until the next call.
   BlockSamples render(const PixelRect& block, uint32_t block_index, const SampleRange& range,
-                      const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_sample,
-                      const std::function<void(const InvalidSample&)>& on_invalid);
+                      const std::atomic<bool>& stop, const SampleEvents& events);
+  /// The same for a film that keeps sums: goes on from those of the block, of which it has range.first
+  /// samples, and puts them back.
+  void go_on(SpectralFilm& film, uint32_t block_index, const SampleRange& range,
+             const std::atomic<bool>& stop, const SampleEvents& events);
+
+  /// Float sums of 64 samples, folded into doubles.
+  static SumRule sum_rule();
 
   /// Traces one sample of every pixel of the block, without evaluating it.
   std::vector<TracedPath> trace(const PixelRect& block, const SampleId& id);
@@ -30,6 +41,16 @@ class BlockWorker {
   const Evaluator& evaluator() const { return evaluator_; }
 
  private:
+  /// Columns that follow each other, in the film and in a row of sums.
+  struct Columns {
+    std::size_t film, here, count;
+  };
+
+  std::vector<Columns> columns_of_film() const;
+  uint32_t add_samples(const PixelRect& block, const SampleRange& range, const std::atomic<bool>& stop,
+                       const SampleEvents& events);
+  void take_sums(const SpectralFilm& film, const PixelRect& block, const SampleRange& range);
+  void put_sums(SpectralFilm& film, const PixelRect& block, uint32_t replicate) const;
   void set_mu(const PixelRect& block, const SampleId& id);
   void add_sample(const PixelRect& block, const SampleId& id);
   void fold_sums();
@@ -42,8 +63,8 @@ class BlockWorker {
   Evaluator evaluator_;
   PathBuffer paths_;
   std::vector<float> mu_, path_mu_;
-  std::vector<float> sums_;     // [pixel][stride], at most kFoldInterval samples
-  std::vector<double> folded_;  // the samples before those; empty until needed
+  std::vector<float> sums_;     // [pixel][stride], at most kFoldInterval samples: open sums
+  std::vector<double> folded_;  // the samples before those, closed sums; empty until needed
   std::vector<uint32_t> counts_, invalid_;
 };
 

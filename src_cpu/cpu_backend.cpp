@@ -1,7 +1,6 @@
 #include "src_cpu/cpu_backend.hpp"
 
 #include <omp.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <exception>
@@ -12,6 +11,7 @@
 #include "src_cpu/block_worker.hpp"
 #include "src_cpu/boundary.hpp"
 #include "src_cpu/camera.hpp"
+#include "src_cpu/denormals.hpp"
 
 namespace kiloband {
 namespace {
@@ -36,18 +36,6 @@ std::string processor_name() {
   }
   return "unknown processor";
 }
-
-/// Denormals to zero while a thread renders (Embree's advice); the caller's mode comes back afterwards.
-class DenormalsToZero {
- public:
-  DenormalsToZero() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
-  ~DenormalsToZero() { _mm_setcsr(saved_); }
-  DenormalsToZero(const DenormalsToZero&) = delete;
-  DenormalsToZero& operator=(const DenormalsToZero&) = delete;
-
- private:
-  unsigned saved_;
-};
 
 /// OpenMP starts all threads but the caller's, and so does TBB, which Embree builds with, and one per processor
 /// when Embree lets go of its limit. Both end the process where they cannot.
@@ -89,6 +77,7 @@ class CpuBackend final : public Backend {
   const RenderCounters& counters() const override { return counters_; }
   std::vector<InvalidSample> invalid_samples() const override { return invalid_; }
   std::vector<double> film_scale() const override;
+  SumRule sum_rule() const override { return BlockWorker::sum_rule(); }
 
  private:
   void note_invalid(const InvalidSample& sample);
@@ -133,12 +122,15 @@ void CpuBackend::render(SpectralFilm& film, const SampleRange& range, const std:
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (stop || failed) continue;
     try {
-      const DenormalsToZero mode;
       BlockWorker& worker = *workers_[static_cast<std::size_t>(omp_get_thread_num())];
       const uint64_t rays = worker.tracer().rays();
       const uint64_t vertices = worker.tracer().vertices();
-      film.add(worker.render(film.blocks()[blocks[i]], blocks[i], range, stop, on_sample,
-                             [this](const InvalidSample& sample) { note_invalid(sample); }));
+      const SampleEvents events{on_sample, [this](const InvalidSample& sample) { note_invalid(sample); }};
+      if (film.keeps_sums()) {
+        worker.go_on(film, blocks[i], range, stop, events);
+      } else {
+        film.add(worker.render(film.blocks()[blocks[i]], blocks[i], range, stop, events));
+      }
       count(worker, rays, vertices);
     } catch (...) {
       const std::lock_guard lock(mutex_);

@@ -62,8 +62,8 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       bvh_(memory, host.bvh),
       spectra_(memory, host.spectra) {}
 
-uint64_t DeviceState::film_bytes_per_pixel() const {
-  return gpu::film_bytes_per_pixel(host_.spectra.layout, shape_);
+uint64_t DeviceState::film_bytes_per_pixel(bool open) const {
+  return gpu::film_bytes_per_pixel(host_.spectra.layout, shape_, open);
 }
 uint64_t DeviceState::table_bytes() const {
   return gpu::table_bytes(host_.spectra.layout, shape_);
@@ -78,11 +78,11 @@ void DeviceState::release_pool() {
   pool_.reset();
 }
 
-void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels) {
+void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels, bool open) {
   release_pool();
   pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size);
   evaluation_.emplace(context, memory, host_.spectra.layout, shape_, evaluation_defines(host_, settings_),
-                      settings_.program_cache, size, film_pixels);
+                      settings_.program_cache, size, film_pixels, open);
   evaluation_->bind(scene_, spectra_, *pool_);
 }
 

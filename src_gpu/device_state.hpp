@@ -42,21 +42,26 @@ class DeviceState {
   /// throws DeviceOutOfMemory  the scene alone does not fit; DeviceLost, DeviceError
   DeviceState(DeviceContext& device_context, const HostScene& host, const DeviceSettings& device_settings);
 
-  /// Memory of a round and the film of `film_pixels` pixels.
+  /// Memory of a round and the film of `film_pixels` pixels; open: with sums of chunks that go on.
   /// throws DeviceOutOfMemory
-  void make_pool(const PoolSize& size, uint64_t film_pixels);
+  void make_pool(const PoolSize& size, uint64_t film_pixels, bool open);
   void release_pool();
   bool has_pool() const { return pool_.has_value(); }
 
   /// Bytes that a film pixel, a dense table of spectra, a slot (beside the pool's own) take.
-  uint64_t film_bytes_per_pixel() const;
+  uint64_t film_bytes_per_pixel(bool open) const;
   uint64_t table_bytes() const;
   uint64_t slot_bytes() const;
   bool has_dispersion() const { return host_.scene.features.dispersion; }
   uint32_t chunk_slots() const { return gpu::chunk_slots(method, host_.scene.features); }
+  uint32_t derived_channels() const { return host_.spectra.layout.derived; }
   bool has_gas() const { return host_.scene.features.gas; }
 
   void clear_film(uint64_t pixels);
+  /// As Evaluation's of these names.
+  void load_film(const FilmSums& sums) { evaluation_->load(sums); }
+  void save_film(uint64_t pixels, FilmSums& sums) { evaluation_->save(pixels, sums); }
+  void close_chunk(uint64_t pixels) { evaluation_->close_chunk(pixels); }
   /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's
   /// pixels begin in the film.
   RoundOutcome generate(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu,

@@ -86,10 +86,10 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
   return shape;
 }
 
-uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape) {
+uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open) {
   const uint64_t partial =
       shape.method == Method::kDpeptBatch ? uint64_t{shape.local_size} * layout.derived * sizeof(float) : 0;
-  return 2 * sizeof(float) * uint64_t{layout.film_columns} + sizeof(uint32_t) + partial;
+  return (open ? 3 : 2) * sizeof(float) * uint64_t{layout.film_columns} + sizeof(uint32_t) + partial;
 }
 
 uint64_t table_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape) {
@@ -103,7 +103,7 @@ uint64_t slot_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape)
 
 Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpectraLayout& layout,
                        const EvaluationShape& shape, const std::vector<std::string>& defines,
-                       bool program_cache, const PoolSize& pool, uint64_t film_pixels)
+                       bool program_cache, const PoolSize& pool, uint64_t film_pixels, bool open)
     : context_(context),
       layout_(layout),
       shape_(shape),
@@ -111,6 +111,7 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
       means_pixels_(pixels_of_means(layout, film_pixels)),
       sum_(memory.allocate<float>("film", film_pixels * layout.film_columns)),
       compensation_(memory.allocate<float>("film's rounding errors", film_pixels * layout.film_columns)),
+      open_(memory.allocate<float>("sums of chunks", open ? sum_.size() : 0)),
       dense_(
           memory.allocate<float>("dense spectra", pool.tables * table_bytes(layout, shape) / sizeof(float))),
       partial_(memory.allocate<float>("derived channels", partial_floats(layout, shape, pool))),
@@ -127,6 +128,9 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
                      program_cache)),
       clear_(film_program_.kernel("film_clear")),
       finish_(film_program_.kernel("film_finish")),
+      close_(film_program_.kernel("film_close")),
+      pack_(film_program_.kernel("film_pack")),
+      unpack_(film_program_.kernel("film_unpack")),
       main_(program_.kernel(main_kernel(shape.method))) {
   if (layout.derived > 0 && shape.method != Method::kDpeptPath)
     derived_ = program_.kernel(shape.method == Method::kPt ? "pt_derived" : "derived_add");
@@ -145,8 +149,9 @@ uint32_t Evaluation::bind_evaluation(Kernel& kernel, const DeviceScene& scene, c
   return kEvaluationArguments;
 }
 
-uint32_t Evaluation::bind_film(Kernel& kernel, uint32_t first, uint64_t film_pixel) const {
-  kernel.set_from(first, sum_, compensation_, counts_, static_cast<uint32_t>(film_pixels_),
+/// open: rounds that go on with a chunk find its sums in place of the film's.
+uint32_t Evaluation::bind_film(Kernel& kernel, uint32_t first, uint64_t film_pixel, bool open) const {
+  kernel.set_from(first, open ? open_ : sum_, compensation_, counts_, static_cast<uint32_t>(film_pixels_),
                   static_cast<uint32_t>(film_pixel));
   return first + kFilmArguments;
 }
@@ -168,7 +173,7 @@ void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, co
     if (derived_) derived_->set_from(0, spectra.layout);
     if (derived_) derived_->set_from(1 + kFilmArguments, partial_);
   }
-  finish_.set_from(0, spectra.layout);
+  for (Kernel* kernel : {&finish_, &pack_, &unpack_}) kernel->set_from(0, spectra.layout);
   const LaunchScale scale = shape_.method == Method::kPt ? LaunchScale::kSlots : LaunchScale::kPaths;
   main_.set_scale(scale);
   if (derived_) derived_->set_scale(scale);
@@ -180,12 +185,64 @@ void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, co
   }
 }
 
+/// Film pixels whose values stand among those of the first `pixels`.
+uint64_t Evaluation::touched_pixels(uint64_t pixels) const {
+  return shape_.film_transposed ? film_pixels_ : pixels;
+}
+
 void Evaluation::clear(uint64_t pixels) {
-  clear_.set(sum_, compensation_, counts_,
-             static_cast<uint32_t>(shape_.film_transposed ? film_pixels_ : pixels), layout_.film_columns);
-  const uint64_t items = (shape_.film_transposed ? film_pixels_ : pixels) * layout_.film_columns;
+  const uint64_t touched = touched_pixels(pixels), items = touched * layout_.film_columns;
+  clear_.set(sum_, compensation_, counts_, static_cast<uint32_t>(touched), layout_.film_columns);
   for (uint64_t first = 0; first < items; first += kClearItems)
     clear_.launch(std::min(kClearItems, items - first), kLocalSize, first);
+  if (!open_.empty()) open_.fill(0.0f, 0, items);
+}
+
+void Evaluation::close_chunk(uint64_t pixels) {
+  const uint64_t touched = touched_pixels(pixels), items = touched * layout_.film_columns;
+  close_.set(sum_, compensation_, open_, static_cast<uint32_t>(touched), layout_.film_columns);
+  for (uint64_t first = 0; first < items; first += kClearItems)
+    close_.launch(std::min(kClearItems, items - first), kLocalSize, first);
+}
+
+void Evaluation::unpack(const std::vector<float>& packed, DeviceBuffer<float>& values) {
+  const uint64_t pixels = packed.size() / columns(layout_);
+  for (uint64_t first = 0; first < pixels; first += means_pixels_) {
+    const uint64_t some = std::min(means_pixels_, pixels - first);
+    means_.upload(std::span(packed).subspan(first * columns(layout_), some * columns(layout_)));
+    unpack_.set_from(1, values, static_cast<uint32_t>(film_pixels_), static_cast<uint32_t>(first),
+                     static_cast<uint32_t>(some), means_);
+    unpack_.launch(some * columns(layout_), kLocalSize);
+  }
+}
+
+void Evaluation::pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed) {
+  packed.resize(pixels * columns(layout_));
+  for (uint64_t first = 0; first < pixels; first += means_pixels_) {
+    const uint64_t some = std::min(means_pixels_, pixels - first);
+    pack_.set_from(1, values, static_cast<uint32_t>(film_pixels_), static_cast<uint32_t>(first),
+                   static_cast<uint32_t>(some), means_);
+    pack_.launch(some * columns(layout_), kLocalSize);
+    const DeviceBuffer<float>& device_means = means_;
+    device_means.download(
+        std::span<float>(packed).subspan(first * columns(layout_), some * columns(layout_)));
+  }
+}
+
+void Evaluation::load(const FilmSums& sums) {
+  unpack(sums.open, open_);
+  unpack(sums.sum, sum_);
+  unpack(sums.lost, compensation_);
+  counts_.upload(std::span(sums.counts));
+}
+
+void Evaluation::save(uint64_t pixels, FilmSums& sums) {
+  pack(pixels, open_, sums.open);
+  pack(pixels, sum_, sums.sum);
+  pack(pixels, compensation_, sums.lost);
+  sums.counts.resize(pixels);
+  const DeviceBuffer<uint32_t>& device_counts = counts_;
+  device_counts.download(std::span<uint32_t>(sums.counts));
 }
 
 void Evaluation::resample(const KbRound& round) {
@@ -196,7 +253,7 @@ void Evaluation::resample(const KbRound& round) {
 }
 
 void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
-  bind_film(main_, film_argument_, film_pixel);
+  bind_film(main_, film_argument_, film_pixel, round.open != 0);
   if (shape_.method == Method::kDpeptPath) {
     main_.launch(round.pixels, shape_.local_size);
     return;
@@ -204,7 +261,7 @@ void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
   const uint64_t groups = ceil_div(round.pixels, shape_.units_per_group);
   main_.launch(groups * shape_.local_size, shape_.local_size);
   if (!derived_) return;
-  bind_film(*derived_, 1, film_pixel);
+  bind_film(*derived_, 1, film_pixel, round.open != 0);
   derived_->set_from(2 + kFilmArguments, round.pixels, shape_.local_size);
   derived_->launch(uint64_t{round.pixels} * layout_.derived, kLocalSize);
 }

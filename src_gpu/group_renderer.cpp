@@ -55,14 +55,14 @@ GroupRenderer::GroupRenderer(DeviceState& device, const SamplingSettings& settin
       paths_pace_(launch_seconds, most_jobs(device, most_slots_) / kFirstPart, 1,
                   most_jobs(device, most_slots_)) {}
 
-PlanRequest GroupRenderer::request(uint64_t pixels) const {
+PlanRequest GroupRenderer::request(uint64_t pixels, bool open) const {
   PlanRequest r;
   r.budget = device_.memory.available();
   r.largest = device_.memory.largest();
   r.pixels = pixels;
   r.samples = round_samples_;
   r.method = device_.method;
-  r.film_bytes = device_.film_bytes_per_pixel();
+  r.film_bytes = device_.film_bytes_per_pixel(open);
   r.table_bytes = device_.table_bytes();
   r.slot_bytes = device_.slot_bytes();
   r.most_slots = most_slots_;
@@ -74,21 +74,21 @@ PlanRequest GroupRenderer::request(uint64_t pixels) const {
   return r;
 }
 
-void GroupRenderer::make_pool(const PlanRequest& r) {
+void GroupRenderer::make_pool(const PlanRequest& r, bool open) {
   device_.release_pool();
   plan_ = plan_rounds(r);
-  device_.make_pool(plan_->pool, plan_->group_pixels);
+  device_.make_pool(plan_->pool, plan_->group_pixels, open);
 }
 
 /// Allocates what the plan says, and less where the device has less than the budget promises.
-void GroupRenderer::prepare(uint64_t pixels) {
-  if (plan_ && device_.has_pool() && planned_pixels_ >= pixels) return;
+void GroupRenderer::prepare(uint64_t pixels, bool open) {
+  if (plan_ && device_.has_pool() && planned_pixels_ >= pixels && (planned_open_ || !open)) return;
   device_.release_pool();
-  PlanRequest r = request(pixels);
+  PlanRequest r = request(pixels, open);
   std::exception_ptr refusal;  // the first one: it says what the matter is
   for (int attempt = 0;; ++attempt) {
     try {
-      make_pool(r);
+      make_pool(r, open);
       break;
     } catch (const DeviceOutOfMemory&) {
       device_.release_pool();
@@ -104,11 +104,16 @@ void GroupRenderer::prepare(uint64_t pixels) {
                      plan_->group_pixels, pixels, plan_->pool.slots, device_.memory.used() >> 20));
   }
   planned_pixels_ = pixels;
+  planned_open_ = open;
 }
 
-uint64_t GroupRenderer::group_pixels(uint64_t pixels) {
-  prepare(pixels);
+uint64_t GroupRenderer::group_pixels(uint64_t pixels, bool open) {
+  prepare(pixels, open);
   return plan_->group_pixels;
+}
+
+SumRule GroupRenderer::sum_rule() const {
+  return sum_rule_of(device_.method, round_samples_, device_.derived_channels() > 0);
 }
 
 KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) const {
@@ -171,18 +176,19 @@ void GroupRenderer::learn(const RoundOutcome& outcome, const KbRound& round) {
 
 /// A round that is too large in two: by pixels, which changes no bit of the image. A pixel alone whose
 /// samples do not fit together is split by samples; only its last bits may differ from those of a larger
-/// arena.
+/// arena (of an open round, only those of derived channels).
 void GroupRenderer::split(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
-                          const SampleRange& samples, RunTally& tally) {
+                          const SampleRange& samples, bool open, RunTally& tally) {
   if (number > 1) {
-    render_part(pixels, at, number / 2, samples, tally);
-    render_part(pixels, at + number / 2, number - number / 2, samples, tally);
+    render_part(pixels, at, number / 2, samples, open, tally);
+    render_part(pixels, at + number / 2, number - number / 2, samples, open, tally);
     return;
   }
   if (samples.count == 1) throw DeviceError("one path with all its vertices does not fit the device memory");
   const uint32_t half = samples.count / 2;
-  render_part(pixels, at, number, {samples.replicate, samples.first, half}, tally);
-  render_part(pixels, at, number, {samples.replicate, samples.first + half, samples.count - half}, tally);
+  render_part(pixels, at, number, {samples.replicate, samples.first, half}, open, tally);
+  render_part(pixels, at, number, {samples.replicate, samples.first + half, samples.count - half}, open,
+              tally);
 }
 
 void GroupRenderer::note_invalid(const RoundOutcome& outcome, const KbRound& round, RunTally& tally) const {
@@ -195,17 +201,18 @@ void GroupRenderer::note_invalid(const RoundOutcome& outcome, const KbRound& rou
 }
 
 void GroupRenderer::render_part(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
-                                const SampleRange& samples, RunTally& tally) {
+                                const SampleRange& samples, bool open, RunTally& tally) {
   KbRound round = make_round(samples, number);
+  round.open = open;
   fill_pixels(pixels.subspan(at, number), round);
   if (uint64_t{round.blocks} * round.samples > plan_->pool.tables && (number > 1 || samples.count > 1))
-    return split(pixels, at, number, samples, tally);
+    return split(pixels, at, number, samples, open, tally);
   fill_mu(round);
   const auto start = std::chrono::steady_clock::now();
   const RoundOutcome outcome = device_.generate(round, round_pixels_, mu_, at);
   learn(outcome, round);
   tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, outcome.longest_launch_seconds);
-  if (outcome.arena_full) return split(pixels, at, number, samples, tally);
+  if (outcome.arena_full) return split(pixels, at, number, samples, open, tally);
   note_invalid(outcome, round, tally);
   tally.rays += outcome.rays;
   tally.vertices += outcome.vertices;
@@ -226,24 +233,38 @@ uint64_t GroupRenderer::round_pixels(uint32_t samples) const {
   return std::clamp<uint64_t>(paths / samples, 1, plan_->round_pixels);
 }
 
+/// The next round of a range of which `done` samples are through.
+SampleCut GroupRenderer::next_round(const SampleRange& range, uint32_t done, bool goes_on) const {
+  const bool chunks = goes_on && device_.method != Method::kPt;  // pt: every sample is a chunk
+  if (chunks) return next_cut(range.first + done, range.first + range.count, sum_rule());
+  return {std::min(round_samples_, range.count - done), false};
+}
+
 GroupResult GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
-                                  const std::atomic<bool>& stop,
+                                  const FilmSums* before, const std::atomic<bool>& stop,
                                   const std::function<void(uint64_t)>& on_samples, RunTally& tally) {
-  prepare(pixels.size());
+  prepare(pixels.size(), before != nullptr);
   device_.clear_film(pixels.size());
+  if (before && range.first > 0) device_.load_film(*before);
   GroupResult result;
   // All pixels of the group get the same samples, so that a stopped render is even.
   while (result.attempted < range.count && !stop) {
-    const uint32_t count = std::min(round_samples_, range.count - result.attempted);
-    const SampleRange samples{range.replicate, range.first + result.attempted, count};
+    const SampleCut cut = next_round(range, result.attempted, before != nullptr);
+    const SampleRange samples{range.replicate, range.first + result.attempted, cut.samples};
+    if (before && samples.first > 0 && begins_chunk(samples.first, sum_rule()))
+      device_.close_chunk(pixels.size());
     for (uint64_t at = 0, number = 0; at < pixels.size(); at += number) {
-      number = std::min(round_pixels(count), pixels.size() - at);
-      render_part(pixels, at, number, samples, tally);
-      on_samples(number * count);
+      number = std::min(round_pixels(cut.samples), pixels.size() - at);
+      render_part(pixels, at, number, samples, cut.open, tally);
+      on_samples(number * cut.samples);
     }
-    result.attempted += count;
+    result.attempted += cut.samples;
   }
-  device_.finish_film(pixels.size(), result.means, result.counts);
+  if (before) {
+    device_.save_film(pixels.size(), result.sums);
+  } else {
+    device_.finish_film(pixels.size(), result.means, result.counts);
+  }
   tally.longest_launch_seconds =
       std::max(tally.longest_launch_seconds, device_.context.take_longest(LaunchScale::kOther));
   return result;

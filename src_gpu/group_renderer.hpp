@@ -36,11 +36,13 @@ inline bool same_block(const ImagePixel& a, const ImagePixel& b) {
   return a.x / kBlockSize == b.x / kBlockSize && a.y / kBlockSize == b.y / kBlockSize;
 }
 
-/// Means and numbers of valid samples of a group of pixels.
+/// Means and numbers of valid samples of a group of pixels; with sums that are gone on with, these instead of
+/// both.
 struct GroupResult {
   std::vector<float> means;      // [pixel][channels + derived]
   std::vector<uint32_t> counts;  // valid samples
-  uint32_t attempted = 0;        // samples per pixel
+  FilmSums sums;
+  uint32_t attempted = 0;  // samples per pixel
 };
 
 class GroupRenderer {
@@ -49,13 +51,16 @@ class GroupRenderer {
   GroupRenderer(DeviceState& device, const SamplingSettings& settings, double launch_seconds,
                 std::optional<uint32_t> pool_slots, DiagnosticSink note);
 
-  /// Pixels whose film is resident at once, for an image part of this many pixels.
-  uint64_t group_pixels(uint64_t pixels);
+  /// Pixels whose film is resident at once, for an image part of this many pixels; open: with sums that are
+  /// gone on with.
+  uint64_t group_pixels(uint64_t pixels, bool open);
+  SumRule sum_rule() const;
 
   /// Renders range.count samples of every pixel (fewer if stop becomes true). At most group_pixels() of them.
   /// The pixels of a block stand together. on_samples gets the pixel samples done.
-  /// throws DeviceLost (everything of the device is to be made anew), DeviceOutOfMemory, DeviceError
-  GroupResult render(std::span<const ImagePixel> pixels, const SampleRange& range,
+  /// before: the sums of the pixels' samples before the range, which are gone on with; null: means are
+  /// wanted. throws DeviceLost (everything of the device is to be made anew), DeviceOutOfMemory, DeviceError
+  GroupResult render(std::span<const ImagePixel> pixels, const SampleRange& range, const FilmSums* before,
                      const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples,
                      RunTally& tally);
 
@@ -63,19 +68,20 @@ class GroupRenderer {
   std::vector<TracedPath> trace(std::span<const ImagePixel> pixels, const SampleRange& range);
 
  private:
-  void prepare(uint64_t pixels);
-  void make_pool(const PlanRequest& request);
-  PlanRequest request(uint64_t pixels) const;
+  void prepare(uint64_t pixels, bool open = false);
+  void make_pool(const PlanRequest& request, bool open);
+  PlanRequest request(uint64_t pixels, bool open) const;
+  SampleCut next_round(const SampleRange& range, uint32_t done, bool goes_on) const;
   /// Renders samples [first, first + count) of pixels [at, at + number) of the group; splits where the arena
   /// is too small.
   void render_part(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
-                   const SampleRange& samples, RunTally& tally);
+                   const SampleRange& samples, bool open, RunTally& tally);
   uint64_t round_pixels(uint32_t samples) const;
   KbRound make_round(const SampleRange& samples, uint64_t number) const;
   void fill_pixels(std::span<const ImagePixel> pixels, KbRound& round);
   void fill_mu(const KbRound& round);
   void split(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number, const SampleRange& samples,
-             RunTally& tally);
+             bool open, RunTally& tally);
   void note_invalid(const RoundOutcome& outcome, const KbRound& round, RunTally& tally) const;
   void learn(const RoundOutcome& outcome, const KbRound& round);
 
@@ -84,6 +90,7 @@ class GroupRenderer {
   DiagnosticSink note_;
   std::optional<RoundPlan> plan_;
   uint64_t planned_pixels_ = 0;
+  bool planned_open_ = false;
   uint32_t round_samples_;
   uint32_t most_slots_;
   LaunchPace slots_pace_, paths_pace_;

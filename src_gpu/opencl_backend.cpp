@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "render/planted_helpers.hpp"
-#include "shared/planted_faults.h"
 #include "src_gpu/device.hpp"
+#include "src_gpu/film_delivery.hpp"
 #include "src_gpu/group_renderer.hpp"
 #include "src_gpu/neutral_folder.hpp"
 #include "src_gpu/pocl_cache.hpp"
@@ -69,6 +68,7 @@ class Renderer final : public Backend {
   std::vector<InvalidSample> invalid_samples() const override { return invalid_; }
   std::vector<double> film_scale() const override { return host_.film_scale(); }
 
+  SumRule sum_rule() const override { return groups_->sum_rule(); }
   std::string method() const override { return gpu::to_string(method_); }
   uint64_t device_memory_bytes() const override {
     return std::max(peak_, state_ ? state_->memory.peak() : 0);
@@ -78,8 +78,6 @@ class Renderer final : public Backend {
   uint32_t device_losses() const override { return losses_; }
 
  private:
-  struct Delivery;
-
   void limit_memory();
   void warn_of_cache() const;
   void make_device();
@@ -89,7 +87,8 @@ class Renderer final : public Backend {
   template <class Work>
   std::invoke_result_t<Work> repeated(const Work& work);
   GroupResult render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
-                           const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress);
+                           const gpu::FilmSums* before, const std::atomic<bool>& stop,
+                           const std::function<void(uint64_t)>& progress);
   void count(const RunTally& tally);
 
   OpenclOptions options_;
@@ -184,7 +183,7 @@ void Renderer::count(const RunTally& tally) {
 }
 
 GroupResult Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
-                                   const std::atomic<bool>& stop,
+                                   const gpu::FilmSums* before, const std::atomic<bool>& stop,
                                    const std::function<void(uint64_t)>& progress) {
   uint64_t reported = 0;  // by an attempt that was lost: not to be reported again
   return repeated([&] {
@@ -196,7 +195,7 @@ GroupResult Renderer::render_group(std::span<const ImagePixel> pixels, const Sam
       progress(done - reported);
       reported = done;
     };
-    GroupResult result = groups_->render(pixels, range, stop, on_samples, tally);
+    GroupResult result = groups_->render(pixels, range, before, stop, on_samples, tally);
     count(tally);
     return result;
   });
@@ -211,42 +210,6 @@ std::size_t whole_blocks(const std::vector<ImagePixel>& pixels, std::size_t at, 
   return (boundary > at ? boundary : end) - at;
 }
 
-/// Collects the results of groups and hands complete blocks to the film.
-struct Renderer::Delivery {
-  SpectralFilm& film;
-  const SampleRange& range;
-  const std::vector<uint32_t>& blocks;
-  std::size_t channels;
-  std::size_t next_block = 0;  // in blocks
-  std::vector<float> means;
-  std::vector<uint32_t> counts;
-  std::vector<uint32_t> attempted;  // by pixel, as counts
-
-  /// Pixels that the open block still lacks.
-  std::size_t missing() const { return film.blocks()[blocks[next_block]].pixels() - counts.size(); }
-
-  void add(const GroupResult& result) {
-    means.insert(means.end(), result.means.begin(), result.means.end());
-    counts.insert(counts.end(), result.counts.begin(), result.counts.end());
-    attempted.insert(attempted.end(), result.counts.size(), result.attempted);
-    std::size_t first = 0;
-    while (next_block < blocks.size()) {
-      const std::size_t pixels = film.blocks()[blocks[next_block]].pixels();
-      if (first + pixels > counts.size()) break;
-      if (KB_PLANTED_OPENCL_NUMBER != 0)
-        plant_in_means(KB_PLANTED_OPENCL_NUMBER, film.blocks()[blocks[next_block]],
-                       std::span(means).subspan(first * channels, pixels * channels), channels);
-      film.add({blocks[next_block], range.replicate, std::span(counts).subspan(first, pixels),
-                std::span(means).subspan(first * channels, pixels * channels), channels, attempted[first]});
-      first += pixels;
-      ++next_block;
-    }
-    means.erase(means.begin(), means.begin() + static_cast<std::ptrdiff_t>(first * channels));
-    counts.erase(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(first));
-    attempted.erase(attempted.begin(), attempted.begin() + static_cast<std::ptrdiff_t>(first));
-  }
-};
-
 void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) {
   const NeutralFolder neutral;
@@ -257,18 +220,22 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
     const std::vector<ImagePixel> some = pixels_of(film.blocks()[block]);
     pixels.insert(pixels.end(), some.begin(), some.end());
   }
-  Delivery delivery{film, range, blocks, film_scale().size(), 0, {}, {}, {}};
+  gpu::FilmDelivery delivery(film, range, blocks, film_scale().size());
   const std::atomic<bool> never{false};
   for (std::size_t at = 0; at < pixels.size();) {
-    const std::size_t room = repeated([&] { return groups_->group_pixels(pixels.size()); });
-    const bool in_block = !delivery.counts.empty();
+    const std::size_t room =
+        repeated([&] { return groups_->group_pixels(pixels.size(), film.keeps_sums()); });
+    const bool in_block = delivery.in_block();
     const std::size_t number = in_block ? std::min(room, delivery.missing()) : whole_blocks(pixels, at, room);
+    const std::span<const ImagePixel> group = std::span(pixels).subspan(at, number);
     // The parts of a block that is larger than a group get the same samples, stopped or not.
     SampleRange part = range;
-    if (in_block) part.count = delivery.attempted.front();
+    if (in_block) part.count = delivery.attempted();
+    std::optional<gpu::FilmSums> before;
+    if (film.keeps_sums()) before = delivery.sums_of(group);
     try {
-      delivery.add(
-          render_group(std::span(pixels).subspan(at, number), part, in_block ? never : stop, told));
+      delivery.add(group,
+                   render_group(group, part, before ? &*before : nullptr, in_block ? never : stop, told));
       at += number;
     } catch (const gpu::DeviceOutOfMemory& refusal) {
       retreat(refusal);  // and the same pixels again, fewer at a time

@@ -115,6 +115,23 @@ uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {
                                                : most);
 }
 
+SumRule sum_rule_of(Method method, uint32_t round_samples, bool derived) {
+  if (method == Method::kPt) return {SumRule::Kind::kCompensated, 0, 1, 1};
+  return {SumRule::Kind::kCompensated, std::min(round_samples, kSamplesInRegisters), round_samples,
+          derived ? round_samples : 1};
+}
+
+bool begins_chunk(uint32_t first, const SumRule& rule) {
+  return rule.chunk > 0 && first % rule.period % rule.chunk == 0;
+}
+
+SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule) {
+  const uint32_t left = end - first, place = first % rule.period;
+  const bool several = rule.period > rule.chunk;  // chunks in a round
+  if (place == 0 && (left > rule.period || (several && left == rule.period))) return {rule.period, false};
+  return {std::min({left, rule.period - place, rule.chunk - place % rule.chunk}), true};
+}
+
 RoundPlan plan_rounds(const PlanRequest& r) {
   RoundPlan plan;
   const bool pt = r.method == Method::kPt;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "film/replicate_sums.hpp"
 #include "src_gpu/path_pool.hpp"
 
 namespace kiloband::gpu {
@@ -49,6 +50,25 @@ struct RoundPlan {
 /// kind of device alone, and images are the same bit by bit whatever the budget. table_bytes  of a block and
 /// sample: dense spectra
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes);
+
+/// Samples that kernels sum in registers before they add them to the film (kernels/evaluate_tile.clh).
+inline constexpr uint32_t kSamplesInRegisters = 32;
+
+/// How the film is summed where rounds have at most `round_samples`: in chunks of a round, and of what
+/// registers take of it; pt adds every sample to the film at once. derived: there are derived channels, whose
+/// sums are kept for whole rounds alone
+SumRule sum_rule_of(Method method, uint32_t round_samples, bool derived);
+
+/// A round of a replicate that may be gone on with.
+struct SampleCut {
+  uint32_t samples = 0;
+  bool open = false;  // its sums are those of a chunk that goes on, KbRound::open
+};
+/// The next round of the samples [first, end) of a replicate. Chunks that are rendered as a whole go to the
+/// film; the one at the end stays open, so that the samples after it find its sums.
+SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule);
+/// Whether sample `first` begins a chunk: that before it is complete.
+bool begins_chunk(uint32_t first, const SumRule& rule);
 
 /// throws DeviceOutOfMemory  not even a pixel fits: says what would be needed
 RoundPlan plan_rounds(const PlanRequest& request);

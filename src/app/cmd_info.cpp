@@ -88,7 +88,10 @@ void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples)
   const std::size_t channels = scene.channels.size() + derived;
   const auto film = [&](bool variance) {
     FilmOptions options{channels, 16, variance, false};
-    options.parts = replicates_in_parts(samples, options.replicates);
+    if (replicates_in_parts(samples, options.replicates)) {
+      options.sums = SumRule{};  // the CPU's
+      options.most_samples = static_cast<uint32_t>(ReplicatePlan::deal(samples, options.replicates).size(0));
+    }
     return mebibytes(pixels * static_cast<double>(SpectralFilm::bytes_per_pixel(options)));
   };
   answer("image        {} x {} pixels\n", scene.film.crop_width, scene.film.crop_height);

@@ -118,7 +118,7 @@ SessionSettings session_settings(const RenderOptions& options, const OutputFiles
 void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const SamplingSettings& sampling,
                         const Backend& backend, const DerivedChannels& derived) {
   if (!settings.checkpoint) return;
-  settings.fingerprint = render_fingerprint(scene, sampling, backend.isa(), derived);
+  settings.fingerprint = render_fingerprint(scene, sampling, arithmetic_of(backend), derived);
   if (settings.resume && !checkpoint_exists(*settings.checkpoint)) {
     tell("note: no checkpoint {}: starting afresh\n", settings.checkpoint->string());
   }
@@ -197,9 +197,11 @@ int render(const RenderOptions& options) {
   check_scene_file(options.scene.scene);
   const OutputFiles files = output_files(options);
   check_output_files(files);
+  if (files.checkpoint) check_checkpoint_file(*files.checkpoint, options.resume);
   check_replicates(options);
   const LoadedScene loaded = load_scene(options.scene, sink);
   SessionSettings settings = session_settings(options, files, loaded.description);
+  settings.sink = sink;
   report_replicates(options, settings, sink);
   const SamplingSettings sampling = options.sampling.settings(session_replicates(settings));
   const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
@@ -267,7 +269,7 @@ void add_output_options(CLI::App& command, RenderOptions& o) {
       ->check(CLI::IsMember({"integral", "density"}));
   command.add_option("--preview", o.preview, "PNG preview");
   auto* checkpoint =
-      command.add_option("--checkpoint", o.checkpoint, "file that the unfinished render is saved in");
+      command.add_option("--checkpoint", o.checkpoint, "new file that the unfinished render is saved in");
   command.add_option("--checkpoint-interval", o.checkpoint_interval, "how often: 60s (the default), 10min")
       ->needs(checkpoint);
   command.add_flag("--resume", o.resume, "go on from the checkpoint; more --spp extend a render")

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "film/scratch_memory.hpp"
-#include "film/spectral_film_parts.hpp"
+#include "film/spectral_film_sums.hpp"
 
 namespace kiloband {
 namespace {
@@ -17,8 +17,17 @@ std::size_t tile_in_block(const PixelRect& block, std::size_t pixel) {
 }
 
 /// Sample counts of a pixel's replicates.
-std::size_t held_count_bytes(const FilmOptions& options) {
-  return sizeof(uint64_t) * options.replicates;
+std::size_t count_bytes(const FilmOptions& options) {
+  if (options.sums) return sizeof(uint32_t) * (options.held ? options.replicates : 1);
+  return options.held ? sizeof(uint64_t) * options.replicates : 0;
+}
+
+/// Of a value: what is held of it, or its moments.
+std::size_t value_bytes(const FilmOptions& options) {
+  const std::size_t moments = options.variance ? 9 : sizeof(float);
+  if (!options.sums) return options.held ? sizeof(float) * options.replicates : moments;
+  const std::size_t sums = ReplicateSums::bytes_per_value(*options.sums, options.most_samples);
+  return options.held ? sums * options.replicates : moments + sums;
 }
 
 }  // namespace
@@ -40,26 +49,23 @@ std::vector<PixelRect> cut_into_blocks(const PixelRect& rect) {
 /// Means of every replicate: [replicate][pixel][channel] and counts.
 struct SpectralFilm::Held {
   ScratchFloats means;
-  std::vector<std::vector<uint64_t>> samples;    // [replicate][pixel]
-  std::vector<std::vector<uint32_t>> attempted;  // [replicate][block]
+  std::vector<std::vector<uint64_t>> samples;  // [replicate][pixel]
 };
 
 SpectralFilm::SpectralFilm(const PixelRect& rect, const FilmOptions& options)
     : rect_(rect), options_(options), blocks_(cut_into_blocks(rect)) {
-  if (options.held) {
-    const std::size_t counts = held_count_bytes(options) * rect.pixels();
+  if (options.sums) sums_ = std::make_unique<Sums>(rect, blocks_.size(), options);
+  if (options.held && !options.sums) {
+    const std::size_t counts = count_bytes(options) * rect.pixels();
     held_ = std::unique_ptr<Held>(
         new Held{ScratchFloats(std::size_t{options.replicates} * rect.pixels() * options.channels,
                                options.memory_bytes - std::min(options.memory_bytes, counts)),
-                 std::vector(options.replicates, std::vector<uint64_t>(rect.pixels())),
-                 std::vector(options.replicates, std::vector<uint32_t>(blocks_.size()))});
-  } else {
+                 std::vector(options.replicates, std::vector<uint64_t>(rect.pixels()))});
+  }
+  if (!options.held) {
     pixels_ = std::make_unique<ReplicateMoments>(rect.pixels(), options.channels, options.variance);
     if (options.variance) {
       tiles_ = std::make_unique<ReplicateMoments>(blocks_.size() * kTilesPerBlock, options.channels, true);
-    }
-    if (options.parts) {
-      parts_ = std::make_unique<Parts>(rect.pixels(), blocks_.size(), options.channels, options.variance);
     }
   }
   block_sums_.resize(blocks_.size());
@@ -70,13 +76,8 @@ SpectralFilm::~SpectralFilm() = default;
 SpectralFilm::SpectralFilm(SpectralFilm&&) noexcept = default;
 
 std::size_t SpectralFilm::bytes_per_pixel(const FilmOptions& options) {
-  const std::size_t per_channel = options.held       ? sizeof(float) * options.replicates
-                                  : options.variance ? 9
-                                                     : sizeof(float);
-  const std::size_t of_part = options.parts && !options.held ? sizeof(float) : 0;
-  const std::size_t counts = options.held ? held_count_bytes(options) : 0;
-  return options.channels * (per_channel + of_part) +
-         options.channels * options.replicates * sizeof(double) / 1024 + counts + 32;
+  return options.channels * value_bytes(options) +
+         options.channels * options.replicates * sizeof(double) / 1024 + count_bytes(options) + 32;
 }
 
 std::size_t SpectralFilm::pixel_index(const PixelRect& block, std::size_t pixel) const {
@@ -91,11 +92,8 @@ void SpectralFilm::add(const BlockSamples& samples) {
       samples.replicate >= options_.replicates) {
     throw std::logic_error("SpectralFilm::add: samples do not have the block's shape");
   }
-  if (held_) {
-    add_held(samples, block);
-  } else {
-    parts_ ? add_part(samples, block) : add_folded(samples, block);
-  }
+  if (sums_) throw std::logic_error("SpectralFilm::add: the film keeps sums");
+  held_ ? add_held(samples, block) : add_folded(samples, block);
   add_coarse(samples, block);
 }
 
@@ -109,47 +107,46 @@ void SpectralFilm::add_folded(const BlockSamples& samples, const PixelRect& bloc
 void SpectralFilm::add_held(const BlockSamples& samples, const PixelRect& block) {
   float* means = held_->means.values().data() + samples.replicate * rect_.pixels() * options_.channels;
   auto& counts = held_->samples[samples.replicate];
-  held_->attempted[samples.replicate][samples.block] += samples.attempted;
   for (std::size_t p = 0; p < block.pixels(); ++p) {
     if (samples.counts[p] == 0) continue;
     const std::size_t pixel = pixel_index(block, p);
-    counts[pixel] += samples.counts[p];
-    const double share = static_cast<double>(samples.counts[p]) / static_cast<double>(counts[pixel]);
-    float* mean = &means[pixel * options_.channels];
-    const float* added = &samples.means[p * samples.stride];
-    combine(mean, added, share, options_.channels);
+    if (counts[pixel] > 0) throw std::logic_error("SpectralFilm::add: a replicate of a block comes twice");
+    counts[pixel] = samples.counts[p];
+    std::copy_n(&samples.means[p * samples.stride], options_.channels, &means[pixel * options_.channels]);
   }
 }
 
-/// 8x8 tiles and the image: sums over the samples of the block in double.
-void SpectralFilm::add_coarse(const BlockSamples& samples, const PixelRect& block) {
+SpectralFilm::Coarse SpectralFilm::coarse_sums(const BlockSamples& samples, const PixelRect& block) const {
   const std::size_t channels = options_.channels;
-  std::vector<double> tile_sums(kTilesPerBlock * channels);
-  std::vector<uint64_t> tile_counts(kTilesPerBlock);
+  Coarse coarse{std::vector<double>(kTilesPerBlock * channels), std::vector<uint64_t>(kTilesPerBlock)};
   for (std::size_t p = 0; p < block.pixels(); ++p) {
     const std::size_t tile = tile_in_block(block, p);
     const double count = samples.counts[p];
     const float* mean = &samples.means[p * samples.stride];
-    double* sums = &tile_sums[tile * channels];
+    double* sums = &coarse.sums[tile * channels];
     for (std::size_t c = 0; c < channels; ++c) sums[c] += count * mean[c];
-    tile_counts[tile] += samples.counts[p];
+    coarse.counts[tile] += samples.counts[p];
   }
+  return coarse;
+}
+
+/// 8x8 tiles and the image.
+void SpectralFilm::add_coarse(const BlockSamples& samples, const PixelRect& block) {
+  const std::size_t channels = options_.channels;
+  const Coarse coarse = coarse_sums(samples, block);
   auto& block_sums = block_sums_[samples.block];
   if (block_sums.empty()) block_sums.resize(options_.replicates * channels);
   std::vector<float> tile_mean(channels);
   for (std::size_t tile = 0; tile < kTilesPerBlock; ++tile) {
-    if (tile_counts[tile] == 0) continue;
+    const uint64_t count = coarse.counts[tile];
+    if (count == 0) continue;
+    const double* const sums = &coarse.sums[tile * channels];
     for (std::size_t c = 0; c < channels; ++c) {
-      block_sums[samples.replicate * channels + c] += tile_sums[tile * channels + c];
-      tile_mean[c] =
-          static_cast<float>(tile_sums[tile * channels + c] / static_cast<double>(tile_counts[tile]));
+      block_sums[samples.replicate * channels + c] += sums[c];
+      tile_mean[c] = static_cast<float>(sums[c] / static_cast<double>(count));
     }
-    block_counts_[samples.block][samples.replicate] += tile_counts[tile];
-    if (tiles_ && parts_) {
-      add_tile_part(samples, tile, {&tile_sums[tile * channels], channels}, tile_counts[tile]);
-    } else if (tiles_) {
-      tiles_->add(samples.block * kTilesPerBlock + tile, tile_counts[tile], tile_mean);
-    }
+    block_counts_[samples.block][samples.replicate] += count;
+    if (tiles_) tiles_->add(samples.block * kTilesPerBlock + tile, count, tile_mean);
   }
 }
 
@@ -158,11 +155,13 @@ void SpectralFilm::row(uint32_t y, std::span<float> mean, std::span<float> varia
   std::unique_ptr<ReplicateMoments> folded;
   const ReplicateMoments* moments = pixels_.get();
   std::size_t first = std::size_t{y} * rect_.width;
-  if (held_) {
+  if (options_.held) {
     folded = std::make_unique<ReplicateMoments>(rect_.width, channels, !variance.empty());
+    std::vector<float> one(channels);
     for (uint32_t r = 0; r < options_.replicates; ++r) {
       for (std::size_t x = 0; x < rect_.width; ++x) {
-        folded->add(x, replicate_samples(r, first + x), replicate_mean(r, first + x));
+        replicate_mean(r, first + x, one);
+        folded->add(x, replicate_samples(r, first + x), one);
       }
     }
     moments = folded.get();
@@ -176,55 +175,29 @@ void SpectralFilm::row(uint32_t y, std::span<float> mean, std::span<float> varia
 
 uint64_t SpectralFilm::samples(uint32_t x, uint32_t y) const {
   const std::size_t pixel = std::size_t{y} * rect_.width + x;
-  if (!held_) return pixels_->samples(pixel);
+  if (pixels_) return pixels_->samples(pixel);
   uint64_t sum = 0;
-  for (const auto& counts : held_->samples) sum += counts[pixel];
+  for (uint32_t r = 0; r < options_.replicates; ++r) sum += replicate_samples(r, pixel);
   return sum;
 }
 
 void SpectralFilm::require_held() const {
-  if (!held_) throw std::logic_error("SpectralFilm: replicates are not held");
+  if (!options_.held) throw std::logic_error("SpectralFilm: replicates are not held");
 }
 
-std::span<const float> SpectralFilm::replicate_mean(uint32_t replicate, std::size_t pixel) const {
-  return held_means().subspan((replicate * rect_.pixels() + pixel) * options_.channels, options_.channels);
+void SpectralFilm::replicate_mean(uint32_t replicate, std::size_t pixel, std::span<float> mean) const {
+  require_held();
+  if (sums_)
+    return mean_of_sums(*options_.sums, attempted_at(replicate, pixel), pixel_sums(replicate, pixel), mean);
+  const std::size_t channels = options_.channels;
+  std::ranges::copy(
+      std::as_const(held_->means).values().subspan((replicate * rect_.pixels() + pixel) * channels, channels),
+      mean.begin());
 }
 
 uint64_t SpectralFilm::replicate_samples(uint32_t replicate, std::size_t pixel) const {
   require_held();
-  return held_->samples.at(replicate)[pixel];
-}
-
-uint32_t SpectralFilm::attempted(uint32_t replicate, uint32_t block) const {
-  require_held();
-  return held_->attempted.at(replicate).at(block);
-}
-
-std::span<float> SpectralFilm::held_means() {
-  require_held();
-  return held_->means.values();
-}
-
-std::span<const float> SpectralFilm::held_means() const {
-  require_held();
-  return std::as_const(held_->means).values();
-}
-
-HeldCountsView SpectralFilm::held_counts() const {
-  require_held();
-  return {held_->samples, held_->attempted, block_sums_, block_counts_};
-}
-
-void SpectralFilm::restore(HeldCounts counts) {
-  require_held();
-  if (counts.samples.size() != options_.replicates || counts.attempted.size() != options_.replicates ||
-      counts.block_sums.size() != blocks_.size() || counts.block_samples.size() != blocks_.size()) {
-    throw std::logic_error("SpectralFilm::restore: counts do not have the film's shape");
-  }
-  held_->samples = std::move(counts.samples);
-  held_->attempted = std::move(counts.attempted);
-  block_sums_ = std::move(counts.block_sums);
-  block_counts_ = std::move(counts.block_samples);
+  return sums_ ? pixel_sums(replicate, pixel).count : held_->samples.at(replicate)[pixel];
 }
 
 const ReplicateMoments& SpectralFilm::tile_moments() const {
@@ -236,6 +209,7 @@ void SpectralFilm::add_image_sums(std::vector<std::vector<double>>& sums,
                                   std::vector<uint64_t>& counts) const {
   sums.resize(options_.replicates, std::vector<double>(options_.channels));
   counts.resize(options_.replicates);
+  if (sums_ && options_.held) return add_held_image_sums(sums, counts);
   for (std::size_t block = 0; block < blocks_.size(); ++block) {
     if (block_sums_[block].empty()) continue;
     for (uint32_t r = 0; r < options_.replicates; ++r) {

@@ -1,20 +1,23 @@
 // SpectralFilm: what a backend adds samples to, for a rectangle of the image.
 //
 // The rectangle is cut into blocks of 32x32 pixels (aligned to the FULL film, as the shared wavelength
-// offsets are). A backend delivers, per block and replicate, the means of the replicate's samples. Two ways
-// of keeping them:
-//   folded  each block finishes one replicate after the other: mean and sum of squares per channel (8 bytes);
-//           if replicates come in parts, 4 more for the mean of the one that is open
-//   held    the means of every replicate stay (4 R bytes, and 8 R per pixel for their counts): needed when
-//   passes return to replicates (--time,
-//           --target-error), for --keep-replicates and checkpoints
+// offsets are). Two ways of keeping what the replicates of a block come to:
+//   folded  one after the other: mean and sum of squares of their means, per channel (8 bytes)
+//   held    the means of all of them stay (4 R bytes, and 8 R per pixel for their counts): for
+//           --keep-replicates
+// A backend delivers a replicate of a block at once, as means. Where replicates come in parts, the film keeps
+// sums (FilmOptions::sums, replicate_sums.hpp), of the replicate that is open in each block (folded: 4 or 12
+// bytes more per value) or of all of them (held: 4 R or 12 R bytes, and 4 R per pixel), and a backend goes on
+// from them: when passes return to replicates (--time, --target-error), and for checkpoints.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "film/replicate_sums.hpp"
 #include "film/statistics.hpp"
 
 namespace kiloband {
@@ -32,7 +35,7 @@ struct PixelRect {
 /// The blocks that cover a rectangle, clipped to it, row by row.
 std::vector<PixelRect> cut_into_blocks(const PixelRect& rect);
 
-/// The samples of one replicate in one block: per pixel their number and mean; means are [pixel][channel],
+/// All samples of one replicate in one block: per pixel their number and mean; means are [pixel][channel],
 /// row by row.
 struct BlockSamples {
   uint32_t block = 0;
@@ -40,7 +43,6 @@ struct BlockSamples {
   std::span<const uint32_t> counts;
   std::span<const float> means;
   std::size_t stride = 0;  // floats between pixels in means, >= channels
-  uint32_t attempted = 0;  // samples per pixel, invalid ones included
 };
 
 struct FilmOptions {
@@ -49,27 +51,9 @@ struct FilmOptions {
   bool variance = false;
   bool held = false;
   std::size_t memory_bytes = std::size_t{1}
-                             << 30;  // held means that with their counts take more go to a scratch file
-  bool parts = false;                // folded: several deliveries of a replicate of a block may come
-};
-
-/// What a held film consists of beside its means: small, and enough to go on with it (checkpoints).
-struct HeldCounts {
-  std::vector<std::vector<uint64_t>> samples;    // [replicate][pixel], valid samples
-  std::vector<std::vector<uint32_t>> attempted;  // [replicate][block], samples per pixel
-  std::vector<std::vector<double>>
-      block_sums;  // [block][replicate * channels + channel]; empty: no sample yet
-  std::vector<std::vector<uint64_t>> block_samples;  // [block][replicate]
-};
-
-/// The same where it stands: nothing is copied. Valid as long as the film.
-struct HeldCountsView {
-  const std::vector<std::vector<uint64_t>>& samples;
-  const std::vector<std::vector<uint32_t>>& attempted;
-  const std::vector<std::vector<double>>& block_sums;
-  const std::vector<std::vector<uint64_t>>& block_samples;
-
-  HeldCounts copy() const { return {samples, attempted, block_sums, block_samples}; }
+                             << 30;  // what is held beyond this, counts included, goes to a scratch file
+  std::optional<SumRule> sums;       // the backend's: replicates come in parts
+  uint32_t most_samples = ~0u;       // per replicate, of films that keep sums
 };
 
 class SpectralFilm {
@@ -82,12 +66,26 @@ class SpectralFilm {
   const FilmOptions& options() const { return options_; }
   const std::vector<PixelRect>& blocks() const { return blocks_; }
 
-  /// Thread-safe for different blocks. Folded films take the replicates of a block in order; several
-  /// deliveries of the same replicate of a block are for held films and for those with FilmOptions::parts
-  /// (the means are combined by their counts).
+  /// Thread-safe for different blocks. Folded films take the replicates of a block in order. Not for films
+  /// that keep sums.
   void add(const BlockSamples& samples);
-  /// Films with parts: what is open becomes part of the moments. To be called before anything is read; no
-  /// more samples of the replicates so far may follow.
+
+  /// What follows is for films that keep sums, and thread-safe for different blocks.
+  bool keeps_sums() const { return sums_ != nullptr; }
+  /// Samples per pixel, invalid ones included, that a block has had of a replicate: where the next delivery
+  /// begins. Folded films: of the replicate that is open, 0 of all others.
+  uint32_t attempted(uint32_t replicate, uint32_t block) const;
+  /// To be called before the sums of a block are touched. Folded films: the replicate before becomes part of
+  /// the moments, and this one begins.
+  void open_replicate(uint32_t replicate, uint32_t block);
+  /// pixel: index in the rectangle, see pixel_index()
+  PixelSums pixel_sums(uint32_t replicate, std::size_t pixel);
+  PixelSumsView pixel_sums(uint32_t replicate, std::size_t pixel) const;
+  std::size_t pixel_index(const PixelRect& block, std::size_t pixel_in_block) const;
+  /// To be called once the sums have all samples before this one.
+  void set_attempted(uint32_t replicate, uint32_t block, uint32_t attempted);
+  /// Folded films: what is open becomes part of the moments. To be called before anything is read; no more
+  /// samples of the replicates so far may follow.
   void finish_replicates();
 
   /// Mean and variance of the mean of one row of pixels (y relative to the rectangle): [x][channel]. variance
@@ -95,17 +93,9 @@ class SpectralFilm {
   void row(uint32_t y, std::span<float> mean, std::span<float> variance) const;
   /// Samples of a pixel (x, y relative to the rectangle).
   uint64_t samples(uint32_t x, uint32_t y) const;
-  /// held films: mean of one replicate at a pixel, and its number of samples.
-  std::span<const float> replicate_mean(uint32_t replicate, std::size_t pixel) const;
+  /// held films: mean of one replicate at a pixel, one entry per channel, and its number of samples.
+  void replicate_mean(uint32_t replicate, std::size_t pixel, std::span<float> mean) const;
   uint64_t replicate_samples(uint32_t replicate, std::size_t pixel) const;
-  /// held films: samples per pixel that a block has had of a replicate; where the next range begins.
-  uint32_t attempted(uint32_t replicate, uint32_t block) const;
-  /// held films: all means [replicate][pixel][channel] and the counts beside them, to be saved and restored.
-  std::span<float> held_means();
-  std::span<const float> held_means() const;
-  HeldCountsView held_counts() const;
-  /// throws std::logic_error if the shapes differ
-  void restore(HeldCounts counts);
 
   /// Moments of the 8x8-pixel tiles' means (tiles are aligned to the blocks, row by row within a block: index
   /// block * 16 + (y / 8) * 4 + x / 8, coordinates relative to the block) and of the whole rectangle's mean
@@ -121,23 +111,26 @@ class SpectralFilm {
 
  private:
   struct Held;
-  struct Parts;
+  struct Sums;
+  struct Coarse;
+  struct BlockMeans;
   void require_held() const;
+  void require_sums() const;
+  uint32_t attempted_at(uint32_t replicate, std::size_t pixel) const;
   void add_folded(const BlockSamples& samples, const PixelRect& block);
-  void add_part(const BlockSamples& samples, const PixelRect& block);
-  void add_tile_part(const BlockSamples& samples, std::size_t tile, std::span<const double> sums,
-                     uint64_t count);
-  void fold_block(uint32_t block);
   void add_held(const BlockSamples& samples, const PixelRect& block);
   void add_coarse(const BlockSamples& samples, const PixelRect& block);
-  std::size_t pixel_index(const PixelRect& block, std::size_t pixel_in_block) const;
+  Coarse coarse_sums(const BlockSamples& samples, const PixelRect& block) const;
+  void fold_block(uint32_t block);
+  BlockMeans means_of_block(uint32_t replicate, uint32_t block) const;
+  void add_held_image_sums(std::vector<std::vector<double>>& sums, std::vector<uint64_t>& counts) const;
 
   PixelRect rect_;
   FilmOptions options_;
   std::vector<PixelRect> blocks_;
   std::unique_ptr<ReplicateMoments> pixels_;  // folded
-  std::unique_ptr<Held> held_;
-  std::unique_ptr<Parts> parts_;                 // folded, replicates in parts
+  std::unique_ptr<Held> held_;                // held means
+  std::unique_ptr<Sums> sums_;
   std::unique_ptr<ReplicateMoments> tiles_;      // folded, with variance
   std::vector<std::vector<double>> block_sums_;  // [block][replicate * channels + channel], sum of samples
   std::vector<std::vector<uint64_t>> block_counts_;  // [block][replicate]

@@ -61,9 +61,10 @@ class Backend {
  public:
   virtual ~Backend() = default;
 
-  /// Renders the range in the film's blocks `blocks` and adds them. Returns early when stop becomes true:
-  /// samples in flight are finished and delivered. `progress` is called now and then, from one thread at a
-  /// time, with the pixel samples done.
+  /// Renders the range in the film's blocks `blocks` and adds them; a film that keeps sums must be of this
+  /// backend's sum_rule() and have range.first samples of the replicate there. Returns early when stop
+  /// becomes true: samples in flight are finished and delivered. `progress` is called now and then, from one
+  /// thread at a time, with the pixel samples done.
   virtual void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) = 0;
   /// [y][x] of the rectangle.
@@ -91,6 +92,8 @@ class Backend {
   virtual std::vector<InvalidSample> invalid_samples() const = 0;
   /// Factors that turn film values of all channels, derived ones included, into W m^-2 sr^-1.
   virtual std::vector<double> film_scale() const = 0;
+  /// How samples are added; follows from scene, settings and device alone.
+  virtual SumRule sum_rule() const = 0;
 };
 
 }  // namespace kiloband

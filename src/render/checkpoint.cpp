@@ -1,255 +1,214 @@
 #include "render/checkpoint.hpp"
 
 #include <fmt/core.h>
+#include <sys/stat.h>
 
-#include <array>
-#include <cstring>
-#include <fstream>
+#include <stdexcept>
+#include <vector>
 
+#include "base/error.hpp"
 #include "film/atomic_file.hpp"
+#include "render/checkpoint_reader.hpp"
 
 namespace kiloband {
 namespace {
 
-// Layout, little endian: magic, fingerprint, replicates, pixels, channels, blocks (u64 each); means; samples;
-// attempted; block samples; block sums (those of empty blocks as zeros); checksum of all before it.
-constexpr std::array<char, 16> kMagic{'k', 'i', 'l', 'o', 'b', 'a', 'n', 'd',
-                                      ' ', 'c', 'h', 'e', 'c', 'k', ' ', '1'};
-
-using CheckpointHeader = std::array<uint64_t, 5>;  // between magic and means
-constexpr std::size_t kReplicatesEntry = 1;
-constexpr uint64_t kMostReplicates = 4096;  // more are no checkpoint of ours
-
-/// FNV-1a over 64-bit words (the rest bytewise): fast enough for gigabytes, and every bit counts.
-class Hash {
- public:
-  void add(std::span<const char> bytes) {
-    std::size_t i = 0;
-    for (; i + 8 <= bytes.size(); i += 8) {
-      uint64_t word;
-      std::memcpy(&word, &bytes[i], 8);
-      mix(word);
-    }
-    for (; i < bytes.size(); ++i) mix(static_cast<unsigned char>(bytes[i]));
-  }
-  template <class T>
-  void add_value(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    add({reinterpret_cast<const char*>(&value), sizeof value});
-  }
-  template <class T>
-  void add_all(const std::vector<T>& values) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    add_value(values.size());
-    add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
-  }
-  uint64_t value() const { return state_; }
-
- private:
-  void mix(uint64_t word) {
-    state_ = (state_ ^ word) * 0x100000001b3ull;
-    state_ ^= state_ >> 29;  // the multiplication alone never carries high bits down
-  }
-  uint64_t state_ = 0xcbf29ce484222325ull;
-};
-
-void add_channels(Hash& hash, const ChannelList& channels) {
-  hash.add_value(channels.size());
-  for (const Channel& channel : channels) {
-    hash.add_value(channel.min_nm);
-    hash.add_value(channel.max_nm);
-  }
-}
-
-void add_spectra(Hash& hash, const std::vector<SpectrumRow>& spectra) {
-  for (const SpectrumRow& row : spectra) {
-    hash.add_all(row.table.values);
-    for (const double v : {row.table.min_nm, row.table.step_nm, row.temperature_k, row.planck_scale,
-                           row.planck_min_nm, row.planck_max_nm}) {
-      hash.add_value(v);
-    }
-    hash.add_value(row.is_planck);
-    hash.add_value(row.is_emission);
-    hash.add_value(row.table.extrapolate);
-  }
-}
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
 /// Sequential output with a running checksum.
 class Writer {
  public:
-  explicit Writer(const std::filesystem::path& file) : file_(file) {}
+  Writer(const std::filesystem::path& file, uint64_t bytes) : file_(file) {
+    file_.preallocate(bytes);
+    buffer_.reserve(kBufferBytes);
+  }
   void put(std::span<const char> bytes) {
     hash_.add(bytes);
-    file_.write_at(offset_, bytes);
-    offset_ += bytes.size();
+    if (buffer_.size() + bytes.size() > kBufferBytes) flush();
+    if (bytes.size() > kBufferBytes) {
+      file_.write_at(offset_, bytes);
+      offset_ += bytes.size();
+    } else {
+      buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+    }
   }
   template <class T>
   void put_all(std::span<const T> values) {
     put({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
   }
-  void finish() {
+  void put_checksum() {
     const uint64_t checksum = hash_.value();
     put_all(std::span<const uint64_t>(&checksum, 1));
+  }
+  void commit() {
+    flush();
     file_.commit();
   }
 
  private:
+  void flush() {
+    file_.write_at(offset_, buffer_);
+    offset_ += buffer_.size();
+    buffer_.clear();
+  }
+
   AtomicFile file_;
-  Hash hash_;
+  WordHash hash_;
+  std::vector<char> buffer_;
   uint64_t offset_ = 0;
 };
 
-class Reader {
- public:
-  explicit Reader(const std::filesystem::path& file) : name_(file.string()), in_(file, std::ios::binary) {
-    if (!in_) throw InputError(name_ + ": cannot be opened");
-  }
-  template <class T>
-  void get_all(std::span<T> values) {
-    const auto bytes = static_cast<std::streamsize>(values.size_bytes());
-    if (!in_.read(reinterpret_cast<char*>(values.data()), bytes)) fail("is not a checkpoint or ends early");
-    hash_.add({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
-  }
-  uint64_t get() {
-    uint64_t value = 0;
-    get_all(std::span<uint64_t>(&value, 1));
-    return value;
-  }
-  CheckpointHeader get_header() {
-    std::array<char, kMagic.size()> magic{};
-    get_all<char>(magic);
-    if (magic != kMagic) fail("is not a checkpoint");
-    CheckpointHeader header{};
-    get_all<uint64_t>(header);
-    return header;
-  }
-  void check_end() {
-    const uint64_t expected = hash_.value();
-    if (get() != expected) fail("is damaged: the checksum differs");
-  }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError("checkpoint " + name_ + " " + what);
-  }
-
- private:
-  std::string name_;
-  std::ifstream in_;
-  Hash hash_;
-};
-
-void add_spectral_textures(Hash& hash, const FlatScene& scene) {
-  for (const BandSet& set : scene.band_sets) {
-    hash.add_all(set.centres_nm);
-    for (const double value : {set.min_nm, set.max_nm, set.scale}) hash.add_value(value);
-    hash.add_value(set.extrapolate);
-  }
-  for (const SpectralTexels& texels : scene.spectral_texels)
-    if (texels) hash.add_all(*texels);
+CheckpointHeader header_of(const SpectralFilm& film, uint64_t fingerprint) {
+  const PixelRect& rect = film.rect();
+  const SumRule& rule = *film.options().sums;
+  return {fingerprint,
+          rect.x0,
+          rect.y0,
+          rect.width,
+          rect.height,
+          film.options().channels,
+          film.options().replicates,
+          static_cast<uint64_t>(rule.kind),
+          rule.chunk,
+          rule.period};
 }
 
-CheckpointHeader header_of(const SpectralFilm& film, uint64_t fingerprint) {
-  return {fingerprint, film.options().replicates, film.rect().pixels(), film.options().channels,
-          film.blocks().size()};
+/// Calls each(replicate, block, samples per pixel) of every replicate and block.
+template <class Each>
+void for_blocks(const SpectralFilm& film, const Each& each) {
+  for (uint32_t r = 0; r < film.options().replicates; ++r) {
+    for (uint32_t b = 0; b < film.blocks().size(); ++b) each(r, b, film.attempted(r, b));
+  }
+}
+
+uint64_t bytes_of(const SpectralFilm& film) {
+  uint64_t bytes = kCheckpointMagic.size() + (kCheckpointEntries + 1 + 2) * sizeof(uint64_t);
+  for_blocks(film, [&](uint32_t, uint32_t b, uint32_t samples) {
+    bytes += sizeof(uint32_t);
+    if (samples > 0)
+      bytes += film.blocks()[b].pixels() *
+               checkpoint_pixel_bytes(*film.options().sums, film.options().channels, samples);
+  });
+  return bytes;
+}
+
+/// Returns the number of values that are not finite.
+uint64_t put_block(Writer& out, const SpectralFilm& film, uint32_t replicate, uint32_t block) {
+  const SumRule& rule = *film.options().sums;
+  const PixelRect& rect = film.blocks()[block];
+  const bool closed = film.attempted(replicate, block) > rule.chunk;
+  const auto sums_of = [&](std::size_t p) { return film.pixel_sums(replicate, film.pixel_index(rect, p)); };
+  std::vector<uint32_t> counts;
+  for (std::size_t p = 0; p < rect.pixels(); ++p) counts.push_back(sums_of(p).count);
+  out.put_all<uint32_t>(counts);
+  uint64_t not_finite = 0;
+  for (std::size_t p = 0; p < rect.pixels(); ++p) {
+    PixelSumsView sums = sums_of(p);
+    if (!closed) sums.closed = {};
+    out.put_all(sums.open);
+    out.put_all(sums.closed);
+    not_finite += count_not_finite(rule, sums);
+  }
+  return not_finite;
+}
+
+uint64_t fill(CheckpointReader in, SpectralFilm& film, uint64_t fingerprint) {
+  const CheckpointOutline& found = in.outline();
+  const CheckpointHeader expected = header_of(film, fingerprint);
+  if (found.replicates != expected[kEntryReplicates])
+    in.fail("belongs to another render: it has " + std::to_string(found.replicates) +
+            " replicates, this one " + std::to_string(expected[kEntryReplicates]));
+  const CheckpointHeader header{
+      found.fingerprint, found.rect.x0,    found.rect.y0,    found.rect.width,
+      found.rect.height, found.channels,   found.replicates, static_cast<uint64_t>(found.rule.kind),
+      found.rule.chunk,  found.rule.period};
+  if (header != expected)
+    in.fail(
+        "belongs to another render: scene, channels, sampling, size, instruction set or OpenCL device "
+        "differ");
+  if (found.most_samples > film.options().most_samples)
+    throw std::logic_error("read_checkpoint: the film has no room for as many samples");
+  in.read_sums([&](uint32_t replicate, std::size_t pixel) { return film.pixel_sums(replicate, pixel); });
+  for_blocks(film, [&](uint32_t r, uint32_t b, uint32_t) { film.set_attempted(r, b, in.attempted(r, b)); });
+  return found.pixel_samples;
+}
+
+CheckpointOutline inspect(CheckpointReader in) {
+  std::vector<float> open;
+  std::vector<ClosedSum> closed;
+  uint32_t count = 0;
+  in.read_sums([&](uint32_t, std::size_t) {
+    open.resize(in.outline().channels);  // the file has as many for every pixel
+    closed.resize(in.outline().channels);
+    return PixelSums{count, open, closed};
+  });
+  return in.outline();
 }
 
 }  // namespace
 
-uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& sampling, const std::string& isa,
-                            const DerivedChannels& derived) {
-  Hash hash;
-  add_channels(hash, scene.channels);
-  add_channels(hash, scene.guide);
-  add_spectra(hash, scene.spectra);
-  hash.add_all(scene.textures);
-  hash.add_all(scene.texels);
-  add_spectral_textures(hash, scene);
-  hash.add_all(scene.checkerboards);
-  hash.add_all(scene.materials);
-  hash.add_all(scene.thermals);
-  hash.add_all(scene.thermal_tables);
-  hash.add_all(scene.surfaces);
-  hash.add_all(scene.shapes);
-  hash.add_all(scene.positions);
-  hash.add_all(scene.normals);
-  hash.add_all(scene.uvs);
-  hash.add_all(scene.triangles);
-  hash.add_all(scene.emitters);
-  hash.add_value(scene.camera);
-  for (const uint32_t value :
-       {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height}) {
-    hash.add_value(value);
-  }
-  hash.add_value(scene.integrator.max_depth);
-  hash.add_value(scene.integrator.rr_depth);
-  hash.add_value(scene.integrator.hide_emitters);
-  hash.add_value(sampling.seed);
-  hash.add_value(sampling.replicates);
-  hash.add_value(static_cast<int>(sampling.sampler));
-  hash.add_value(static_cast<int>(sampling.rough_dispersion));
-  hash.add_value(static_cast<int>(sampling.wavelengths));
-  hash.add({isa.data(), isa.size()});
-  for (const std::string& name : derived.names) hash.add({name.data(), name.size()});
-  for (const RegularTable& response : derived.responses) {
-    hash.add_all(response.values);
-    hash.add_value(response.min_nm);
-    hash.add_value(response.step_nm);
-    hash.add_value(response.extrapolate);
-  }
-  return hash.value();
+void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint) {
+  if (!film.keeps_sums() || !film.options().held)
+    throw std::logic_error("write_checkpoint: the film does not hold sums");
+  Writer out(file, bytes_of(film));
+  out.put(kCheckpointMagic);
+  out.put_all<uint64_t>(header_of(film, fingerprint));
+  out.put_checksum();
+  std::vector<uint32_t> attempted;
+  for_blocks(film, [&](uint32_t, uint32_t, uint32_t samples) { attempted.push_back(samples); });
+  out.put_all<uint32_t>(attempted);
+  uint64_t not_finite = 0;
+  for_blocks(film, [&](uint32_t r, uint32_t b, uint32_t samples) {
+    if (samples > 0) not_finite += put_block(out, film, r, b);
+  });
+  out.put_all(std::span<const uint64_t>(&not_finite, 1));
+  out.put_checksum();
+  out.commit();
 }
 
-void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint) {
-  Writer out(file);
-  const HeldCountsView counts = film.held_counts();
-  out.put(kMagic);
-  out.put_all<uint64_t>(header_of(film, fingerprint));
-  out.put_all<float>(film.held_means());
-  for (const auto& samples : counts.samples) out.put_all<uint64_t>(samples);
-  for (const auto& attempted : counts.attempted) out.put_all<uint32_t>(attempted);
-  for (const auto& samples : counts.block_samples) out.put_all<uint64_t>(samples);
-  const std::vector<double> empty(film.options().replicates * film.options().channels);
-  for (const auto& sums : counts.block_sums) out.put_all<double>(sums.empty() ? empty : sums);
-  out.finish();
+CheckpointOutline checkpoint_outline(const std::filesystem::path& file) {
+  return CheckpointReader(open_checkpoint(file), file.string()).outline();
 }
 
 bool checkpoint_exists(const std::filesystem::path& file) {
   std::error_code error;
   const bool exists = std::filesystem::exists(file, error);
-  if (error) throw InputError(fmt::format("checkpoint {}: cannot be looked for: {}", file.string(), error.message()));
+  if (error)
+    throw InputError(fmt::format("checkpoint {}: cannot be looked for: {}", file.string(), error.message()));
   return exists;
 }
 
 std::optional<uint32_t> checkpoint_replicates(const std::filesystem::path& file) {
   if (!checkpoint_exists(file)) return std::nullopt;
-  const uint64_t replicates = Reader(file).get_header()[kReplicatesEntry];
-  if (replicates < 1 || replicates > kMostReplicates) return std::nullopt;  // read_checkpoint() says so
-  return static_cast<uint32_t>(replicates);
+  return checkpoint_outline(file).replicates;
+}
+
+CheckpointOutline inspect_checkpoint(const std::filesystem::path& file) {
+  return inspect(CheckpointReader(open_checkpoint(file), file.string()));
+}
+
+CheckpointOutline inspect_checkpoint(std::span<const char> bytes, const std::string& name) {
+  return inspect(CheckpointReader(checkpoint_in_memory(bytes), name));
 }
 
 uint64_t read_checkpoint(const std::filesystem::path& file, SpectralFilm& film, uint64_t fingerprint) {
-  Reader in(file);
-  const CheckpointHeader expected = header_of(film, fingerprint), found = in.get_header();
-  if (found != expected && found[kReplicatesEntry] != expected[kReplicatesEntry])
-    in.fail(fmt::format("belongs to another render: it has {} replicates, this one {}",
-                        found[kReplicatesEntry], expected[kReplicatesEntry]));
-  if (found != expected)
-    in.fail("belongs to another render: scene, channels, sampling, size or instruction set differ");
-  HeldCounts counts = film.held_counts().copy();
-  in.get_all<float>(film.held_means());
-  for (auto& samples : counts.samples) in.get_all<uint64_t>(samples);
-  for (auto& attempted : counts.attempted) in.get_all<uint32_t>(attempted);
-  for (auto& samples : counts.block_samples) in.get_all<uint64_t>(samples);
-  for (auto& sums : counts.block_sums) {
-    sums.resize(film.options().replicates * film.options().channels);
-    in.get_all<double>(sums);
+  return fill(CheckpointReader(open_checkpoint(file), file.string()), film, fingerprint);
+}
+
+uint64_t read_checkpoint(std::span<const char> bytes, const std::string& name, SpectralFilm& film,
+                         uint64_t fingerprint) {
+  return fill(CheckpointReader(checkpoint_in_memory(bytes), name), film, fingerprint);
+}
+
+void check_checkpoint_file(const std::filesystem::path& file, bool resume) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) == 0) {
+    const std::string name = "--checkpoint " + file.string() + ": ";
+    if (const std::string kind = irregular_kind(status.st_mode); !kind.empty())
+      throw InputError(name + kind + ": must be a regular file, or not be there yet");
+    if (!resume) throw InputError(name + "exists: --resume goes on from it; remove it to render anew");
   }
-  in.check_end();
-  uint64_t total = 0;
-  for (const auto& samples : counts.samples) {
-    for (const uint64_t n : samples) total += n;
-  }
-  film.restore(std::move(counts));
-  return total;
+  check_writable(file);
 }
 
 }  // namespace kiloband

@@ -178,13 +178,13 @@ void CubeOutput::flush_strip() {
 void CubeOutput::write_replicates(const SpectralFilm& film) {
   const PixelRect& rect = film.rect();
   const uint32_t image_row = first_row_ - rect.height;
-  std::vector<float> rows;
+  std::vector<float> rows, mean(film.options().channels);
   for (uint32_t r = 0; r < replicate_writers_.size(); ++r) {
     for (uint32_t y = 0; y < rect.height; y += strip_) {
       const uint32_t count = std::min(strip_, rect.height - y);
       rows.clear();
       for (std::size_t pixel = std::size_t{y} * width_; pixel < std::size_t{y + count} * width_; ++pixel) {
-        const auto mean = film.replicate_mean(r, pixel);
+        film.replicate_mean(r, pixel, mean);
         const bool empty = film.replicate_samples(r, pixel) == 0;
         for (const std::size_t c : bands_.film_channels) {
           rows.push_back(empty ? kMissing : static_cast<float>(mean[c] * scale_[c]));

@@ -1,11 +1,10 @@
 #include "render/passes.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
-
-#include "render/checkpoint.hpp"
 
 namespace kiloband {
 namespace {
@@ -52,7 +51,10 @@ Passes::Passes(Backend& backend, const SessionSettings& settings, uint32_t repli
       stop_(stop),
       progress_(progress),
       in_parts_(settings.stop.is_fixed() &&
-                replicates_in_parts(*settings.stop.samples_per_pixel, replicates)) {}
+                replicates_in_parts(*settings.stop.samples_per_pixel, replicates)),
+      whole_steps_(backend.sum_rule().step) {
+  if (settings.checkpoint) keeper_.emplace(settings);
+}
 
 void Passes::expect(uint64_t total, uint64_t resumed) {
   total_ = total;
@@ -60,7 +62,8 @@ void Passes::expect(uint64_t total, uint64_t resumed) {
 }
 
 void Passes::render(SpectralFilm& film) {
-  start_ = last_checkpoint_ = Clock::now();
+  start_ = Clock::now();
+  if (keeper_) keeper_->restart();
   if (settings_.stop.is_fixed()) {
     render_fixed(film);
   } else {
@@ -76,7 +79,7 @@ void Passes::render_fixed(SpectralFilm& film) {
   const ReplicatePlan plan = ReplicatePlan::deal(*settings_.stop.samples_per_pixel, replicates_);
   for (uint32_t r = 0; r < plan.replicates && !stop_; ++r) {
     const auto target = static_cast<uint32_t>(plan.size(r));
-    if (!film.options().held) {
+    if (!film.options().held || !film.keeps_sums()) {
       render_replicate(film, r, target);
     } else {
       bring_to(film, r, target, stop_, [this](uint64_t pixels) { advance(pixels); });
@@ -87,15 +90,20 @@ void Passes::render_fixed(SpectralFilm& film) {
 
 /// Samples first, first + 1, ... of a replicate that are rendered at one go. Long replicates come in parts,
 /// so that an interrupted render is even; the first replicate begins with single samples, so that every pixel
-/// soon has some. With a checkpoint the steps follow its clock.
+/// soon has some. With a checkpoint the steps follow its clock. What is seen of it later is where the render
+/// was interrupted: sums do not depend on the parts that they come in.
 uint32_t Passes::next_part(uint32_t replicate, uint32_t first, uint32_t target) const {
   const uint32_t left = target - first;
-  if (settings_.checkpoint) return std::min(left, step_);
-  if (!in_parts_) return left;
-  return std::min(left, replicate > 0 ? kPartSamples : std::clamp(first, 1u, kPartSamples));
+  if (!keeper_ && !in_parts_) return left;
+  uint32_t wanted = replicate > 0 ? kPartSamples : std::clamp(first, 1u, kPartSamples);
+  if (keeper_) wanted = step_;
+  if (wanted >= left) return left;
+  const uint64_t end = uint64_t{first} + wanted,
+                 whole = (end + whole_steps_ - 1) / whole_steps_ * whole_steps_;
+  return static_cast<uint32_t>(std::min<uint64_t>(left, whole - first));
 }
 
-/// All blocks of a folded film.
+/// All blocks of a film that takes one replicate after the other.
 void Passes::render_replicate(SpectralFilm& film, uint32_t replicate, uint32_t target) {
   for (uint32_t first = 0; first < target && !stop_;) {
     const uint32_t count = next_part(replicate, first, target);
@@ -118,22 +126,23 @@ void Passes::bring_to(SpectralFilm& film, uint32_t replicate, uint32_t target, c
       const auto begin = Clock::now();
       backend_.render(film, {replicate, first, count}, blocks, stop, on_samples);
       first += count;
-      if (settings_.checkpoint) save_now_and_then(film, seconds_since(begin));
+      if (!keeper_) continue;
+      adapt_step(seconds_since(begin));
+      keeper_->save_if_due(film);
     }
   }
 }
 
-void Passes::save_now_and_then(const SpectralFilm& film, double step_seconds) {
+void Passes::adapt_step(double step_seconds) {
   const double interval = settings_.checkpoint_interval_seconds;
   if (step_seconds < interval / 8 && step_ < 1u << 20) step_ *= 2;
   if (step_seconds > interval / 2 && step_ > 1) step_ /= 2;
-  if (seconds_since(last_checkpoint_) < interval) return;
-  write_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
-  last_checkpoint_ = Clock::now();
 }
 
-/// Passes over all replicates, each as long as all before it, until a rule is met. Where the number of samples
-/// has a limit, it is dealt to the replicates as if there were no other rule.
+/// Passes over all replicates, each as long as all before it, until a rule is met. Where the number of
+/// samples has a limit, it is dealt to the replicates as if there were no other rule. Without a time limit
+/// passes end at powers of two, and the error is looked at there and at the limit alone: where a render was
+/// interrupted has no say in where it ends.
 StopReason Passes::render_passes(SpectralFilm& film) {
   const auto& samples = settings_.stop.samples_per_pixel;
   const ReplicatePlan plan{samples.value_or(uint64_t{replicates_} << 31), replicates_};
@@ -145,11 +154,11 @@ StopReason Passes::render_passes(SpectralFilm& film) {
   };
   uint32_t done = least_attempted(film);
   const uint32_t begin = done;
-  if (done > 0) {
+  if (is_pass_end(film)) {
     if (const auto reason = look_at_error(film)) return *reason;
   }
   while (!halt && done < most) {
-    done += pass_samples(done, begin, most);
+    done = pass_end(done, begin, most);
     for (uint32_t r = 0; r < replicates_ && !halt; ++r) {
       const auto target = static_cast<uint32_t>(std::min<uint64_t>(done, plan.size(r)));
       bring_to(film, r, target, halt, on_samples);
@@ -160,10 +169,22 @@ StopReason Passes::render_passes(SpectralFilm& film) {
   return halt ? StopReason::kTime : StopReason::kSamples;
 }
 
-/// Samples per replicate of the next pass.
-uint32_t Passes::pass_samples(uint32_t done, uint32_t begin, uint32_t most) const {
-  const uint32_t count = std::min(std::max(1u, done), most - done);
-  return settings_.stop.seconds ? samples_that_fit(done - begin, count) : count;
+/// Samples per replicate, `most` at the end, after the pass that begins with `done` of them; the session
+/// began with `begin`.
+uint32_t Passes::pass_end(uint32_t done, uint32_t begin, uint32_t most) const {
+  if (!settings_.stop.seconds) return std::min(most, std::bit_ceil(done + 1));
+  return done + samples_that_fit(done - begin, std::min(std::max(1u, done), most - done));
+}
+
+/// Whether all replicates of all blocks have as many samples as after some pass to a target error.
+bool Passes::is_pass_end(const SpectralFilm& film) const {
+  const uint32_t least = least_attempted(film);
+  for (uint32_t r = 0; r < replicates_; ++r) {
+    for (uint32_t b = 0; b < film.blocks().size(); ++b) {
+      if (film.attempted(r, b) != least) return false;
+    }
+  }
+  return std::has_single_bit(least);
 }
 
 uint32_t Passes::least_attempted(const SpectralFilm& film) const {

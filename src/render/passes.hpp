@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 
+#include "render/checkpoint_keeper.hpp"
 #include "render/session.hpp"
 
 namespace kiloband {
@@ -22,6 +23,9 @@ class Passes {
   /// Fills a film, to the end of the stop rule or until `stop`. Sessions of strips call it for each.
   void render(SpectralFilm& film);
 
+  /// Keeps the checkpoint; none without SessionSettings::checkpoint.
+  CheckpointKeeper* keeper() { return keeper_ ? &*keeper_ : nullptr; }
+
   double seconds() const { return seconds_; }  // spent in render()
   /// With a target error: those of the film at the end of render().
   const BandErrors& errors() const { return errors_; }
@@ -33,11 +37,12 @@ class Passes {
   void render_fixed(SpectralFilm& film);
   void render_replicate(SpectralFilm& film, uint32_t replicate, uint32_t target);
   StopReason render_passes(SpectralFilm& film);
-  uint32_t pass_samples(uint32_t done, uint32_t begin, uint32_t most) const;
   void bring_to(SpectralFilm& film, uint32_t replicate, uint32_t target, const std::atomic<bool>& stop,
                 const std::function<void(uint64_t)>& on_samples);
   uint32_t next_part(uint32_t replicate, uint32_t first, uint32_t target) const;
-  void save_now_and_then(const SpectralFilm& film, double step_seconds);
+  void adapt_step(double step_seconds);
+  bool is_pass_end(const SpectralFilm& film) const;
+  uint32_t pass_end(uint32_t done, uint32_t begin, uint32_t most) const;
   std::optional<StopReason> look_at_error(const SpectralFilm& film);
   void update_errors(const SpectralFilm& film);
   uint32_t least_attempted(const SpectralFilm& film) const;
@@ -54,7 +59,9 @@ class Passes {
   const std::atomic<bool>& stop_;
   const std::function<void(const Progress&)>& progress_;
   const bool in_parts_;
-  Clock::time_point start_, last_checkpoint_;
+  const uint32_t whole_steps_;  // SumRule::step
+  std::optional<CheckpointKeeper> keeper_;
+  Clock::time_point start_;
   double seconds_ = 0;
   uint32_t step_ = 1;  // samples per replicate between looks at the checkpoint clock
   uint64_t done_ = 0, total_ = 0, resumed_ = 0;  // pixel samples

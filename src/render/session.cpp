@@ -35,14 +35,8 @@ class Session {
   RenderReport run() {
     const PixelRect image{scene_.film.crop_x, scene_.film.crop_y, scene_.film.crop_width,
                           scene_.film.crop_height};
-    FilmOptions options;
-    options.channels = channels_;
-    options.replicates = replicates_;
-    options.variance = settings_.variance;
     const bool revisits = settings_.checkpoint || !settings_.stop.is_fixed();  // passes come back to replicates
-    options.held = settings_.keep_replicates || revisits;
-    options.memory_bytes = settings_.memory_budget_bytes;
-    options.parts = !options.held && replicates_in_parts(*settings_.stop.samples_per_pixel, replicates_);
+    const FilmOptions options = film_options(revisits);
     const std::size_t row_bytes =
         image.width * (SpectralFilm::bytes_per_pixel(options) + output_bytes_per_pixel());
     const std::size_t strip = strip_rows(row_bytes, image.height);
@@ -60,6 +54,31 @@ class Session {
   }
 
  private:
+  FilmOptions film_options(bool revisits) const {
+    FilmOptions options;
+    options.channels = channels_;
+    options.replicates = replicates_;
+    options.variance = settings_.variance;
+    options.held = settings_.keep_replicates || revisits;
+    options.memory_bytes = settings_.memory_budget_bytes;
+    if (revisits || replicates_in_parts(*settings_.stop.samples_per_pixel, replicates_))
+      options.sums = backend_.sum_rule();
+    options.most_samples = most_samples();
+    return options;
+  }
+
+  /// Of a replicate; a checkpoint may have more than are asked for.
+  uint32_t most_samples() const {
+    if (!settings_.stop.samples_per_pixel) return ~0u;
+    const uint64_t most = ReplicatePlan::deal(*settings_.stop.samples_per_pixel, replicates_).size(0);
+    const uint32_t resumed = resumes() ? checkpoint_outline(*settings_.checkpoint).most_samples : 0;
+    return std::max(static_cast<uint32_t>(most), resumed);
+  }
+
+  bool resumes() const {
+    return settings_.resume && settings_.checkpoint && checkpoint_exists(*settings_.checkpoint);
+  }
+
   std::size_t output_bytes_per_pixel() const {
     return bands_.bands.size() * sizeof(float) * (settings_.variance ? 2 : 1) / 8;
   }
@@ -77,12 +96,13 @@ class Session {
     make_output(
         settings_.stop.samples_per_pixel.value_or(0));  // hours of rendering must not end at a file name
     SpectralFilm film(image, options);
-    if (settings_.resume && checkpoint_exists(*settings_.checkpoint)) {
+    if (resumes()) {
       report_.resumed_samples = read_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
+      passes_.keeper()->resumed();
     }
     passes_.expect(image.pixels() * settings_.stop.samples_per_pixel.value_or(0), report_.resumed_samples);
     passes_.render(film);
-    if (settings_.checkpoint) write_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
+    if (settings_.checkpoint) passes_.keeper()->save_last(film);
     film.add_image_sums(image_sums_, image_counts_);
     const auto output = make_output(least_samples(film));
     write(film, *output);

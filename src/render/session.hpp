@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostics.hpp"
 #include "film/cube_io.hpp"
 #include "render/backend.hpp"
 #include "render/error_sums.hpp"
@@ -44,7 +45,10 @@ struct SessionSettings {
   std::optional<std::filesystem::path> preview;  // PNG
   std::vector<std::string> aux;                  // depth, normal, object, material
   std::map<std::string, std::string> metadata;
-  std::optional<std::filesystem::path> checkpoint;  // saved now and then and at the end
+  DiagnosticSink sink;  // receives warnings
+  /// Saved now and then and at the end, over what is there; that this is wanted is up to
+  /// check_checkpoint_file().
+  std::optional<std::filesystem::path> checkpoint;
   double checkpoint_interval_seconds = 60;
   bool resume = false;       // go on from the checkpoint if it exists
   uint64_t fingerprint = 0;  // render_fingerprint(), for checkpoints
@@ -102,7 +106,7 @@ RenderReport run_session(const FlatScene& scene, const ChannelList& derived, Bac
 uint32_t session_replicates(const SessionSettings& settings);
 
 /// Long replicates are rendered a few samples at a time over the image (or strip), so that an interrupted
-/// render is even: FilmOptions::parts.
+/// render is even: FilmOptions::sums.
 bool replicates_in_parts(uint64_t samples_per_pixel, uint32_t replicates);
 
 }  // namespace kiloband

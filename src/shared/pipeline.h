@@ -183,7 +183,7 @@ typedef struct {
   kb_u32 arena_chunks;  /* capacity */
   kb_u32 degrade_rough; /* rough dispersive boundaries: one channel goes on, instead of spectral MIS */
   kb_u32 dispersion;    /* the scene has boundaries whose index depends on wavelength */
-  kb_u32 reserved;
+  kb_u32 open; /* dpept: 1: the round goes on with a chunk of samples, whose sums are the film it is given */
 } KbRound;
 KB_STATIC_ASSERT(sizeof(KbRound) == 64, round_size);
 

@@ -1,6 +1,7 @@
 // Target: checkpoints.
 #include "tests/fuzz/fuzz_checkpoint.hpp"
 
+#include <span>
 #include <vector>
 
 #include "film/spectral_film.hpp"
@@ -18,6 +19,7 @@ SpectralFilm small_film() {
   options.channels = 2;
   options.replicates = 2;
   options.held = true;
+  options.sums = SumRule{};
   return SpectralFilm({31, 0, 2, 1}, options);
 }
 
@@ -25,15 +27,18 @@ SpectralFilm small_film() {
 
 void write_small_checkpoint(const std::filesystem::path& file) {
   SpectralFilm film = small_film();
-  const std::vector<uint32_t> counts{4};
-  const std::vector<float> means{1, 0.5f};
-  film.add({0, 1, counts, means, 2, 4});
+  const PixelSums sums = film.pixel_sums(1, 0);
+  sums.count = 4;
+  sums.open[0] = 4;
+  sums.open[1] = 2;
+  film.set_attempted(1, 0, 4);
   write_checkpoint(file, film, kFingerprint);
 }
 
 void checkpoint(std::string_view bytes) {
   const auto file = scratch_file("render.checkpoint", bytes);
   accept_or_refuse([&] { checkpoint_replicates(file); });
+  accept_or_refuse([&] { inspect_checkpoint(std::span(bytes), "render.checkpoint"); });
   accept_or_refuse([&] {
     SpectralFilm film = small_film();
     read_checkpoint(file, film, kFingerprint);

@@ -39,6 +39,7 @@ class NoBackend : public Backend {
   const RenderCounters& counters() const override { return counters_; }
   std::vector<InvalidSample> invalid_samples() const override { return {}; }
   std::vector<double> film_scale() const override { return {}; }
+  SumRule sum_rule() const override { return {}; }
 
  private:
   RenderCounters counters_;
@@ -90,7 +91,7 @@ SpectralFilm film_of(const Settings& settings) {
       std::vector<float> means(pixels * settings.channels);
       for (std::size_t i = 0; i < means.size(); ++i)
         means[i] = 1 + 1e-3f * static_cast<float>((i * 2654435761u + r * 40503u + block) % 1024);
-      film.add({block, r, counts, means, settings.channels, 16});
+      film.add({block, r, counts, means, settings.channels});
     }
   }
   return film;

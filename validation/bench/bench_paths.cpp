@@ -167,9 +167,8 @@ void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) 
     SpectralFilm film({0, 0, 64, 64}, {bench.flat.channels.size(), settings.replicates, variance, false});
     for (uint32_t r = 0; r < settings.replicates; ++r) {
       for (uint32_t b = 0; b < film.blocks().size(); ++b) {
-        film.add(worker.render(
-            film.blocks()[b], b, {r, 0, kSpp / settings.replicates}, stop, [](uint64_t) {},
-            [](const InvalidSample&) {}));
+        film.add(worker.render(film.blocks()[b], b, {r, 0, kSpp / settings.replicates}, stop,
+                               {[](uint64_t) {}, [](const InvalidSample&) {}}));
       }
     }
   }

@@ -22,9 +22,10 @@ stats::ReplicateImage image_of(const SpectralFilm& film, const PixelRect& rect, 
                                const std::vector<double>& scale) {
   stats::ReplicateImage image{rect.width, rect.height, scale.size(), replicates, {}, {}};
   image.means.reserve(std::size_t{replicates} * rect.pixels() * scale.size());
+  std::vector<float> means(scale.size());
   for (uint32_t r = 0; r < replicates; ++r) {
     for (std::size_t pixel = 0; pixel < rect.pixels(); ++pixel) {
-      const std::span<const float> means = film.replicate_mean(r, pixel);
+      film.replicate_mean(r, pixel, means);
       for (std::size_t c = 0; c < scale.size(); ++c)
         image.means.push_back(static_cast<float>(means[c] * scale[c]));
       image.samples.push_back(film.replicate_samples(r, pixel));

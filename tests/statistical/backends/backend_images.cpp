@@ -35,9 +35,10 @@ Image render_part(Backend& backend, const PixelRect& rect, uint32_t replicates, 
   std::iota(blocks.begin(), blocks.end(), 0u);
   const std::atomic<bool> stop{false};
   for (uint32_t r = 0; r < replicates; ++r) backend.render(film, {r, 0, samples}, blocks, stop, {});
+  std::vector<float> means(image.channels);
   for (uint32_t r = 0; r < replicates; ++r) {
     for (std::size_t p = 0; p < image.pixels(); ++p) {
-      const std::span<const float> means = film.replicate_mean(r, p);
+      film.replicate_mean(r, p, means);
       image.means.insert(image.means.end(), means.begin(), means.end());
       image.samples.push_back(film.replicate_samples(r, p));
     }

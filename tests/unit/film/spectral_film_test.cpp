@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <vector>
+
 namespace kiloband {
 namespace {
 
@@ -17,18 +20,84 @@ TEST(SpectralFilm, HeldFilmsCountTheirSampleCounts) {
   EXPECT_EQ(SpectralFilm::bytes_per_pixel(options) - with_16, 16u * (4 + 8));
 }
 
-TEST(SpectralFilm, HeldCountsAreThoseOfTheFilm) {
-  SpectralFilm film({0, 0, 2, 1}, {1, 2, true, true});
-  const HeldCountsView counts = film.held_counts();
-  const HeldCounts before = counts.copy();
-  const uint32_t samples[] = {3, 4};
-  const float means[] = {1, 2};
-  film.add({0, 1, samples, means, 1, 5});
-  EXPECT_EQ(counts.samples[1], (std::vector<uint64_t>{3, 4}));
-  EXPECT_EQ(counts.attempted[1][0], 5u);
-  EXPECT_EQ(counts.block_samples[0][1], 7u);
-  EXPECT_EQ(counts.block_sums[0][1], 11);
-  EXPECT_EQ(before.samples[1], (std::vector<uint64_t>{0, 0}));
+FilmOptions with_sums(uint32_t replicates, bool held, uint32_t most_samples) {
+  FilmOptions options;
+  options.channels = 2;
+  options.replicates = replicates;
+  options.variance = true;
+  options.held = held;
+  options.sums = SumRule{};
+  options.most_samples = most_samples;
+  return options;
+}
+
+TEST(SpectralFilm, SumsTakeFourBytesAndTwelveBeyondAChunk) {
+  const auto held = [](uint32_t replicates, uint32_t most) {
+    return SpectralFilm::bytes_per_pixel(with_sums(replicates, true, most));
+  };
+  // Per replicate and channel; 4 more per replicate for its number of samples.
+  EXPECT_EQ(held(32, 64) - held(16, 64), 16u * (2 * 4 + 4));
+  EXPECT_EQ(held(32, 65) - held(16, 65), 16u * (2 * 12 + 4));
+  const auto folded = [](uint32_t most) { return SpectralFilm::bytes_per_pixel(with_sums(16, false, most)); };
+  EXPECT_EQ(folded(65) - folded(64), 2u * 8);
+}
+
+/// Puts sums of n samples of (1, 3) and (2, 5) per sample into the pixels of a replicate.
+void put(SpectralFilm& film, uint32_t replicate, uint32_t n) {
+  film.open_replicate(replicate, 0);
+  for (std::size_t p = 0; p < 2; ++p) {
+    const PixelSums sums = film.pixel_sums(replicate, p);
+    sums.count = n;
+    sums.open[0] = static_cast<float>((1.0 + static_cast<double>(p) + replicate) * n);
+    sums.open[1] = static_cast<float>((3.0 + 2.0 * static_cast<double>(p) + replicate) * n);
+  }
+  film.set_attempted(replicate, 0, n);
+}
+
+/// Both ways of keeping sums give what means that come at once give, moments included.
+TEST(SpectralFilm, FoldedAndHeldSumsGiveTheMomentsOfTheirMeans) {
+  SpectralFilm folded({0, 0, 2, 1}, with_sums(3, false, 64)), held({0, 0, 2, 1}, with_sums(3, true, 64));
+  FilmOptions plain = with_sums(3, false, 64);
+  plain.sums.reset();
+  SpectralFilm means({0, 0, 2, 1}, plain);
+  for (uint32_t r = 0; r < 3; ++r) {
+    put(folded, r, 4 + r);
+    put(held, r, 4 + r);
+    const uint32_t counts[] = {4 + r, 4 + r};
+    const auto shift = static_cast<float>(r);
+    const float values[] = {1 + shift, 3 + shift, 2 + shift, 5 + shift};
+    means.add({0, r, counts, values, 2});
+  }
+  EXPECT_EQ(folded.attempted(2, 0), 6u);
+  EXPECT_EQ(folded.attempted(1, 0), 0u);  // closed, and its sums are gone
+  folded.finish_replicates();
+  for (const SpectralFilm* film : {&folded, &held}) {
+    std::vector<float> mean(4), variance(4), expected_mean(4), expected_variance(4);
+    film->row(0, mean, variance);
+    means.row(0, expected_mean, expected_variance);
+    EXPECT_EQ(mean, expected_mean);
+    EXPECT_EQ(variance, expected_variance);
+    EXPECT_EQ(film->samples(1, 0), 15u);
+    EXPECT_EQ(film->image_moments().mean(0)[1], means.image_moments().mean(0)[1]);
+  }
+  EXPECT_EQ(folded.tile_moments().mean(0)[0], means.tile_moments().mean(0)[0]);
+}
+
+TEST(SpectralFilm, SumsBeyondAChunkAreThoseOfBothKinds) {
+  const float open[] = {3}, tiny = 0x1p-26f;
+  const ClosedSum folded[] = {std::bit_cast<ClosedSum>(97.0)};
+  const ClosedSum compensated[] = {std::bit_cast<ClosedSum>(CompensatedSum{1, tiny})};
+  float mean[1];
+  mean_of_sums({}, 100, {100, open, folded}, mean);
+  EXPECT_EQ(mean[0], 1.0f);
+  mean_of_sums({}, 64, {64, open, folded}, mean);  // nothing is closed yet
+  EXPECT_EQ(mean[0], 3.0f / 64);
+  const float small[] = {7 *
+                         tiny};  // 7/8 of half a unit in the last place: lost without what was lost before
+  mean_of_sums({SumRule::Kind::kCompensated, 16, 16, 1}, 20, {1, small, compensated}, mean);
+  EXPECT_EQ(mean[0], 1.0f + 8 * tiny);
+  mean_of_sums({}, 5, {0, open, {}}, mean);
+  EXPECT_EQ(mean[0], 0.0f);
 }
 
 }  // namespace

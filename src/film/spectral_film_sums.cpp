@@ -1,0 +1,106 @@
+#include "film/spectral_film_sums.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace kiloband {
+
+void SpectralFilm::require_sums() const {
+  if (!sums_) throw std::logic_error("SpectralFilm: no sums are kept");
+}
+
+uint32_t SpectralFilm::attempted(uint32_t replicate, uint32_t block) const {
+  require_sums();
+  if (!options_.held) return sums_->open.at(block) == replicate ? sums_->attempted[0][block] : 0;
+  return sums_->attempted.at(replicate).at(block);
+}
+
+void SpectralFilm::open_replicate(uint32_t replicate, uint32_t block) {
+  require_sums();
+  if (replicate >= options_.replicates) throw std::logic_error("SpectralFilm: no such replicate");
+  if (options_.held || sums_->open.at(block) == replicate) return;
+  fold_block(block);
+  sums_->open[block] = replicate;
+}
+
+PixelSums SpectralFilm::pixel_sums(uint32_t replicate, std::size_t pixel) {
+  require_sums();
+  return sums_->values.at(options_.held ? replicate : 0, pixel);
+}
+
+PixelSumsView SpectralFilm::pixel_sums(uint32_t replicate, std::size_t pixel) const {
+  require_sums();
+  return std::as_const(sums_->values).at(options_.held ? replicate : 0, pixel);
+}
+
+void SpectralFilm::set_attempted(uint32_t replicate, uint32_t block, uint32_t attempted) {
+  require_sums();
+  sums_->attempted.at(options_.held ? replicate : 0).at(block) = attempted;
+}
+
+uint32_t SpectralFilm::attempted_at(uint32_t replicate, std::size_t pixel) const {
+  const std::size_t x = rect_.x0 + pixel % rect_.width, y = rect_.y0 + pixel / rect_.width;
+  const std::size_t per_row = (rect_.x0 + rect_.width - 1) / kBlockSize - rect_.x0 / kBlockSize + 1;
+  const std::size_t column = x / kBlockSize - rect_.x0 / kBlockSize;
+  const std::size_t row = y / kBlockSize - rect_.y0 / kBlockSize;
+  return attempted(replicate, static_cast<uint32_t>(row * per_row + column));
+}
+
+SpectralFilm::BlockMeans SpectralFilm::means_of_block(uint32_t replicate, uint32_t block) const {
+  const std::size_t channels = options_.channels, pixels = blocks_[block].pixels();
+  BlockMeans block_means{std::vector<uint32_t>(pixels), std::vector<float>(pixels * channels)};
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const PixelSumsView sums = pixel_sums(replicate, pixel_index(blocks_[block], p));
+    block_means.counts[p] = sums.count;
+    mean_of_sums(*options_.sums, attempted(replicate, block), sums,
+                 std::span(block_means.means).subspan(p * channels, channels));
+  }
+  return block_means;
+}
+
+/// Moves the open replicate of a block into the moments; nothing is open then.
+void SpectralFilm::fold_block(uint32_t block) {
+  const uint32_t replicate = sums_->open[block];
+  if (replicate == Sums::kNone) return;
+  const BlockMeans means = means_of_block(replicate, block);
+  const BlockSamples samples = means.samples(block, replicate, options_.channels);
+  add_folded(samples, blocks_[block]);
+  add_coarse(samples, blocks_[block]);
+  for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) {
+    const PixelSums sums = pixel_sums(replicate, pixel_index(blocks_[block], p));
+    sums.count = 0;
+    std::ranges::fill(sums.open, 0.0f);
+    std::ranges::fill(sums.closed, ClosedSum{0});
+  }
+  sums_->attempted[0][block] = 0;
+  sums_->open[block] = Sums::kNone;
+}
+
+void SpectralFilm::finish_replicates() {
+  if (!sums_ || options_.held) return;
+  for (uint32_t block = 0; block < blocks_.size(); ++block) fold_block(block);
+}
+
+/// What add_coarse() would have gathered, made from the sums that are there now.
+void SpectralFilm::add_held_image_sums(std::vector<std::vector<double>>& sums,
+                                       std::vector<uint64_t>& counts) const {
+  const std::size_t channels = options_.channels;
+  std::vector<double> of_block(channels);
+  for (uint32_t block = 0; block < blocks_.size(); ++block) {
+    for (uint32_t r = 0; r < options_.replicates; ++r) {
+      if (attempted(r, block) == 0) continue;
+      const BlockMeans means = means_of_block(r, block);
+      const Coarse coarse = coarse_sums(means.samples(block, r, channels), blocks_[block]);
+      std::ranges::fill(of_block, 0.0);
+      for (std::size_t tile = 0; tile < kTilesPerBlock; ++tile) {
+        if (coarse.counts[tile] == 0) continue;
+        for (std::size_t c = 0; c < channels; ++c) of_block[c] += coarse.sums[tile * channels + c];
+        counts[r] += coarse.counts[tile];
+      }
+      for (std::size_t c = 0; c < channels; ++c) sums[r][c] += of_block[c];
+    }
+  }
+}
+
+}  // namespace kiloband

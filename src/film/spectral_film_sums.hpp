@@ -1,0 +1,42 @@
+// SpectralFilm's sums: what it holds of replicates that come in parts.
+#pragma once
+
+#include "film/spectral_film.hpp"
+
+namespace kiloband {
+
+inline constexpr uint32_t kTilesPerRow = kBlockSize / kTileSize;
+inline constexpr uint32_t kTilesPerBlock = kTilesPerRow * kTilesPerRow;
+
+/// Sums over the samples of a block in double.
+struct SpectralFilm::Coarse {
+  std::vector<double> sums;      // [tile][channel]
+  std::vector<uint64_t> counts;  // [tile]
+};
+
+/// Blocks touch only their own elements: threads may work on different blocks.
+struct SpectralFilm::Sums {
+  static constexpr uint32_t kNone = ~0u;
+
+  Sums(const PixelRect& rect, std::size_t blocks, const FilmOptions& options)
+      : values({options.held ? options.replicates : 1, rect.pixels(), options.channels}, *options.sums,
+               options.most_samples, options.memory_bytes),
+        attempted(options.held ? options.replicates : 1, std::vector<uint32_t>(blocks)),
+        open(options.held ? 0 : blocks, kNone) {}
+
+  ReplicateSums values;
+  std::vector<std::vector<uint32_t>> attempted;  // [slot][block]
+  std::vector<uint32_t> open;                    // [block] of folded films: the replicate, or kNone
+};
+
+/// The means of a replicate of a block, made from sums.
+struct SpectralFilm::BlockMeans {
+  std::vector<uint32_t> counts;
+  std::vector<float> means;
+
+  BlockSamples samples(uint32_t block, uint32_t replicate, std::size_t channels) const {
+    return {block, replicate, counts, means, channels};
+  }
+};
+
+}  // namespace kiloband
