@@ -43,7 +43,7 @@ void spectrum(std::string_view bytes) {
 void absorption(std::string_view bytes) {
   const auto file = scratch_file("absorption.txt", bytes);
   accept_or_refuse([&] {
-    const Spectrum absorption = read_absorption_file(file);
+    const Spectrum absorption = read_spectrum_file(file, ValueKind::kAbsorption);
     const ChannelKnots knots = sampled_knots(absorption, some_channels(), "gas"),
                        sorted = sorted_knots(knots);
     for (std::size_t k = 0; k < some_channels().size(); ++k) {
