@@ -54,6 +54,17 @@ void integrate_row(uint32_t width, uint32_t height, std::span<const float> texel
 
 }  // namespace
 
+std::vector<double> row_solid_angles(uint32_t height) {
+  const uint32_t cells = std::max(height - 1, 1u);
+  std::vector<double> angles(height, 0.0);
+  for (uint32_t i = 0; i < cells; ++i) {
+    const RowIntegrals integrals(i, cells);
+    angles[i] += integrals.upper * height / 2;  // of 2, the sum over all cells
+    angles[std::min(i + 1, height - 1)] += integrals.lower * height / 2;
+  }
+  return angles;
+}
+
 EnvmapSampling build_envmap_sampling(uint32_t width, uint32_t height, std::span<const float> texel_weights) {
   check(width, height, texel_weights);
   const uint32_t rows = std::max(height - 1, 1u);

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "scene/flat_scene.hpp"
 
@@ -27,5 +28,10 @@ inline constexpr double kEnvmapUniformShare = 0.01;
 /// >= 0, [row][column], row 0 at v = 0 throws         std::logic_error if width or height is 0 or above
 /// 65536, the size does not fit, or a weight is invalid
 EnvmapSampling build_envmap_sampling(uint32_t width, uint32_t height, std::span<const float> texel_weights);
+
+/// What the texels of each row count in the mean of the map over the sphere: the integral over the solid
+/// angle of the row's part in the interpolation, scaled so that the mean of all rows is 1. The sines of
+/// the rows' own angles would not do: both rows of a map of two lie at the poles. height >= 1
+std::vector<double> row_solid_angles(uint32_t height);
 
 }  // namespace kiloband

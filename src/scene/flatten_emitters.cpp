@@ -173,6 +173,7 @@ void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emit
 
   // Selection and sampling weights: each texel's mean radiance is its colour's, up to the common D65 factor.
   const std::size_t count = std::size_t{texture.width} * texture.height;
+  const std::vector<double> solid_angles = row_solid_angles(texture.height);
   std::vector<float> weights(count);
   double mean = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -183,8 +184,7 @@ void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emit
     double value = 0;
     for (std::size_t c = 0; c < channels; ++c) value += emitter.image->pixels[channels * i + c];
     weights[i] = static_cast<float>(value * emitter.scale / static_cast<double>(channels));
-    const double row = static_cast<double>(i / texture.width);
-    mean += weights[i] * std::sin(kPi * row / std::max(1u, texture.height - 1)) * kPi / 2;
+    mean += weights[i] * solid_angles[i / texture.width];
   }
   mean /= static_cast<double>(count);
   out_.envmap = build_envmap_sampling(texture.width, texture.height, weights);

@@ -55,14 +55,6 @@ BandSet band_set_of(const SpectralImage& image, bool extrapolate, bool emission,
   return set;
 }
 
-/// Rows of a lat-long map by their solid angle: sin theta, scaled so that their mean over the sphere is 1.
-std::vector<double> solid_angle_weights(uint32_t height) {
-  std::vector<double> weights;
-  for (uint32_t y = 0; y < height; ++y)
-    weights.push_back(std::sin(std::numbers::pi * y / std::max(1u, height - 1)) * std::numbers::pi / 2);
-  return weights;
-}
-
 }  // namespace
 
 uint32_t Flattener::spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
@@ -196,7 +188,7 @@ void Flattener::add_spectral_environment(KbEmitter& record, const SpectralEnvmap
   // mean of guide band g.
   const SpectralImage& image = *emitter.image;
   const BandSet& set = out_.band_sets[out_.textures[index].first_row];
-  const ValueStatistics statistics(image, solid_angle_weights(image.height));
+  const ValueStatistics statistics(image, row_solid_angles(image.height));
   std::vector<double> votes(set.centres_nm.size(), 0.0), part(votes.size());
   for (const Channel& band : out_.guide) {
     std::ranges::fill(part, 0.0);

@@ -65,6 +65,28 @@ TEST(SpectralFlatten, GuideMeansWeighLobes) {
   EXPECT_NEAR(scene.materials[0].specular_weight, 1 / (1 + diffuse), 1e-6);
 }
 
+/// A sky of one colour is as bright as any other of that colour, whatever its number of rows: those of a map of
+/// two rows lie at the poles, where a row's own angle has no sine.
+TEST(SpectralFlatten, ThePowerOfAMapDoesNotDependOnItsRows) {
+  const TemporaryFolder folder;
+  const auto probability = [&](const std::string& sky, uint32_t rows) {
+    write_cube(folder / "sky.exr", 4, rows, kBands, [](uint32_t, uint32_t, std::size_t) { return 0.5; });
+    folder.write("sky.pfm",
+                 "Pf\n4 " + std::to_string(rows) + "\n-1\n" + std::string(16 * rows, '?'));  // 0.747
+    const FlatScene scene =
+        flat("<shape type='sphere'/><emitter type='point'/><emitter type='" + sky + "'/></emitter>", folder,
+             "425-435");
+    return scene.emitters[scene.environment].select_pdf;
+  };
+  for (const std::string sky : {"spectral_envmap'><string name='filename' value='sky.exr",
+                                "envmap'><string name='filename' value='sky.pfm"}) {
+    const float expected = probability(sky, 33);
+    EXPECT_GT(expected, 0.01);
+    for (const uint32_t rows : {2u, 3u, 8u})
+      EXPECT_NEAR(probability(sky, rows), expected, 1e-6) << sky << rows;
+  }
+}
+
 TEST(SpectralFlatten, DataThatDoNotCoverTheChannelsAreAWarning) {
   const TemporaryFolder folder;
   write_cube(folder / "a.exr", 1, 1, kBands, [](uint32_t, uint32_t, std::size_t) { return 0.5; });
