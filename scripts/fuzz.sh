@@ -21,7 +21,7 @@ trap 'rm -rf "$TMPDIR"' EXIT
 
 run_target() {
   local target=$1 log=$out/logs/$1.txt dictionary=tests/fuzz/dictionaries/$1.dict result=0
-  local options=(-seed=1 -max_total_time="$each" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1
+  local options=(-seed=1 -max_total_time="$each" -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1
     -artifact_prefix="$out/findings/$target-")
   [ ! -f "$dictionary" ] || options+=(-dict="$dictionary")
   mkdir -p "$out/corpus/$target"

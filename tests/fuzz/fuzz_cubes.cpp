@@ -7,6 +7,7 @@
 #include "film/picture.hpp"
 #include "film/sensor_cube.hpp"
 #include "film/signature.hpp"
+#include "tests/fuzz/flat_scene_check.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace kiloband::fuzz {
@@ -96,6 +97,21 @@ void measure(const std::filesystem::path& file, const CubeInfo& info) {
   });
 }
 
+/// As texture, lamp and environment of scenes.
+void render(const std::filesystem::path& file) {
+  const std::string name = "<string name='filename' value='" + file.filename().string() + "'/>";
+  const std::string bitmap =
+      "type='spectral_bitmap'>" + name + "<boolean name='extrapolate' value='true'/></texture>";
+  const ChannelList channels{{500, 520, ""}, {520, 600, ""}};
+  for (const std::string& elements :
+       {"<shape type='rectangle'><bsdf type='diffuse'><texture name='reflectance' " + bitmap +
+            "</bsdf></shape>" + "<emitter type='constant'/>",
+        "<shape type='rectangle'><emitter type='area'><texture name='radiance' " + bitmap +
+            "</emitter></shape>",
+        "<shape type='sphere'/><emitter type='spectral_envmap'>" + name + "</emitter>"})
+    accept_or_refuse([&] { flatten_and_check(elements, channels); });
+}
+
 void use(const std::filesystem::path& file) {
   CubeInfo info;
   const bool readable = accept_or_refuse([&] {
@@ -107,6 +123,7 @@ void use(const std::filesystem::path& file) {
   select(file, info);
   see(file);
   measure(file, info);
+  render(file);
   write_and_read(file, "again.exr", Quantity::kDensity);
   write_and_read(file, "again.hdr", Quantity::kIntegral);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scene/mesh.hpp"
+#include "tests/fuzz/flat_scene_check.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace kiloband::fuzz {
@@ -32,12 +33,29 @@ void check(const Mesh& mesh) {
     promise(values.size() == vertices, "not one attribute value per position");
 }
 
-void read(const char* name, MeshReader reader, std::string_view bytes) {
+/// The mesh as a lamp, as a reflector by temperature, and under a transformation.
+void flatten(const std::string& type, const std::string& file) {
+  const std::string mesh = "<shape type='" + type + "'><string name='filename' value='" + file + "'/>";
+  const std::string lamp = "<emitter type='area'><spectrum name='radiance' value='1'/></emitter></shape>";
+  const std::string heat =
+      "<transform name='to_world'><scale x='2' y='-3' z='0.1'/><rotate y='1' "
+      "angle='30'/></transform><emitter "
+      "type='thermal'><float name='temperature' value='300'/></emitter></shape>";
+  for (const std::string& use : {lamp, heat})
+    accept_or_refuse([&] { flatten_and_check(mesh + use, {{500, 600, ""}}); });
+}
+
+/// type: of the shape, and the file's extension
+void read(const std::string& type, MeshReader reader, std::string_view bytes) {
+  const std::string name = "mesh." + type;
   const auto file = scratch_file(name, bytes);
   for (const bool face_normals : {false, true}) {
     for (const int shape_index : {0, 1}) {
       if (shape_index > 0 && reader != read_serialized) continue;
-      accept_or_refuse([&] { check(reader(file, {face_normals, !face_normals, shape_index}, {})); });
+      const bool good = accept_or_refuse([&] {
+        check(reader(file, {face_normals, !face_normals, shape_index}, {}));
+      });
+      if (good && !face_normals && shape_index == 0) flatten(type, name);
     }
   }
 }
@@ -45,16 +63,16 @@ void read(const char* name, MeshReader reader, std::string_view bytes) {
 }  // namespace
 
 void obj(std::string_view bytes) {
-  read("mesh.obj", read_obj, bytes);
+  read("obj", read_obj, bytes);
 }
 void ply(std::string_view bytes) {
-  read("mesh.ply", read_ply, bytes);
+  read("ply", read_ply, bytes);
 }
 void stl(std::string_view bytes) {
-  read("mesh.stl", read_stl, bytes);
+  read("stl", read_stl, bytes);
 }
 void serialized(std::string_view bytes) {
-  read("mesh.serialized", read_serialized, bytes);
+  read("serialized", read_serialized, bytes);
 }
 
 }  // namespace kiloband::fuzz

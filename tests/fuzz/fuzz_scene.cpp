@@ -1,27 +1,12 @@
 // Target: scene files. What is read is flattened for a few channels.
-#include <algorithm>
-
-#include "scene/flat_scene.hpp"
 #include "scene/reader.hpp"
+#include "tests/fuzz/flat_scene_check.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace kiloband::fuzz {
 namespace {
 
 constexpr std::size_t kMostChannels = 8;  // of a scene's own; more take long, not another way
-
-void flatten_and_check(const SceneDescription& description, const ChannelList& channels) {
-  const FlatScene scene = flatten(description, {channels, {}, {}});
-  promise(scene.channels.size() == channels.size() && scene.channel_scale.size() == channels.size(),
-          "channels got lost");
-  promise(scene.emitter_cdf.size() == scene.emitters.size() + 1, "emitters without probabilities");
-  const std::size_t vertices = scene.positions.size();
-  promise(std::all_of(scene.triangles.begin(), scene.triangles.end(),
-                      [&](uint32_t i) { return i + 1 < vertices; }),
-          "a triangle without its vertices");
-  for (const KbShape& shape : scene.shapes)
-    promise(shape.surface < scene.surfaces.size(), "a shape without a surface");
-}
 
 /// The emissivities of rough materials are integrated over all directions: under sanitizers that takes half a
 /// minute.

@@ -7,10 +7,13 @@
 #include "spectral/channel_knots.hpp"
 #include "spectral/channels.hpp"
 #include "spectral/spectrum_files.hpp"
+#include "tests/fuzz/flat_scene_check.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace kiloband::fuzz {
 namespace {
+
+constexpr std::size_t kMostChannels = 8;  // that a scene is flattened for
 
 const ChannelList& some_channels() {
   static const ChannelList kChannels{{400, 500, ""}, {500, 500.5, ""}, {480, 700, ""}, {8000, 12000, ""}};
@@ -29,7 +32,8 @@ void use(const Spectrum& spectrum) {
     spectrum.mean(c.min_nm, c.max_nm);
     promise(spectrum.min_over(c.min_nm, c.max_nm) <= spectrum.max_over(c.min_nm, c.max_nm),
             "bounds that cross");
-    resample(spectrum, c.min_nm, c.max_nm);
+    resample(spectrum, c.min_nm, c.max_nm,
+             {1e-4, std::size_t{1} << 14});  // finer tables take long, not another way
   }
 }
 
@@ -38,6 +42,9 @@ void use(const Spectrum& spectrum) {
 void spectrum(std::string_view bytes) {
   const auto file = scratch_file("spectrum.txt", bytes);
   accept_or_refuse([&] { use(read_spectrum_file(file)); });
+  for (const ValueKind kind :
+       {ValueKind::kAny, ValueKind::kRadiance, ValueKind::kIrradiance, ValueKind::kIntensity})
+    accept_or_refuse([&] { read_spectrum_file(file, kind); });
 }
 
 void absorption(std::string_view bytes) {
@@ -100,7 +107,17 @@ void bands(std::string_view bytes) {
     for (const Channel& c : channels)
       promise(c.min_nm > 0 && c.min_nm < c.max_nm && std::isfinite(c.max_nm),
               "a channel that is no interval");
-    hull(channels);
+    if (channels.size() > kMostChannels) return;
+    accept_or_refuse([&] {
+      flatten_and_check(
+          "<shape type='sphere'><bsdf type='plastic'><rgb name='diffuse_reflectance' value='0.1 0.5 "
+          "0.2'/></bsdf>"
+          "<emitter type='thermal'><float name='temperature' value='300'/></emitter></shape><emitter "
+          "type='constant'>"
+          "<spectrum type='blackbody' name='radiance'><float name='temperature' "
+          "value='6000'/></spectrum></emitter>",
+          channels);
+    });
   };
   accept_or_refuse([&] { check(parse_channels(bytes)); });
   const auto file = scratch_file("bands.csv", bytes);
