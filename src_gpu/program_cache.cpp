@@ -109,7 +109,7 @@ std::string ProgramCache::save(const std::string& key, const std::vector<unsigne
   std::string text = header_of(key, binary);
   text.append(reinterpret_cast<const char*>(binary.data()), binary.size());
   try {
-    write_file_atomically(file(key), text);
+    write_file_atomically(file(key), text, 0600);  // is executed: for this user alone
   } catch (const DeviceError& refusal) {
     return refusal.what();
   }

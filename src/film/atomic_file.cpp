@@ -14,9 +14,10 @@
 
 namespace kiloband {
 
-AtomicFile::AtomicFile(const std::filesystem::path& name) : name_(name), target_(find_output_target(name)) {
+AtomicFile::AtomicFile(const std::filesystem::path& name, mode_t mode)
+    : name_(name), target_(find_output_target(name)) {
   if (target_.error != 0) fail(target_.error);
-  const int error = target_.special ? file_.create_scratch() : file_.create(target_.file.parent_path());
+  const int error = target_.special ? file_.create_scratch() : file_.create(target_.file.parent_path(), mode);
   if (error != 0) fail_before(error);
 }
 
@@ -79,8 +80,8 @@ bool AtomicFile::stands() const {
   return stat(target_.file.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_;
 }
 
-void write_file_atomically(const std::filesystem::path& name, std::span<const char> bytes) {
-  AtomicFile file(name);
+void write_file_atomically(const std::filesystem::path& name, std::span<const char> bytes, mode_t mode) {
+  AtomicFile file(name, mode);
   file.write_at(0, bytes);
   file.commit();
 }

@@ -23,8 +23,9 @@ namespace kiloband {
 /// as it was given.
 class AtomicFile {
  public:
+  /// mode: permissions of a new file, of which the umask takes its own
   /// throws DeviceError  folder missing or read-only, target is a folder ...
-  explicit AtomicFile(const std::filesystem::path& name);
+  explicit AtomicFile(const std::filesystem::path& name, mode_t mode = 0666);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
@@ -59,7 +60,8 @@ class AtomicFile {
 };
 
 /// Writes a small file at once, atomically.
-void write_file_atomically(const std::filesystem::path& name, std::span<const char> bytes);
+void write_file_atomically(const std::filesystem::path& name, std::span<const char> bytes,
+                           mode_t mode = 0666);
 
 /// Tries whether a file of this name could be written, and leaves everything as it is.
 /// throws DeviceError

@@ -70,15 +70,15 @@ TemporaryName* open_named(const std::filesystem::path& folder, int flags, mode_t
 
 }  // namespace
 
-int TemporaryFile::create(const std::filesystem::path& folder) {
+int TemporaryFile::create(const std::filesystem::path& folder, mode_t mode) {
   folder_ = folder;
-  descriptor_ = open_nameless(folder, O_WRONLY, 0666);
-  return descriptor_ >= 0 ? 0 : create_named(folder);
+  descriptor_ = open_nameless(folder, O_WRONLY, mode);
+  return descriptor_ >= 0 ? 0 : create_named(folder, mode);
 }
 
-int TemporaryFile::create_named(const std::filesystem::path& folder) {
+int TemporaryFile::create_named(const std::filesystem::path& folder, mode_t mode) {
   folder_ = folder;
-  name_ = open_named(folder, O_WRONLY, 0666, descriptor_);
+  name_ = open_named(folder, O_WRONLY, mode, descriptor_);
   return name_ ? 0 : errno;
 }
 

@@ -1,6 +1,8 @@
 // Files that have no name until they are complete.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 
 namespace kiloband {
@@ -19,10 +21,10 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  /// folder: empty for the working directory
-  int create(const std::filesystem::path& folder);
+  /// folder: empty for the working directory; mode: permissions, of which the umask takes its own
+  int create(const std::filesystem::path& folder, mode_t mode = 0666);
   /// What create() does where files cannot be without a name.
-  int create_named(const std::filesystem::path& folder);
+  int create_named(const std::filesystem::path& folder, mode_t mode = 0666);
   /// In the system's temporary folder (TMPDIR), for this user alone, also for reading; never to be published.
   int create_scratch();
   /// Where it is, or was to be.
