@@ -105,7 +105,7 @@ class InvalidSamples : public ::testing::Test {
  protected:
   InvalidSamples() {
     const std::string parts =
-        "<sensor type=\"orthographic\"><transform name=\"to_world\"><scale value=\"1e-17\"/><lookat "
+        "<sensor type=\"orthographic\"><transform name=\"to_world\"><scale value=\"1e-9\"/><lookat "
         "origin=\"0, 0, 1\" "
         "target=\"0, 0, 0\" up=\"0, 1, 0\"/></transform>" +
         film_text({4, 4}) +

@@ -18,7 +18,7 @@ using validation::Effort;
 std::string wall_under(const std::string& lights) {
   return R"(<scene version='3.0.0'><integrator type='path'><integer name='max_depth' value='2'/></integrator>
 <sensor type='orthographic'>
- <transform name='to_world'><scale value='1e-17'/><lookat origin='0,0,1' target='0,0,0' up='0,1,0'/></transform>
+ <transform name='to_world'><scale value='1e-9'/><lookat origin='0,0,1' target='0,0,0' up='0,1,0'/></transform>
  <film type='hdrfilm'><integer name='width' value='8'/><integer name='height' value='8'/><rfilter type='box'/></film>
 </sensor><shape type='rectangle'/>)" +
          lights + "</scene>";
