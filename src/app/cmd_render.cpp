@@ -190,14 +190,21 @@ void print_problems(const RenderReport& report, const Backend& backend) {
   }
 }
 
+OutputFiles checked_files(const RenderOptions& options) {
+  const OutputFiles files = output_files(options);
+  check_output_files(files);
+  if (!files.checkpoint) return files;
+  check_checkpoint_file(*files.checkpoint, options.resume);  // first: it says what is no regular file
+  check_writable(*files.checkpoint);
+  return files;
+}
+
 int render(const RenderOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);  // who reads our messages may go away before the render ends
   const auto start = std::chrono::steady_clock::now();
   const DiagnosticSink sink = print_diagnostics(options.quiet);
   check_scene_file(options.scene.scene);
-  const OutputFiles files = output_files(options);
-  check_output_files(files);
-  if (files.checkpoint) check_checkpoint_file(*files.checkpoint, options.resume);
+  const OutputFiles files = checked_files(options);
   check_replicates(options);
   const LoadedScene loaded = load_scene(options.scene, sink);
   SessionSettings settings = session_settings(options, files, loaded.description);

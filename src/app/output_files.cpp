@@ -68,8 +68,8 @@ void check_output_files(const OutputFiles& files) {
   std::vector<NamedFile> others = files.others;
   if (files.preview) others.push_back({"--preview", *files.preview});
   if (files.stats) others.push_back({"--stats", *files.stats});
-  if (files.checkpoint) others.push_back({"--checkpoint", *files.checkpoint});
   for (const auto& [option, file] : others) claims.claim(option, file);
+  if (files.checkpoint) claims.claim("--checkpoint", *files.checkpoint);
   for (const auto& cube : files.cubes) check_cube_name(cube);
   if (files.preview && extension_of(*files.preview) != ".png") {
     throw InputError(fmt::format("--preview {}: must end in .png", files.preview->string()));

@@ -29,7 +29,8 @@ struct OutputFiles {
 /// file if symbolic links lead them to one place, or if they are hard links; pipes and devices may be named
 /// twice. throws InputError   a file would be written twice or replace an input; a name whose end is no
 /// format's
-///        DeviceError  the preview, the statistics, the checkpoint or another file cannot be written
+///        DeviceError  the preview, the statistics or another file cannot be written; checkpoints are tried by
+///        those who know what is in their place
 void check_output_files(const OutputFiles& files);
 
 }  // namespace kiloband
