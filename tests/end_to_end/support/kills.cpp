@@ -10,7 +10,7 @@
 namespace kiloband::test {
 namespace {
 
-constexpr int kMostKills = 8;  // then the render may end
+constexpr int kMostKills = 3;  // then the render may end
 
 std::vector<std::string> box(const std::vector<std::string>& options) {
   std::vector<std::string> all{"--size", "40x33", "--bands", "400:700:3", "-o", "a.hdr"};
