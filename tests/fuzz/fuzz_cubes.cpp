@@ -123,9 +123,22 @@ void use(const std::filesystem::path& file) {
   select(file, info);
   see(file);
   measure(file, info);
-  render(file);
   write_and_read(file, "again.exr", Quantity::kDensity);
   write_and_read(file, "again.hdr", Quantity::kIntegral);
+}
+
+/// The files of an ENVI cube one after the other, between lines "----": the header and the data of the
+/// values, of the variances, of the auxiliary images. Lengths are not part of the format so that mutations
+/// leave it whole. returns the header of the values
+std::filesystem::path write_envi_files(std::string_view bytes) {
+  constexpr std::string_view kBetween = "\n----\n";
+  for (const char* name :
+       {"cube.hdr", "cube.img", "cube.var.hdr", "cube.var.img", "cube.aux.hdr", "cube.aux.img"}) {
+    const std::size_t end = bytes.find(kBetween);
+    scratch_file(name, bytes.substr(0, end));
+    bytes = end == std::string_view::npos ? std::string_view{} : bytes.substr(end + kBetween.size());
+  }
+  return scratch_folder() / "cube.hdr";
 }
 
 }  // namespace
@@ -134,18 +147,13 @@ void exr_cube(std::string_view bytes) {
   use(scratch_file("cube.exr", bytes));
 }
 
-/// The files of an ENVI cube one after the other, between lines "----": the header and the data of the
-/// values, of the variances, of the auxiliary images. Lengths are not part of the format so that mutations
-/// leave it whole.
 void envi_cube(std::string_view bytes) {
-  constexpr std::string_view kBetween = "\n----\n";
-  for (const char* name :
-       {"cube.hdr", "cube.img", "cube.var.hdr", "cube.var.img", "cube.aux.hdr", "cube.aux.img"}) {
-    const std::size_t end = bytes.find(kBetween);
-    scratch_file(name, bytes.substr(0, end));
-    bytes = end == std::string_view::npos ? std::string_view{} : bytes.substr(end + kBetween.size());
-  }
-  use(scratch_folder() / "cube.hdr");
+  use(write_envi_files(bytes));
+}
+
+/// ENVI cubes as scenes use them.
+void spectral_image(std::string_view bytes) {
+  render(write_envi_files(bytes));
 }
 
 /// What a cube's metadata say of the camera.

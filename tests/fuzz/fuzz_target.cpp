@@ -31,6 +31,7 @@ constexpr std::array kTargets{
     Target{"camera", camera},
     Target{"exr_cube", exr_cube},
     Target{"envi_cube", envi_cube},
+    Target{"spectral_image", spectral_image},
     Target{"image_header", image_header},
     Target{"checkpoint", checkpoint},
 };

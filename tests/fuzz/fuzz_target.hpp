@@ -35,6 +35,7 @@ void names(std::string_view bytes);
 void camera(std::string_view bytes);
 void exr_cube(std::string_view bytes);
 void envi_cube(std::string_view bytes);
+void spectral_image(std::string_view bytes);
 void image_header(std::string_view bytes);
 void checkpoint(std::string_view bytes);
 
