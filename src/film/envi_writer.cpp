@@ -1,8 +1,10 @@
 // ENVI: band-sequential float32, little endian, written strip by strip at the bands' offsets.
 #include <algorithm>
 #include <bit>
+#include <future>
 
 #include "film/atomic_file.hpp"
+#include "film/band_planes.hpp"
 #include "film/cube_bytes.hpp"
 #include "film/cube_layout.hpp"
 #include "film/cube_text.hpp"
@@ -14,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "files are written in the machine's byte order");
 
-constexpr std::size_t kBandsAtOnce = 16;        // one cache line of a pixel
+constexpr std::size_t kBandsAtOnce = kPlaneTile;  // one cache line of a pixel
 constexpr std::size_t kBufferBytes = 8u << 20;  // at most, unless a single row needs more
 
 /// One data file with its header: values, variances or auxiliary planes.
@@ -30,7 +32,7 @@ class EnviPart {
     header_.write_at(0, envi_header_text(info, content));
   }
 
-  /// values are [row][x][band]; change(band, value) is what is written.
+  /// values are [row][x][band]; change makes of them what is written, as to_planes() has it.
   template <class Change>
   void write_rows(uint32_t y0, uint32_t rows, std::span<const float> values, Change change) {
     const std::size_t bytes_per_row = kBandsAtOnce * width_ * sizeof(float);
@@ -50,13 +52,14 @@ class EnviPart {
   void write_block(uint32_t y0, uint32_t y, uint32_t rows, std::size_t first, std::span<const float> values,
                    Change change) {
     const std::size_t count = std::min(kBandsAtOnce, bands_ - first), pixels = std::size_t{rows} * width_;
-    buffer_.resize(kBandsAtOnce * pixels);
-    const float* from = values.data() + std::size_t{y} * width_ * bands_ + first;
-    for (std::size_t p = 0; p < pixels; ++p, from += bands_)
-      for (std::size_t k = 0; k < count; ++k) buffer_[k * pixels + p] = change(first + k, from[k]);
+    const std::size_t stride =
+        pixels + kPlaneTile;  // powers of two would put all bands into the same cache sets
+    buffer_.resize(kBandsAtOnce * stride);
+    const float* from = values.data() + std::size_t{y} * width_ * bands_;
+    to_planes(from, pixels, bands_, first, count, buffer_.data(), stride, change);
     for (std::size_t k = 0; k < count; ++k) {
       const uint64_t row = uint64_t{first + k} * height_ + y0 + y;
-      const auto* bytes = reinterpret_cast<const char*>(buffer_.data() + k * pixels);
+      const auto* bytes = reinterpret_cast<const char*>(buffer_.data() + k * stride);
       data_.write_at(row * width_ * sizeof(float), {bytes, pixels * sizeof(float)});
     }
   }
@@ -94,12 +97,18 @@ class EnviWriter : public CubeWriter {
 
   void write_rows(const CubeRows& strip) override {
     order_.accept(strip);
-    values_->write_rows(strip.y0, strip.rows, strip.mean,
-                        [&](std::size_t k, float v) { return conversion_.value(k, v); });
+    std::future<void> variances;  // of another file: both at once
     if (variance_)
-      variance_->write_rows(strip.y0, strip.rows, strip.variance,
-                            [&](std::size_t k, float v) { return conversion_.variance(k, v); });
-    if (aux_) aux_->write_rows(strip.y0, strip.rows, strip.aux, [](std::size_t, float v) { return v; });
+      variances = std::async(std::launch::async | std::launch::deferred, [&] {
+        variance_->write_rows(strip.y0, strip.rows, strip.variance,
+                              [&](auto... band) { conversion_.variances(band...); });
+      });
+    values_->write_rows(strip.y0, strip.rows, strip.mean, [&](auto... band) { conversion_.values(band...); });
+    if (variance_) variances.get();
+    if (aux_)
+      aux_->write_rows(
+          strip.y0, strip.rows, strip.aux,
+          [](std::size_t, const float* from, float* to, std::size_t n) { std::copy_n(from, n, to); });
   }
 
   uint64_t overflowed_values() const override { return conversion_.overflowed_values(); }

@@ -15,6 +15,14 @@ namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
+/// Rows that are scaled and written together: whole blocks, few enough to be in a cache still when the
+/// writers come to them.
+uint32_t rows_at_once(uint32_t at_most, std::size_t row_bytes) {
+  constexpr std::size_t kBytes = 8u << 20;
+  const std::size_t blocks = std::max<std::size_t>(kBytes / (row_bytes * kBlockSize), 1);
+  return static_cast<uint32_t>(std::min<std::size_t>(at_most, blocks * kBlockSize));
+}
+
 bool is_exr(const std::filesystem::path& file) {
   return to_lower(file.extension().string()) == ".exr";
 }
@@ -41,8 +49,11 @@ CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
       settings_(settings),
       width_(scene.film.crop_width),
       height_(scene.film.crop_height),
-      strip_(rows_per_strip),
+      strip_(rows_at_once(rows_per_strip, std::size_t{width_} * bands.bands.size() * sizeof(float))),
       aux_names_(auxiliary_planes(settings.aux)),
+      band_scale_(bands.film_channels, film_scale),
+      exact_mean_(bands.bands.size()),
+      exact_variance_(bands.bands.size()),
       errors_(bands.bands.size()) {
   CubeInfo info;
   info.width = width_;
@@ -79,18 +90,28 @@ CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
   }
 }
 
-float CubeOutput::scaled(float value, double scale) {
-  const auto result = static_cast<float>(value * scale);
-  underflowed_ += value > 0 && result == 0;
-  overflowed_ += !std::isfinite(result);
-  return result;
-}
-
-/// NaN is no overflow: fewer than two replicates have no variance.
-float CubeOutput::scaled_variance(float value, double scale) {
-  const auto result = static_cast<float>(double{value} * scale * scale);
-  overflowed_variances_ += std::isinf(result);
-  return result;
+void CubeOutput::add_pixel(uint64_t samples, const float* film_mean, const float* film_variance,
+                           std::size_t pixel) {
+  const std::size_t bands = bands_.bands.size();
+  float* const mean = rows_in_work_.mean.data() + pixel * bands;
+  least_ = std::min(least_, samples);
+  most_ = std::max(most_, samples);
+  missing_ += samples == 0;
+  if (samples == 0) {
+    std::fill_n(mean, bands, kMissing);
+  } else {
+    band_scale_.means(film_mean, exact_mean_, mean, losses_);
+  }
+  if (settings_.variance) {
+    band_scale_.variances(film_variance, exact_variance_, rows_in_work_.variance.data() + pixel * bands,
+                          losses_);
+    if (samples > 0) errors_.add(exact_mean_, exact_variance_);
+  }
+  if (!settings_.preview) return;
+  float rgb[3] = {0, 0, 0};
+  for (std::size_t b = 0; samples > 0 && b < bands; ++b)
+    for (int i = 0; i < 3; ++i) rgb[i] += preview_weights_[b][i] * mean[b];
+  preview_.insert(preview_.end(), rgb, rgb + 3);
 }
 
 void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
@@ -98,27 +119,9 @@ void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
   film_mean_.resize(width_ * channels);
   film_variance_.resize(settings_.variance ? width_ * channels : 0);
   film.row(y, film_mean_, film_variance_);
-  for (uint32_t x = 0; x < width_; ++x) {
-    const uint64_t samples = film.samples(x, y);
-    least_ = std::min(least_, samples);
-    most_ = std::max(most_, samples);
-    missing_ += samples == 0;
-    float rgb[3] = {0, 0, 0};
-    for (std::size_t b = 0; b < bands_.bands.size(); ++b) {
-      const std::size_t c = bands_.film_channels[b];
-      const float value = samples > 0 ? scaled(film_mean_[x * channels + c], scale_[c]) : kMissing;
-      mean_.push_back(value);
-      if (settings_.variance) {
-        const double variance = double{film_variance_[x * channels + c]} * scale_[c] * scale_[c];
-        variance_.push_back(scaled_variance(film_variance_[x * channels + c], scale_[c]));
-        if (samples > 0) errors_.add(b, double{film_mean_[x * channels + c]} * scale_[c], variance);
-      }
-      if (settings_.preview && samples > 0) {
-        for (int i = 0; i < 3; ++i) rgb[i] += preview_weights_[b][i] * value;
-      }
-    }
-    if (settings_.preview) preview_.insert(preview_.end(), rgb, rgb + 3);
-  }
+  for (uint32_t x = 0; x < width_; ++x)
+    add_pixel(film.samples(x, y), film_mean_.data() + x * channels, film_variance_.data() + x * channels,
+              std::size_t{rows_} * width_ + x);
   ++rows_;
 }
 
@@ -126,10 +129,11 @@ void CubeOutput::add_aux(Backend& backend, const PixelRect& rect) {
   if (aux_names_.empty()) return;
   for (const AuxiliaryPixel& pixel : backend.auxiliary(rect)) {
     for (const std::string& image : settings_.aux) {
-      if (image == "depth") aux_.push_back(pixel.depth);
-      if (image == "normal") aux_.insert(aux_.end(), {pixel.normal.x, pixel.normal.y, pixel.normal.z});
-      if (image == "object") aux_.push_back(pixel.object);
-      if (image == "material") aux_.push_back(pixel.material);
+      if (image == "depth") rows_in_work_.aux.push_back(pixel.depth);
+      if (image == "normal")
+        rows_in_work_.aux.insert(rows_in_work_.aux.end(), {pixel.normal.x, pixel.normal.y, pixel.normal.z});
+      if (image == "object") rows_in_work_.aux.push_back(pixel.object);
+      if (image == "material") rows_in_work_.aux.push_back(pixel.material);
     }
   }
 }
@@ -139,8 +143,8 @@ void CubeOutput::write(const SpectralFilm& film, Backend& backend) {
   for (uint32_t y = 0; y < rect.height; y += strip_) {
     const uint32_t rows = std::min(strip_, rect.height - y);
     const std::size_t values = std::size_t{rows} * width_ * bands_.bands.size();
-    mean_.reserve(values);  // growing would copy every value twice and touch twice the memory
-    if (settings_.variance) variance_.reserve(values);
+    rows_in_work_.mean.resize(values);
+    rows_in_work_.variance.resize(settings_.variance ? values : 0);
     for (uint32_t i = 0; i < rows; ++i) add_row(film, y + i);
     add_aux(backend, {rect.x0, rect.y0 + y, rect.width, rows});
     flush_strip();
@@ -155,24 +159,32 @@ void CubeOutput::write_missing(const PixelRect& rect) {
     const std::size_t pixels = std::size_t{rows_} * width_;
     missing_ += pixels;
     least_ = 0;
-    mean_.assign(pixels * bands, kMissing);
-    if (settings_.variance) variance_.assign(pixels * bands, kMissing);
-    aux_.assign(pixels * aux_names_.size(), kMissing);
+    rows_in_work_.mean.assign(pixels * bands, kMissing);
+    if (settings_.variance) rows_in_work_.variance.assign(pixels * bands, kMissing);
+    rows_in_work_.aux.assign(pixels * aux_names_.size(), kMissing);
     if (settings_.preview) preview_.resize(preview_.size() + 3 * pixels);
     for (auto& replicate : replicate_writers_) {
-      for (auto& writer : replicate) writer->write_rows({first_row_, rows_, mean_, {}, {}});
+      for (auto& writer : replicate) writer->write_rows({first_row_, rows_, rows_in_work_.mean, {}, {}});
     }
     flush_strip();
   }
 }
 
+/// Rows are written while the next ones are made; where there may be no further thread, before that.
 void CubeOutput::flush_strip() {
-  for (auto& writer : writers_) writer->write_rows({first_row_, rows_, mean_, variance_, aux_});
+  wait_for_writing();
+  std::swap(rows_in_work_, rows_being_written_);
+  rows_in_work_.aux.clear();
+  writing_ = std::async(std::launch::async | std::launch::deferred, [this, y0 = first_row_, rows = rows_] {
+    const auto& [mean, variance, aux] = rows_being_written_;
+    for (auto& writer : writers_) writer->write_rows({y0, rows, mean, variance, aux});
+  });
   first_row_ += rows_;
   rows_ = 0;
-  mean_.clear();
-  variance_.clear();
-  aux_.clear();
+}
+
+void CubeOutput::wait_for_writing() {
+  if (writing_.valid()) writing_.get();
 }
 
 void CubeOutput::write_replicates(const SpectralFilm& film) {
@@ -188,7 +200,7 @@ void CubeOutput::write_replicates(const SpectralFilm& film) {
         const bool empty = film.replicate_samples(r, pixel) == 0;
         for (const std::size_t c : bands_.film_channels) {
           rows.push_back(empty ? kMissing : static_cast<float>(mean[c] * scale_[c]));
-          overflowed_ += !empty && !std::isfinite(rows.back());
+          losses_.overflowed += !empty && !std::isfinite(rows.back());
         }
       }
       for (auto& writer : replicate_writers_[r]) writer->write_rows({image_row + y, count, rows, {}, {}});
@@ -197,11 +209,12 @@ void CubeOutput::write_replicates(const SpectralFilm& film) {
 }
 
 void CubeOutput::finish(RenderReport& report) {
+  wait_for_writing();
   FileSet set;  // the mean of one render must not stand beside the replicates of another
   const auto close = [&](CubeWriter& writer) {
     writer.close(set);
-    overflowed_ += writer.overflowed_values();
-    overflowed_variances_ += writer.overflowed_variances();
+    losses_.overflowed += writer.overflowed_values();
+    losses_.overflowed_variances += writer.overflowed_variances();
   };
   for (auto& replicate : replicate_writers_) {
     for (auto& writer : replicate) close(*writer);
@@ -217,9 +230,9 @@ void CubeOutput::finish(RenderReport& report) {
   report.samples_per_pixel = least_ == ~0ull ? 0 : least_;
   report.largest_samples_per_pixel = most_;
   report.pixels_without_sample = missing_;
-  report.underflowed_values = underflowed_;
-  report.overflowed_values = overflowed_;
-  report.overflowed_variances = overflowed_variances_;
+  report.underflowed_values = losses_.underflowed;
+  report.overflowed_values = losses_.overflowed;
+  report.overflowed_variances = losses_.overflowed_variances;
   if (settings_.variance) report.errors = errors_.errors();
   report.written = files_;
 }

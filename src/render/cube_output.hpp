@@ -2,9 +2,11 @@
 // error figure.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <vector>
 
+#include "render/band_scale.hpp"
 #include "render/error_sums.hpp"
 #include "render/session.hpp"
 
@@ -27,11 +29,16 @@ class CubeOutput {
 
  private:
   void add_row(const SpectralFilm& film, uint32_t y);
+  /// pixel: its place in the rows since the last flush
+  void add_pixel(uint64_t samples, const float* film_mean, const float* film_variance, std::size_t pixel);
   void add_aux(Backend& backend, const PixelRect& rect);
   void flush_strip();
+  void wait_for_writing();
   void write_replicates(const SpectralFilm& film);
-  float scaled(float value, double scale);
-  float scaled_variance(float value, double scale);
+
+  struct Rows {
+    std::vector<float> mean, variance, aux;  // [row][x][band or plane]
+  };
 
   const BandSelection bands_;
   std::vector<double> scale_;  // per film channel
@@ -40,15 +47,18 @@ class CubeOutput {
   std::vector<std::unique_ptr<CubeWriter>> writers_;
   std::vector<std::vector<std::unique_ptr<CubeWriter>>> replicate_writers_;  // [replicate][output]
   std::vector<std::string> aux_names_;
-  std::vector<float> mean_, variance_, aux_;      // rows since the last flush
+  Rows rows_in_work_, rows_being_written_;
   std::vector<float> film_mean_, film_variance_;  // one row of the film
   uint32_t first_row_ = 0, rows_ = 0;
   std::vector<std::array<float, 3>> preview_weights_;
   std::vector<float> preview_;
+  BandScale band_scale_;
+  std::vector<double> exact_mean_, exact_variance_;  // one pixel
   ErrorSums errors_;
-  uint64_t missing_ = 0, least_ = ~0ull, most_ = 0, underflowed_ = 0, overflowed_ = 0,
-           overflowed_variances_ = 0;
+  RangeLosses losses_;
+  uint64_t missing_ = 0, least_ = ~0ull, most_ = 0;
   std::vector<std::filesystem::path> files_;
+  std::future<void> writing_;  // last, so that it is waited for before anything that it uses goes
 };
 
 /// Names of the planes of an auxiliary image: "normal" gives normal.X, normal.Y, normal.Z.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace kiloband {
@@ -23,19 +24,17 @@ struct BandErrors {
 /// Gathers means and variances of the mean of all pixels, band by band.
 class ErrorSums {
  public:
-  explicit ErrorSums(std::size_t bands) : bands_(bands) {}
+  explicit ErrorSums(std::size_t bands) : means_(bands), variances_(bands), pixels_(bands) {}
 
-  /// A pixel's value in a band. A variance of NaN (fewer than two replicates with a valid sample) leaves the
-  /// pixel out of this band; one that is too large for a float, infinity, makes the band's error infinite.
-  void add(std::size_t band, double mean, double variance);
+  /// A pixel's values in all bands, in any unit. A variance of NaN (fewer than two replicates with a valid
+  /// sample) leaves the pixel out of this band; one that is too large for a float, infinity, makes the band's
+  /// error infinite.
+  void add(std::span<const double> means, std::span<const double> variances);
   BandErrors errors() const;
 
  private:
-  struct Sums {
-    double mean = 0, variance = 0;
-    uint64_t pixels = 0;
-  };
-  std::vector<Sums> bands_;
+  std::vector<double> means_, variances_;  // sums
+  std::vector<uint64_t> pixels_;
 };
 
 }  // namespace kiloband

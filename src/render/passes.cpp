@@ -24,12 +24,16 @@ std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
 BandErrors film_errors(const SpectralFilm& film, const std::vector<std::size_t>& channels) {
   const std::size_t stride = film.options().channels;
   std::vector<float> mean(film.rect().width * stride), variance(mean.size());
+  std::vector<double> pixel_mean(channels.size()), pixel_variance(channels.size());
   ErrorSums sums(channels.size());
   for (uint32_t y = 0; y < film.rect().height; ++y) {
     film.row(y, mean, variance);
     for (std::size_t first = 0; first < mean.size(); first += stride) {
-      for (std::size_t band = 0; band < channels.size(); ++band)
-        sums.add(band, mean[first + channels[band]], variance[first + channels[band]]);
+      for (std::size_t band = 0; band < channels.size(); ++band) {
+        pixel_mean[band] = mean[first + channels[band]];
+        pixel_variance[band] = variance[first + channels[band]];
+      }
+      sums.add(pixel_mean, pixel_variance);
     }
   }
   return sums.errors();

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <vector>
 
 namespace kiloband {
 namespace {
@@ -12,15 +14,15 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+void add(ErrorSums& sums, const std::vector<double>& means, const std::vector<double>& variances) {
+  sums.add(means, variances);
+}
+
 TEST(ErrorSums, WorstAndMedianOfTheBandsWithLight) {
   ErrorSums sums(5);
-  for (const double mean : {1.0, 3.0}) {
-    sums.add(0, mean, 0.04);  // RMS error 0.2 of mean 2
-    sums.add(1, mean, 0.16);  // 0.4 of 2
-    sums.add(2, 0, 0);        // no light: no relative error
-    sums.add(3, -mean, 0.01);  // a response may be negative: 0.05
-    sums.add(4, 0, kNone);     // nothing is known of it
-  }
+  // RMS error 0.2 of mean 2, 0.4 of 2; no light: no relative error; a response may be negative: 0.05; nothing
+  // is known of the last.
+  for (const double mean : {1.0, 3.0}) add(sums, {mean, mean, 0, -mean, 0}, {0.04, 0.16, 0, 0.01, kNone});
   const BandErrors errors = sums.errors();
   EXPECT_DOUBLE_EQ(*errors.worst, 0.2);
   EXPECT_EQ(errors.worst_band, 1u);
@@ -30,18 +32,15 @@ TEST(ErrorSums, WorstAndMedianOfTheBandsWithLight) {
 
 TEST(ErrorSums, PixelsWithoutErrorBarAreLeftOutOfTheirBandAlone) {
   ErrorSums sums(2);
-  sums.add(0, 1000, kNone);
-  sums.add(0, 1, 0.01);
-  sums.add(1, 1, 0.25);
-  sums.add(1, 1, kNone);
+  add(sums, {1000, 1}, {kNone, 0.25});
+  add(sums, {1, 1}, {0.01, kNone});
   EXPECT_DOUBLE_EQ(*sums.errors().worst, 0.5);
   EXPECT_EQ(sums.errors().worst_band, 1u);
 }
 
 TEST(ErrorSums, AVarianceBeyondFloatIsNoSmallError) {
   ErrorSums sums(2);
-  sums.add(0, 1, 0.01);
-  sums.add(1, 1e19, kInfinity);
+  add(sums, {1, 1e19}, {0.01, kInfinity});
   EXPECT_EQ(*sums.errors().worst, kInfinity);
 }
 
@@ -49,10 +48,16 @@ TEST(ErrorSums, NothingHasNoError) {
   ErrorSums sums(1);
   EXPECT_FALSE(sums.errors().worst);
   EXPECT_EQ(sums.errors().dark_bands, 0u);
-  sums.add(0, 0, 0);
-  sums.add(0, 1, kNone);
+  add(sums, {0}, {0});
+  add(sums, {1}, {kNone});
   EXPECT_FALSE(sums.errors().worst);
   EXPECT_EQ(sums.errors().dark_bands, 1u);
+}
+
+TEST(ErrorSums, APixelHasAllBands) {
+  ErrorSums sums(2);
+  EXPECT_THROW(add(sums, {1}, {1}), std::logic_error);
+  EXPECT_THROW(add(sums, {1, 1}, {1}), std::logic_error);
 }
 
 }  // namespace
