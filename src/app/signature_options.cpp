@@ -109,7 +109,7 @@ void write_places(const PlaceOptions& options, const std::filesystem::path& file
                   const std::filesystem::path& out, const DiagnosticSink& sink) {
   ReplicatedCube cube = change(open_replicated_cube(file, sink));
   if (options.signature) return write_signature_table(options, std::move(cube), change, file, out, sink);
-  write_csv(cube, out, places_of(options));
+  write_csv(cube, out, places_of(options), sink);
 }
 
 }  // namespace kiloband

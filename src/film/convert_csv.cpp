@@ -13,9 +13,22 @@ namespace {
 
 constexpr uint32_t kTileRows = 32;  // of our EXR files, which are read by whole tiles
 
-/// Per band the value and, for single pixels of cubes with variances, the standard error (empty otherwise).
+/// Per band the value and, where it is known, the standard error (empty otherwise), with as many digits as
+/// their type has.
 struct Place {
   std::vector<std::string> value, error;
+  uint64_t infinite = 0;
+
+  template <class Number>
+  void add_value(Number number) {
+    value.push_back(format_number(number));
+    infinite += std::isinf(number);
+  }
+  template <class Number>
+  void add_error(Number number) {
+    error.push_back(format_number(number));
+    infinite += std::isinf(number);
+  }
 };
 
 Place read_pixel(CubeReader& source, uint32_t x, uint32_t y) {
@@ -24,8 +37,8 @@ Place read_pixel(CubeReader& source, uint32_t x, uint32_t y) {
   source.read_rows(y, 1, mean, variance);
   Place place;
   for (std::size_t k = x * bands; k < (x + std::size_t{1}) * bands; ++k) {
-    place.value.push_back(format_number(mean[k]));
-    place.error.push_back(variance.empty() ? "" : format_number(std::sqrt(variance[k])));
+    place.add_value(mean[k]);
+    if (!variance.empty()) place.add_error(std::sqrt(variance[k]));
   }
   return place;
 }
@@ -53,8 +66,7 @@ std::vector<double> region_means(CubeReader& source, const PixelRect& region) {
 
 Place read_region(CubeReader& source, const PixelRect& region) {
   Place place;
-  for (const double mean : region_means(source, region)) place.value.push_back(format_number(mean));
-  place.error.resize(place.value.size());
+  for (const double mean : region_means(source, region)) place.add_value(mean);
   return place;
 }
 
@@ -64,9 +76,9 @@ Place read_replicated(ReplicatedCube& source, const PixelRect& region) {
   std::vector<std::vector<double>> means;
   for (const auto& replicate : source.replicates) means.push_back(region_means(*replicate, region));
   std::vector<double> values(means.size());
-  for (std::size_t k = 0; k < place.error.size(); ++k) {
+  for (std::size_t k = 0; k < place.value.size(); ++k) {
     for (std::size_t r = 0; r < means.size(); ++r) values[r] = means[r][k];
-    place.error[k] = format_number(replicate_error(values, source.samples));
+    place.add_error(replicate_error(values, source.samples));
   }
   return place;
 }
@@ -78,42 +90,50 @@ void check_places(const CubeInfo& info, const std::vector<PixelRect>& places) {
 
 template <class ReadPlace>
 void write_places(const CubeInfo& info, const std::filesystem::path& out,
-                  const std::vector<PixelRect>& places, bool errors, const ReadPlace& read_place) {
+                  const std::vector<PixelRect>& places, bool errors, const DiagnosticSink& sink,
+                  const ReadPlace& read_place) {
+  uint64_t infinite = 0;
   const bool several = places.size() > 1;
   std::string text = several ? "x,y,width,height," : "";
   text += "channel,min_nm,max_nm,value" + std::string(errors ? ",standard_error" : "") + "\n";
   const std::vector<std::string> names = unique_band_names(info.bands);
   for (const PixelRect& p : places) {
     const Place place = read_place(p);
+    infinite += place.infinite;
     std::string prefix;
     if (several)
       for (const uint32_t number : {p.x0, p.y0, p.width, p.height}) prefix += std::to_string(number) + ",";
     for (std::size_t k = 0; k < names.size(); ++k) {
       const Channel& c = info.bands[k].channel;
       text += prefix + csv_text(names[k]) + "," + csv_bound(c, c.min_nm) + "," + csv_bound(c, c.max_nm) +
-              "," + place.value[k] + (errors ? "," + place.error[k] : "") + "\n";
+              "," + place.value[k];
+      if (errors) text += "," + (place.error.empty() ? std::string() : place.error[k]);
+      text += "\n";
     }
   }
   write_file_atomically(out, text);
+  if (infinite > 0)
+    warn(sink, {out.string(), 0, 0}, std::to_string(infinite) + " values or standard errors are infinite");
 }
 
 }  // namespace
 
-void write_csv(CubeReader& source, const std::filesystem::path& out, const std::vector<PixelRect>& places) {
+void write_csv(CubeReader& source, const std::filesystem::path& out, const std::vector<PixelRect>& places,
+               const DiagnosticSink& sink) {
   const CubeInfo& info = source.info();
   check_places(info, places);
   const auto is_pixel = [](const PixelRect& p) { return p.pixels() == 1; };
   const bool errors = info.variance && std::any_of(places.begin(), places.end(), is_pixel);
-  write_places(info, out, places, errors, [&](const PixelRect& p) {
+  write_places(info, out, places, errors, sink, [&](const PixelRect& p) {
     return is_pixel(p) ? read_pixel(source, p.x0, p.y0) : read_region(source, p);
   });
 }
 
-void write_csv(ReplicatedCube& source, const std::filesystem::path& out,
-               const std::vector<PixelRect>& places) {
-  if (!source.has_errors()) return write_csv(*source.mean, out, places);
+void write_csv(ReplicatedCube& source, const std::filesystem::path& out, const std::vector<PixelRect>& places,
+               const DiagnosticSink& sink) {
+  if (!source.has_errors()) return write_csv(*source.mean, out, places, sink);
   check_places(source.mean->info(), places);
-  write_places(source.mean->info(), out, places, true,
+  write_places(source.mean->info(), out, places, true, sink,
                [&](const PixelRect& p) { return read_replicated(source, p); });
 }
 

@@ -135,5 +135,47 @@ TEST(Responses, ChannelsFarFromLightAreAWarning) {
       << outcome.err;
 }
 
+/// Two bands that have names only, as films of responses and other programs' files have them.
+void write_named_bands(const std::filesystem::path& file) {
+  CubeInfo info;
+  info.width = info.height = 1;
+  info.bands = {{{0, 0, "red"}, true}, {{0, 0, "green"}, true}};
+  const auto writer = create_cube_writer(file, info, 1);
+  const std::vector<float> values = {3, 4};
+  writer->write_rows({0, 1, values, {}, {}});
+  writer->finish();
+}
+
+TEST(Responses, NamedBandsAreGivenWavelengths) {
+  const TemporaryFolder folder;
+  write_named_bands(folder / "named.exr");
+  const auto convert = [&](const std::string& out, const std::string& wavelengths) {
+    return run_program(folder, {"convert", "named.exr", out, "--wavelengths", wavelengths});
+  };
+  ASSERT_EQ(convert("part.hdr", "green=500-600").code, 0);
+  const Cube part = read_cube(folder / "part.hdr");
+  ASSERT_EQ(part.info.bands.size(), 2u);
+  EXPECT_EQ(part.info.bands[0].channel.name, "green");  // bands with wavelengths come first
+  EXPECT_EQ(part.info.bands[0].channel.min_nm, 500);
+  EXPECT_EQ(part.info.bands[0].channel.max_nm, 600);
+  EXPECT_FALSE(part.info.bands[0].derived);
+  EXPECT_EQ(part.info.bands[1].channel.name, "red");
+  EXPECT_TRUE(part.info.bands[1].derived);
+  EXPECT_EQ(part.mean, (std::vector<float>{4, 3}));
+
+  folder.write("bands.txt", "# of the sensor\nred = 600-700\ngreen=500-600\n");
+  ASSERT_EQ(convert("all.exr", "bands.txt").code, 0);
+  const Cube all = read_cube(folder / "all.exr");
+  ASSERT_EQ(all.info.bands.size(), 2u);
+  EXPECT_EQ(all.info.bands[0].channel.max_nm, 700);
+  EXPECT_FALSE(all.info.bands[1].derived);
+
+  const Outcome unknown = convert("x.exr", "blue=400-500");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_EQ(unknown.err,
+            "kiloband: wavelengths of band 'blue': the cube has no such band; without wavelengths are 'red', "
+            "'green'\n");
+}
+
 }  // namespace
 }  // namespace kiloband::test

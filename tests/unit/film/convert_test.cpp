@@ -19,8 +19,11 @@ class Convert : public testing::Test {
     write_cube_file(cube, folder / name);
     return folder / name;
   }
+  DiagnosticSink sink() {
+    return [this](const Diagnostic& d) { notes.push_back(d.message); };
+  }
   Cube converted(const std::filesystem::path& in, const char* name, const CubeSelection& selection = {}) {
-    convert_cube(in, folder / name, selection, [this](const Diagnostic& d) { notes.push_back(d.message); });
+    convert_cube(in, folder / name, selection, sink());
     return read_cube_file(folder / name);
   }
   std::string selection_error(const std::filesystem::path& in, const CubeSelection& selection) {
@@ -75,6 +78,18 @@ TEST_F(Convert, InfiniteValuesAreWarnedOf) {
   converted(write(cube, "e.hdr"), "f.exr");
   EXPECT_EQ(notes, (std::vector<std::string>{"1 values are infinite: too large for float32",
                                              "1 variances are infinite: too large for float32"}));
+}
+
+TEST_F(Convert, InfiniteValuesInTablesAreWarnedOf) {
+  Cube cube = make_cube(2, 1, equal_bands(400, 500, 2), true);
+  cube.mean = {50, std::numeric_limits<float>::infinity(), 50, 50};
+  cube.variance = {1, std::numeric_limits<float>::infinity(), 1, 1};
+  const auto reader = open_cube(write(cube, "a.hdr"));
+  write_csv(*reader, folder / "t.csv", {{1, 0, 1, 1}}, sink());
+  EXPECT_TRUE(notes.empty());
+  write_csv(*reader, folder / "t.csv", {{0, 0, 1, 1}, {0, 0, 2, 1}},
+            sink());  // a pixel with its error, a mean
+  EXPECT_EQ(notes, std::vector<std::string>{"3 values or standard errors are infinite"});
 }
 
 TEST_F(Convert, DensitiesAreCopiedWithoutRounding) {
