@@ -10,6 +10,6 @@ std::string SourcePosition::to_string() const {
 }
 
 InputError::InputError(const SourcePosition& position, const std::string& message)
-    : std::runtime_error(position.to_string() + ": error: " + message) {}
+    : std::runtime_error(position.to_string() + ": error: " + message), position_(position) {}
 
 }  // namespace kiloband

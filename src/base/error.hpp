@@ -25,6 +25,12 @@ class InputError : public std::runtime_error {
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
   /// what() is "file:line:column: error: message".
   InputError(const SourcePosition& position, const std::string& message);
+
+  /// Where it stands; without a file if that is not known.
+  const SourcePosition& position() const { return position_; }
+
+ private:
+  SourcePosition position_;
 };
 
 /// The device or the machine failed: out of memory, disk full, no instruction set, a lost device.

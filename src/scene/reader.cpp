@@ -4,6 +4,7 @@
 #include <set>
 
 #include "scene/read_context.hpp"
+#include "scene/read_errors.hpp"
 #include "scene/xml_values.hpp"
 
 namespace kiloband {
@@ -24,13 +25,15 @@ class SceneReader {
   SceneReader(SceneTree& tree, const ReadOptions& options)
       : tree_(tree), sink_(without_repetitions(options.sink)), context_{tree, sink_, options.film_size,
                                                                         {},   {},    {},
-                                                                        {},   {}} {}
+                                                                        {},   {}},
+        errors_(*tree.root) {}
 
   SceneDescription run() {
     const ObjectReader scene(*tree_.root);
     for (const auto& child : tree_.root->children) {
       if (child->resolved().kind == TagKind::kObject) read(scene, *child);
     }
+    errors_.throw_if_any();  // what follows depends on the whole
     read_ambient(scene);
     check_parts();
     scene.finish();
@@ -49,8 +52,17 @@ class SceneReader {
     const std::string& tag = node.tag;
     if (is_part(node) || is_thermal(node)) return;
     child.used = true;
-    if ((tag == "shape" || tag == "emitter") && !placed_.insert(&node).second)
-      fail(child.place, scene.label() + ": " + ObjectReader(node).label() + " is in the scene already");
+    const bool again = (tag == "shape" || tag == "emitter") && !placed_.insert(&node).second;
+    sensors_ += tag == "sensor";
+    integrators_ += tag == "integrator";
+    errors_.attempt([&] {
+      if (again) fail(child.place, scene.label() + ": " + ObjectReader(node).label() + " is in the scene already");
+      read_object(scene, child, node);
+    });
+  }
+
+  void read_object(const ObjectReader& scene, const Node& child, Node& node) {
+    const std::string& tag = node.tag;
     if (tag == "shape") {
       scene_.shapes.push_back(read_shape(context_, node));
     } else if (tag == "emitter") {
@@ -60,10 +72,10 @@ class SceneReader {
     } else if (tag == "texture" || tag == "spectrum") {
       read_texture_node(context_, node, ObjectReader(node).label(), SpectrumUse::kAny);
     } else if (tag == "sensor") {
-      if (++sensors_ > 1) fail(child.place, scene.label() + ": a second sensor: only one is supported");
+      if (sensors_ > 1) fail(child.place, scene.label() + ": a second sensor: only one is supported");
       scene_.sensor = read_sensor(context_, node);
     } else if (tag == "integrator") {
-      if (++integrators_ > 1) fail(child.place, scene.label() + ": a second integrator");
+      if (integrators_ > 1) fail(child.place, scene.label() + ": a second integrator");
       std::tie(integrator_, splitting_) = read_integrator(context_, node);
     } else if (tag == "medium") {
       add_medium(child, node);
@@ -149,6 +161,7 @@ class SceneReader {
   DiagnosticSink sink_;
   std::set<const Node*> placed_;  // shapes and emitters of the scene
   ReadContext context_;
+  ReadErrors errors_;
   SceneDescription scene_;
   Integrator integrator_;
   uint64_t splitting_ = 1;

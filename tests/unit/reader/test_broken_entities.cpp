@@ -106,6 +106,7 @@ std::vector<BrokenScene> table() {
       {"unknown wrap mode",
        complete_scene(
            R"xml(<texture type="bitmap"><string name="filename" value="a.obj"/><string name="wrap_mode" value="once"/></texture>)xml"),
+       "scene.xml:2:55: error: a.obj: not an image of a known format (EXR, HDR, PNG, JPEG, TIFF, BMP, PNM, PFM, TGA)\n"
        "scene.xml:2:95: error: bitmap texture: wrap_mode 'once': must be one of repeat, mirror, clamp"},
       {"texture where a spectrum is needed",
        scene(R"xml(<emitter type="constant"><texture type="checkerboard" name="radiance"/></emitter>)xml"),

@@ -106,7 +106,10 @@ TEST(SceneXml, ObsoleteParametersOfOldFilesAreReported) {
   EXPECT_EQ(
       error_of(scene(R"(<sensor type="perspective"><float name="nearClip" value="3"/></sensor>)")),
       "scene.xml:2:41: error: perspective sensor: unknown parameter 'nearClip'; did you mean 'near_clip'?");
-  EXPECT_EQ(error_of(scene(body)), "scene.xml:3:37: error: hdrfilm film: unknown parameter 'banner'");
+  EXPECT_EQ(error_of(scene(body)),
+            "scene.xml:2:69: error: ldsampler sampler: unknown parameter 'dimension'\n"
+            "scene.xml:3:37: error: hdrfilm film: unknown parameter 'banner'\n"
+            "scene.xml:3:75: error: hdrfilm film: unknown parameter 'attachLog'");
 }
 
 TEST(SceneXml, DefinesMustBeKnown) {
