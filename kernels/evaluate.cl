@@ -1,5 +1,5 @@
-// Deferred evaluation of a round's saved paths (paper, section 5); build macros: path_spectra.clh, film.clh, and
-// KB_PIXELS (evaluate_tile.clh; 1 for dpept_path).
+// Deferred evaluation of a round's saved paths (DPEPT paper, section 5); build macros: path_spectra.clh,
+// film.clh, and KB_PIXELS (evaluate_tile.clh; 1 for dpept_path).
 //
 //   kernel       arguments                             work-items
 //   dpept_batch  EVALUATION, saved, FILM, partial      groups * local size; groups: ceil(round pixels / KB_PIXELS), or

@@ -1,5 +1,5 @@
-// The straightforward method (paper, section 4): throughput tau and radiance L of every channel of every path in
-// flight live in global memory and are updated at each bounce. Build macros: path_spectra.clh.
+// The straightforward method (DPEPT paper, section 4): throughput tau and radiance L of every channel of every
+// path in flight live in global memory and are updated at each bounce. Build macros: path_spectra.clh.
 //
 //   kernel      arguments                                                       work-items
 //   pt_update   EVALUATION, FILM, states, queue, count, tau, radiance, partial  groups * local size, any number of groups, which share

@@ -13,8 +13,8 @@
 namespace kiloband {
 namespace {
 
-// Float sums take at most this many samples before they go to double: their rounding error stays below 64 *
-// 2^-24 = 4e-6 in the worst case (all samples equal) and 5e-7 typically, however many samples follow.
+// Float sums take at most this many samples before they go to double: their rounding error stays below
+// 64 * 2^-24 = 4e-6 in the worst case (all samples equal) and 5e-7 typically, however many samples follow.
 constexpr uint32_t kFoldInterval = 64;
 
 /// A planted fault: sums with 8 bits, rounded down or to the nearest.

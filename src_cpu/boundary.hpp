@@ -11,15 +11,15 @@ inline bool is_boundary(const FlatScene& scene, uint32_t shape) {
   return shape != KB_NONE && (scene.shapes[shape].flags & KB_SHAPE_NULL);
 }
 
-/// The point from which a ray towards `direction` leaves the surface: off it, on the side that the ray goes
-/// to.
+/// The point from which a ray towards `direction` leaves the surface: off it,
+/// on the side that the ray goes to.
 inline glm::vec3 leave_surface(const SurfaceHit& hit, glm::vec3 direction) {
   const glm::vec3 n = hit.geometric_normal;
   return offset_ray_origin(hit.departure, glm::dot(n, direction) >= 0 ? n : -n, hit.offset);
 }
 
-/// The parameter of the point that a ray left, whose origin is off the surface: columns of gas are measured
-/// from there.
+/// The parameter of the point that a ray left, whose origin is off the surface:
+/// columns of gas are measured from there.
 inline float begin_at(const SurfaceHit& hit, glm::vec3 origin, glm::vec3 direction) {
   return glm::dot(hit.point - origin, direction) / glm::dot(direction, direction);
 }

@@ -47,8 +47,8 @@ struct BsdfSample {
 };
 
 /// The wavelength that a dispersive material is evaluated for after degradation. Before it, reflection by a
-/// smooth dielectric is for all channels (KB_KIND_DISPERSIVE) while transmission needs a channel to be chosen
-/// by the caller.
+/// smooth dielectric is for all channels (KB_KIND_DISPERSIVE) while transmission needs a channel
+/// to be chosen by the caller.
 struct DispersionState {
   float eta = 0;  // interior over exterior index at the chosen wavelength; 0: not degraded
 };
@@ -62,16 +62,17 @@ struct MaterialContext {
       nullptr;  // for KB_MATERIAL_COMPENSATED: its table (shared/thermal.h), else unused
 };
 
-/// E(wi) of a compensated material: the albedo of its single-scattering lobe. source  shared/thermal.h
+/// E(wi) of a compensated material: the albedo of its single-scattering lobe. Source: shared/thermal.h.
 float lobe_albedo(const MaterialContext& context, glm::vec3 wi);
 
-/// Value and density for wi -> wo; zero for delta materials and for directions that the material does not
-/// scatter to. throws std::logic_error for a rough plastic without table, a rough dispersive dielectric that
-/// is not degraded
+/// Value and density for wi -> wo; zero for delta materials and for directions
+/// that the material does not scatter to.
+/// throws std::logic_error  a rough plastic without table, a rough dispersive dielectric that is not degraded
 BsdfValue eval_bsdf(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo);
 
 /// Chooses a direction; the weights are f |cos theta_o| / pdf of the whole material for non-delta lobes, and
-/// of the chosen lobe for delta ones. u_lobe and u uniform in [0,1) throws as eval_bsdf
+/// of the chosen lobe for delta ones. u_lobe and u uniform in [0,1).
+/// throws as eval_bsdf
 BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lobe, glm::vec2 u);
 
 /// Second half of a sample with needs_channel: refracts wi for the chosen channel.
@@ -82,8 +83,8 @@ BsdfSample transmit_dispersive(const KbMaterial& material, glm::vec3 wi, float e
                                float probability);
 
 /// A pair of directions at a rough dispersive boundary, for every channel at once. For reflection the vertex
-/// is KB_KIND_DISPERSIVE with w0 = weight, w1 = cosine; for transmission KB_KIND_ROUGH_TRANSMISSION with w0 =
-/// weight and the directions (shared/rough_transmission.h).
+/// is KB_KIND_DISPERSIVE with w0 = weight, w1 = cosine; for transmission KB_KIND_ROUGH_TRANSMISSION with
+/// w0 = weight and the directions (shared/rough_transmission.h).
 struct BoundaryPair {
   float weight = 0;  // f |cos theta_o| [1/sr] without Fresnel's reflectance; or without the factor T; 0: none
   float cosine = 0;  // reflection: of wi and the half vector, negative from inside
@@ -91,8 +92,8 @@ struct BoundaryPair {
 };
 BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo);
 
-/// Is a rough boundary's lobe too narrow for float directions, so that it is treated as smooth? eta: either
-/// ratio of the two indices.
+/// Is a rough boundary's lobe too narrow for float directions, so that it is treated as smooth?
+/// eta  either ratio of the two indices
 bool acts_smooth(const KbMaterial& material, float eta);
 
 /// The kind of eval_bsdf's weights for this material.

@@ -104,8 +104,8 @@ float lobe_albedo(const MaterialContext& context, glm::vec3 wi) {
 }
 
 /// Both triangles of the map without a branch: the larger coordinate is the radius, the angle is at most
-/// pi/4, where Taylor polynomials reach float precision. Signs and magnitudes agree with shared/warp.h to
-/// rounding.
+/// pi/4, where Taylor polynomials reach float precision.
+/// Signs and magnitudes agree with shared/warp.h to rounding.
 glm::vec3 lobes::cosine_direction(glm::vec2 u) {
   const float a = 2 * u.x - 1, b = 2 * u.y - 1;
   const float larger = std::max(std::abs(a), std::abs(b)), smaller = std::min(std::abs(a), std::abs(b));

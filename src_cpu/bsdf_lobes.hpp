@@ -17,8 +17,8 @@ inline glm::vec3 mirror(glm::vec3 w) {
   return {-w.x, -w.y, w.z};
 }
 
-/// Cosine-weighted direction by Shirley and Chiu's concentric map of the square to the disk; density cos /
-/// pi.
+/// Cosine-weighted direction by Shirley and Chiu's concentric map of the square
+/// to the disk; density cos / pi.
 glm::vec3 cosine_direction(glm::vec2 u);
 
 BsdfSample sample_diffuse(const KbMaterial& material, glm::vec2 u);

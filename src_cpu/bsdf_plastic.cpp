@@ -26,8 +26,8 @@ float specular_probability(const KbMaterial& material, float reflectance) {
   return (1 - kUniformLobes) * p + 0.5f * kUniformLobes;
 }
 
-/// The diffuse term's part that depends on the material alone; the denominator stays out for
-/// KB_KIND_NONLINEAR.
+/// The diffuse term's part that depends on the material alone;
+/// the denominator stays out for KB_KIND_NONLINEAR.
 float diffuse_scale(const KbMaterial& material, float internal_reflectance) {
   const float scale = 1 / (material.eta * material.eta);
   return is_nonlinear(material) ? scale : scale / (1 - internal_reflectance);

@@ -30,8 +30,8 @@ struct RoughTransmittance {
 };
 
 /// Reads distribution, alpha_u (the model is isotropic) and eta. Takes tens of milliseconds.
-/// A nonlinear rough plastic is evaluated with KbMaterial::fdr_int: whoever renders must store
-/// internal_reflectance there.
+/// A nonlinear rough plastic is evaluated with KbMaterial::fdr_int: whoever renders must
+/// store internal_reflectance there.
 RoughTransmittance make_rough_transmittance(const KbMaterial& material);
 
 }  // namespace kiloband

@@ -1,5 +1,5 @@
-// Camera rays. Conventions of Mitsuba 3: local +Z views, +X is the image's left, film position s in [0,1]^2,
-// s_y down.
+// Camera rays. Conventions of Mitsuba 3: local +Z views, +X is the image's left,
+// film position s in [0,1]^2, s_y down.
 #include "src_cpu/camera.hpp"
 
 #include <cmath>
@@ -41,8 +41,7 @@ float sample_filter(const KbCamera& camera, float u) {
   }
 }
 
-// ---- projections
-// ---------------------------------------------------------------------------------------------------
+// ---- projections -------------------------------------------------------------------------------------
 
 /// Film position (0 = left / top, 1 = right / bottom) to the image plane: x in [-1, 1] leftwards, y upwards,
 /// y scaled by the film's height / width. Double, so that sub-pixel positions of large films stay exact.
@@ -51,8 +50,8 @@ glm::vec2 image_plane(const KbCamera& camera, glm::dvec2 s) {
   return {static_cast<float>(1 - 2 * s.x), static_cast<float>((1 - 2 * s.y) * height_over_width)};
 }
 
-/// The ray is the plane's normal; to_world scales the film. As in Mitsuba the near plane lies at local z =
-/// near_clip, and far_clip - near_clip is measured in the world.
+/// The ray is the plane's normal; to_world scales the film. As in Mitsuba the near plane lies at
+/// local z = near_clip, and far_clip - near_clip is measured in the world.
 CameraRay orthographic_ray(const KbCamera& camera, glm::dvec2 s) {
   const glm::vec2 plane = image_plane(camera, s);
   const glm::vec3 axis = affine_column<float>(camera.to_world, 2);

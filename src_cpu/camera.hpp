@@ -14,8 +14,9 @@ struct CameraRay {
 };
 
 /// One ray through pixel (x, y) of the full film. Filter importance sampling: the film position is drawn from
-/// the reconstruction filter centred on the pixel (all filters here are positive), so every sample has
-/// weight 1. u  x, y: film position; z, w: lens; uniform in [0,1)
+/// the reconstruction filter centred on the pixel (all filters here are positive),
+/// so every sample has weight 1.
+/// u  x, y: film position; z, w: lens; uniform in [0,1)
 CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u);
 /// The ray through the pixel's centre and the lens's centre, for auxiliary images.
 CameraRay centre_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y);

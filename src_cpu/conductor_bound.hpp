@@ -1,5 +1,5 @@
-// Upper bound of a metal's Fresnel reflectance over all channels: what roulette needs to end paths in metal
-// cavities.
+// Upper bound of a metal's Fresnel reflectance over all channels: what roulette needs to end paths
+// in metal cavities.
 #pragma once
 
 #include <algorithm>

@@ -87,8 +87,8 @@ void DenseSpectra::throw_bad_row(uint32_t s) {
   throw std::logic_error("saved path: spectrum " + std::to_string(s) + " does not exist");
 }
 
-/// A row of the pool. Its padding is zero: rows are only ever written in their first K entries, or zeros
-/// beyond.
+/// A row of the pool. Its padding is zero: rows are only ever written in their first K
+/// entries, or zeros beyond.
 float* DenseSpectra::new_row() {
   if (used_ == pool_.size()) pool_.push_back(aligned_zeros<float>(padded_));
   return pool_[used_++].get();

@@ -35,11 +35,12 @@ struct DenseSpectra {
  public:
   DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kernels);
 
-  /// Starts over with another offset in [0, 1]. `fast`: see above (`per-path` makes every row anew for each
-  /// path).
+  /// Starts over with another offset in [0, 1].
+  /// `fast`: see above (`per-path` makes every row anew for each path).
   void begin(double mu, bool fast);
 
-  /// Row of spectrum s. throws std::logic_error if there is no such spectrum
+  /// Row of spectrum s.
+  /// throws std::logic_error  there is no such spectrum
   const float* spectrum(uint32_t s) {
     if (s >= rows_.size()) throw_bad_row(s);
     return rows_[s].generation == generation_ ? rows_[s].data : make_spectrum(s);
@@ -49,8 +50,8 @@ struct DenseSpectra {
   double emission_factor(std::size_t channel) const { return emission_factor_[channel]; }
   const float* zeros() const { return zeros_.get(); }
   /// Planck's law at a temperature that no row has, in film units, times `emissivity` (null: 1). Double
-  /// precision, one exponential a channel (about 4 ns): the relative error is that of the stored float. out:
-  /// padded_channels() floats
+  /// precision, one exponential a channel (about 4 ns): the relative error is that of the stored float.
+  /// out  padded_channels() floats
   void fill_planck(double temperature_k, const float* emissivity, float* out);
   std::size_t padded_channels() const { return padded_; }
   /// clamp(lambda_k, 360, 830), nm, in double: where textures are evaluated.

@@ -141,8 +141,8 @@ struct EmbreeScene::Impl {
 void EmbreeScene::Impl::add_mesh(const KbShape& shape, unsigned id) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (!geometry) fail(device, "rtcNewGeometry");
-  // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare vertex at their
-  // end.
+  // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare
+  // vertex at their end.
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat->positions.data(),
                              0, sizeof(KbFloat3), flat->positions.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat->triangles.data(),

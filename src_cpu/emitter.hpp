@@ -9,8 +9,8 @@
 
 namespace kiloband {
 
-/// What is seen at an emitting point or direction: a spectrum row or a texture sample, both without MIS
-/// weight.
+/// What is seen at an emitting point or direction: a spectrum row or a texture sample,
+/// both without MIS weight.
 struct EmittedRadiance {
   uint16_t row = 0;
   bool textured = false;
@@ -56,8 +56,8 @@ SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on);
 /// origin  the `point` that was given to sample_light(): for spheres the density depends on its side
 float area_light_pdf(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 origin);
 
-/// Density with which sample_light() gives a direction that escapes to the environment; 0 without environment
-/// [1/sr].
+/// Density with which sample_light() gives a direction that escapes to the environment;
+/// 0 without environment [1/sr].
 float environment_pdf(const FlatScene& scene, glm::vec3 direction);
 /// What the environment sends from `direction` (a unit vector towards it); scene.environment must exist.
 EmittedRadiance environment_radiance(const FlatScene& scene, glm::vec3 direction);

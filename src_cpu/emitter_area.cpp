@@ -33,13 +33,13 @@ bool lit_on_both_sides(const KbShape& shape) {
 }
 
 /// A light that shines on both sides, or by tilted vertex normals, lies edge-on to whatever is in its plane,
-/// itself too; only rounding would say which side is seen. Below this cosine it is not sampled: BSDF samples
-/// find it.
+/// itself too; only rounding would say which side is seen. Below this cosine it is not sampled:
+/// BSDF samples find it.
 constexpr float kEdgeOn = 1e-6f;
 
 /// The geometric normal of the side that is seen; 0: it does not emit to there, or is edge-on. Vertex normals
-/// may let a triangle shine to the back of its winding: the density goes with the geometric cosine all the
-/// same.
+/// may let a triangle shine to the back of its winding: the density goes with the geometric
+/// cosine all the same.
 glm::vec3 lit_side(const KbShape& shape, glm::vec3 to_light, glm::vec3 geometric_normal,
                    glm::vec3 shading_normal) {
   if (!lit_on_both_sides(shape) && !on_front(shading_normal, -to_light)) return glm::vec3(0);
@@ -111,12 +111,11 @@ AreaLightSample sample_by_area(const KbShape& shape, glm::vec3 point, glm::vec2 
   return sample;
 }
 
-// ---- spheres
-// -------------------------------------------------------------------------------------------------------
+// ---- spheres -----------------------------------------------------------------------------------------
 // From outside, directions are uniform over the cone that the sphere subtends, of half angle theta_m with
 // sin theta_m = r / d. 1 - cos theta_m = sin^2 / (1 + cos) keeps its digits for tiny and far spheres, and
-// cos theta_m = sqrt(d^2 - r^2) / d for touching ones. All of it in double: radius and distance may differ by
-// 1e8.
+// cos theta_m = sqrt(d^2 - r^2) / d for touching ones.
+// All of it in double: radius and distance may differ by 1e8.
 
 /// Where a sphere lies as seen from a point.
 struct SphereView {

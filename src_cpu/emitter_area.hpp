@@ -38,8 +38,8 @@ struct AreaLightSample {
 AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,
                                   float u_triangle, glm::vec2 u, bool need_uv);
 
-/// The same density for a given hit of the shape; 0 where sample_area_light() cannot give it. Arguments as
-/// area_light_pdf().
+/// The same density for a given hit of the shape; 0 where sample_area_light() cannot give it.
+/// Arguments as area_light_pdf().
 float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin);
 
 }  // namespace kiloband

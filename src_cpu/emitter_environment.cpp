@@ -44,8 +44,8 @@ glm::vec3 sample_envmap_direction(const EnvmapSampling& sampling, const KbEmitte
   const CellSample column = sample_cell(row_cdf, sampling.width, u.x);
 
   // Uniform in solid angle within the row: h = sin^2(theta / 2) = (1 - cos theta) / 2 is uniform. Rows of the
-  // lower half are mirrored, so that h stays small near either pole and sin theta = 2 sqrt(h (1 - h)) keeps
-  // its digits.
+  // lower half are mirrored, so that h stays small near either pole
+  // and sin theta = 2 sqrt(h (1 - h)) keeps its digits.
   const bool lower = 2 * row.cell >= sampling.height;
   const uint32_t from_pole = lower ? sampling.height - 1 - row.cell : row.cell;
   const float step = 0.5f * KB_PI / static_cast<float>(sampling.height);
@@ -71,8 +71,8 @@ float envmap_density(const EnvmapSampling& sampling, glm::vec2 uv) {
   const float* row_cdf = &sampling.row_cdf[static_cast<std::size_t>(row) * (sampling.width + 1)];
   const float probability =
       (sampling.marginal_cdf[row + 1] - sampling.marginal_cdf[row]) * (row_cdf[column + 1] - row_cdf[column]);
-  // Solid angle of the cell: 2 pi / columns * (cos theta0 - cos theta1), the difference as a product of
-  // sines.
+  // Solid angle of the cell: 2 pi / columns * (cos theta0 - cos theta1),
+  // the difference as a product of sines.
   const float half_step = 0.5f * KB_PI / rows;
   const float middle = (2 * static_cast<float>(row) + 1) * half_step;
   return probability * columns /

@@ -1,9 +1,9 @@
-// Environment emitters: constant radiance and lat-long maps. Densities are without the probability of
-// selection.
+// Environment emitters: constant radiance and lat-long maps.
+// Densities are without the probability of selection.
 //
 // The map (emitter's local frame, +Y up): u = atan2(x, -z) / 2 pi mod 1, v = acos(y) / pi, as in Mitsuba 3.
-// The emitter's to_world is a rotation or reflection (uniform scale does not matter). How maps are sampled:
-// scene/envmap_sampling.hpp.
+// The emitter's to_world is a rotation or reflection (uniform scale does not matter).
+// How maps are sampled: scene/envmap_sampling.hpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -28,8 +28,8 @@ struct Evaluator::Impl {
   }
 
   /// One path at the offset of `spectra`, all channels: with blocks of channels as the outer loop over
-  /// resolved paths, 0.084 instead of 0.066 ns per channel and vertex were measured (AVX-512, K = 512, 1024
-  /// pixels).
+  /// resolved paths, 0.084 instead of 0.066 ns per channel and vertex were measured
+  /// (AVX-512, K = 512, 1024 pixels).
   void add(const PathBuffer& paths, std::size_t p, std::span<float> sums) {
     const SavedPath& path = paths.paths[p];
     if (std::size_t{path.first} + path.count > paths.slots.size())

@@ -1,4 +1,4 @@
-// Deferred evaluation of saved paths for all channels, SIMD over channels (paper section 5, algorithm 1).
+// Deferred evaluation of saved paths for all channels, SIMD over channels (DPEPT paper, section 5).
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace kiloband {
 /// time (64 channels with AVX-512); what the vertices refer to is resolved once per path. Values are film
 /// units: channel k times 1 / channel_scale[k]. A channel's bits depend on the path, mu and the instruction
 /// set, not on the other channels. Emission rows (SpectrumRow::is_emission, and illuminants of textures)
-/// carry width_k / channel_scale_k; a textured emitter without an illuminant is taken to be in W m^-2 sr^-1
-/// nm^-1 as it is.
+/// carry width_k / channel_scale_k; a textured emitter without an illuminant is taken to be
+/// in W m^-2 sr^-1 nm^-1 as it is.
 class Evaluator {
  public:
   static constexpr std::size_t kChannelPadding = 64;
@@ -31,8 +31,8 @@ class Evaluator {
   Evaluator(Evaluator&&) noexcept;
 
   /// Floats per pixel in `sums`: channels and derived channels, each padded to kChannelPadding, and an odd
-  /// multiple of it: with a power of two the rows of a block's pixels would compete for a few sets of the
-  /// caches.
+  /// multiple of it: with a power of two the rows of a block's pixels would compete
+  /// for a few sets of the caches.
   std::size_t stride() const;
   /// Where derived channel d stands in a pixel's row (channels stand at 0 .. K-1).
   std::size_t derived_offset() const;
@@ -41,8 +41,8 @@ class Evaluator {
   double derived_scale(std::size_t d) const;
 
   /// Adds every path's channel values to sums[path.pixel * stride() + k], all paths at the wavelength offset
-  /// mu (`shared`). mu in [0, 1]. Padding receives zeros. Fastest if `sums` is aligned to 64 bytes. throws
-  /// std::logic_error if a path refers to what the scene or `sums` does not have
+  /// mu (`shared`). mu in [0, 1]. Padding receives zeros. Fastest if `sums` is aligned to 64 bytes.
+  /// throws std::logic_error  a path refers to what the scene or `sums` does not have
   void add_shared(const PathBuffer& paths, double mu, std::span<float> sums);
   /// The same with an offset of its own for each path (`per-path`); mu has one entry per path.
   void add_per_path(const PathBuffer& paths, std::span<const float> mu, std::span<float> sums);

@@ -1,5 +1,5 @@
-// Vertices of gas (KB_KIND_MEDIUM of shared/path_vertex.h) for one vector of channels; compiled once per
-// instruction set.
+// Vertices of gas (KB_KIND_MEDIUM of shared/path_vertex.h) for one vector of channels;
+// compiled once per instruction set.
 //
 // No include guard of the usual kind: see evaluator_optics-inl.hpp.
 #if defined(KILOBAND_EVALUATOR_GAS_INL) == defined(HWY_TARGET_TOGGLE)
@@ -25,10 +25,9 @@ HWY_INLINE Absorbed absorbed(Floats x) {
   return {hn::Exp(kTag, minus), hn::Neg(hn::Expm1(kTag, minus))};
 }
 
-/// (1 - e^-x (1 + x)) / x, what the far end of a cell contributes: x / 2 - x^2 / 3 + x^3 / 8 - x^4 / 30 + x^5
-/// / 144
-/// - ..., with coefficients (-1)^n (n - 1) / n!, below 0.5, where the closed form cancels (the series' next
-/// term is 4e-7 of the sum there).
+/// (1 - e^-x (1 + x)) / x, what the far end of a cell contributes. Below 0.5, where the closed form cancels,
+/// its series x / 2 - x^2 / 3 + x^3 / 8 - x^4 / 30 + x^5 / 144 - ..., with coefficients (-1)^n (n - 1) / n!
+/// (the series' next term is 4e-7 of the sum there).
 HWY_INLINE Floats far_share(Floats x, const Absorbed& a) {
   Floats series = hn::MulAdd(x, constant(1.0f / 5760), constant(-1.0f / 840));
   series = hn::MulAdd(x, series, constant(1.0f / 144));
@@ -40,8 +39,8 @@ HWY_INLINE Floats far_share(Floats x, const Absorbed& a) {
   return hn::IfThenElse(hn::Lt(x, constant(0.5f)), series, closed);
 }
 
-/// The cells of a plume, from near to far. `scale`: what stands before the sum; tau is multiplied by the
-/// transmittance.
+/// The cells of a plume, from near to far. `scale`: what stands before the sum;
+/// tau is multiplied by the transmittance.
 HWY_INLINE Floats plume_radiance(const GeneralVertex& v, Floats scale, std::size_t k, Floats& tau) {
   const Floats kappa = hn::LoadU(kTag, v.a.row + k), reference = hn::LoadU(kTag, v.emit.row + k);
   const PlanckReference planck = planck_reference(hn::LoadU(kTag, v.second_k + k), v.reference_k);

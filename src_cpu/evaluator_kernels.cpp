@@ -1,8 +1,8 @@
-// The SIMD kernels of deferred evaluation (paper, algorithm 1), compiled for SSE4.2, AVX2 and AVX-512.
+// The SIMD kernels of deferred evaluation (DPEPT paper, algorithm 1), compiled for SSE4.2, AVX2 and AVX-512.
 //
 // One path, all channels: for each block of channels, tau and L stay in registers over all steps; then one
-// read-modify-write of the film. Every lane is a channel, so a channel's bits do not depend on its
-// neighbours.
+// read-modify-write of the film. Every lane is a channel, so a channel's bits do not depend
+// on its neighbours.
 #include "src_cpu/evaluator_kernels.hpp"
 
 #include <hwy/cache_control.h>
@@ -55,8 +55,8 @@ HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, 
   }
 }
 
-/// One vertex for the vector of channels at k. aside: the third register of scenes with gas, see
-/// path_vertex.h.
+/// One vertex for the vector of channels at k. aside: the third register of scenes
+/// with gas, see path_vertex.h.
 HWY_INLINE void general_vector(const GeneralVertex& v, const double* lambda, std::size_t k, float* tau,
                                float* radiance, float* aside) {
   Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance);

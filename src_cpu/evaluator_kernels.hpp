@@ -15,8 +15,9 @@ inline constexpr std::size_t kRowPadding = 64;
 /// Lanes of the widest vector.
 inline constexpr std::size_t kMaxLanes = 16;
 
-/// A bilinear texture lookup: value(lambda) = (constant + sum_i weight_i S(c_i0 x^2 + c_i1 x + c_i2)) *
-/// factor. Texels that are spectrally flat are summed in `constant`; weights include the texels' scales.
+/// A bilinear texture lookup:
+///   value(lambda) = (constant + sum_i weight_i S(c_i0 x^2 + c_i1 x + c_i2)) * factor.
+/// Texels that are spectrally flat are summed in `constant`; weights include the texels' scales.
 struct TextureTerms {
   uint32_t count = 0;
   double coefficients[4][3];
@@ -55,8 +56,8 @@ struct TransmissionTerms {
   bool ggx = false;
 };
 
-/// A vertex that the fast steps do not cover; see KbPathVertex. Emission from named rows is a step of its
-/// own.
+/// A vertex that the fast steps do not cover; see KbPathVertex.
+/// Emission from named rows is a step of its own.
 struct GeneralVertex {
   uint32_t kind = 0;   // KbVertexKind
   uint32_t flags = 0;  // KB_VERTEX_EMIT (textured, or gas), _NEE, _SCATTER, _DEGRADE, _DEFER
@@ -123,12 +124,12 @@ struct EvaluatorKernels {
   void (*evaluate_path)(const PathProgram& path, float* film);
   /// out[i] = table(lambda_nm[i]) for i < count rounded up to kMaxLanes; positions in double.
   void (*sample_table)(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out);
-  /// out[i] = sum over r < rows of weights[r] * row[r][i], i < count. Nothing is read or written beyond
-  /// count.
+  /// out[i] = sum over r < rows of weights[r] * row[r][i], i < count.
+  /// Nothing is read or written beyond count.
   void (*weighted_sum)(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
                        float* out);
-  /// out[i] = first[i] * values[index[i]] + second[i] * values[index[i] + 1], i < count rounded up to
-  /// kMaxLanes.
+  /// out[i] = first[i] * values[index[i]] + second[i] * values[index[i] + 1],
+  /// i < count rounded up to kMaxLanes.
   void (*mix_bands)(const float* values, const int32_t* index, const float* first, const float* second,
                     std::size_t count, float* out);
 };

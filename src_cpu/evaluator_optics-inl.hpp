@@ -35,10 +35,11 @@ HWY_INLINE Floats constant(float x) {
 /// Smallest divisor that is used: 0 / 0 at grazing incidence on a matched boundary comes to 0.
 inline constexpr float kTiny = 1e-18f;
 
-/// Unpolarised reflectance of a conductor with index n + ik for the cosine c. With (a + ib)^2 = (n + ik)^2 -
-/// s^2, s^2 = 1 - c^2 and T = n^2 - 1 - k^2 (so a^2 - b^2 = T + c^2 =: t, ab = nk):
-///   R_s = ((a - c)^2 + b^2) / ((a + c)^2 + b^2),   R_p = R_s ((ac - s^2)^2 + b^2 c^2) / ((ac + s^2)^2 + b^2
-///   c^2).
+/// Unpolarised reflectance of a conductor with index n + ik for the cosine c.
+/// With (a + ib)^2 = (n + ik)^2 - s^2, s^2 = 1 - c^2 and T = n^2 - 1 - k^2
+/// (so a^2 - b^2 = T + c^2 =: t, ab = nk):
+///   R_s = ((a - c)^2 + b^2) / ((a + c)^2 + b^2),
+///   R_p = R_s ((ac - s^2)^2 + b^2 c^2) / ((ac + s^2)^2 + b^2 c^2).
 /// Without cancellation: of a and b the larger comes from sqrt((|a+ib|^2 + |t|) / 2), the other from ab = nk.
 /// Where a >= b, a - c = (T + b^2) / (a + c), which is accurate for n near 1; elsewhere b^2 outweighs the
 /// rounding of a - c.
@@ -92,8 +93,8 @@ HWY_INLINE Floats fresnel(const FresnelTerms& f, std::size_t k) {
 }
 
 /// S(v) = 1/2 + v / (2 sqrt(1 + v^2)). For v < 0 the difference is expanded: S(-|v|) = 1 / (2 r (r + |v|)),
-/// r^2 = 1 + v^2, which keeps relative precision where S is small; S(|v|) = 1 - S(-|v|). An infinite r gives
-/// 0 or 1.
+/// r^2 = 1 + v^2, which keeps relative precision where S is small; S(|v|) = 1 - S(-|v|).
+/// An infinite r gives 0 or 1.
 HWY_INLINE Floats sigmoid(Floats v) {
   const Floats r = hn::Sqrt(hn::MulAdd(v, v, constant(1)));
   const Floats tail = hn::Div(constant(0.5f), hn::Mul(r, hn::Add(r, hn::Abs(v))));

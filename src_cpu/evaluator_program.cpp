@@ -112,8 +112,8 @@ void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const Sources& from,
     return;
   }
   if (!nee && !scatter) return;
-  // No light sample: a row of zeros costs less than a branch. After the last vertex nobody reads the
-  // throughput.
+  // No light sample: a row of zeros costs less than a branch.
+  // After the last vertex nobody reads the throughput.
   steps_.push_back({StepKind::kScaled, nee ? vertex.nee0 : 0, scatter ? vertex.scatter0 : 0, from.a.row,
                     nee ? from.nee.row : spectra.zeros(), nullptr});
 }

@@ -1,5 +1,5 @@
-// Turns a saved path into steps with pointers into dense rows, once per path, for the kernels to run per
-// channel block.
+// Turns a saved path into steps with pointers into dense rows, once per path,
+// for the kernels to run per channel block.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// Dense rows from tables, mixtures and bands, a vector of channels at a time; compiled once per instruction
-// set.
+// Dense rows from tables, mixtures and bands, a vector of channels at a time;
+// compiled once per instruction set.
 //
 // No include guard of the usual kind: evaluator_kernels.cpp includes itself, and this file, once per target.
 #if defined(KILOBAND_EVALUATOR_TABLES_INL) == defined(HWY_TARGET_TOGGLE)
@@ -21,8 +21,8 @@ HWY_INLINE Floats load(const float* row, std::size_t k) {
   return hn::LoadU(kTag, row + k);
 }
 
-/// Positions in a table, as half vectors: entry, and the weights of it and the next. Both weights are 0
-/// outside.
+/// Positions in a table, as half vectors: entry, and the weights of it and the next.
+/// Both weights are 0 outside.
 struct Position {
   hn::Vec<hn::Rebind<int32_t, DoubleTag>> index;
   hn::Vec<HalfTag> first, second;

@@ -28,8 +28,8 @@ HWY_INLINE Floats transmittance(Floats big_e, Floats c) {
                             hn::Sub(constant(1), partial_reflectance(big_e, g, c, c2)));
 }
 
-/// T of shared/rough_transmission.h. With s = wi + e wo = (wi + wo) + d wo, d = e - 1 = E / (e + 1), and m =
-/// s / |s| turned upwards:
+/// T of shared/rough_transmission.h. With s = wi + e wo = (wi + wo) + d wo, d = e - 1 = E / (e + 1), and
+/// m = s / |s| turned upwards:
 ///   D(m) = shape(t) / (pi alpha_u alpha_v cos^4), t = ((s_x / alpha_u)^2 + (s_y / alpha_v)^2) / s_z^2,
 ///   cos^2 = s_z^2 / |s|^2, shape = exp(-t) or 1 / (1 + t)^2;  wi.s = (1 + wi.wo) + d wi.wo,
 ///   wo.s = (1 + wi.wo) + d.

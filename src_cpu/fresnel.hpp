@@ -14,8 +14,8 @@ struct DielectricFresnel {
 
 /// cos_i  in [0, 1], on the incident side
 /// eta    transmitted over incident index, > 0
-/// The cosine is formed as (eta^2 - 1 + cos_i^2) / eta^2 with eta^2 - 1 = (eta - 1)(eta + 1): nothing cancels
-/// for eta >= 1.
+/// The cosine is formed as (eta^2 - 1 + cos_i^2) / eta^2 with eta^2 - 1 = (eta - 1)(eta + 1): nothing
+/// cancels for eta >= 1.
 inline DielectricFresnel fresnel_dielectric(float cos_i, float eta) {
   if (eta == 1) return {0, cos_i};
   const float square = (eta - 1) * (eta + 1) + cos_i * cos_i;

@@ -11,8 +11,9 @@ const char* to_string(Isa isa);
 /// True if this machine runs code for `isa`; kAuto always does.
 bool is_available(Isa isa);
 
-/// The best instruction set of this machine that the program has code for if `wanted` is kAuto, else
-/// `wanted`. throws DeviceError if the machine lacks it
+/// The best instruction set of this machine that the program has code for if `wanted` is
+/// kAuto, else `wanted`.
+/// throws DeviceError  the machine lacks it
 Isa resolve_isa(Isa wanted);
 
 }  // namespace kiloband

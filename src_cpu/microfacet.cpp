@@ -5,11 +5,12 @@ namespace {
 
 constexpr float kLargestBelowOne = KB_ONE_MINUS_EPSILON;
 
-/// Slope towards the viewer of a visible Beckmann normal for alpha = 1 and a view at angle theta, cot = cos /
-/// sin. Slopes s < cot are visible with density ~ (cos - s sin) exp(-s^2). In b = erf(s) the distribution
-/// function times its norm is  c(b) = cos (1 + b) + sin exp(-s^2) / sqrt(pi),  c'(b) = cos - s sin >= 0; c(b)
-/// = u norm is solved by Newton's method, kept inside a bracket that shrinks by at least half whenever a step
-/// leaves it.
+/// Slope towards the viewer of a visible Beckmann normal for alpha = 1 and a view at angle theta,
+/// cot = cos / sin. Slopes s < cot are visible with density ~ (cos - s sin) exp(-s^2). In b = erf(s) the
+/// distribution function times its norm is
+///   c(b) = cos (1 + b) + sin exp(-s^2) / sqrt(pi),  c'(b) = cos - s sin >= 0;
+/// c(b) = u norm is solved by Newton's method, kept inside a bracket that shrinks by
+/// at least half whenever a step leaves it.
 float visible_beckmann_slope(float cos_theta, float sin_theta, float u) {
   const float cot = cos_theta / sin_theta;  // infinite at normal incidence, which is fine
   const float k = sin_theta * Microfacet::kInvSqrtPi;
@@ -78,8 +79,8 @@ float inverse_erf(float x) {
 glm::vec3 Microfacet::sample_normal(glm::vec3 wi, glm::vec2 u) const {
   const glm::vec2 alpha(alpha_u_, alpha_v_);
   if (visible_) return ggx_ ? sample_visible_ggx(wi, alpha, u) : sample_visible_beckmann(wi, alpha, u);
-  // Slopes (alpha_u r cos phi, alpha_v r sin phi); r^2 has distribution 1 - exp(-r^2), or r^2 / (1 + r^2) for
-  // GGX.
+  // Slopes (alpha_u r cos phi, alpha_v r sin phi); r^2 has distribution 1 - exp(-r^2),
+  // or r^2 / (1 + r^2) for GGX.
   const float rest = std::max(1 - u.x, 1 - kLargestBelowOne);
   const float r = std::sqrt(ggx_ ? u.x / rest : -std::log(rest));
   const float phi = 2 * KB_PI * u.y;

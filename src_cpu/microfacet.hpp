@@ -33,8 +33,8 @@ class Microfacet {
   float min_alpha() const { return std::min(alpha_u_, alpha_v_); }
   Microfacet scaled(float factor) const { return {ggx_, alpha_u_ * factor, alpha_v_ * factor, visible_}; }
 
-  /// Density of normals per solid angle and projected area: the integral of D(m) m.z over the hemisphere
-  /// is 1.
+  /// Density of normals per solid angle and projected area:
+  /// the integral of D(m) m.z over the hemisphere is 1.
   float normal_density(glm::vec3 m) const {
     if (!(m.z > 1e-6f)) return 0;
     const float x = m.x / alpha_u_, y = m.y / alpha_v_, z2 = m.z * m.z;
@@ -73,9 +73,9 @@ class Microfacet {
   bool ggx_, visible_;
 };
 
-/// Inverse error function for x in (-1, 1), relative error below 1e-6; clamped to what a float below 1 can
-/// give (3.8). source  Giles, Approximating the erfinv function, GPU Computing Gems 2, 2010 (single
-/// precision)
+/// Inverse error function for x in (-1, 1), relative error below 1e-6;
+/// clamped to what a float below 1 can give (3.8).
+/// Source: Giles, Approximating the erfinv function, GPU Computing Gems 2, 2010 (single precision).
 float inverse_erf(float x);
 
 }  // namespace kiloband

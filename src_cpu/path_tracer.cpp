@@ -14,8 +14,8 @@ namespace kiloband {
 namespace {
 
 constexpr uint32_t kWavefront = 16;  // paths that advance together
-/// Tables are finite and of order 1 (emission in film units), so a path's value is finite if its weights stay
-/// below this.
+/// Tables are finite and of order 1 (emission in film units),
+/// so a path's value is finite if its weights stay below this.
 constexpr float kLargestWeight = 1e34f;
 
 /// Multiplies `magnitude` by the vertex's scatter weight; false where a contribution could leave the range of
@@ -148,8 +148,8 @@ void PathTracer::trace_shadows() {
   }
 }
 
-/// Asks for the vertices of all hits before the first is shaded (their indices were asked for while rays were
-/// traced).
+/// Asks for the vertices of all hits before the first is shaded
+/// (their indices were asked for while rays were traced).
 void PathTracer::prefetch_vertices() const {
   for (const TraceRay& ray : rays_queue_) {
     if (ray.shape == KB_NONE) continue;
@@ -218,8 +218,8 @@ void PathTracer::add_emission(Draft& draft, const Path& path, const SurfaceHit& 
   }
 }
 
-/// Rows or texture samples of the factors S_a and S_b; they stand before those of emission and light in the
-/// vertex.
+/// Rows or texture samples of the factors S_a and S_b;
+/// they stand before those of emission and light in the vertex.
 void PathTracer::resolve_spectra(Draft& draft, const KbMaterial& material, const SurfaceHit& hit,
                                  bool use_b_for_a) {
   const uint32_t kind = draft.vertex.head & KB_VERTEX_KIND_MASK;

@@ -1,9 +1,9 @@
 // Path generation: paths are built without looking at a wavelength and saved for deferred evaluation.
 //
-// Estimator (DESIGN 2): unidirectional path tracing with next-event estimation, power-heuristic MIS over the
-// light and BSDF samples, and Russian roulette with survival q = min(1, upper bound of the throughput over
-// all channels). At a refraction whose index depends on wavelength one channel goes on with weight K
-// (degradation).
+// Estimator: unidirectional path tracing with next-event estimation, power-heuristic MIS over the light and
+// BSDF samples, and Russian roulette with survival q = min(1, upper bound of the throughput over all
+// channels). At a refraction whose index depends on wavelength one channel goes on, with weight 1 / its
+// probability (channel_choice.hpp); at rough boundaries all may go on (spectral_mis.hpp).
 //
 // Sixteen neighbouring pixels advance together, bounce by bounce: their camera rays are one packet for
 // Embree, and what one bounce touched of the scene is still in the caches at the next. Secondary rays go one
@@ -64,8 +64,8 @@ class PathTracer {
   uint64_t rays() const { return rays_; }
   uint64_t vertices() const { return vertices_; }
 
-  /// When set, every ray that is traced is appended here with its path's index in the block (benchmarks of
-  /// bare queries).
+  /// When set, every ray that is traced is appended here with its path's index in the block
+  /// (benchmarks of bare queries).
   struct Recording {
     std::vector<TraceRay> closest;
     std::vector<ShadowRay> shadow;

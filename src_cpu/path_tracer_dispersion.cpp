@@ -20,8 +20,8 @@ float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, floa
   return static_cast<float>(flat_.spectra[material.eta_row].table(lambda_nm) / exterior);
 }
 
-/// One channel is what the path stands for from here on. carried: what each still carries. Returns its
-/// probability.
+/// One channel is what the path stands for from here on. carried: what each still carries.
+/// Returns its probability.
 float PathTracer::survive(Path& path, const BinnedThroughput& carried, const SampleId& id, uint32_t bounce) {
   const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
   const ChannelChoice choice = choose_channel(carried, static_cast<uint32_t>(flat_.channels.size()), u);
@@ -107,8 +107,8 @@ void PathTracer::append_pair(Path& path, Draft& draft, const Boundary& at, const
   append(path, draft);
 }
 
-/// Next-event estimation at a rough dispersive boundary: a vertex of its own. Returns whether a shadow ray
-/// was queued.
+/// Next-event estimation at a rough dispersive boundary: a vertex of its own.
+/// Returns whether a shadow ray was queued.
 bool PathTracer::add_hero_light(Path& path, const Boundary& at, const HeroSet& heroes, const SampleId& id,
                                 uint32_t bounce) {
   if (flat_.emitters.empty()) return false;

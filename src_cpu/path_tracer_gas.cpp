@@ -1,8 +1,8 @@
 // Gas along the rays of a path: null boundaries are passed, and every segment in a gas becomes a vertex of
 // kind KB_KIND_MEDIUM (shared/records.h).
 //
-// Estimator. Gas only absorbs and emits, so with optical depth x from the segment's begin the radiance at its
-// begin is
+// Estimator. Gas only absorbs and emits, so with optical depth x from the segment's begin the
+// radiance there is
 //
 //   L = L_end exp(-x_end) + int_0^x_end B(T) exp(-x) dx,
 //

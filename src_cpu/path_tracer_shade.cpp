@@ -90,8 +90,8 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   MaterialContext material{&record, &scene_.rough[side], {}};
   if (record.flags & KB_MATERIAL_COMPENSATED) {
     material.compensation = &flat_.thermal_tables[record.table];
-    // A metal's compensation has two parts, a and a F0: one of them is taken, for light and BSDF sample
-    // alike.
+    // A metal's compensation has two parts, a and a F0: one of them is taken,
+    // for light and BSDF sample alike.
     if (eval_kind(record) == KB_KIND_CONDUCTOR && u.x >= lobe_albedo(material, wi)) {
       if (&record != &local) local = record;
       local.ref_a = record.ref_b;
@@ -239,8 +239,8 @@ bool PathTracer::scatter(Draft& draft, Path& path, const SurfaceHit& hit, const 
   return true;
 }
 
-/// Survival q = min(1, bound): never below what any channel still carries, so no channel's variance becomes
-/// infinite.
+/// Survival q = min(1, bound): never below what any channel still carries,
+/// so no channel's variance becomes infinite.
 bool PathTracer::roulette(Draft& draft, Path& path, uint32_t bounce, float u) {
   if (bounce + 1 < static_cast<uint32_t>(flat_.integrator.rr_depth)) return true;
   const float q = std::min(1.0f, path.bound);

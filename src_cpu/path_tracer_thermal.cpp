@@ -6,8 +6,8 @@
 
 namespace kiloband {
 
-/// Kirchhoff's law. What has only the ambient temperature is not sampled as a light: it is found by this ray
-/// alone.
+/// Kirchhoff's law. What has only the ambient temperature is not sampled as a light:
+/// it is found by this ray alone.
 void PathTracer::add_thermal_emission(Draft& draft, const Path& path, const SurfaceHit& hit,
                                       glm::vec3 direction, const SampleId& id, uint32_t bounce) {
   const bool light = flat_.shapes[hit.shape].emitter != KB_NONE;

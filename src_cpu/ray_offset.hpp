@@ -1,5 +1,5 @@
-// Where a ray leaves a surface: off it by an amount that follows floating point precision, not the scene's
-// size.
+// Where a ray leaves a surface: off it by an amount that follows floating point precision,
+// not the scene's size.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace kiloband {
 
-/// How far off a surface rays begin, in m: far enough that a ray from there does not find the surface it
-/// left.
+/// How far off a surface rays begin, in m: far enough that a ray from there does not find
+/// the surface it left.
 ///
 /// With u = 2^-24, a point on a triangle and the plane through it that an intersection test sees are wrong by
 /// a few u times the corners' coordinates, each in its axis' share of the normal: a level plane is exact,
@@ -19,8 +19,8 @@ namespace kiloband {
 /// u or two of the largest coordinate. With squares from 1e-6 to 1e4 m (tests/unit/cpu_lights,
 /// validation/suite: all_sizes) an eighth of the factor along the normal still sufficed; the factor across
 /// has no measured lower bound. The coordinates of the POINT do not enter: a large triangle is as imprecise
-/// near the origin as elsewhere, and a small one there as precise as its corners. largest  per axis: the
-/// largest |coordinate| of what the point lies on
+/// near the origin as elsewhere, and a small one there as precise as its corners.
+/// largest  per axis: the largest |coordinate| of what the point lies on
 inline float surface_offset(glm::vec3 largest, glm::vec3 unit_normal) {
   constexpr float kAlongNormal = 1.0f / 524288.0f, kAcross = 1.0f / 4194304.0f;  // 2^-19, 2^-22
   const float along = std::fabs(unit_normal.x) * largest.x + std::fabs(unit_normal.y) * largest.y +
@@ -72,8 +72,9 @@ inline glm::vec3 moved_off_the_edges(glm::vec3 p, const glm::vec3 (&corners)[3],
 /// A point of a triangle, moved in its plane to at least 8 offsets from its edges (in slivers an eighth of
 /// the height). A point that is rounded across an edge lies outside of the neighbour, and a ray from there
 /// leaves a closed body unseen; so does one that is moved off the triangle next to a neighbour at an acute
-/// angle (up to atan(1/8) = 7 degrees). Without this, 1 of 10^6 to 10^8 rays left such bodies. weights
-/// barycentric, of the three corners; area_normal: cross product of the edges from p0
+/// angle (up to atan(1/8) = 7 degrees). Without this, 1 of 10^6 to 10^8 rays left such bodies.
+/// weights      barycentric, of the three corners
+/// area_normal  cross product of the edges from p0
 inline glm::vec3 off_the_edges(glm::vec3 p, glm::vec3 weights, const glm::vec3 (&corners)[3],
                                glm::vec3 area_normal, float offset) {
   const float least = 8.0f * offset, smallest = std::min(std::min(weights.x, weights.y), weights.z);

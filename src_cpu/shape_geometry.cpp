@@ -12,8 +12,8 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586476925;
 constexpr double kPi = 3.141592653589793238463;
 
-/// The linear part of to_world by columns, and what inverts it: rows of the cofactor matrix over the
-/// determinant.
+/// The linear part of to_world by columns, and what inverts it:
+/// rows of the cofactor matrix over the determinant.
 struct Placement {
   glm::dvec3 x, y, z, origin;
 
@@ -110,8 +110,8 @@ bool intersect_cylinder(const KbShape& shape, const glm::dvec3& origin, const gl
   return false;
 }
 
-/// The nearest point of the canonical shape, sideways: radially for sphere and cylinder, vertically for the
-/// disk.
+/// The nearest point of the canonical shape, sideways: radially for sphere and cylinder,
+/// vertically for the disk.
 glm::dvec3 project_to_canonical(uint32_t type, const glm::dvec3& p) {
   if (type == KB_SHAPE_DISK) return {p.x, p.y, 0};
   if (type == KB_SHAPE_SPHERE) {
@@ -203,8 +203,8 @@ AreaPoint sample_analytic_area(const KbShape& shape, glm::vec2 u) {
     normal = glm::cross(x, y);
     if (glm::dot(normal, z) < 0) normal = -normal;
   } else {
-    // Sphere and cylinder with equal radii: the linear map of the outward direction stays normal to the
-    // surface.
+    // Sphere and cylinder with equal radii: the linear map of the outward direction stays
+    // normal to the surface.
     normal = point.local.x * x + point.local.y * y;
     if (shape.type == KB_SHAPE_SPHERE) normal += point.local.z * z;
   }

@@ -3,8 +3,8 @@
 // The geometry is what the float matrix to_world says, read exactly into double precision; to_object is not
 // used, since its rounding would move small shapes that are far from the origin. Spheres need a similarity
 // transform, disks and cylinders may be any invertible affine image; area sampling of a cylinder is uniform
-// where its axes are orthogonal and the radius is the same in all directions (what p0, p1 and radius can
-// express).
+// where its axes are orthogonal and the radius is the same in all directions
+// (what p0, p1 and radius can express).
 #pragma once
 
 #include <glm/glm.hpp>
@@ -28,8 +28,8 @@ struct SurfacePoint {
 bool intersect_analytic(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
                         double t_min, double t_max, double& t);
 
-/// Attributes at a point near the surface (a hit whose distance was rounded): the point is projected onto the
-/// surface.
+/// Attributes at a point near the surface (a hit whose distance was rounded):
+/// the point is projected onto the surface.
 SurfacePoint analytic_surface(const KbShape& shape, const glm::dvec3& hit_point);
 
 /// Surface area, m^2 (see above for cylinders).

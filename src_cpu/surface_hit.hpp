@@ -20,8 +20,8 @@ struct SurfaceHit {
   glm::vec2 barycentric{0};  // meshes: weights of its second and third vertex
 };
 
-/// ray_origin + t * direction is only used for analytic shapes; mesh points come from barycentric
-/// coordinates.
+/// ray_origin + t * direction is only used for analytic shapes;
+/// mesh points come from barycentric coordinates.
 SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape, uint32_t primitive, float u, float v,
                             glm::vec3 ray_origin, glm::vec3 direction, float t);
 
@@ -36,8 +36,9 @@ inline bool on_front(glm::vec3 shading_normal, glm::vec3 away) {
 /// SurfaceHit::geometric_normal of a triangle with these edges from its first corner.
 glm::vec3 triangle_normal(const KbShape& shape, glm::vec3 e1, glm::vec3 e2);
 
-/// SurfaceHit::shading_normal at a point of a triangle. index: its three vertices; barycentric: weights of
-/// the second and third
+/// SurfaceHit::shading_normal at a point of a triangle.
+/// index        its three vertices
+/// barycentric  weights of the second and third
 glm::vec3 triangle_shading_normal(const FlatScene& scene, const KbShape& shape, const uint32_t* index,
                                   glm::vec2 barycentric, glm::vec3 geometric_normal);
 

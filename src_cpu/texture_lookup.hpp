@@ -13,8 +13,8 @@ KbTextureSample sample_bitmap(const KbTexture& texture, uint32_t index, glm::vec
 /// The environment map's sample for local coordinates u in [0,1) (periodic), v in [0,1] (rows align-corners).
 KbTextureSample sample_envmap_texture(const KbTexture& texture, uint32_t index, glm::vec2 uv);
 
-/// A spectrum reference resolved at uv: the row of a named spectrum (checkerboards choose one), or a texture
-/// sample.
+/// A spectrum reference resolved at uv: the row of a named spectrum (checkerboards choose one),
+/// or a texture sample.
 struct ResolvedSpectrum {
   uint16_t row = 0;
   bool textured = false;
@@ -28,8 +28,8 @@ float bitmap_value(const FlatScene& scene, const KbTextureSample& sample);
 /// A mask's opacity; 1 for other surfaces.
 float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv);
 
-/// Upper bound of a resolved spectrum over guide bands and rendered channels (of a lookup: of its four
-/// texels).
+/// Upper bound of a resolved spectrum over guide bands and rendered channels
+/// (of a lookup: of its four texels).
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum);
 
 }  // namespace kiloband

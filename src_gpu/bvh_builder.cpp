@@ -27,8 +27,7 @@ constexpr float kTraversalCost = 1;  // of a node, relative to kIntersectionCost
 constexpr float kIntersectionCost = 1;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// ---- the tree as Embree's builder makes it, in its own memory
-// --------------------------------------------------
+// ---- the tree as Embree's builder makes it, in its own memory -------------------------------------------
 
 struct BuildNode {
   uint32_t count;  // inner: children; leaf: primitives
@@ -73,8 +72,7 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
   return leaf;
 }
 
-// ---- Embree's handles
-// ------------------------------------------------------------------------------------------
+// ---- Embree's handles -----------------------------------------------------------------------------------
 
 struct Release {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -125,8 +123,7 @@ const BuildNode* build_tree(RTCBVH bvh, std::vector<RTCBuildPrimitive>& input) {
   return static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
 }
 
-// ---- flattening
-// ------------------------------------------------------------------------------------------------
+// ---- flattening -----------------------------------------------------------------------------------------
 
 /// One unit in the last place outward: a flat box has a thickness, so that rays within its plane do not fall
 /// through the rounding of its two slabs.

@@ -22,8 +22,8 @@ struct Bvh {
 };
 
 /// Builds it with the surface area heuristic. The result depends on the scene alone, to the byte, whatever
-/// the number of threads (0: all). throws DeviceError if there is no memory, too many primitives or Embree
-/// fails
+/// the number of threads (0: all).
+/// throws DeviceError  there is no memory, too many primitives, or Embree fails
 Bvh build_bvh(const FlatScene& scene, int threads = 0);
 
 }  // namespace kiloband::gpu

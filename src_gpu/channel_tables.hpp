@@ -22,8 +22,8 @@ struct ChannelTableOptions {
 ///
 /// Between nodes rows are linear in mu. Tabulated spectra are piecewise linear: where nodes meet their kinks,
 /// as with equal channels on a table's grid, interpolation is exact. A jump (an end of data inside a channel)
-/// is a ramp over one cell. Absorption coefficients of gases keep the very knots of their data instead (cells
-/// = 0).
+/// is a ramp over one cell. Absorption coefficients of gases keep the very knots
+/// of their data instead (cells = 0).
 struct ChannelTables {
   KbSpectraLayout layout{};
   std::vector<KbChannelTable> tables;   // by row
@@ -38,8 +38,7 @@ struct ChannelTables {
   std::vector<bool> has_jump;  // by row: data end inside a channel
 };
 
-/// throws InputError        channels overlap so much that counting covers needs more memory than options
-/// allow
+/// throws InputError        channels overlap so much that counting covers takes more memory than allowed
 ///        std::logic_error  channel_scale has not K entries, a material refers to no row
 ChannelTables make_channel_tables(const FlatScene& scene, const DerivedChannels& derived,
                                   const ChannelTableOptions& options = {});

@@ -57,7 +57,8 @@ class DeviceContext {
     launches_.push_back({scale, kernel, std::move(event)});
   }
   /// Longest of the launches of this scale since the last look, seconds on the device; 0 without any. The
-  /// queue must have been waited for. throws DeviceLost, DeviceError
+  /// queue must have been waited for.
+  /// throws DeviceLost, DeviceError
   double take_longest(LaunchScale scale);
   /// Seconds on the device by kernel, of all launches that take_longest() has seen.
   const std::map<std::string, double>& kernel_seconds() const { return kernel_seconds_; }

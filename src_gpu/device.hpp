@@ -1,5 +1,5 @@
-// OpenCL devices of this machine: what there is, and which one to use. No OpenCL header is needed to include
-// this.
+// OpenCL devices of this machine: what there is, and which one to use.
+// No OpenCL header is needed to include this.
 #pragma once
 
 #include <cstdint>
@@ -46,8 +46,7 @@ std::vector<DeviceInfo> list_devices();
 
 /// The device to use.
 /// choice  an index, or a part of a name whatever the case (an exact name wins over names that contain it);
-/// nothing:
-///         the first GPU, else accelerator, else CPU
+///         nothing: the first GPU, else accelerator, else CPU
 /// throws DeviceError  no OpenCL platform or no device
 ///        InputError   no such index or name (lists what there is), or a name that several devices have
 DeviceInfo select_device(const std::optional<std::string>& choice);

@@ -66,7 +66,8 @@ class DeviceState {
   /// pixels begin in the film.
   RoundOutcome generate(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu,
                         uint64_t film_pixel);
-  /// Evaluates what generate() saved. returns the longest launch over the round's paths, seconds
+  /// Evaluates what generate() saved.
+  /// returns the longest launch over the round's paths, seconds
   double evaluate(const KbRound& round, uint64_t film_pixel);
   /// Means [pixel][channels + derived] and valid samples.
   void finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
@@ -95,8 +96,9 @@ class DeviceState {
   std::optional<Evaluation> evaluation_;
 };
 
-/// On PoCL the fastest at every number of channels that was measured, 8 to 1024 (validation/README.md). The
-/// paper finds dpept-path ahead below 16 channels on GPUs with 16-wide SIMD; no GPU has been measured here.
+/// On PoCL the fastest at every number of channels that was measured, 8 to 1024 (validation/README.md).
+/// The DPEPT paper finds dpept-path ahead below 16 channels on GPUs with 16-wide SIMD; no GPU has been
+/// measured here.
 inline constexpr Method kDefaultMethod = Method::kDpeptBatch;
 
 }  // namespace kiloband::gpu

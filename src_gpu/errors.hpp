@@ -1,5 +1,5 @@
-// Failures of OpenCL as exceptions of ours: they name the call, the code by name and number, the kernel and
-// the device.
+// Failures of OpenCL as exceptions of ours: they name the call, the code by name and number,
+// the kernel and the device.
 #pragma once
 
 #include <string>
@@ -49,12 +49,10 @@ const char* error_name(cl_int code);
 std::string error_message(const CallSite& site, const std::string& call, cl_int code);
 
 /// throws DeviceOutOfMemory  CL_MEM_OBJECT_ALLOCATION_FAILURE at any call; CL_INVALID_BUFFER_SIZE,
-/// CL_OUT_OF_RESOURCES
-///                           and CL_OUT_OF_HOST_MEMORY while allocating
+///                           CL_OUT_OF_RESOURCES and CL_OUT_OF_HOST_MEMORY while allocating
 ///        DeviceLost         CL_OUT_OF_RESOURCES, CL_OUT_OF_HOST_MEMORY, CL_INVALID_COMMAND_QUEUE,
-///        CL_INVALID_CONTEXT,
-///                           CL_DEVICE_NOT_AVAILABLE, a failed event or a code that OpenCL does not define,
-///                           while running (the last four also while allocating)
+///                           CL_INVALID_CONTEXT, CL_DEVICE_NOT_AVAILABLE, a failed event or a code that
+///                           OpenCL does not define, while running (the last four also while allocating)
 ///        DeviceError        anything else
 [[noreturn]] void throw_device_error(const CallSite& site, const std::string& call, cl_int code);
 

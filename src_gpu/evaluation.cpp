@@ -9,8 +9,8 @@ constexpr uint64_t kLocalSize = 64;
 /// Film values that a launch clears: 8 MiB.
 constexpr uint64_t kClearItems = 1u << 20;
 constexpr uint32_t kEvaluationArguments = 14, kFilmArguments = 5;
-/// Means are downloaded in pieces of at most this many bytes and at most this part of the film, unless that
-/// is little.
+/// Means are downloaded in pieces of at most this many bytes and at most this part of the film,
+/// unless that is little.
 constexpr uint64_t kMeansBytes = 16u << 20, kMeansPart = 16, kLittle = 16u << 10;
 
 uint64_t ceil_div(uint64_t n, uint64_t d) {
@@ -70,8 +70,8 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
   shape.shared_wavelengths = shared_wavelengths;
   if (device.type == DeviceType::kCpu) {
     // SIMD comes from the vectors, not from the group: one work-item takes up to 128 channels at a time, and
-    // walks a tile of pixels sample by sample while their dense spectra are in the first cache (measured:
-    // validation/README.md).
+    // walks a tile of pixels sample by sample while their dense spectra are
+    // in the first cache (measured: validation/README.md).
     shape.width = 16;
     shape.vectors = static_cast<uint32_t>(std::min<uint64_t>(8, ceil_div(channels, 16)));
     shape.units_per_group = 16;

@@ -1,5 +1,5 @@
-// Evaluation of paths into the film on the device: the kernels of evaluate.cl, pt.cl, resample.cl and
-// film.cl.
+// Evaluation of paths into the film on the device: the kernels of evaluate.cl, pt.cl,
+// resample.cl and film.cl.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ struct FilmSums {
   std::vector<uint32_t> counts;  // valid samples
 };
 
-/// Bytes, from the layout alone: per film pixel, per dense table of spectra, per slot (pt). open: the film
-/// has sums of chunks that go on
+/// Bytes, from the layout alone: per film pixel, per dense table of spectra, per slot (pt).
+/// open  the film has sums of chunks that go on
 uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open);
 uint64_t table_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape);
 uint64_t slot_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape);

@@ -14,13 +14,13 @@ namespace kiloband::gpu {
 /// pixel by pixel. References must outlive it.
 class FilmDelivery {
  public:
-  /// channels: derived ones included. throws std::logic_error  the film keeps sums, but not those of the
-  /// samples before the range
+  /// channels  derived ones included
+  /// throws std::logic_error  the film keeps sums, but not those of the samples before the range
   FilmDelivery(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                std::size_t channels);
 
-  /// A block is delivered in part: the samples per pixel that its first part has, and the pixels that it
-  /// lacks.
+  /// A block is delivered in part: the samples per pixel that its first part has,
+  /// and the pixels that it lacks.
   bool in_block() const { return !attempted_.empty(); }
   uint32_t attempted() const { return attempted_.front(); }
   std::size_t missing() const { return film_.blocks()[blocks_[next_block_]].pixels() - attempted_.size(); }

@@ -12,8 +12,8 @@
 namespace kiloband::gpu {
 namespace {
 
-/// Paths in flight and paths of a round. GPUs hide latency with many (Laine et al. 2013; the paper's peak
-/// lies between 1024^2 and 2048^2); a CPU device keeps what a round touches in its caches.
+/// Paths in flight and paths of a round. GPUs hide latency with many (Laine et al. 2013; the peak of
+/// the DPEPT paper lies between 1024^2 and 2048^2); a CPU device keeps what a round touches in its caches.
 constexpr uint32_t kGpuSlots = 1u << 20, kCpuSlots = 1u << 13;
 constexpr uint64_t kGpuJobs = 1u << 22, kCpuJobs = 1u << 16;
 constexpr uint32_t kFewestSlots = 64;

@@ -36,8 +36,8 @@ inline bool same_block(const ImagePixel& a, const ImagePixel& b) {
   return a.x / kBlockSize == b.x / kBlockSize && a.y / kBlockSize == b.y / kBlockSize;
 }
 
-/// Means and numbers of valid samples of a group of pixels; with sums that are gone on with, these instead of
-/// both.
+/// Means and numbers of valid samples of a group of pixels;
+/// with sums that are gone on with, these instead of both.
 struct GroupResult {
   std::vector<float> means;      // [pixel][channels + derived]
   std::vector<uint32_t> counts;  // valid samples
@@ -51,15 +51,15 @@ class GroupRenderer {
   GroupRenderer(DeviceState& device, const SamplingSettings& settings, double launch_seconds,
                 std::optional<uint32_t> pool_slots, DiagnosticSink note);
 
-  /// Pixels whose film is resident at once, for an image part of this many pixels; open: with sums that are
-  /// gone on with.
+  /// Pixels whose film is resident at once, for an image part of this many pixels;
+  /// open: with sums that are gone on with.
   uint64_t group_pixels(uint64_t pixels, bool open);
   SumRule sum_rule() const;
 
   /// Renders range.count samples of every pixel (fewer if stop becomes true). At most group_pixels() of them.
   /// The pixels of a block stand together. on_samples gets the pixel samples done.
-  /// before: the sums of the pixels' samples before the range, which are gone on with; null: means are
-  /// wanted. throws DeviceLost (everything of the device is to be made anew), DeviceOutOfMemory, DeviceError
+  /// before  the sums of the pixels' samples before the range, which are gone on with; null: means are wanted
+  /// throws DeviceLost (everything of the device is to be made anew), DeviceOutOfMemory, DeviceError
   GroupResult render(std::span<const ImagePixel> pixels, const SampleRange& range, const FilmSums* before,
                      const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples,
                      RunTally& tally);
@@ -72,8 +72,8 @@ class GroupRenderer {
   void make_pool(const PlanRequest& request, bool open);
   PlanRequest request(uint64_t pixels, bool open) const;
   SampleCut next_round(const SampleRange& range, uint32_t done, bool goes_on) const;
-  /// Renders samples [first, first + count) of pixels [at, at + number) of the group; splits where the arena
-  /// is too small.
+  /// Renders samples [first, first + count) of pixels [at, at + number) of the group;
+  /// splits where the arena is too small.
   void render_part(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
                    const SampleRange& samples, bool open, RunTally& tally);
   uint64_t round_pixels(uint32_t samples) const;

@@ -38,8 +38,8 @@ class Kernel {
 
   /// Enqueues work-items first .. first + items - 1, in groups of `local` (0: the driver chooses). With a
   /// local size the number of work-items is rounded up to whole groups: the kernel compares its global id
-  /// with its number of items. No items: no launch. throws DeviceLost, DeviceOutOfMemory, DeviceError  naming
-  /// the kernel
+  /// with its number of items. No items: no launch.
+  /// throws DeviceLost, DeviceOutOfMemory, DeviceError  naming the kernel
   void launch(uint64_t items, uint64_t local = 0, uint64_t first = 0);
   /// The same, waits for it. The context must have profiling.
   /// returns seconds on the device

@@ -10,8 +10,8 @@
 namespace kiloband::gpu {
 namespace {
 
-/// The index may vary inside a channel, which can carry F a little over its values at the ends and the
-/// middle.
+/// The index may vary inside a channel, which can carry F a little over its values
+/// at the ends and the middle.
 constexpr float kSlack = 1.002f;
 
 class Builder {

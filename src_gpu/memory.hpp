@@ -29,8 +29,8 @@ struct MemoryAccount {
   uint64_t used = 0, peak = 0;
 };
 
-/// An untyped buffer of `bytes` (at least 4, so that kernels always get a valid pointer) and its entry in the
-/// account.
+/// An untyped buffer of `bytes` (at least 4, so that kernels always get a valid pointer)
+/// and its entry in the account.
 class RawBuffer {
  public:
   RawBuffer() = default;
@@ -69,8 +69,9 @@ class RawBuffer {
 
 /// `count` elements on the device. Moved, not copied; freed when destroyed. Contents start undefined.
 /// Transfers wait for what was enqueued before (the queue is in order) and are complete on return; fills and
-/// copies are only enqueued. throws of all transfers: DeviceLost, DeviceOutOfMemory, DeviceError;
-/// std::logic_error for a range beyond the end
+/// copies are only enqueued.
+/// throws, all transfers: DeviceLost, DeviceOutOfMemory, DeviceError;
+///                        std::logic_error for a range beyond the end
 template <class T>
 class DeviceBuffer {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -132,8 +133,7 @@ class DeviceMemory {
   explicit DeviceMemory(DeviceContext& context, std::optional<uint64_t> budget = {});
 
   /// what  for messages: "film", "paths"
-  /// throws DeviceOutOfMemory  beyond the budget or the largest allocation of the device, or the device
-  /// refuses
+  /// throws DeviceOutOfMemory  beyond the budget or the largest allocation of the device; the device refuses
   ///        DeviceLost, DeviceError
   template <class T>
   DeviceBuffer<T> allocate(const std::string& what, uint64_t count) {
@@ -154,8 +154,8 @@ class DeviceMemory {
   uint64_t peak() const { return account_->peak; }
   /// Bytes that are left of the budget.
   uint64_t available() const { return account_->budget - account_->used; }
-  /// Bytes of the largest buffer that could be allocated now: what is left, and no more than the device's
-  /// limit.
+  /// Bytes of the largest buffer that could be allocated now: what is left,
+  /// and no more than the device's limit.
   uint64_t largest() const { return std::min(available(), context_.device().max_allocation); }
   /// For runs that follow each other: the peak begins anew with what is in use.
   void restart_peak() { account_->peak = account_->used; }

@@ -1,5 +1,5 @@
-// Bytes that a path takes on the device, by method: what `kiloband info` prints (the paper's figures 4 and
-// 7).
+// Bytes that a path takes on the device, by method: what `kiloband info` prints
+// (figures 4 and 7 of the DPEPT paper).
 #pragma once
 
 #include <cstdint>

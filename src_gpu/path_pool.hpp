@@ -51,8 +51,10 @@ class PathPool {
   /// Uploads the round. pixels: [padded_pixels], those past round.pixels are not read. mu: by block and
   /// sample (shared wavelengths).
   void begin(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu);
-  /// Runs it to its end. after_bounce (pt): called with queue and count once per iteration, when shadow rays
-  /// are done. throws std::logic_error for faults that are bugs of ours; DeviceLost ...
+  /// Runs it to its end. after_bounce (pt): called with queue and count once per iteration,
+  /// when shadow rays are done.
+  /// throws std::logic_error  faults that are bugs of ours
+  ///        DeviceLost ...
   using AfterBounce = std::function<void(const DeviceBuffer<uint32_t>& queue, uint32_t count)>;
   RoundOutcome run(const KbRound& round, const AfterBounce& after_bounce = {});
   /// Called between tracing and shading of every iteration (debugging, parity tests).

@@ -19,12 +19,12 @@ std::string why_not_writable(const std::filesystem::path& folder);
 /// temporary files, which vanishes at the end of the process.
 void prepare_pocl_cache();
 
-/// What prepare_pocl_cache() found wrong and what was done about it, for users of a PoCL device; empty if
-/// nothing.
+/// What prepare_pocl_cache() found wrong and what was done about it,
+/// for users of a PoCL device; empty if nothing.
 std::string pocl_cache_problem();
 
-/// Why PoCL cannot build: its folder as it is now, "\nPoCL's folder ... cannot be written: ..."; empty if that
-/// is not why.
+/// Why PoCL cannot build: its folder as it is now, "\nPoCL's folder ... cannot be written: ...";
+/// empty if that is not why.
 std::string pocl_build_hint();
 
 }  // namespace kiloband::gpu

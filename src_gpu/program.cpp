@@ -23,8 +23,8 @@ std::string build_options(const DeviceContext& context, const std::vector<std::s
   return text;
 }
 
-/// Not Program::build of the bindings: it asks for the log first, and where that fails, its error hides the
-/// real one.
+/// Not Program::build of the bindings: it asks for the log first, and where that fails,
+/// its error hides the real one.
 cl_int build(const cl::Program& program, const cl::Device& device, const std::string& options) {
   return clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
 }

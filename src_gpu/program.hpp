@@ -39,7 +39,8 @@ struct ProgramOptions {
 };
 
 /// Builds kernels/`main` ("shade.cl") with -cl-std=CL1.2, without fast-math. Looked for first among the
-/// programs of the context, then on disk (program_cache.hpp). throws ProgramBuildError  with the log
+/// programs of the context, then on disk (program_cache.hpp).
+/// throws ProgramBuildError  with the log
 ///        DeviceError, DeviceLost, DeviceOutOfMemory
 Program build_program(DeviceContext& context, const std::string& main,
                       const std::vector<std::string>& defines = {});

@@ -23,8 +23,8 @@ constexpr std::size_t kHeaderLength = kMagic.size() + 2 * kHashLength + 8;
 constexpr uint64_t kLargest = uint64_t{256} << 20;  // no program is that large: the file is not ours
 
 std::string hash_of(const void* data, std::size_t size) {
-  // FNV-1a, 128 bits. Source: Fowler, Noll, Vo, Eastlake, The FNV Non-Cryptographic Hash Algorithm (RFC
-  // 9923).
+  // FNV-1a, 128 bits. Source: Fowler, Noll, Vo, Eastlake, The FNV Non-Cryptographic Hash
+  // Algorithm (RFC 9923).
   using Word = unsigned __int128;
   const Word prime = (Word{1} << 88) + 0x13b;
   Word hash = (Word{0x6c62272e07bb0142u} << 64) + 0x62b821756295c58du;

@@ -24,8 +24,8 @@ class ProgramCache {
   static ProgramCache of_user();
   explicit ProgramCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// What decides whether a binary fits: the source, the build options, the device, its driver and its
-  /// platform.
+  /// What decides whether a binary fits: the source, the build options, the device,
+  /// its driver and its platform.
   static std::string key(const std::string& source, const std::string& options, const DeviceInfo& device);
 
   std::optional<std::vector<unsigned char>> load(const std::string& key) const;

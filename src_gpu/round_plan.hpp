@@ -11,7 +11,7 @@
 
 namespace kiloband::gpu {
 
-/// The three evaluations of one pipeline (paper, sections 4 and 5).
+/// The three evaluations of one pipeline (DPEPT paper, sections 4 and 5).
 enum class Method { kDpeptBatch, kDpeptPath, kPt };
 /// "dpept-batch", "dpept-path", "pt"
 const char* to_string(Method method);
@@ -47,16 +47,16 @@ struct RoundPlan {
 
 /// Samples of a pixel that a round renders, as far as there are that many. Evaluation sums them before it
 /// adds them to the film, so this number must not follow from memory or time: it depends on the scene and the
-/// kind of device alone, and images are the same bit by bit whatever the budget. table_bytes  of a block and
-/// sample: dense spectra
+/// kind of device alone, and images are the same bit by bit whatever the budget.
+/// table_bytes  of a block and sample: dense spectra
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes);
 
 /// Samples that kernels sum in registers before they add them to the film (kernels/evaluate_tile.clh).
 inline constexpr uint32_t kSamplesInRegisters = 32;
 
 /// How the film is summed where rounds have at most `round_samples`: in chunks of a round, and of what
-/// registers take of it; pt adds every sample to the film at once. derived: there are derived channels, whose
-/// sums are kept for whole rounds alone
+/// registers take of it; pt adds every sample to the film at once.
+/// derived  there are derived channels, whose sums are kept for whole rounds alone
 SumRule sum_rule_of(Method method, uint32_t round_samples, bool derived);
 
 /// A round of a replicate that may be gone on with.

@@ -14,14 +14,14 @@ constexpr int kHalf = 44;  // points from the trailing to the leading edge
 constexpr int kNose = 10;  // of them, those that belong to the leading-edge part
 
 /// Half thickness over chord of the NACA 00xx section at x = distance from the leading edge / chord, closed
-/// at the trailing edge (last coefficient -0.1036). Source: Abbott and von Doenhoff, Theory of Wing
-/// Sections, 6.4.
+/// at the trailing edge (last coefficient -0.1036). Source: Abbott and von Doenhoff,
+/// Theory of Wing Sections, 6.4.
 double half_thickness(double x, double t) {
   return 5 * t * (0.2969 * std::sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 - x * 0.1036))));
 }
 
-/// Closed ring, from the trailing edge over the side of `up` to the leading edge and back. Spacing is by
-/// cosine.
+/// Closed ring, from the trailing edge over the side of `up` to the leading edge and back.
+/// Spacing is by cosine.
 Ring airfoil(const Rib& rib, Vec3 up) {
   Ring ring;
   for (int i = 0; i < 2 * kHalf; ++i) {

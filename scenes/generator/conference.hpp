@@ -1,5 +1,5 @@
-// The conference room: x along the table (screen at +x), y up, z across (windows at -z), origin on the floor
-// in the middle.
+// The conference room: x along the table (screen at +x), y up, z across (windows at -z),
+// origin on the floor in the middle.
 #pragma once
 
 #include "scenes/generator/image.hpp"
@@ -25,8 +25,8 @@ void add_conference_images(Images& images);
 double table_half_width(double x);
 inline constexpr double kTableHalfLength = 2.7;
 
-/// Where people sit: on the floor, at the table's edge, and the direction in degrees about y that they face
-/// (0: +z).
+/// Where people sit: on the floor, at the table's edge, and the direction in degrees about y
+/// that they face (0: +z).
 struct Seat {
   double x, z, degrees;
 };

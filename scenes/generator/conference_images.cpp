@@ -1,6 +1,6 @@
 // Pictures of the conference room: veneer (reflectance, sRGB), and three that emit (linear RGB; times D65
-// these are W m^-2 sr^-1 nm^-1, so 1/100 is about 730 cd/m^2): the view outside, the presentation, a laptop's
-// desktop.
+// these are W m^-2 sr^-1 nm^-1, so 1/100 is about 730 cd/m^2): the view outside, the presentation,
+// a laptop's desktop.
 #include "scenes/generator/conference.hpp"
 #include "scenes/generator/implicit.hpp"
 

@@ -1,7 +1,7 @@
 // Elementary functions that give the same bits on every machine. Those of the C library do not: their last
 // bit differs between versions. Here are only + - * / and square roots, which IEEE 754 rounds correctly, in a
-// fixed order (the project is compiled with -ffp-contract=off). Errors are a few units in the last place of a
-// double.
+// fixed order (the project is compiled with -ffp-contract=off).
+// Errors are a few units in the last place of a double.
 #pragma once
 
 namespace kiloband::generator {

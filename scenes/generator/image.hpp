@@ -25,7 +25,8 @@ struct Image {
 /// By file name: "wood.ppm" becomes textures/wood.ppm.
 using Images = std::map<std::string, Image>;
 
-/// .ppm: 8 bits, values in [0, 1]; .pfm: 32-bit floats. throws std::runtime_error  cannot be written
+/// .ppm: 8 bits, values in [0, 1]; .pfm: 32-bit floats.
+/// throws std::runtime_error  cannot be written
 void write_image(const Image& image, const std::filesystem::path& file);
 
 }  // namespace kiloband::generator

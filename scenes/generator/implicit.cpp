@@ -10,8 +10,8 @@ namespace {
 constexpr int kRelaxations = 2;
 constexpr int kBlock = 8;  // cubes along the edge of a block that is looked at, or skipped, together
 
-/// The corner with bits (x, y, z) = (c & 1, c >> 1 & 1, c >> 2); six tetrahedra around the diagonal from 0
-/// to 7.
+/// The corner with bits (x, y, z) = (c & 1, c >> 1 & 1, c >> 2);
+/// six tetrahedra around the diagonal from 0 to 7.
 constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
                                    {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
 
@@ -81,8 +81,8 @@ class Marcher {
     for (const auto& t : kTetrahedra) tetrahedron({keys[t[0]], keys[t[1]], keys[t[2]], keys[t[3]]});
   }
 
-  /// Corners in positive orientation. Each swap of two corners that sorts the inside ones first turns it
-  /// round.
+  /// Corners in positive orientation. Each swap of two corners that sorts the inside ones
+  /// first turns it round.
   void tetrahedron(std::array<Key, 4> corner) {
     int inside = 0;
     bool turned = false;
@@ -94,8 +94,8 @@ class Marcher {
       }
       ++inside;
     }
-    // One statement per vertex: they are numbered as they are made, and the order of arguments is the
-    // compiler's choice.
+    // One statement per vertex: they are numbered as they are made,
+    // and the order of arguments is the compiler's choice.
     if (inside == 1 || inside == 3) {
       const int apex = inside == 1 ? 0 : 3, first = inside == 1 ? 1 : 0;
       const uint32_t a = vertex(corner[apex], corner[first]);
@@ -177,8 +177,8 @@ class Marcher {
   Mesh mesh_;
 };
 
-/// Dot product of v with one of twelve directions from a cube's middle to its edges (Perlin, Improving noise,
-/// 2002).
+/// Dot product of v with one of twelve directions from a cube's middle to its edges
+/// (Perlin, Improving noise, 2002).
 double lattice_slope(double x, double y, double z, unsigned seed, Vec3 v) {
   const auto cell = [](double c) { return static_cast<unsigned>(static_cast<int64_t>(c) & 1023); };
   const unsigned at = (cell(z) * 1024 + cell(y)) * 1024 + cell(x);

@@ -35,8 +35,8 @@ inline double blend_difference(double a, double b, double radius) {
   return blend_intersection(a, -b, radius);
 }
 
-/// Gradient noise in [-1, 1] with features of size 1, and the sum of `octaves` of it at doubled frequency and
-/// half height.
+/// Gradient noise in [-1, 1] with features of size 1, and the sum of `octaves` of it
+/// at doubled frequency and half height.
 double noise(Vec3 p, unsigned seed);
 double turbulence(Vec3 p, unsigned seed, int octaves);
 

@@ -1,5 +1,5 @@
-// generate_scenes OUT_DIR [SCENE]...: writes OUT_DIR/SCENE/ with the scene file, its spectra, meshes and
-// textures.
+// generate_scenes OUT_DIR [SCENE]...: writes OUT_DIR/SCENE/ with the scene file, its spectra,
+// meshes and textures.
 #include <algorithm>
 #include <iostream>
 #include <stdexcept>

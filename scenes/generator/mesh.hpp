@@ -35,8 +35,8 @@ void flip(Mesh& mesh);
 double signed_volume6(const Mesh& mesh);
 
 /// Sets vertex normals: at each corner the area-weighted mean over the adjacent triangles whose normal is
-/// within `crease_degrees` of the corner's own. Vertices at equal positions count as one, and are split where
-/// normals differ.
+/// within `crease_degrees` of the corner's own. Vertices at equal positions count as one,
+/// and are split where normals differ.
 Mesh with_smooth_normals(const Mesh& mesh, double crease_degrees);
 
 /// uv = (position . u, position . v): textures in metres.
@@ -45,8 +45,8 @@ void project_uvs(Mesh& mesh, Vec3 u, Vec3 v);
 /// Rounds to single precision and drops triangles that this makes a line or a point. Requires normals.
 Mesh in_single_precision(const Mesh& mesh);
 
-/// Binary little-endian PLY: x y z nx ny nz and, if there are any, u v. throws std::runtime_error  cannot be
-/// written
+/// Binary little-endian PLY: x y z nx ny nz and, if there are any, u v.
+/// throws std::runtime_error  cannot be written
 void write_ply(const Mesh& mesh, const std::filesystem::path& file);
 
 }  // namespace kiloband::generator

@@ -18,8 +18,8 @@ void set(Vec3& a, int axis, double value) {
   (axis == 0 ? a.x : axis == 1 ? a.y : a.z) = value;
 }
 
-/// A line across a face: for each grid line its place in the flat part [-1, 1] and the direction's component
-/// [-1, 1].
+/// A line across a face: for each grid line its place in the flat part [-1, 1] and the direction's
+/// component [-1, 1].
 struct Line {
   double place, direction;
 };

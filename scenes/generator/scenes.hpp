@@ -23,8 +23,9 @@ struct WrittenPart {
   std::string name;
   std::size_t triangles;
 };
-/// Writes out/NAME/: the files of committed/NAME (scene file, spectra), then meshes/PART.ply and
-/// textures/IMAGE. throws std::runtime_error  a file cannot be written or is missing
+/// Writes out/NAME/: the files of committed/NAME (scene file, spectra),
+/// then meshes/PART.ply and textures/IMAGE.
+/// throws std::runtime_error  a file cannot be written or is missing
 std::vector<WrittenPart> write_scene(const Scene& scene, const std::filesystem::path& committed,
                                      const std::filesystem::path& out);
 

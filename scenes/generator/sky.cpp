@@ -5,8 +5,8 @@
 namespace kiloband::generator {
 namespace {
 
-/// Direction of a pixel of the environment, as the renderer maps it: the left edge is -z, the middle +z, +x
-/// between them.
+/// Direction of a pixel of the environment, as the renderer maps it: the left edge is -z,
+/// the middle +z, +x between them.
 Vec3 direction(const Image& image, int x, int y) {
   const double phi = 2 * kPi * (x + 0.5) / image.width, theta = kPi * (y + 0.5) / image.height;
   return {sine(theta) * sine(phi), cosine(theta), -sine(theta) * cosine(phi)};

@@ -34,8 +34,8 @@ Mesh twisted_column() {
   return mesh;
 }
 
-/// One of the two labyrinths that the gyroid sin x cos y + sin y cos z + sin z cos x = 0 divides space into,
-/// inside a ball.
+/// One of the two labyrinths that the gyroid sin x cos y + sin y cos z + sin z cos x = 0 divides space
+/// into, inside a ball.
 Mesh gyroid_ball() {
   constexpr double kRadius = 0.42, kPeriod = 0.30;
   const Field field = [](Vec3 p) {

@@ -1,5 +1,5 @@
-// A head and shoulders in the classical manner, of blended bodies. Metres at life size, face to +z, chin
-// about y = 0.34.
+// A head and shoulders in the classical manner, of blended bodies.
+// Metres at life size, face to +z, chin about y = 0.34.
 #include "scenes/generator/implicit.hpp"
 #include "scenes/generator/primitives.hpp"
 #include "scenes/generator/statues.hpp"

@@ -13,7 +13,8 @@
 
 namespace kiloband {
 
-/// "4GiB", "512MiB", "2GB", "1e9" or plain bytes. option: its name, for messages. throws InputError
+/// "4GiB", "512MiB", "2GB", "1e9" or plain bytes. option: its name, for messages.
+/// throws InputError
 uint64_t parse_bytes(const std::string& option, const std::string& text);
 
 /// With `auto` an option that only one backend has chooses that backend; else a GPU is taken if there is one.
@@ -24,7 +25,8 @@ struct BackendOptions {
 
   /// with_method: --method too, for commands that evaluate paths
   void add_to(CLI::App& command, bool with_method = true);
-  /// "cpu" or "opencl". throws InputError for options that do not apply
+  /// "cpu" or "opencl".
+  /// throws InputError  options that do not apply
   std::string resolve() const;
 };
 

@@ -153,8 +153,8 @@ stats::Comparison compare_moments(const CompareOptions& o, const CompareSide& a,
   return comparison.finish();
 }
 
-/// The replicates of independent sides, and their variances where both say that they have equally many
-/// samples.
+/// The replicates of independent sides, and their variances where both say that they have
+/// equally many samples.
 stats::Comparison compare_independent(const CompareSide& a, const CompareSide& b,
                                       stats::ComparisonOptions options, CompareReport& report) {
   std::string unknown;

@@ -1,5 +1,5 @@
-// kiloband convert IN OUT: formats, channel selection, coarser channels; pixels, regions and signatures as
-// CSV.
+// kiloband convert IN OUT: formats, channel selection, coarser channels;
+// pixels, regions and signatures as CSV.
 #include <fmt/core.h>
 
 #include <filesystem>

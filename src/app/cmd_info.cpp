@@ -101,14 +101,14 @@ void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples)
          sizeof(KbPathVertex), sizeof(KbTextureSample), 2 * sizeof(KbTextureSample));
 }
 
-/// Vertices of the longest path: the last of max_depth segments ends on a light. Unlimited depth: as an
-/// example 32.
+/// Vertices of the longest path: the last of max_depth segments ends on a light.
+/// Unlimited depth: as an example 32.
 uint64_t longest_path(const Integrator& integrator) {
   return integrator.max_depth < 0 ? 32 : static_cast<uint64_t>(std::max(integrator.max_depth, 1));
 }
 
 /// What a pool of paths takes on an OpenCL device: pt keeps two floats per channel of every path in flight,
-/// dpept the vertices of whole paths, whatever the number of channels (the paper's figures 4 and 7).
+/// dpept the vertices of whole paths, whatever the number of channels (figures 4 and 7 of the DPEPT paper).
 void print_path_memory(const FlatScene& scene) {
   using gpu::Method;
   const uint64_t vertices = longest_path(scene.integrator);

@@ -6,7 +6,7 @@
 
 namespace kiloband {
 
-/// Exit codes, DESIGN 9.
+/// Exit codes; base/error.hpp says whose errors 2, 3 and 70 are.
 enum ExitCode {
   kDone = 0,
   kFailed = 1,

@@ -18,8 +18,8 @@ std::string band_text(const Band& band) {
   return fmt::format("{:.10g}-{:.10g} nm", band.channel.min_nm, band.channel.max_nm);
 }
 
-/// Edges that were computed along different ways, or from centres in a text file, differ in their last
-/// digits.
+/// Edges that were computed along different ways, or from centres in a text file,
+/// differ in their last digits.
 bool same_band(const Band& a, const Band& b) {
   if (a.derived != b.derived) return false;
   if (a.derived) return a.channel.name == b.channel.name;

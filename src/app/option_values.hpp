@@ -5,7 +5,8 @@
 
 namespace kiloband {
 
-/// "60", "60s", "5min", "2h" to seconds. option: its name, for messages. throws InputError
+/// "60", "60s", "5min", "2h" to seconds. option: its name, for messages.
+/// throws InputError
 double parse_duration(const std::string& option, const std::string& text);
 
 /// "1%" or "0.01" to a fraction. From 1 on the % is needed: 1 alone would be 100 %, which nobody means.

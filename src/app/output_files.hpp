@@ -26,11 +26,11 @@ struct OutputFiles {
 /// Hours of rendering must not end at a file name: to be called before the scene is read. Cubes are opened by
 /// their writers before the render; what is written after it is tried here. Names that a cube takes are those
 /// of all its files: X.img, X.var.*, X.aux.* of an ENVI cube X.hdr, and its replicates'. Two names are one
-/// file if symbolic links lead them to one place, or if they are hard links; pipes and devices may be named
-/// twice. throws InputError   a file would be written twice or replace an input; a name whose end is no
-/// format's
-///        DeviceError  the preview, the statistics or another file cannot be written; checkpoints are tried by
-///        those who know what is in their place
+/// file if symbolic links lead them to one place, or if they are hard links;
+/// pipes and devices may be named twice.
+/// throws InputError   a file would be written twice or replace an input; a name whose end is no format's
+///        DeviceError  the preview, the statistics or another file cannot be written; checkpoints are tried
+///                     by those who know what is in their place
 void check_output_files(const OutputFiles& files);
 
 }  // namespace kiloband

@@ -41,10 +41,12 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink);
 DerivedChannels load_responses(const std::vector<std::string>& files, const LoadedScene& scene,
                                const DiagnosticSink& sink);
 
-/// "640x480" of --size. throws InputError
+/// "640x480" of --size.
+/// throws InputError
 std::pair<uint32_t, uint32_t> parse_size_option(const std::string& text);
 
-/// The channels of an option; messages begin with its name. throws InputError
+/// The channels of an option; messages begin with its name.
+/// throws InputError
 ChannelList parse_channels_option(const std::string& option, const std::string& text);
 
 /// Prints warnings and notes to standard error (notes only if not quiet).

@@ -1,4 +1,4 @@
-// The --stats file: names are a contract (DESIGN 9).
+// The --stats file. Its names are a contract: scripts read them.
 #pragma once
 
 #include <filesystem>

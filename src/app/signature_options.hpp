@@ -1,5 +1,5 @@
-// The options of `convert` and `sensor` that choose places of a cube: pixels, regions, and the masks of
-// signatures.
+// The options of `convert` and `sensor` that choose places of a cube: pixels, regions,
+// and the masks of signatures.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -18,8 +18,8 @@ struct SourcePosition {
 };
 
 /// The user's input is wrong: a scene, a mesh, a spectrum, a cube, an option.
-/// Loaders throw it with a plain message ("a.ply:7: face 2: index 9 ..."), the scene reader puts its position
-/// in front.
+/// Loaders throw it with a plain message ("a.ply:7: face 2: index 9 ..."),
+/// the scene reader puts its position in front.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}

@@ -29,8 +29,8 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Claims `bytes` of disk, so that a full disk shows now and not after hours; the file has that size
-  /// afterwards.
+  /// Claims `bytes` of disk, so that a full disk shows now and not after hours;
+  /// the file has that size afterwards.
   void preallocate(uint64_t bytes);
   void write_at(uint64_t offset, std::span<const char> bytes);
   /// Flushes to the device; commit() does this if it was not done.

@@ -9,8 +9,8 @@
 
 namespace kiloband {
 
-/// The camera of a cube, as its metadata "camera" keep it. Pinhole and thin-lens cameras alike project from
-/// one point.
+/// The camera of a cube, as its metadata "camera" keep it.
+/// Pinhole and thin-lens cameras alike project from one point.
 struct CameraGeometry {
   bool orthographic = false;
   double pixel_area_m2 = 0;                  // orthographic: perpendicular to the line of sight

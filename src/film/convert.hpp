@@ -1,5 +1,5 @@
-// Cubes from cubes: selection, re-binning, cropping, change of quantity and format; tables of pixels and
-// regions.
+// Cubes from cubes: selection, re-binning, cropping, change of quantity and format;
+// tables of pixels and regions.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ std::vector<std::size_t> parse_band_indices(std::string_view text, std::size_t c
 
 /// "red=600-700, green=500-600": wavelengths in nm for bands that have names only; entries are separated by
 /// commas or line breaks, '#' begins a comment. The bands become ordinary ones, whose values are what the
-/// cube's quantity says, and stand first, in this order. throws InputError  not such a list, a name given
-/// twice
+/// cube's quantity says, and stand first, in this order.
+/// throws InputError  not such a list, a name given twice
 ChannelList parse_band_wavelengths(std::string_view text);
 
 /// throws InputError  the region is empty or not inside the image
@@ -46,8 +46,8 @@ void check_region(const CubeInfo& info, const PixelRect& region);
 /// The selected part of a cube as a cube that is read like any other; nothing is read before its rows are
 /// asked for. A sum of bands has no standard error of its own (bands share paths, so their errors are
 /// correlated): its variance is NaN, and without any channel that is a single band there is no variance at
-/// all. A note says so. throws InputError  empty selection, a crop outside the image, a coarse channel that
-/// is no union of whole bands
+/// all. A note says so.
+/// throws InputError  empty selection, a crop outside the image, a coarse channel that is no union of bands
 std::unique_ptr<CubeReader> select_from_cube(std::unique_ptr<CubeReader> source,
                                              const CubeSelection& selection, const DiagnosticSink& sink = {});
 /// The same part of a cube and of its replicates: sums of bands have error bars if there are replicates.
@@ -61,8 +61,8 @@ void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity q
                 const DiagnosticSink& sink = {});
 
 /// Opens a cube with its replicates if there are any, select_from_cube, write_cube. Without
-/// selection.quantity, EXR gets densities and ENVI integrals. Sums of channels have the variance that the
-/// replicates give.
+/// selection.quantity, EXR gets densities and ENVI integrals.
+/// Sums of channels have the variance that the replicates give.
 void convert_cube(const std::filesystem::path& in, const std::filesystem::path& out,
                   const CubeSelection& selection, const DiagnosticSink& sink = {});
 

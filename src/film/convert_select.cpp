@@ -62,8 +62,8 @@ PixelRect choose_crop(const CubeInfo& info, const std::optional<PixelRect>& want
   return rect;
 }
 
-/// Reads whole rows of the source and picks from them; the scratch buffers are as large as the rows asked
-/// for.
+/// Reads whole rows of the source and picks from them;
+/// the scratch buffers are as large as the rows asked for.
 class SelectedCube : public CubeReader {
  public:
   /// bands  those of the source, with the wavelengths that they were given

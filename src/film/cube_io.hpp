@@ -20,8 +20,8 @@ class FileSet;
 /// Integral: W m^-2 sr^-1 over the band. Density: its mean, W m^-2 sr^-1 nm^-1 (value / width).
 enum class Quantity { kIntegral, kDensity };
 
-/// One band of a cube. A derived band (a sensor response) has a name and no width that values could be
-/// divided by.
+/// One band of a cube. A derived band (a sensor response) has a name and no width
+/// that values could be divided by.
 struct Band {
   Channel channel;       // interval in nm; name may be empty
   bool derived = false;  // always written as it is, whatever the quantity
@@ -70,8 +70,8 @@ void check_cube_name(const std::filesystem::path& file);
 /// throws InputError  the cube's values are variances; names the cube that they belong to
 void check_holds_radiances(const std::filesystem::path& file, const CubeInfo& info);
 
-/// By extension: .exr, .hdr (ENVI: X.hdr + X.img, with variance X.var.hdr + X.var.img, aux planes X.aux.hdr +
-/// X.aux.img).
+/// By extension: .exr, .hdr (ENVI: X.hdr + X.img, with variance X.var.hdr + X.var.img,
+/// aux planes X.aux.hdr + X.aux.img).
 /// rows_per_strip  rows that each write_rows call will have (the last may have fewer); a multiple of 32 or
 ///                 the height
 /// throws InputError   the extension
@@ -80,8 +80,8 @@ std::unique_ptr<CubeWriter> create_cube_writer(const std::filesystem::path& file
                                                uint32_t rows_per_strip);
 
 /// Reads back what the writers wrote, and cubes of others as far as the layouts are followed. Values come
-/// back as they are on disk (info().quantity says what that is); incomplete or damaged files are an
-/// InputError.
+/// back as they are on disk (info().quantity says what that is);
+/// incomplete or damaged files are an InputError.
 class CubeReader {
  public:
   virtual ~CubeReader() = default;
@@ -106,7 +106,8 @@ void write_png(const std::filesystem::path& file, uint32_t width, uint32_t heigh
 /// functions where the bands reach into 380-780 nm, false colour (three equal thirds of the range) otherwise.
 /// Exposure is left to auto_exposure().
 std::vector<std::array<float, 3>> preview_weights(const std::vector<Band>& bands);
-/// False colour whatever the wavelengths. throws InputError if all bands are derived
+/// False colour whatever the wavelengths.
+/// throws InputError  all bands are derived
 std::vector<std::array<float, 3>> false_colour_weights(const std::vector<Band>& bands);
 /// Whether a channel reaches into 380-780 nm.
 bool shows_visible_light(const std::vector<Band>& bands);

@@ -106,8 +106,8 @@ void check_read(const CubeInfo& info, uint32_t y0, uint32_t rows, std::size_t fl
 }
 
 ChannelList channels_from_centres(const std::vector<double>& centres_nm, const std::string& where) {
-  // Neighbours are those in the spectrum, not those in the file: sort indices, keep the file's order in the
-  // result.
+  // Neighbours are those in the spectrum, not those in the file: sort indices,
+  // keep the file's order in the result.
   std::vector<std::size_t> order(centres_nm.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),

@@ -1,5 +1,5 @@
-// What the writers and readers of cubes share: limits, checks of a CubeInfo, change of quantity, order of
-// strips.
+// What the writers and readers of cubes share: limits, checks of a CubeInfo,
+// change of quantity, order of strips.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,7 @@ inline constexpr std::size_t kMaxNameLength = 200;   // bytes; EXR allows 255, p
 inline constexpr std::size_t kMaxAuxPlanes = 1024;
 inline constexpr std::string_view kPreviewChannels[] = {"R", "G", "B"};
 
-/// throws InputError  sizes, band intervals and names that no file could hold; the message begins with
-/// `where`
+/// throws InputError  sizes, band intervals and names that no file could hold; messages begin with `where`
 void check_cube_info(const CubeInfo& info, const std::string& where);
 
 /// "400-410 nm", or the name of a derived band: for messages.
@@ -80,8 +79,8 @@ class StripOrder {
   bool finished_ = false;
 };
 
-/// Checks the arguments of CubeReader::read_rows and read_aux (planes = 0: buffer not wanted); a
-/// std::logic_error.
+/// Checks the arguments of CubeReader::read_rows and read_aux (planes = 0: buffer not wanted).
+/// throws std::logic_error
 void check_read(const CubeInfo& info, uint32_t y0, uint32_t rows, std::size_t floats, std::size_t planes);
 
 /// create_cube_writer for rows whose values are given as `given` instead of integrals, so that a copy of a

@@ -25,8 +25,8 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 template <std::same_as<std::string> Temporary>
 std::vector<std::string_view> split(Temporary&& text, char separator) = delete;
 
-/// Replaces control characters, '%' and those in `special` by %XX, and blanks at both ends; decode_text
-/// undoes it.
+/// Replaces control characters, '%' and those in `special` by %XX, and blanks at both ends;
+/// decode_text undoes it.
 std::string encode_text(std::string_view text, std::string_view special);
 std::string decode_text(std::string_view text);
 

@@ -1,5 +1,5 @@
-// The grammar of ENVI headers is small but loose: keys in any case, lists over many lines, ';' before
-// comments.
+// The grammar of ENVI headers is small but loose: keys in any case, lists over many lines,
+// ';' before comments.
 #include "film/envi_header.hpp"
 
 #include <algorithm>
@@ -45,8 +45,7 @@ EnviHeader::EnviHeader(const std::filesystem::path& file, std::string_view text)
     entry.lower = to_lower(entry.key);
     const std::string_view value = trim(content.substr(equals + 1));
     entry.list = value.starts_with('{');
-    if (entry.list) {  // up to the closing brace, which may stand many lines below; the rest of its line is
-                       // dropped
+    if (entry.list) {  // up to the closing brace, perhaps many lines below; the rest of its line is dropped
       const std::size_t open = text.find('{', text.find('=', begin));
       const std::size_t close = text.find('}', open);
       if (close == std::string_view::npos) fail(entry.line, printable(entry.key) + ": '{' without '}'");

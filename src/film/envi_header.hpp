@@ -32,8 +32,8 @@ class EnviHeader {
   std::string where(const Entry& entry) const;
   const std::filesystem::path& file() const { return file_; }
 
-  /// An unsigned number of at most `largest`; `fallback` if the key is missing, an InputError if there is
-  /// none either.
+  /// An unsigned number of at most `largest`; `fallback` if the key is missing,
+  /// an InputError if there is none either.
   uint64_t count(std::string_view key, uint64_t largest,
                  std::optional<uint64_t> fallback = std::nullopt) const;
   /// A list of exactly `size` numbers or texts; empty if the key is missing.

@@ -46,8 +46,8 @@ class EnviPart {
   AtomicFile& header() { return header_; }
 
  private:
-  /// Bands `first` and up to 15 more of `rows` rows from row y of the strip: transposed, then one write per
-  /// band.
+  /// Bands `first` and up to 15 more of `rows` rows from row y of the strip: transposed,
+  /// then one write per band.
   template <class Change>
   void write_block(uint32_t y0, uint32_t y, uint32_t rows, std::size_t first, std::span<const float> values,
                    Change change) {

@@ -183,8 +183,8 @@ void read_metadata(const Imf::Header& header, CubeInfo& info) {
   }
 }
 
-/// The layout's unit leaves open whether values are per nm; its reference code and other renderers take them
-/// so.
+/// The layout's unit leaves open whether values are per nm;
+/// its reference code and other renderers take them so.
 Quantity read_quantity(const Imf::Header& header, const std::string& where, const DiagnosticSink& sink) {
   const auto units = text_attribute(header, "emissiveUnits");
   if (units && *units != kExrUnits)

@@ -24,8 +24,9 @@ ExrLayout plan_exr(const CubeInfo& info, const std::string& where);
 /// Adds channels and attributes. Only width and height of the header must be set before.
 void write_exr_attributes(Imf::Header& header, const ExrLayout& layout);
 
-/// The cube that a header describes: our own attributes where they fit the channels, the plain layout
-/// otherwise. throws InputError  no spectral channels, contradictions
+/// The cube that a header describes: our own attributes where they fit the channels,
+/// the plain layout otherwise.
+/// throws InputError  no spectral channels, contradictions
 ExrLayout read_exr_layout(const Imf::Header& header, const std::string& where, const DiagnosticSink& sink);
 
 // Attributes of our own.

@@ -1,5 +1,5 @@
-// Channel names and spectrum strings of the spectral OpenEXR layout (Fichet, Pacanowski, Wilkie 2021, JCGT
-// 10(3)).
+// Channel names and spectrum strings of the spectral OpenEXR layout
+// (Fichet, Pacanowski, Wilkie 2021, JCGT 10(3)).
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace kiloband {
 
-/// What a spectral channel's name says: S<0-3>.<value><prefix><unit> or T.<value><prefix><unit>, decimal
-/// comma.
+/// What a spectral channel's name says: S<0-3>.<value><prefix><unit>
+/// or T.<value><prefix><unit>, decimal comma.
 struct SpectralName {
   char kind = 'S';       // 'S' emissive, 'T' reflective
   int stokes = 0;        // 0 for T

@@ -18,8 +18,8 @@ struct ExrStorage {
 };
 
 /// Checks the header's attribute sizes, the image's size, the table of chunk offsets and the last chunk
-/// against the file's size. throws InputError  not an EXR file, damaged, truncated, deep or multi-part, or
-/// larger than a cube may be
+/// against the file's size.
+/// throws InputError  not an EXR file, damaged, truncated, deep or multi-part, or larger than a cube may be
 ExrStorage scan_exr(const InputFileBytes& file);
 
 }  // namespace kiloband

@@ -110,8 +110,8 @@ class ExrWriter : public CubeWriter {
     output_->setFrameBuffer(frame_buffer());
   }
 
-  /// The staging buffer is [y][slot][x] of one tile, the order of an uncompressed chunk up to the names'
-  /// order.
+  /// The staging buffer is [y][slot][x] of one tile, the order of an uncompressed chunk up
+  /// to the names' order.
   Imf::FrameBuffer frame_buffer() {
     Imf::FrameBuffer frame;
     std::size_t slot = 0;

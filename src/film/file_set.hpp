@@ -15,12 +15,12 @@ namespace kiloband {
 /// lock file that could be left over, and reading the folder suffices to lock it. Where folders cannot be
 /// locked (NFS), or somebody holds the lock for 10 s, the set is written without, and whether all files are
 /// its own is checked afterwards: if not, what is of this set is removed again, last file first, and commit()
-/// fails, so that data never have a header of another render. Sets with special files (pipes, devices) have
-/// no claim.
+/// fails, so that data never have a header of another render.
+/// Sets with special files (pipes, devices) have no claim.
 class FileSet {
  public:
-  /// In the order in which they are to appear: a file that describes others comes after them. The file must
-  /// outlive commit().
+  /// In the order in which they are to appear: a file that describes others comes after them.
+  /// The file must outlive commit().
   void add(AtomicFile& file) { files_.push_back(&file); }
   /// What is to happen under the claim before the first name changes, such as removing a header of old data.
   void before(std::function<void()> action) { before_.push_back(std::move(action)); }

@@ -51,8 +51,8 @@ double invert_gaussian_tail(double w, double r) {
 
 std::vector<KbFloat2> make_gaussian_filter_table(double ratio) {
   if (!(ratio > 0)) throw std::logic_error("make_gaussian_filter_table: radius / stddev must be > 0");
-  // Below the least ratio the filter is a parabola, the same for all but its width; above the largest nothing
-  // is cut off.
+  // Below the least ratio the filter is a parabola, the same for all but its width;
+  // above the largest nothing is cut off.
   if (ratio < kLeastRatio) {
     std::vector<KbFloat2> nodes = make_gaussian_filter_table(kLeastRatio);
     const auto scale = static_cast<float>(ratio / kLeastRatio);

@@ -1,5 +1,5 @@
-// Sampling the truncated Gaussian reconstruction filter: the inverse of its distribution, exactly and as a
-// table.
+// Sampling the truncated Gaussian reconstruction filter: the inverse of its distribution,
+// exactly and as a table.
 //
 // The filter is Mitsuba's: f(x) = exp(-x^2/2) - exp(-r^2/2) on |x| < r, with x and r in standard deviations.
 // With G(x) = integral of f from x to r, the tail probability of a distance x >= 0 is w = G(x) / G(0); x is

@@ -20,8 +20,8 @@ struct OutputTarget {
 OutputTarget find_output_target(const std::filesystem::path& name);
 
 /// What two names of one file have in common: device and inode of a file that exists (so that hard links are
-/// one, too), otherwise its folder's real path and its name. None for what may be written to more than once:
-/// special files.
+/// one, too), otherwise its folder's real path and its name.
+/// None for what may be written to more than once: special files.
 std::optional<std::string> output_identity(const std::filesystem::path& name);
 
 /// Removes the regular file that a name leads to; links and special files stay. No file is no error.

@@ -14,7 +14,8 @@ enum class PictureColours {
   kSensor    // the first three bands as red, green, blue; a single one as grey
 };
 
-/// Linear RGB [y][x][3] without exposure. throws InputError  kNatural: no channel reaches into 380-780 nm
+/// Linear RGB [y][x][3] without exposure.
+/// throws InputError  kNatural: no channel reaches into 380-780 nm
 std::vector<float> make_picture(CubeReader& cube, PictureColours colours);
 
 }  // namespace kiloband

@@ -71,8 +71,8 @@ PixelSums ReplicateSums::at(std::size_t slot, std::size_t pixel) {
   if (slot >= shape_.slots || pixel >= shape_.pixels)
     throw std::logic_error("ReplicateSums::at: no such replicate or pixel");
   const std::size_t unit = slot * shape_.pixels + pixel, first = unit * shape_.channels;
-  // Two floats of scratch memory, which is mapped and thus aligned, hold what is only ever used as a
-  // ClosedSum.
+  // Two floats of scratch memory, which is mapped and thus aligned,
+  // hold what is only ever used as a ClosedSum.
   auto* const closed = reinterpret_cast<ClosedSum*>(closed_.values().data());
   const bool has_closed = !closed_.values().empty();
   return {counts_[unit], open_.values().subspan(first, shape_.channels),

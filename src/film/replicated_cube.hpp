@@ -13,8 +13,8 @@
 namespace kiloband {
 
 /// Any number that is a linear function of the image can be computed from each replicate alone; the spread of
-/// the results is the error of the whole (statistics.hpp has the formula), whatever pixels and channels have
-/// in common.
+/// the results is the error of the whole (statistics.hpp has the formula),
+/// whatever pixels and channels have in common.
 struct ReplicatedCube {
   std::unique_ptr<CubeReader> mean;
   std::vector<std::unique_ptr<CubeReader>> replicates;  // empty: no error bars; at least 2 otherwise

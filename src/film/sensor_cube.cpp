@@ -23,8 +23,8 @@ ChannelList channels_of(const std::vector<Band>& bands) {
   return channels;
 }
 
-/// Where the number of channels that cover a wavelength changes, and that number in the interval that begins
-/// there.
+/// Where the number of channels that cover a wavelength changes, and that number in the interval
+/// that begins there.
 class Cover {
  public:
   explicit Cover(const ChannelList& channels) {

@@ -30,9 +30,8 @@ struct SensorWeights {
 SensorWeights sensor_weights(const Spectrum& response, const std::vector<Band>& bands);
 
 /// The cube with one derived band per response, in integrals over its channels, with the effective_band() of
-/// the response as its interval. A band that the render has
-/// accumulated under a response's name (--response) is taken as it is, with its variance; other bands have
-/// none (NaN).
+/// the response as its interval. A band that the render has accumulated under a response's name (--response)
+/// is taken as it is, with its variance; other bands have none (NaN).
 /// throws InputError  a response that no channel covers, two of one name
 std::unique_ptr<CubeReader> apply_responses(std::unique_ptr<CubeReader> cube,
                                             const std::vector<NamedResponse>& responses);

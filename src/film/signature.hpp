@@ -50,8 +50,8 @@ std::vector<Signature> measure_signatures(ReplicatedCube& cube, ReplicatedCube* 
                                           const CameraGeometry& camera);
 
 /// CSV with one row per mask and band:
-/// mask,pixels,distance_m,area_m2,channel,min_nm,max_nm,radiance,intensity
-/// [,background,contrast_intensity,contrast]; with error bars each figure is followed by NAME_error.
+///   mask,pixels,distance_m,area_m2,channel,min_nm,max_nm,radiance,intensity
+///   [,background,contrast_intensity,contrast]; with error bars each figure is followed by NAME_error.
 /// signatures  all with or all without background
 void write_signatures(const CubeInfo& info, const std::vector<Signature>& signatures, bool errors,
                       const std::filesystem::path& out);

@@ -3,8 +3,7 @@
 // The rectangle is cut into blocks of 32x32 pixels (aligned to the FULL film, as the shared wavelength
 // offsets are). Two ways of keeping what the replicates of a block come to:
 //   folded  one after the other: mean and sum of squares of their means, per channel (8 bytes)
-//   held    the means of all of them stay (4 R bytes, and 8 R per pixel for their counts): for
-//           --keep-replicates
+//   held    the means of all of them stay (4 R bytes, and 8 R per pixel for their counts): --keep-replicates
 // A backend delivers a replicate of a block at once, as means. Where replicates come in parts, the film keeps
 // sums (FilmOptions::sums, replicate_sums.hpp), of the replicate that is open in each block (folded: 4 or 12
 // bytes more per value) or of all of them (held: 4 R or 12 R bytes, and 4 R per pixel), and a backend goes on
@@ -35,8 +34,8 @@ struct PixelRect {
 /// The blocks that cover a rectangle, clipped to it, row by row.
 std::vector<PixelRect> cut_into_blocks(const PixelRect& rect);
 
-/// All samples of one replicate in one block: per pixel their number and mean; means are [pixel][channel],
-/// row by row.
+/// All samples of one replicate in one block: per pixel their number and mean;
+/// means are [pixel][channel], row by row.
 struct BlockSamples {
   uint32_t block = 0;
   uint32_t replicate = 0;
@@ -66,8 +65,8 @@ class SpectralFilm {
   const FilmOptions& options() const { return options_; }
   const std::vector<PixelRect>& blocks() const { return blocks_; }
 
-  /// Thread-safe for different blocks. Folded films take the replicates of a block in order. Not for films
-  /// that keep sums.
+  /// Thread-safe for different blocks. Folded films take the replicates of a block in order.
+  /// Not for films that keep sums.
   void add(const BlockSamples& samples);
 
   /// What follows is for films that keep sums, and thread-safe for different blocks.
@@ -88,8 +87,8 @@ class SpectralFilm {
   /// samples of the replicates so far may follow.
   void finish_replicates();
 
-  /// Mean and variance of the mean of one row of pixels (y relative to the rectangle): [x][channel]. variance
-  /// may be empty.
+  /// Mean and variance of the mean of one row of pixels (y relative to the rectangle): [x][channel].
+  /// variance may be empty.
   void row(uint32_t y, std::span<float> mean, std::span<float> variance) const;
   /// Samples of a pixel (x, y relative to the rectangle).
   uint64_t samples(uint32_t x, uint32_t y) const;
@@ -98,8 +97,8 @@ class SpectralFilm {
   uint64_t replicate_samples(uint32_t replicate, std::size_t pixel) const;
 
   /// Moments of the 8x8-pixel tiles' means (tiles are aligned to the blocks, row by row within a block: index
-  /// block * 16 + (y / 8) * 4 + x / 8, coordinates relative to the block) and of the whole rectangle's mean
-  /// (unit 0).
+  /// block * 16 + (y / 8) * 4 + x / 8, coordinates relative to the block) and
+  /// of the whole rectangle's mean (unit 0).
   const ReplicateMoments& tile_moments() const;
   ReplicateMoments image_moments() const;
   /// Sums over the rectangle of pixel means of a replicate times counts, and the number of samples: to be

@@ -21,8 +21,8 @@ enum class SamplerType { kIndependent, kSobol };
 /// once, or for one that goes on alone (what smooth boundaries always do).
 enum class RoughDispersion { kSpectralMis, kDegrade };
 
-/// What defines the random numbers of a render; equal settings give equal bits on a device and instruction
-/// set.
+/// What defines the random numbers of a render;
+/// equal settings give equal bits on a device and instruction set.
 struct SamplingSettings {
   WavelengthMode wavelengths = WavelengthMode::kShared;
   SamplerType sampler = SamplerType::kSobol;

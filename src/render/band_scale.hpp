@@ -15,8 +15,8 @@ struct RangeLosses {
   uint64_t overflowed_variances = 0;  // infinite; NaN is none: fewer than two replicates have no variance
 };
 
-/// Loops over the bands of one pixel, without branches, so that they are vectorised: every value of an image
-/// comes by here.
+/// Loops over the bands of one pixel, without branches, so that they are vectorised:
+/// every value of an image comes by here.
 class BandScale {
  public:
   /// film_channels  the film's channel of each band

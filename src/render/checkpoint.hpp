@@ -24,30 +24,32 @@ struct CheckpointOutline {
 };
 
 /// Writes the sums of a film that holds them to `file`, whole or not at all, with checksums. What stood there
-/// stays until it is replaced. throws DeviceError
+/// stays until it is replaced.
+/// throws DeviceError
 void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint);
 
-/// Reads the beginning of `file`: not the sums. Never waits (named pipes) and allocates no more than the file
-/// is long. throws InputError  missing, no regular file, of another version, damaged
+/// Reads the beginning of `file`: not the sums.
+/// Never waits (named pipes) and allocates no more than the file is long.
+/// throws InputError  missing, no regular file, of another version, damaged
 CheckpointOutline checkpoint_outline(const std::filesystem::path& file);
 /// Whether there is something under that name.
 /// throws InputError  that cannot be said: the name is too long, or a folder of its path may not be entered
 bool checkpoint_exists(const std::filesystem::path& file);
-/// How many replicates the film in `file` has; nothing: there is no such file. throws as
-/// checkpoint_outline(), checkpoint_exists()
+/// How many replicates the film in `file` has; nothing: there is no such file.
+/// throws as checkpoint_outline(), checkpoint_exists()
 std::optional<uint32_t> checkpoint_replicates(const std::filesystem::path& file);
 
 /// Reads and checks all of a checkpoint without a film: sizes, counts, values, checksums. Memory: that of a
-/// pixel and a table of blocks, no more than the file is long. name: for messages. throws as
-/// read_checkpoint()
+/// pixel and a table of blocks, no more than the file is long. The second form takes the file's bytes.
+/// name  for messages
+/// throws as read_checkpoint()
 CheckpointOutline inspect_checkpoint(const std::filesystem::path& file);
 CheckpointOutline inspect_checkpoint(std::span<const char> bytes, const std::string& name);
 
 /// Fills a fresh film that holds sums from `file` and returns the number of pixel samples in it.
 /// throws InputError  missing, no regular file, of another version, of another render (fingerprint), damaged:
-/// sizes,
-///        checksums, counts that no deal of samples gives, sums that no samples add up to. Then the film is
-///        spoilt
+///                    sizes, checksums, counts that no deal of samples gives, sums that no samples add up to.
+///                    Then the film is spoilt
 uint64_t read_checkpoint(const std::filesystem::path& file, SpectralFilm& film, uint64_t fingerprint);
 /// The same from memory.
 uint64_t read_checkpoint(std::span<const char> bytes, const std::string& name, SpectralFilm& film,

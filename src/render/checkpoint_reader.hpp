@@ -1,5 +1,5 @@
-// Reading and checking checkpoints, piece by piece; nothing is allocated that the file is not long enough
-// for.
+// Reading and checking checkpoints, piece by piece;
+// nothing is allocated that the file is not long enough for.
 #pragma once
 
 #include <array>
@@ -43,14 +43,16 @@ uint64_t count_not_finite(const SumRule& rule, const PixelSumsView& sums);
 
 class CheckpointReader {
  public:
-  /// Reads and checks all before the sums. name: of the file, for messages. throws InputError
+  /// Reads and checks all before the sums. name: of the file, for messages.
+  /// throws InputError
   CheckpointReader(std::unique_ptr<CheckpointSource> source, std::string name);
 
   const CheckpointOutline& outline() const { return outline_; }
   const std::vector<PixelRect>& blocks() const { return blocks_; }
   uint32_t attempted(uint32_t replicate, uint32_t block) const;
   /// Reads and checks the rest, into what `place` says for each replicate and pixel (index in the rectangle).
-  /// Its `closed` may be empty where there are not more samples than a chunk. throws InputError
+  /// PixelSums::closed may be empty where there are not more samples than a chunk.
+  /// throws InputError
   void read_sums(const std::function<PixelSums(uint32_t replicate, std::size_t pixel)>& place);
   [[noreturn]] void fail(const std::string& what) const;
 

@@ -17,7 +17,8 @@ class CheckpointSource {
   virtual bool read(std::span<char> to) = 0;
 };
 
-/// Opens without waiting. throws InputError  "checkpoint FILE ...": missing, no regular file
+/// Opens without waiting.
+/// throws InputError  "checkpoint FILE ...": missing, no regular file
 std::unique_ptr<CheckpointSource> open_checkpoint(const std::filesystem::path& file);
 /// The bytes must outlive the source.
 std::unique_ptr<CheckpointSource> checkpoint_in_memory(std::span<const char> bytes);

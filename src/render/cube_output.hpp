@@ -1,5 +1,5 @@
-// Film rows to files: scales film values to W m^-2 sr^-1, feeds all writers and the preview, gathers the
-// error figure.
+// Film rows to files: scales film values to W m^-2 sr^-1, feeds all writers and the preview,
+// gathers the error figure.
 #pragma once
 
 #include <future>
@@ -14,8 +14,8 @@ namespace kiloband {
 
 class CubeOutput {
  public:
-  /// rows_per_strip as create_cube_writer(); film_scale per film channel; samples_per_pixel is stated in the
-  /// files
+  /// rows_per_strip as create_cube_writer(); film_scale per film channel;
+  /// samples_per_pixel is stated in the files
   CubeOutput(const FlatScene& scene, const BandSelection& bands, const std::vector<double>& film_scale,
              const SessionSettings& settings, uint32_t replicates, uint64_t samples_per_pixel,
              uint32_t rows_per_strip);

@@ -9,8 +9,8 @@
 
 namespace kiloband {
 
-/// The relative error of a band is sqrt(mean over the pixels of the variance of their mean) / |mean of the
-/// image|.
+/// The relative error of a band is sqrt(mean over the pixels of the variance of their
+/// mean) / |mean of the image|.
 struct BandErrors {
   std::optional<double> worst;  // largest over the bands with light; none where no band has any
   std::size_t worst_band = 0;
@@ -27,8 +27,8 @@ class ErrorSums {
   explicit ErrorSums(std::size_t bands) : means_(bands), variances_(bands), pixels_(bands) {}
 
   /// A pixel's values in all bands, in any unit. A variance of NaN (fewer than two replicates with a valid
-  /// sample) leaves the pixel out of this band; one that is too large for a float, infinity, makes the band's
-  /// error infinite.
+  /// sample) leaves the pixel out of this band; one that is too large for a float, infinity,
+  /// makes the band's error infinite.
   void add(std::span<const double> means, std::span<const double> variances);
   BandErrors errors() const;
 

@@ -209,8 +209,8 @@ std::optional<StopReason> Passes::look_at_error(const SpectralFilm& film) {
   if (!settings_.stop.relative_error) return std::nullopt;
   update_errors(film);
   if (errors_.worst && *errors_.worst <= *settings_.stop.relative_error) return StopReason::kError;
-  // Without any light there is no relative error: a black image is given up after this many samples per
-  // pixel.
+  // Without any light there is no relative error: a black image is given up after this many
+  // samples per pixel.
   constexpr uint64_t kBlackSamples = 1024;
   const bool dark = !errors_.worst && uint64_t{least_attempted(film)} * replicates_ >= kBlackSamples;
   return dark ? std::optional(StopReason::kDark) : std::nullopt;

@@ -13,8 +13,9 @@
 
 namespace kiloband {
 
-/// Makes one tile of 8 x 8 pixels, or one pixel, of the block's means brighter. block: in pixels of the film
-/// means: [pixel of the block][stride]
+/// Makes one tile of 8 x 8 pixels, or one pixel, of the block's means brighter.
+/// block  in pixels of the film
+/// means  [pixel of the block][stride]
 inline void plant_in_means(uint32_t fault, const PixelRect& block, std::span<float> means,
                            std::size_t stride) {
   for (std::size_t i = 0; i < means.size(); ++i) {

@@ -46,8 +46,8 @@ struct SessionSettings {
   std::vector<std::string> aux;                  // depth, normal, object, material
   std::map<std::string, std::string> metadata;
   DiagnosticSink sink;  // receives warnings
-  /// Saved now and then and at the end, over what is there; that this is wanted is up to
-  /// check_checkpoint_file().
+  /// Saved now and then and at the end, over what is there;
+  /// that this is wanted is up to check_checkpoint_file().
   std::optional<std::filesystem::path> checkpoint;
   double checkpoint_interval_seconds = 60;
   bool resume = false;       // go on from the checkpoint if it exists
@@ -95,9 +95,10 @@ struct BandSelection {
 };
 BandSelection select_bands(const FlatScene& scene, const ChannelList& derived);
 
-/// Renders and writes. derived: DerivedChannels::bands. `make_backend` gets the replicates that the stop rule leaves
-/// (SamplingSettings::replicates). throws InputError, DeviceError; nothing half written is left under the
-/// final names
+/// Renders and writes.
+/// derived  DerivedChannels::bands
+/// backend  made with the session_replicates() that the stop rule leaves (SamplingSettings::replicates)
+/// throws InputError, DeviceError; nothing half written is left under the final names
 RenderReport run_session(const FlatScene& scene, const ChannelList& derived, Backend& backend,
                          const SessionSettings& settings, const std::atomic<bool>& stop,
                          const std::function<void(const Progress&)>& progress);

@@ -9,8 +9,8 @@
 
 namespace kiloband {
 
-/// FNV-1a over 64-bit words (the rest of each piece bytewise): fast enough for gigabytes, and every bit
-/// counts.
+/// FNV-1a over 64-bit words (the rest of each piece bytewise): fast enough for gigabytes,
+/// and every bit counts.
 class WordHash {
  public:
   void add(std::span<const char> bytes) {

@@ -1,5 +1,5 @@
-// Spectra that are given at the centres of bands (BandSet, flat_scene.hpp): positions, means, and as a
-// Spectrum.
+// Spectra that are given at the centres of bands (BandSet, flat_scene.hpp): positions, means,
+// and as a Spectrum.
 #pragma once
 
 #include <span>

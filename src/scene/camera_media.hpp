@@ -10,8 +10,8 @@
 namespace kiloband {
 
 /// Media + 1 whose shapes enclose the point, the outermost first, then zeros: as a path remembers them. A
-/// point is inside if a ray from it leaves the medium's shapes more often than it enters them. throws
-/// InputError  at `position`: inside more than KB_MEDIUM_DEPTH media
+/// point is inside if a ray from it leaves the medium's shapes more often than it enters them.
+/// throws InputError  at `position`: inside more than KB_MEDIUM_DEPTH media
 std::array<uint16_t, KB_MEDIUM_DEPTH> media_at(const FlatScene& scene, const glm::dvec3& point,
                                                const SourcePosition& position);
 

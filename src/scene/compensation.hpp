@@ -14,8 +14,8 @@ struct IndexRange {
 
 /// The table of a rough material. Its albedos have an error below 1e-4 for roughness 0.001 to 1, below 3e-4
 /// inside dielectrics; anisotropic metals 2e-4 for ratios of the roughnesses up to 10, anisotropic
-/// dielectrics 1.5e-3 for ratios up to 4. Takes about 0.1 s, anisotropic 1 s; a dispersive index: 9 times
-/// that.
+/// dielectrics 1.5e-3 for ratios up to 4. Takes about 0.1 s, anisotropic 1 s;
+/// a dispersive index: 9 times that.
 std::vector<float> make_compensation_table(const KbMaterial& material, const IndexRange& index);
 
 /// Reflected part R / E of what a rough boundary scatters in a direction: tables of KB_THERMAL_ROUGH.
@@ -23,8 +23,8 @@ std::vector<float> make_compensation_table(const KbMaterial& material, const Ind
 std::vector<float> make_reflected_part(const KbMaterial& material);
 /// The internal reflectance of a rough plastic's coating, as the renderers have it.
 double make_internal_reflectance(const KbMaterial& material);
-/// Rough plastics: the diffuse base's albedo for reflectance 1 at KB_THERMAL_COAT_NODES cosines, linear in
-/// between.
+/// Rough plastics: the diffuse base's albedo for reflectance 1 at KB_THERMAL_COAT_NODES cosines,
+/// linear in between.
 std::vector<float> make_coat_part(const KbMaterial& material);
 
 inline bool is_anisotropic(const KbMaterial& material) {

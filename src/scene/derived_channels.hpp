@@ -1,5 +1,5 @@
-// Derived channels: sensor responses that are accumulated beside the rendered channels, with errors of their
-// own.
+// Derived channels: sensor responses that are accumulated beside the rendered channels,
+// with errors of their own.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// SceneDescription: the scene as the user wrote it, checked and loaded; what the reader produces and
-// flattening reads.
+// SceneDescription: the scene as the user wrote it, checked and loaded;
+// what the reader produces and flattening reads.
 #pragma once
 
 #include <array>
@@ -45,8 +45,8 @@ struct CheckerboardTexture {
   glm::dmat3 to_uv{1.0};
 };
 
-/// Texels are spectra: those of an image's bands, or mixtures of endmembers whose weights are the image's
-/// values.
+/// Texels are spectra: those of an image's bands, or mixtures of endmembers whose weights are
+/// the image's values.
 struct SpectralBitmapTexture {
   std::string id;
   SourcePosition position;
@@ -124,8 +124,8 @@ struct Bsdf {
 };
 
 // ---- media ----
-/// Temperature and scale at the nodes of a lattice that spans [0, 1]^3 of the local coordinates; linear
-/// between.
+/// Temperature and scale at the nodes of a lattice that spans [0, 1]^3 of the local
+/// coordinates; linear between.
 struct GridField {
   std::array<uint32_t, 3> nodes{};  // along x, y, z, at least 2 each
   struct Node {
@@ -165,8 +165,8 @@ struct Medium {
 struct AreaEmitter {
   Texture radiance;  // W m^-2 sr^-1 nm^-1, on the normal side
 };
-/// Emission by Kirchhoff's law, eps(lambda, theta) B(lambda, T): T is a constant, an image or a property of
-/// vertices.
+/// Emission by Kirchhoff's law, eps(lambda, theta) B(lambda, T): T is a constant,
+/// an image or a property of vertices.
 struct ThermalEmitter {
   double temperature_k = 0;                      // where neither of the following is given
   std::shared_ptr<const BitmapTexture> texture;  // one channel, raw values in K; or null
@@ -247,8 +247,8 @@ struct Film {
   /// bandfilm's channels, or a specfilm's constant responses as channels; empty: the program's default.
   ChannelList channels;
   /// specfilm responses that are not constant inside their range (or not 1): named, summed from sub-channels.
-  /// These are the channels without a name, after the named ones: between all knots of all responses, at most
-  /// 5 nm wide.
+  /// These are the channels without a name, after the named ones: between all knots of all responses,
+  /// at most 5 nm wide.
   std::vector<std::pair<std::string, Spectrum>> responses;
 };
 
@@ -283,8 +283,8 @@ struct SceneDescription {
   std::filesystem::path file;
   std::vector<Shape> shapes;
   std::vector<Emitter> emitters;
-  /// What every shape without an emitter of its own has, and what is seen where there is nothing and no
-  /// environment.
+  /// What every shape without an emitter of its own has, and what is seen where there is nothing
+  /// and no environment.
   std::optional<double> ambient_temperature_k;
   SourcePosition ambient_position;
   std::shared_ptr<const Medium> atmosphere;  // outside all shapes; null: none

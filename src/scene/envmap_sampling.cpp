@@ -77,8 +77,8 @@ EnvmapSampling build_envmap_sampling(uint32_t width, uint32_t height, std::span<
     for (const double w : row) row_sums[i] += w;
     total += row_sums[i];
   }
-  // Mixed density: (1 - share) weight / total + share * solid angle / 4 pi, cell by cell; 2 width sums all
-  // solid angles.
+  // Mixed density: (1 - share) weight / total + share * solid angle / 4 pi, cell by cell;
+  // 2 width sums all solid angles.
   const double keep = total > 0 ? (1 - kEnvmapUniformShare) / total : 0;
   const double uniform = (total > 0 ? kEnvmapUniformShare : 1) / (2.0 * width);
   for (uint32_t i = 0; i < rows; ++i) {

@@ -31,8 +31,8 @@ const GaussLegendre& rule_of(int n) {
 //   reflection leaves the surface         2 p = v.z N
 //   total reflection ends                 p^2 = (1 - eta^2) N
 //   transmission leaves the surface       v.z^2 N - 2 v.z p = eta^2 - 1
-// Integrals over a are cut there, those over b where two such edges meet: where a discriminant, a parabola in
-// b, is 0.
+// Integrals over a are cut there, those over b where two such edges meet: where a discriminant,
+// a parabola in b, is 0.
 
 /// c0 + c1 a + c2 a^2.
 struct Parabola {

@@ -22,8 +22,8 @@ double fresnel(double cos_i, double eta) {
   return 0.5 * (s * s + p * p);
 }
 
-/// Reflectance of diffuse light, 2 int_0^1 F(c) c dc, by the midpoint rule in c^2 (error below 1e-6 for eta
-/// in 0.3-3).
+/// Reflectance of diffuse light, 2 int_0^1 F(c) c dc, by the midpoint rule in c^2
+/// (error below 1e-6 for eta in 0.3-3).
 double diffuse_fresnel(double eta) {
   constexpr int kSteps = 20000;
   double sum = 0;

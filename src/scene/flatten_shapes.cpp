@@ -18,8 +18,8 @@ glm::dvec3 to_glm(const KbFloat3& v) {
   return {v.x, v.y, v.z};
 }
 
-/// Area of a canonical analytic shape under its transform (a similarity for spheres; see the reader's
-/// checks).
+/// Area of a canonical analytic shape under its transform
+/// (a similarity for spheres; see the reader's checks).
 double analytic_area(uint32_t type, const Transform& m) {
   const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
   const double pi = std::numbers::pi;
@@ -32,8 +32,8 @@ bool mirrors(const Transform& to_world) {
   return glm::determinant(glm::dmat3(to_world)) < 0;
 }
 
-/// Vertex normals in the world. Normals of the file are mapped; computed ones are those of the placed
-/// triangles.
+/// Vertex normals in the world. Normals of the file are mapped;
+/// computed ones are those of the placed triangles.
 std::vector<KbFloat3> placed_normals(const Mesh& mesh, const Transform& to_world) {
   const glm::dmat3 linear(to_world);
   std::vector<KbFloat3> placed;

@@ -82,8 +82,8 @@ uint32_t Flattener::complement_row(uint32_t row, uint32_t heat) {
 }
 
 /// 1 - S(v) = S(-v): the complement of a sigmoid of scale 1 is the one with negated coefficients; of a flat
-/// texel, 1 - its value. Lookups are linear in texels, so the complement of a lookup is the lookup of
-/// complements.
+/// texel, 1 - its value. Lookups are linear in texels, so the complement of a lookup is
+/// the lookup of complements.
 uint32_t Flattener::complement_bitmap(uint32_t index, uint32_t heat) {
   KbTexture record = out_.textures[index];
   const std::size_t count = std::size_t{record.width} * record.height;

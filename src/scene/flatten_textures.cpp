@@ -16,8 +16,8 @@ KbFloat4 flat_texel(float value) {
   return {0, 0, kFlatCoefficient, value};
 }
 
-/// Reflectance: the sigmoid of the colour. Emission: twice the maximum times the sigmoid of rgb / (2 max), as
-/// Mitsuba.
+/// Reflectance: the sigmoid of the colour. Emission: twice the maximum times the sigmoid
+/// of rgb / (2 max), as Mitsuba.
 KbFloat4 upsampled_texel(const SigmoidTable& table, const float* rgb, bool emission) {
   const float largest = std::max({rgb[0], rgb[1], rgb[2]});
   if (largest <= 0) return flat_texel(0);

@@ -163,8 +163,9 @@ class Flattener {
 /// "bsdf 'wall'", for messages.
 std::string describe(const Bsdf& bsdf);
 
-/// KbTexture::first_texel of a bitmap of `count` texels after `before` others. name is the bitmap's, for the
-/// message. throws InputError  the last texel's index does not fit into 32 bits
+/// KbTexture::first_texel of a bitmap of `count` texels after `before` others.
+/// name  the bitmap's, for messages
+/// throws InputError  the last texel's index does not fit into 32 bits
 uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePosition& position,
                            const std::string& name);
 

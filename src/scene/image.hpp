@@ -1,5 +1,5 @@
-// Images for textures and environment maps, behind an interface so that a build without OpenImageIO is
-// possible.
+// Images for textures and environment maps, behind an interface so that a build without
+// OpenImageIO is possible.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ struct Image {
 /// of IEC 61966-2-1 whatever the file says of its gamma, 32-bit integers are refused. Float formats are
 /// linear. Colours are never multiplied by alpha. Channels by name: R, G, B; else Y; else the R, G, B of the
 /// first layer that has them ("layer.R" ...); else the only channel besides alpha. Anything else (X Y Z,
-/// spectral channels) is an error. Of several parts or levels the first one is read, of an EXR file the data
-/// window. Slightly negative values (negative_values.hpp; the mean is that of all channels) become 0, with
-/// one warning. raw                true: no colour conversion of integer formats throws InputError  naming
-/// the file: missing, unreadable, truncated, values that are not finite or clearly
+/// window. Slightly negative values (negative_values.hpp; the mean is that of all channels) become
+/// 0, with one warning.
+/// raw  true: no colour conversion of integer formats
+/// throws InputError  naming the file: missing, unreadable, truncated, values that are not finite or clearly
 ///                    negative, larger than 65535 in a dimension
 Image read_image(const std::filesystem::path& file, bool raw, const DiagnosticSink& sink = {});
 

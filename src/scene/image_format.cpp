@@ -56,7 +56,8 @@ ImageFormat recognise(const ImageFile& file, const std::filesystem::path& path, 
   return ImageFormat::kTarga;
 }
 
-/// Reads up to the next marker outside of entropy-coded data. returns its code, or -1 at the end of the file
+/// Reads up to the next marker outside of entropy-coded data.
+/// returns its code, or -1 at the end of the file
 int next_jpeg_marker(std::istream& stream) {
   for (int byte = stream.get(); byte >= 0; byte = stream.get()) {
     while (byte == 0xFF) {

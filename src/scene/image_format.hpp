@@ -19,8 +19,8 @@ struct ImageFile {
 };
 
 /// Opens a regular file and recognises its format; a JPEG file is also checked for its end marker, because
-/// decoders fill what is missing with grey and call that a warning. throws InputError  missing, not a regular
-/// file, empty, of no known format, truncated (JPEG)
+/// decoders fill what is missing with grey and call that a warning.
+/// throws InputError  missing, not a regular file, empty, of no known format, truncated (JPEG)
 ImageFile examine_image(const std::filesystem::path& path);
 
 /// Checks the dimensions that the header states, before anything of that size is allocated.

@@ -17,8 +17,8 @@
 namespace kiloband {
 namespace {
 
-/// OpenImageIO's name of the reader. Choosing it ourselves keeps its other readers (video, DICOM ...) away
-/// from the file.
+/// OpenImageIO's name of the reader. Choosing it ourselves keeps its other readers (video, DICOM ...)
+/// away from the file.
 const char* reader_name(ImageFormat format) {
   switch (format) {
     case ImageFormat::kExr:

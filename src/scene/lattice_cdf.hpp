@@ -19,8 +19,9 @@ void check_lattice_items(std::size_t count, const SourcePosition& position, cons
 /// Cumulative distribution of `weights`, weights.size() + 1 entries from 0 to 1, all of them multiples of
 /// 2^-24. Differences of entries are exact in float and are exactly the probabilities with which a random
 /// multiple of 2^-24 in [0, 1) falls between them. Every positive weight has at least one step, however small
-/// its part of the sum; a weight of 0 has none (if all are 0, the last item has everything). weights  finite,
-/// >= 0, their sum finite throws   std::logic_error  an invalid weight, more than kMaxLatticeItems
+/// its part of the sum; a weight of 0 has none (if all are 0, the last item has everything).
+/// weights  finite, >= 0, their sum finite
+/// throws std::logic_error  an invalid weight, more than kMaxLatticeItems
 std::vector<float> lattice_cdf(std::span<const double> weights);
 
 }  // namespace kiloband

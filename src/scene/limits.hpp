@@ -10,8 +10,8 @@
 
 namespace kiloband {
 
-/// Planck's law reaches 4e10 W m^-2 sr^-1 nm^-1 at kMaxTemperatureK, the sun has 3e4. Of irradiance and
-/// intensity too.
+/// Planck's law reaches 4e10 W m^-2 sr^-1 nm^-1 at kMaxTemperatureK, the sun has 3e4.
+/// Of irradiance and intensity too.
 inline constexpr double kMaxEmission = 1e15;
 /// Sensor responses, weights of endmembers, factors of light.
 inline constexpr double kMaxQuantity = 1e15;

@@ -40,14 +40,13 @@ struct MeshOptions {
 // indices in range, and drop no triangle. Polygons are split into a fan around their first corner, as Mitsuba
 // does. Common to all of them:
 // - zero-area triangles are reported once per file with their count as a warning; a mesh without a triangle
-// of
-//   positive area is an error (area: the cross product of two edges in double precision, compared with 0);
+//   of positive area is an error (area: the cross product of two edges in double precision, compared with 0);
 // - OBJ, PLY and serialized meshes without vertex normals get compute_vertex_normals() unless face_normals is
-// set: the
-//   rule of Mitsuba 3 for all three (src/shapes/{obj,ply,serialized}.cpp). STL never has vertex normals;
+//   set: the rule of Mitsuba 3 for all three (its src/shapes/{obj,ply,serialized}.cpp). STL never has vertex
+//   normals;
 // - vertex normals of the file are normalised; missing ones (OBJ) and zero vectors are computed instead, one
-// warning. throws InputError  "file: ...", "file:line: ..." for text, "file: byte N: ..." (0-based) for
-// binary data
+//   warning.
+// throws InputError  "file: ...", "file:line: ..." for text, "file: byte N: ..." (0-based) for binary data
 
 /// Wavefront OBJ. Lines read: v (x y z, further numbers such as w or r g b are checked and ignored), vt (u v
 /// [w]), vn, f; ignored: empty, #, mtllib, usemtl, g, o, s, l, p; any other keyword is an error. Indices
@@ -73,8 +72,9 @@ Mesh read_serialized(const std::filesystem::path& file, const MeshOptions& optio
 
 /// Sets mesh.normals: the sum of the adjacent triangles' normals weighted by their angles at the vertex. Sums
 /// over vertex INDICES, so coincident vertices stay apart. Where the sum vanishes, the normal of an adjacent
-/// triangle is taken; where no triangle has an area, (0, 0, 1). source  Thürmer, Wüthrich, Computing vertex
-/// normals from polygonal facets, JGT 3(1), 1998 (Mitsuba's choice too)
+/// triangle is taken; where no triangle has an area, (0, 0, 1).
+/// Source: Thürmer, Wüthrich, Computing vertex normals from polygonal facets, JGT 3(1), 1998 (Mitsuba's
+/// choice too).
 void compute_vertex_normals(Mesh& mesh);
 
 /// The columns of a linear map.

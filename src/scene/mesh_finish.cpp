@@ -5,8 +5,8 @@
 namespace kiloband {
 namespace {
 
-// Exact enough: the difference of two floats is nearly always exact in double, and nothing under- or
-// overflows.
+// Exact enough: the difference of two floats is nearly always exact in double,
+// and nothing under- or overflows.
 bool has_zero_area(const Mesh& mesh, const std::array<uint32_t, 3>& triangle) {
   std::array<double, 3> e{}, f{};
   for (int axis = 0; axis < 3; ++axis) {

@@ -11,7 +11,8 @@ namespace kiloband {
 size_t repair_vertex_normals(Mesh& mesh);
 
 /// Checks the triangles' areas, then drops, computes or repairs vertex normals as mesh.hpp states. Indices
-/// must be in range. throws InputError  no triangle, or none with an area
+/// must be in range.
+/// throws InputError  no triangle, or none with an area
 void finish_mesh(Mesh& mesh, const MeshFile& file, bool face_normals, const DiagnosticSink& sink);
 
 }  // namespace kiloband

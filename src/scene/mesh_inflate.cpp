@@ -41,8 +41,8 @@ size_t InflateStream::offset() const {
 }
 
 size_t InflateStream::limit() const {
-  // DEFLATE expands at most 1032 times (258 bytes from 2 bits); what zlib holds back is below its window of
-  // 32 KiB.
+  // DEFLATE expands at most 1032 times (258 bytes from 2 bits);
+  // what zlib holds back is below its window of 32 KiB.
   constexpr size_t kMostExpansion = 1032, kWindow = 32768;
   const auto left = static_cast<size_t>(state_->end - reinterpret_cast<const char*>(state_->zlib.next_in));
   return kMostExpansion * (left + 1) + kWindow;

@@ -9,8 +9,8 @@
 
 namespace kiloband {
 
-/// Every read either delivers all bytes asked for or throws InputError with the byte of the file where it got
-/// stuck.
+/// Every read either delivers all bytes asked for or throws InputError with the byte of the file
+/// where it got stuck.
 class InflateStream {
  public:
   /// Reads from file.bytes[begin, end); `file` must outlive the stream.

@@ -16,8 +16,8 @@ struct Corner {
 
 struct CornerHash {
   size_t operator()(const Corner& c) const {
-    // Odd multipliers from the golden ratio; the final shift brings the high bits down to where buckets are
-    // chosen.
+    // Odd multipliers from the golden ratio; the final shift brings the high bits down to
+    // where buckets are chosen.
     uint64_t hash = c.position * 0x9E3779B97F4A7C15ull;
     hash = (hash ^ (hash >> 29) ^ c.uv) * 0xBF58476D1CE4E5B9ull;
     hash = (hash ^ (hash >> 32) ^ c.normal) * 0x94D049BB133111EBull;

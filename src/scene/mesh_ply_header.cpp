@@ -33,7 +33,8 @@ class HeaderReader {
   PlyHeader read();
 
  private:
-  /// Reads one line's keyword and its arguments. returns false at end_header
+  /// Reads one line's keyword and its arguments.
+  /// returns false at end_header
   bool read_line();
   void read_format(LineTokens& tokens);
   void read_element(LineTokens& tokens);

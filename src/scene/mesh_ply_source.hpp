@@ -1,5 +1,5 @@
-// The two ways in which a PLY body stores numbers, behind one shape: read() one number, problem(), fail(),
-// finish().
+// The two ways in which a PLY body stores numbers, behind one shape: read() one number,
+// problem(), fail(), finish().
 #pragma once
 
 #include <bit>

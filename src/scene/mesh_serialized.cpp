@@ -1,6 +1,6 @@
 // Mitsuba's serialized format, versions 3 and 4: several zlib-compressed meshes and a table of their places
-// at the end. Layout: the documentation of Mitsuba 3's plugin `serialized`, checked against files written by
-// Mitsuba.
+// at the end. Layout: the documentation of Mitsuba 3's plugin `serialized`,
+// checked against files written by Mitsuba.
 #include <cmath>
 
 #include "scene/mesh_binary.hpp"
@@ -124,8 +124,8 @@ class SerializedReader {
     return flags_ & kDouble ? read_vectors_of<double, N>(what) : read_vectors_of<float, N>(what);
   }
 
-  /// Grows with what was really decompressed: a stream that breaks off early has not cost the memory it
-  /// promised.
+  /// Grows with what was really decompressed: a stream that breaks off early has not cost
+  /// the memory it promised.
   template <typename Scalar, size_t N>
   std::vector<std::array<float, N>> read_vectors_of(const char* what) {
     constexpr size_t kChunk = 65536;

@@ -72,8 +72,8 @@ Mesh read_binary(const MeshFile& file) {
   return mesh;
 }
 
-/// solid [name] { facet normal x y z  outer loop  3 times { vertex x y z }  endloop  endfacet } endsolid
-/// [name], any number of solids. Keywords in any case; names run to the end of their line.
+/// solid [name] { facet normal x y z outer loop 3 times { vertex x y z } endloop endfacet } endsolid [name]
+/// Any number of solids. Keywords in any case; names run to the end of their line.
 class TextReader {
  public:
   explicit TextReader(const MeshFile& file) : file_(file), rest_(file.bytes) {}
@@ -93,7 +93,8 @@ class TextReader {
     return text;
   }
 
-  /// Goes to the next line that is not blank. returns false at the end of the file
+  /// Goes to the next line that is not blank.
+  /// returns false at the end of the file
   bool next_line() {
     while (!rest_.empty()) {
       ++line_;

@@ -12,8 +12,8 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-// from_chars reports underflow and overflow alike; strtod tells them apart. Rare, so its copy does not
-// matter.
+// from_chars reports underflow and overflow alike; strtod tells them apart.
+// Rare, so its copy does not matter.
 template <typename Real>
 const char* parse_out_of_range(std::string_view token, Real& value) {
   const std::string copy(token);

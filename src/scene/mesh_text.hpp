@@ -12,8 +12,8 @@ std::string in_quotes(std::string_view token);
 
 /// Reads the whole token as a decimal number.
 /// value    the nearest float; a magnitude too small for a float becomes 0 or a denormal
-/// returns  nullptr, or what is wrong with the token: "is not a number", "is not finite", "is too large for a
-/// float"
+/// returns  nullptr, or what is wrong with the token: "is not a number", "is not finite",
+///          "is too large for a float"
 const char* parse_number(std::string_view token, float& value);
 /// The same for double, "is too large".
 const char* parse_number(std::string_view token, double& value);

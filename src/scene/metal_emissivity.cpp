@@ -20,8 +20,8 @@ double cell_cosine(int i) {
   return t * t;
 }
 
-/// Largest error of a metal's absorptance between neighbours of `count` + 1 regular wavelengths, in allowed
-/// errors.
+/// Largest error of a metal's absorptance between neighbours of `count` + 1 regular wavelengths,
+/// in allowed errors.
 double tabulation_error(const MetalSpectra& s, const Channel& range, std::size_t count) {
   const auto lambda = [&](double i) {
     return range.min_nm + i / static_cast<double>(count) * range.width_nm();
@@ -44,8 +44,8 @@ double tabulation_error(const MetalSpectra& s, const Channel& range, std::size_t
   return worst;
 }
 
-/// Numbers of wavelengths: the fewest powers of two whose tables are good for a tenth of what directions may
-/// be off by.
+/// Numbers of wavelengths: the fewest powers of two whose tables are good for a tenth
+/// of what directions may be off by.
 std::size_t count_cells(const MetalSpectra& spectra, const Channel& range) {
   std::size_t cells = 1;
   while (cells < kMostWavelengths && tabulation_error(spectra, range, cells) > 1) cells *= 2;
@@ -147,8 +147,8 @@ std::vector<double> MetalEmissivity::at(double cosine, double s) const {
   return values;
 }
 
-/// Adds nodes between two cosines until the line between neighbours is good enough. Returns whether any was
-/// needed.
+/// Adds nodes between two cosines until the line between neighbours is good enough.
+/// Returns whether any was needed.
 bool MetalEmissivity::refine(double from, double to, int depth) {
   constexpr int kDeepest = 12;
   constexpr double kSmallest = 1e-3;  // no node for the sake of directions closer to grazing

@@ -17,18 +17,18 @@ struct MetalSpectra {
   const RegularTable &n, &k, &tint;
 };
 
-/// With A(c) the absorptance 1 - F of a facet at the cosine c, a the mean of A over what the lobe reflects (0
-/// to E, the lobe's albedo for F = 1) and A0 = A(1):
+/// With A(c) the absorptance 1 - F of a facet at the cosine c, a the mean of A over what the lobe reflects
+/// (0 to E, the lobe's albedo for F = 1) and A0 = A(1):
 ///   smooth  eps = A(c)
-///   rough   eps = 1 - (E - a) (1 + (1 - A0) (1 - E) / E) = a / E + A0 (1 - E) (1 - a / E)
-///   (energy-compensated)
+///   rough   eps = 1 - (E - a) (1 + (1 - A0) (1 - E) / E) = a / E + A0 (1 - E) (1 - a / E),
+///           energy-compensated,
 /// and with a factor t on the reflectance, 1 - t + t eps.
 ///
 /// Interpolated linearly in the cosine between nodes, the emissivity is off by 1e-4 at most and, where it
 /// exceeds 1e-3, by 1e-3 of itself, at cosines above 1e-3. Nodes crowd towards grazing directions, where the
-/// emissivity of metals has a narrow maximum in the infrared. Anisotropic roughness: also in s = alpha_v y^2
-/// / (alpha_u x^2 + alpha_v y^2), between at most 17 nodes, which keep those bounds for ratios of the
-/// roughnesses up to 4; at 10 errors are up to 4 times larger.
+/// emissivity of metals has a narrow maximum in the infrared. Anisotropic roughness: also in
+/// s = alpha_v y^2 / (alpha_u x^2 + alpha_v y^2), between at most 17 nodes, which keep those bounds for
+/// ratios of the roughnesses up to 4; at 10 errors are up to 4 times larger.
 class MetalEmissivity {
  public:
   /// facets: absent for a smooth metal. range: of wavelengths

@@ -1,5 +1,5 @@
-// What rounding, resampling filters and changes of colour space leave in images of light: values just below
-// 0.
+// What rounding, resampling filters and changes of colour space leave in images of light:
+// values just below 0.
 #pragma once
 
 #include <cstddef>

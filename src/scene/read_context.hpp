@@ -24,12 +24,13 @@ struct ReadContext {
   /// By file and whether its values are weights.
   std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const SpectralImage>> spectral_images;
   std::map<const Node*, std::shared_ptr<const Medium>> media;
-  /// Spectra and textures that passed the checks of their use (SpectrumUse): what many objects refer to is
-  /// read once.
+  /// Spectra and textures that passed the checks of their use (SpectrumUse): what many objects
+  /// refer to is read once.
   std::map<std::pair<const Node*, int>, Texture> checked = {};
   std::map<std::pair<std::filesystem::path, int>, Spectrum> spectrum_files = {};  // by file and use
 
-  /// The existing file that a parameter names. throws InputError at its value
+  /// The existing file that a parameter names.
+  /// throws InputError at its value
   std::filesystem::path file(const ObjectReader& object, std::string_view parameter);
   std::shared_ptr<const Image> image(const std::filesystem::path& file, bool raw, const Place& place);
   std::shared_ptr<const SpectralImage> spectral_image(const std::filesystem::path& file, bool weights,
@@ -58,7 +59,8 @@ enum class SpectrumUse {
 };
 
 bool is_emission(SpectrumUse use);
-/// The spectrum in a file. throws InputError  see read_spectrum_file()
+/// The spectrum in a file.
+/// throws InputError  see read_spectrum_file()
 Spectrum read_used_file(ReadContext& context, const std::filesystem::path& file, SpectrumUse use);
 
 /// A spectral parameter; `fallback` where the file has none.
@@ -68,10 +70,10 @@ Spectrum read_spectrum(ReadContext& context, const ObjectReader& object, std::st
 /// The same where bitmaps and checkerboards are allowed as well.
 Texture read_texture(ReadContext& context, const ObjectReader& object, std::string_view name, SpectrumUse use,
                      const Texture& fallback);
-/// Any spectrum or texture element or parameter. `label` and `name` are for messages.
+/// Any spectrum or texture element or parameter. `label` is for messages.
 Texture read_texture_node(ReadContext& context, Node& parameter, const std::string& label, SpectrumUse use);
 /// throws InputError at `place`  "label 0.3 at 550 nm: must be ..." for the first value that `use` forbids,
-/// or the largest if that is beyond the limit (limits.hpp)
+///                               or the largest if that is beyond the limit (limits.hpp)
 void check_spectrum(const Spectrum& spectrum, const std::string& label, SpectrumUse use, const Place& place);
 
 /// A <spectrum> or <texture> object whose type is a spectrum; nullopt for texture types.
@@ -95,12 +97,14 @@ void check_reflectance_texture(const Texture& texture, const std::string& label,
 
 std::shared_ptr<const Bsdf> read_bsdf(ReadContext& context, Node& node);
 std::shared_ptr<const Medium> read_medium(ReadContext& context, Node& node);
-/// The medium inside a shape, or null. throws InputError  a medium that is not named "interior"
+/// The medium inside a shape, or null.
+/// throws InputError  a medium that is not named "interior"
 std::shared_ptr<const Medium> read_interior(ReadContext& context, const ObjectReader& shape);
 Shape read_shape(ReadContext& context, Node& node);
 AreaEmitter read_area_emitter(ReadContext& context, Node& node);
 ThermalEmitter read_thermal_emitter(ReadContext& context, Node& node);
-/// <emitter type="thermal"> directly under the scene. throws InputError if it is not one number
+/// <emitter type="thermal"> directly under the scene.
+/// throws InputError  it is not one number
 double read_ambient_temperature(ReadContext& context, Node& node);
 /// throws InputError  `shape` has no such vertex property, or values that are no temperatures
 void check_temperatures(const Shape& shape, const std::string& label, const Place& place);

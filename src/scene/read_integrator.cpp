@@ -49,8 +49,8 @@ Integrator read_path(const ObjectReader& object) {
   return result;
 }
 
-/// Mitsuba's integrator around another, which adds an image of second moments. Its first image is that of the
-/// nested one.
+/// Mitsuba's integrator around another, which adds an image of second moments.
+/// Its first image is that of the nested one.
 std::pair<Integrator, uint64_t> read_moment(ReadContext& context, const ObjectReader& object) {
   Node* nested = object.nested_one("integrator");
   if (!nested) object.fail_here("needs a nested integrator");

@@ -15,9 +15,9 @@ double read_ior(const ObjectReader& object, std::string_view name, double fallba
 enum class MaterialFamily { kMetal, kDielectric };
 
 /// The optical constants that a string parameter names; nullopt if the parameter is absent. A value with '.'
-/// or '/' and the name of an existing file are files, all else built-in materials of the family. n must be
-/// > 0, k >= 0; metals have k. With the boolean parameter `extrapolate` the end values continue outside the
-/// data.
+/// or '/' and the name of an existing file are files, all else built-in materials of the family.
+/// n must be > 0, k >= 0; metals have k. With the boolean parameter `extrapolate` the end values
+/// continue outside the data.
 /// throws InputError  neither a file nor a built-in name (with names near it)
 std::optional<OpticalConstants> read_material(ReadContext& context, const ObjectReader& object,
                                               std::string_view name, MaterialFamily family);

@@ -74,8 +74,8 @@ class ObjectReader {
   std::map<std::string_view, Node*> children_;  // by name; the tree owns names and nodes
 };
 
-/// v over its length, also where the squares of its coordinates leave double's range; 0 for no or no finite
-/// length.
+/// v over its length, also where the squares of its coordinates leave double's range;
+/// 0 for no or no finite length.
 glm::dvec3 unit_vector(const glm::dvec3& v);
 
 /// First byte of a value: its 'value' or 'filename' attribute, the id of a reference, the type of an object.
@@ -88,8 +88,8 @@ std::string describe_kind(const Node& node);
 Transform evaluate_transform(const Node& node);
 /// The same for texture coordinates, as Mitsuba 3.9 applies it: the steps act on (u, v, 0, 1) and the first
 /// two coordinates of the result count. A matrix of 9 numbers acts on (u, v, 1), which Mitsuba takes
-/// otherwise: a note says so where it matters. A warning names matrices with entries for the coordinate that
-/// textures lack.
+/// otherwise: a note says so where it matters. A warning names matrices with entries for the coordinate
+/// that textures lack.
 glm::dmat3 evaluate_uv_transform(const Node& node, const DiagnosticSink& sink);
 
 }  // namespace kiloband

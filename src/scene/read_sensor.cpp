@@ -87,8 +87,8 @@ void read_common(ReadContext& context, const ObjectReader& object, Sensor& senso
   if (Node* sampler = object.nested_one("sampler")) sensor.sample_count = read_sampler(context, *sampler);
 }
 
-/// Unit, perpendicular axes within 1e-3, as Mitsuba demands of cameras with an angle of view; mirroring is
-/// allowed.
+/// Unit, perpendicular axes within 1e-3, as Mitsuba demands of cameras with an angle of view;
+/// mirroring is allowed.
 void check_rigid(const ObjectReader& object, const Transform& to_world) {
   const glm::dmat3 m(to_world);
   for (int axis = 0; axis < 3; ++axis) {

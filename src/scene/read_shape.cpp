@@ -155,8 +155,8 @@ bool lets_light_in(const Bsdf& bsdf) {
          std::holds_alternative<MaskBsdf>(bsdf.model);
 }
 
-/// Gas is told apart by the winding, glass by vertex normals: where these differ, the two have different
-/// insides.
+/// Gas is told apart by the winding, glass by vertex normals: where these differ,
+/// the two have different insides.
 void warn_of_opposed_normals(ReadContext& context, const ObjectReader& object, const Shape& shape) {
   const auto* mesh = std::get_if<MeshShape>(&shape.geometry);
   if (!mesh || !shape.interior || std::holds_alternative<NullBsdf>(shape.bsdf->model)) return;

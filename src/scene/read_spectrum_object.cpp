@@ -1,5 +1,5 @@
-// <spectrum type=...> objects: regular, irregular, uniform, blackbody, d65, srgb, and our own planck and
-// file.
+// <spectrum type=...> objects: regular, irregular, uniform, blackbody, d65, srgb,
+// and our own planck and file.
 #include "scene/limits.hpp"
 #include "scene/read_context.hpp"
 #include "scene/xml_values.hpp"

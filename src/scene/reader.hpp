@@ -1,5 +1,5 @@
-// Reads Mitsuba 3 scene files (and version 0.x files) into a SceneDescription. docs/scene_format.md is the
-// contract.
+// Reads Mitsuba 3 scene files (and version 0.x files) into a SceneDescription.
+// docs/scene_format.md is the contract.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ struct ReadOptions {
 /// throws InputError  "file:line:column: error: ..." for the first thing that is wrong
 SceneDescription read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
-/// The same from text; `directory` is where relative file names start, `name` stands for the file in
-/// messages.
+/// The same from text; `directory` is where relative file names start,
+/// `name` stands for the file in messages.
 SceneDescription read_scene_text(std::string text, const std::string& name,
                                  const std::filesystem::path& directory, const ReadOptions& options = {});
 

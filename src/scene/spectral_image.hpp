@@ -1,5 +1,5 @@
-// Images whose pixels are spectra, or weights of spectra: what spectral textures and environments are made
-// of.
+// Images whose pixels are spectra, or weights of spectra: what spectral textures
+// and environments are made of.
 #pragma once
 
 #include <cstdint>
@@ -23,17 +23,17 @@ struct SpectralImage {
 
 /// Reads a spectral EXR or ENVI file. Values are the means of bands, W m^-2 sr^-1 nm^-1 or reflectances:
 /// files that hold integrals are divided by the bands' widths. Bands without wavelengths (sensor responses)
-/// are left out, with a note. throws InputError   naming the file: what open_cube() refuses, no band with
-/// wavelengths, equal centres, more than
-///                     65535 pixels in a dimension; a value that is not finite or clearly negative, with
-///                     pixel and band. Slightly negative ones (negative_values.hpp, of each band by its own
-///                     mean) become 0, with one warning.
+/// are left out, with a note. Slightly negative values (negative_values.hpp, of each band by its own mean)
+/// become 0, with one warning.
+/// throws InputError   naming the file: what open_cube() refuses, no band with wavelengths, equal centres,
+///                     more than 65535 pixels in a dimension; a value that is not finite or clearly negative,
+///                     with pixel and band
 ///        DeviceError  not enough memory
 SpectralImage read_spectral_image(const std::filesystem::path& file, const DiagnosticSink& sink);
 
 /// Reads weights: the bands of an ENVI file (.hdr, .img) in the file's order, with or without wavelengths; of
-/// any other image the one or three channels of read_image(), not decoded (8-bit values / 255). throws as
-/// read_spectral_image() and read_image()
+/// any other image the one or three channels of read_image(), not decoded (8-bit values / 255).
+/// throws as read_spectral_image() and read_image()
 SpectralImage read_weight_image(const std::filesystem::path& file, const DiagnosticSink& sink);
 
 }  // namespace kiloband

@@ -1,5 +1,5 @@
-// Builds the spectrum table of a FlatScene: one row per distinct spectrum, with checks against the rendered
-// channels.
+// Builds the spectrum table of a FlatScene: one row per distinct spectrum,
+// with checks against the rendered channels.
 #pragma once
 
 #include <map>
@@ -22,16 +22,17 @@ class SpectrumTableBuilder {
   SpectrumTableBuilder(FlatScene& scene, const DiagnosticSink& sink);
 
   /// Row index of the spectrum; equal constants of the same kind share a row.
-  /// throws InputError if the table would pass 65535 rows or the spectrum cannot be tabulated within its
-  /// bound
+  /// throws InputError  the table would pass 65535 rows, or the spectrum cannot be tabulated within its bound
   uint32_t row(const Spectrum& spectrum, const SpectrumSource& use);
 
-  /// A row of the spectrum's own: rows made one after the other have consecutive indices. throws as row()
+  /// A row of the spectrum's own: rows made one after the other have consecutive indices.
+  /// throws as row()
   uint32_t new_row(const Spectrum& spectrum, const SpectrumSource& use);
   /// Warns if data do not cover guide bands and channels. data: absent if there is no limit
   void check_range(const std::optional<Spectrum::Range>& data, bool extrapolates,
                    const SpectrumSource& use) const;
-  /// A row that is no input spectrum. throws as row()
+  /// A row that is no input spectrum.
+  /// throws as row()
   uint32_t add(SpectrumRow row, const SourcePosition& position = {});
   /// All wavelengths that rows must reach.
   const Channel& range() const { return range_; }

@@ -31,8 +31,8 @@ class LineTable {
   std::vector<std::size_t> starts_;
 };
 
-/// Length of the valid UTF-8 sequence at `i`, 0 if it is invalid (RFC 3629: no overlong forms, no
-/// surrogates).
+/// Length of the valid UTF-8 sequence at `i`, 0 if it is invalid
+/// (RFC 3629: no overlong forms, no surrogates).
 std::size_t utf8_length(std::string_view text, std::size_t i) {
   const auto byte = [&](std::size_t k) {
     return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u;
@@ -123,8 +123,8 @@ bool append_entity(std::string& out, std::string_view name) {
   return valid;
 }
 
-/// Turns pugixml's nodes into XmlElements. Parsing replaces nothing in the buffer, so pointers give exact
-/// offsets.
+/// Turns pugixml's nodes into XmlElements. Parsing replaces nothing in the buffer,
+/// so pointers give exact offsets.
 class Converter {
  public:
   Converter(const char* base, const LineTable& lines) : base_(base), lines_(lines) {}

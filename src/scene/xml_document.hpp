@@ -9,8 +9,8 @@
 
 namespace kiloband {
 
-/// Where a byte stands: line and column are 1-based and count bytes. `file` outlives the tree (SceneTree owns
-/// it).
+/// Where a byte stands: line and column are 1-based and count bytes.
+/// `file` outlives the tree (SceneTree owns it).
 struct Place {
   const std::string* file = nullptr;
   int line = 0;
@@ -54,7 +54,8 @@ struct XmlTotals {
 
 /// Parses one file and adds it to `totals`. Refused besides what pugixml refuses: bad UTF-8, control
 /// characters, DOCTYPE, encodings other than UTF-8, text between elements, no or several roots, duplicate
-/// attributes, unknown entities, what passes a limit above. throws InputError with position
+/// attributes, unknown entities, what passes a limit above.
+/// throws InputError with position
 XmlElement parse_xml(std::string text, const std::string* file, XmlTotals& totals);
 
 }  // namespace kiloband

@@ -70,8 +70,8 @@ class Resolver {
     for (const auto& child : node.children) connect(*child);
   }
 
-  /// Levels from `node` down, references followed. -1 in the table: being visited, so that meeting it closes
-  /// a cycle.
+  /// Levels from `node` down, references followed. -1 in the table: being visited,
+  /// so that meeting it closes a cycle.
   int height(Node& node, const Place& from, int above = 0) {
     if (above > kMaxNesting)
       fail(from, "nested more than " + std::to_string(kMaxNesting) + " levels deep (with references)");

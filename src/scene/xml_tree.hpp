@@ -1,5 +1,5 @@
-// The scene file after includes, defaults, $names and references: objects with parameters, nothing
-// interpreted yet.
+// The scene file after includes, defaults, $names and references: objects with parameters,
+// nothing interpreted yet.
 #pragma once
 
 #include <deque>
@@ -58,7 +58,8 @@ SceneTree build_tree(std::string text, const std::string& name, const std::files
 /// throws InputError  "file 'x' not found"
 std::filesystem::path find_file(const SceneTree& tree, const std::string& name, const Place& place);
 
-/// Whole contents of a file. throws InputError at `place` (unreadable, too large)
+/// Whole contents of a file.
+/// throws InputError at `place` (unreadable, too large)
 std::string read_text_file(const std::filesystem::path& file, const Place& place);
 
 /// The <alias id= as=> elements of a scene.

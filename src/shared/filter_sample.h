@@ -1,5 +1,5 @@
-// Filter importance sampling: offsets from the pixel's centre, in pixels, with the filter as density. Also
-// erf^-1.
+// Filter importance sampling: offsets from the pixel's centre, in pixels,
+// with the filter as density. Also erf^-1.
 #ifndef KILOBAND_SHARED_FILTER_SAMPLE_H
 #define KILOBAND_SHARED_FILTER_SAMPLE_H
 
@@ -7,8 +7,8 @@
 
 /* The inverse of erf on (-1, 1). Relative error below 3e-7 (measured over all multiples of 2^-24 near the
    ends and one in 37 between). At +-1 it is evaluated one ulp inside, +-3.83.
-   Source of the polynomials: M. Giles, "Approximating the erfinv function", GPU Computing Gems, Jade edition,
-   2012. */
+   Source of the polynomials: M. Giles, "Approximating the erfinv function", GPU Computing Gems, Jade
+   edition, 2012. */
 KB_FN float kb_erf_inv(float x) {
   x = kb_fmin(kb_fmax(x, -KB_ONE_MINUS_EPSILON), KB_ONE_MINUS_EPSILON);
   float w = -kb_log((1.0f - x) * (1.0f + x));

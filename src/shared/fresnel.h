@@ -9,14 +9,14 @@
 
 typedef struct {
   float reflectance; /* F in [0, 1] */
-  float cos_t;       /* cosine of the refracted direction with the normal, sign opposite to cos_i; 0: total
-                        reflection */
+  float cos_t;       /* cosine of the refracted direction with the normal, sign opposite to cos_i;
+                        0: total reflection */
   float eta_it;      /* index of the transmitted over that of the incident side */
   float eta_ti;      /* 1 / eta_it */
 } KbFresnel;
 
-/* cos_i  cosine between the normal and the direction that points away from the surface, in [-1, 1]; > 0 is
-          outside
+/* cos_i  cosine between the normal and the direction that points away from the surface, in [-1, 1];
+          > 0 is outside
    eta    interior over exterior index, > 0
 
    With n = eta_it, c = |cos_i| and A = n |cos_t| = sqrt(c^2 + n^2 - 1):

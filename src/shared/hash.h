@@ -10,8 +10,8 @@
 /* 2^32 over the golden ratio, made odd: its multiples are spread evenly. */
 #define KB_GOLDEN_32 0x9e3779b9u
 
-/* A 64-bit bijection with full avalanche: the finaliser of SplitMix64 (Steele, Lea, Flood 2014; constants by
-   Stafford). */
+/* A 64-bit bijection with full avalanche: the finaliser of SplitMix64 (Steele, Lea, Flood 2014;
+   constants by Stafford). */
 KB_FN kb_u64 kb_mix64(kb_u64 x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ul;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebul;

@@ -38,8 +38,7 @@ typedef ushort kb_u16;
 #define kb_popcount(x) popcount(x)
 #define kb_as_u32(x) as_uint(x)
 #define kb_as_f32(x) as_float(x)
-/* Four u32 in one register, for local variables only: + - * & | ^ << >> work by element, also with a scalar.
- */
+/* Four u32 in one register, for local variables only: + - * & | ^ << >> work by element, with a scalar too. */
 typedef uint4 kb_u32x4;
 #define kb_u32x4_of(a, b, c, d) ((uint4)(a, b, c, d))
 #define kb_u32x4_load(table, index) vload4(index, table)

@@ -51,8 +51,8 @@ KB_FN float kb_microfacet_d(kb_u32 distribution, float alpha_u, float alpha_v, K
   return e > 0.0f ? e / (norm * z2 * z2) : 0.0f;
 }
 
-/* Smith's masking of direction v by facets of normal m: 0 where v sees the wrong side of the facet, else 1 /
-   (1 + Lambda). With a = |z| / sqrt((au x)^2 + (av y)^2), the cotangent over the projected roughness:
+/* Smith's masking of direction v by facets of normal m: 0 where v sees the wrong side of the facet, else
+   1 / (1 + Lambda). With a = |z| / sqrt((au x)^2 + (av y)^2), the cotangent over the projected roughness:
      GGX       Lambda = (sqrt(1 + 1/a^2) - 1) / 2
      Beckmann  Lambda = (erf(a) - 1) / 2 + exp(-a^2) / (2 a sqrt(pi)), below 1e-8 for a > 4 */
 KB_FN float kb_microfacet_g1(kb_u32 distribution, float alpha_u, float alpha_v, KbFloat3 v, KbFloat3 m) {
@@ -110,8 +110,8 @@ KB_FN KbFloat2 kb_ggx_visible_slope(float sin_i, float cos_i, float u, float v) 
    the other slope is Gaussian. With b = erf(x), F is increasing and concave in b, dF/db ~ 1 - x tan(theta),
    so that Newton's method approaches from below after at most one step past the root, which is cut to half
    the way to -1. It starts from the solution for grazing incidence, F = exp(-x^2), scaled to the interval.
-   The number of steps is fixed, so that devices agree; residual |F(x) - u| < 2e-6, u being held in [1e-6, 1 -
-   1e-6]. */
+   The number of steps is fixed, so that devices agree; residual |F(x) - u| < 2e-6, u being held in
+   [1e-6, 1 - 1e-6]. */
 KB_FN float kb_beckmann_visible_slope_x(float sin_i, float cos_i, float u) {
   const float tan_i = sin_i / kb_fmax(cos_i, 1e-6f);
   const float cot_i = kb_fmax(cos_i, 1e-6f) / kb_fmax(sin_i, 1e-12f);

@@ -1,7 +1,7 @@
-// Philox4x32-10, a counter-based generator: four random u32 are a pure function of a 128-bit counter and a
-// 64-bit key.
-// Source: Salmon, Moraes, Dror, Shaw, "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011; passes
-// BigCrush.
+// Philox4x32-10, a counter-based generator: four random u32 are a pure function of a 128-bit counter
+// and a 64-bit key.
+// Source: Salmon, Moraes, Dror, Shaw, "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011;
+// passes BigCrush.
 #ifndef KILOBAND_SHARED_PHILOX_H
 #define KILOBAND_SHARED_PHILOX_H
 
@@ -19,8 +19,7 @@ typedef struct {
 KB_STATIC_ASSERT(sizeof(KbPhilox4) == 16, philox4_size);
 KB_STATIC_ASSERT(sizeof(KbPhiloxKey) == 8, philox_key_size);
 
-/* One round: two 32 x 32 -> 64 bit products, whose halves are exchanged and mixed with the rest and the key.
- */
+/* One round: two 32 x 32 -> 64 bit products, whose halves are exchanged and mixed with the rest and key. */
 KB_FN KbPhilox4 kb_philox_round(KbPhilox4 c, KbPhiloxKey k) {
   const kb_u64 p0 = (kb_u64)c.x * 0xd2511f53ul;
   const kb_u64 p1 = (kb_u64)c.z * 0xcd9e8d57ul;
@@ -42,8 +41,8 @@ KB_FN KbPhilox4 kb_philox4x32(KbPhilox4 counter, KbPhiloxKey key) {
   return counter;
 }
 
-/* Four floats in [0, 1 - 2^-24] with 24 bits each, of the counter (c0, c1, c2, c3) and the 64-bit seed as
-   key. */
+/* Four floats in [0, 1 - 2^-24] with 24 bits each, of the counter (c0, c1, c2, c3) and the 64-bit
+   seed as key. */
 KB_FN KbFloat4 kb_philox_floats(kb_u64 seed, kb_u32 c0, kb_u32 c1, kb_u32 c2, kb_u32 c3) {
   KbPhilox4 counter;
   counter.x = c0;

@@ -1,10 +1,10 @@
 // Records of the streaming pipeline: what its kernels keep between launches, and what the host tells them.
 //
 // A ROUND renders S samples of Q pixels: its jobs are numbered sample * padded_pixels + pixel, where
-// padded_pixels is Q rounded up to a multiple of the pool's size P. Slot s of the pool takes the jobs s, s +
-// P, s + 2P ..., so a pixel belongs to one slot: what is added to it is added in the order of its samples,
-// however the device schedules. Vertices of saved paths lie in an arena of 32-byte slots, in chunks of
-// KB_CHUNK_SLOTS that are handed out by a counter and linked by chunk_next[].
+// padded_pixels is Q rounded up to a multiple of the pool's size P. Slot s of the pool takes the jobs s,
+// s + P, s + 2P ..., so a pixel belongs to one slot: what is added to it is added in the order of its
+// samples, however the device schedules. Vertices of saved paths lie in an arena of 32-byte slots, in chunks
+// of KB_CHUNK_SLOTS that are handed out by a counter and linked by chunk_next[].
 #ifndef KILOBAND_SHARED_PIPELINE_H
 #define KILOBAND_SHARED_PIPELINE_H
 
@@ -25,8 +25,7 @@
 /* Gases that a shadow ray may pass; one that passes more makes its sample invalid. */
 #define KB_SHADOW_MEDIA 8u
 
-/* ---- the scene beside its arrays
- * --------------------------------------------------------------------------------- */
+/* ---- the scene beside its arrays ---------------------------------------------------------------------- */
 typedef struct {
   KbCamera camera;
   kb_u32 channels; /* K */
@@ -46,8 +45,7 @@ typedef struct {
 } KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
 
-/* ---- ray tracing
- * ------------------------------------------------------------------------------------------------- */
+/* ---- ray tracing -------------------------------------------------------------------------------------- */
 /* A primitive of the acceleration structure: a triangle of a mesh (corners), or a whole analytic shape. */
 typedef struct {
   float corner[9]; /* mesh: three world positions; else not used */
@@ -58,8 +56,8 @@ typedef struct {
 KB_STATIC_ASSERT(sizeof(KbPrimitive) == 48, primitive_size);
 
 /* An inner node: the boxes of its children, grown by one unit in the last place, plane by plane for SIMD.
-   Children that are not there have empty boxes. Four children: on PoCL 1.2 to 1.4 times the ray rate of two
-   (bench_traversal). */
+   Children that are not there have empty boxes. Four children: on PoCL 1.2 to 1.4 times the ray rate
+   of two (bench_traversal). */
 #define KB_BVH_WIDTH 4
 #define KB_BVH_LEAF 8                     /* primitives at most */
 #define KB_BVH_MAX_PRIMITIVES 0x0fffffffu /* what an index of 28 bits reaches */
@@ -102,8 +100,7 @@ typedef struct {
 } KbShadowRay;
 KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 
-/* ---- path state
- * -------------------------------------------------------------------------------------------------- */
+/* ---- path state --------------------------------------------------------------------------------------- */
 #define KB_PATH_BOUNCE_MASK 0x00ffffffu
 #define KB_PATH_LIVE 0x01000000u           /* has a ray to trace */
 #define KB_PATH_ENDED 0x02000000u          /* complete, not yet handed over to evaluation */
@@ -195,8 +192,7 @@ typedef struct {
 } KbAuxiliary;
 KB_STATIC_ASSERT(sizeof(KbAuxiliary) == 24, auxiliary_size);
 
-/* ---- faults: kernels write, the host reads
- * ------------------------------------------------------------------------ */
+/* ---- faults: kernels write, the host reads ------------------------------------------------------------ */
 #define KB_FAULT_ARENA_FULL 1u     /* the round is repeated with fewer paths */
 #define KB_FAULT_STACK_OVERFLOW 2u /* a traversal needs more stack than the measured depth: our bug */
 #define KB_FAULT_BAD_INDEX 4u      /* a record refers to what does not exist: our bug */
@@ -214,8 +210,7 @@ typedef struct {
 } KbFaults;
 KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
 
-/* ---- spectra
-   ------------------------------------------------------------------------------------------------------
+/* ---- spectra ------------------------------------------------------------------------------------------
    Every row of spectra is tabulated over mu in each channel: node j of channel k is the value at
    mu = j / cells. Between nodes it is linear; the number of cells follows from an error bound. Values stand
    at nodes[first + j * stride + k], j = 0 .. cells. */

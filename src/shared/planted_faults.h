@@ -1,6 +1,6 @@
 // Faults that are planted on purpose, one at a time, to see whether the validation suite finds them: their
-// numbers and the macros that ask for them. validation/faults has the table that says what each does, and how
-// to add one.
+// numbers and the macros that ask for them. validation/faults has the table that says what each does,
+// and how to add one.
 //
 // Only builds with the CMake option KILOBAND_FAULTS have any. In all others the macros are the constant 0, so
 // that the compiler removes what stands behind them:
@@ -86,8 +86,8 @@ enum KbPlantedFault {
 
 #elif defined(KILOBAND_FAULTS) /* the host, in a build with faults */
 
-/* Selected for the process, KB_PLANTED_NONE or another: in the CPU backend, in the OpenCL backend, in what
- * both use. */
+/* Selected for the process, KB_PLANTED_NONE or another: in the CPU backend, in the OpenCL backend,
+   in what both use. */
 extern kb_u32 kb_planted_cpu, kb_planted_opencl, kb_planted_shared;
 #define KB_PLANTED(fault) (kb_planted_cpu == KB_PLANTED_##fault)
 #define KB_PLANTED_OPENCL(fault) (kb_planted_opencl == KB_PLANTED_##fault)

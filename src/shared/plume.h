@@ -1,19 +1,17 @@
-// A ray through a plume: its column, and the cells that deferred evaluation integrates over (records.h,
-// KB_KIND_MEDIUM).
+// A ray through a plume: its column, and the cells that deferred evaluation integrates
+// over (records.h, KB_KIND_MEDIUM).
 //
-// Evaluation takes Planck's law B in each cell for linear in the column D. So the ray is followed twice, in
-// one pass:
+// Evaluation takes Planck's law B in each cell for linear in the column D.
+// So the ray is followed twice, in one pass:
 //
 // - Steps. A step ends where the ray changes the box of a grid, in which c is a cubic of s, and after a
-// quarter of a jet's
-//   width at most: Simpson's rule then gives its column, exactly in a grid, to 2e-5 in a jet. It is halved
-//   until B in its middle is off the straight line between its ends by at most half of KB_PLUME_TOLERANCE
-//   B_hot, at KB_PLUME_LADDER wavelengths from the shortest to the longest of the scene (B_hot: at the
-//   hottest temperature of the plume), and grows again where the line does well.
+//   quarter of a jet's width at most: Simpson's rule then gives its column, exactly in a grid, to 2e-5 in a
+//   jet. It is halved until B in its middle is off the straight line between its ends by at most half of
+//   KB_PLUME_TOLERANCE B_hot, at KB_PLUME_LADDER wavelengths from the shortest to the longest of the scene
+//   (B_hot: at the hottest temperature of the plume), and grows again where the line does well.
 // - Cells. A cell goes on over further steps while the straight line from its first to its last point keeps
-// within the other
-//   half of the tolerance at all points between. The slopes that do so, seen from the first point, form an
-//   interval that only shrinks: no point need be remembered.
+//   within the other half of the tolerance at all points between. The slopes that do so, seen from the first
+//   point, form an interval that only shrinks: no point need be remembered.
 //
 // An error of the source function bounds that of the radiance, so the radiance of a segment of optical depth
 // x is off by at most KB_PLUME_TOLERANCE B_hot (1 - exp(-x)) and by the columns' error. That takes 20 to 60
@@ -32,12 +30,10 @@
 #define KB_GRID_STEP 0.25f
 #define KB_JET_STEP 0.25f
 #define KB_SMALLEST_STEP (1.0f / 4096.0f)
-/* A jet is followed to this many of its widths from the axis, where its scale is exp(-9) of that on the axis.
- */
+/* A jet is followed to this many of its widths from the axis, where its scale is exp(-9) of the axis'. */
 #define KB_JET_WIDTHS 3.0f
 
-/* ---- the ray
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- the ray ------------------------------------------------------------------------------------------ */
 typedef struct {
   KbFloat3 origin, direction; /* in the plume's coordinates, per metre */
   float at, end;              /* m along the ray: reached, and where the plume or the segment ends */
@@ -199,8 +195,8 @@ KB_FN float kb_plume_column(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_GLOB
   return column;
 }
 
-/* How far B / B_hot in the middle of the step is off the straight line between its ends; `below` is that at
- * its end. */
+/* How far B / B_hot in the middle of the step is off the straight line between its ends; `below`
+   is that at its end. */
 KB_FN float kb_plume_bend(const KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, const KbPlumeStep* s,
                           const float* below) {
   float middle[KB_PLUME_LADDER], largest = 0.0f;

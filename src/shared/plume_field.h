@@ -56,8 +56,8 @@ KB_FN KbGasPoint kb_grid_at(KB_GLOBAL const KbMedium* m, KB_GLOBAL const KbFloat
   return gas;
 }
 
-/* A round jet far from its nozzle: width w = radius + spread z; with the excess c = radius / w exp(-(r /
-   w)^2) the scale is c and the temperature ambient + c (temperature - ambient). */
+/* A round jet far from its nozzle: width w = radius + spread z; with the excess
+   c = radius / w exp(-(r / w)^2) the scale is c and the temperature ambient + c (temperature - ambient). */
 KB_FN KbGasPoint kb_jet_at(KB_GLOBAL const KbMedium* m, KbFloat3 p) {
   const float w = m->radius + m->spread * p.z;
   const float excess = m->radius / w * kb_plume_exp(-(p.x * p.x + p.y * p.y) / (w * w));

@@ -1,5 +1,5 @@
-// A vertex of kind KB_KIND_ROUGH_TRANSMISSION: the pair of directions that it holds, and the spectral factor
-// T.
+// A vertex of kind KB_KIND_ROUGH_TRANSMISSION: the pair of directions that it holds,
+// and the spectral factor T.
 //
 // A pair (wi, wo) on two sides of a rough boundary is refracted at a facet whose normal m depends on the
 // index e (far over near side): m ~ wi + e wo. With F Fresnel's reflectance and D the density of normals

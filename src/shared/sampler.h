@@ -7,8 +7,8 @@
 //
 // independent: Philox with counter (pixel, sample, block, stream), key = seed; streams are named below.
 // sobol: the point index_in_replicate of a 4-D Owen-scrambled Sobol set of its own for each (seed, replicate,
-// pixel, block). Replicates are independent of each other; the points of one replicate are stratified
-// together.
+// pixel, block). Replicates are independent of each other;
+// the points of one replicate are stratified together.
 //
 // `sample` counts all samples of a pixel; with R replicates it belongs to replicate sample % R and is the
 // point sample / R of it. All floats are multiples of 2^-24 in [0, 1 - 2^-24].
@@ -31,8 +31,7 @@
 #define KB_STREAM_THERMAL 3u
 #define KB_STREAM_HEROES 5u
 
-/* Parents of the keys of scrambled sequences: one per use, so that no two uses share a key by construction.
- */
+/* Parents of the keys of scrambled sequences: one per use, so that no two uses share a key. */
 #define KB_DOMAIN_SOBOL 0x6b62736f626f6c31ul
 #define KB_DOMAIN_PATH_MU 0x6b62706174686d75ul
 #define KB_DOMAIN_SHARED_MU 0x6b62736861726564ul
@@ -114,8 +113,8 @@ KB_FN float kb_shared_mu(kb_u64 seed, kb_u32 replicate, kb_u32 block_x, kb_u32 b
   return kb_unit_float(kb_van_der_corput(index_in_replicate, kb_low32(key), kb_high32(key)));
 }
 
-/* For rough dispersive boundaries (spectral MIS): x places the channels that stand for all, the same for the
- * whole path. */
+/* For rough dispersive boundaries (spectral MIS): x places the channels that stand for all,
+   the same for the whole path. */
 KB_FN float kb_hero_offset(kb_u64 seed, kb_u32 pixel, kb_u32 sample) {
   return kb_philox_floats(seed, pixel, sample, 0xffffffffu, KB_STREAM_HEROES).x;
 }

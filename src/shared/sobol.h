@@ -6,8 +6,8 @@
 // constants are those of N. Vegdahl, "Building a Better LK Hash", 2021.
 //
 // Everything is done on bit-reversed numbers, where the hash is plain arithmetic. The table (sobol_table.h)
-// maps a reversed index to the reversed Sobol point, so an index is reversed once and the four results once,
-// together.
+// maps a reversed index to the reversed Sobol point, so an index is reversed once
+// and the four results once, together.
 #ifndef KILOBAND_SHARED_SOBOL_H
 #define KILOBAND_SHARED_SOBOL_H
 

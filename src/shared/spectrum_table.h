@@ -49,15 +49,14 @@ KB_FN float kb_table_value(KB_GLOBAL const float* values, KbSpectrumTable table,
 }
 
 /* S(v) = 1/2 + v / (2 sqrt(1 + v^2)), in [0, 1]. Source: Jakob, Hanika, "A Low-Dimensional Function Space for
-   Efficient Spectral Upsampling", 2019. |v| is limited to 1e18 so that v^2 stays finite; S is 0 or 1 there.
-   */
+   Efficient Spectral Upsampling", 2019. |v| is limited to 1e18 so that v^2 stays finite; there S is 0 or 1. */
 KB_FN float kb_sigmoid(float v) {
   const float w = kb_fmin(kb_fmax(v, -1e18f), 1e18f);
   return 0.5f + 0.5f * w / kb_sqrt(1.0f + w * w);
 }
 
-/* The value of a texel (c0, c1, c2, scale), see records.h: scale * S(c0 x^2 + c1 x + c2), x = lambda held in
-   the CIE range. */
+/* The value of a texel (c0, c1, c2, scale), see records.h: scale * S(c0 x^2 + c1 x + c2),
+   x = lambda held in the CIE range. */
 KB_FN float kb_texel_value(KbFloat4 texel, float lambda_nm) {
   const float x = kb_fmin(kb_fmax(lambda_nm, KB_SIGMOID_MIN_NM), KB_SIGMOID_MAX_NM);
   return texel.w * kb_sigmoid((texel.x * x + texel.y) * x + texel.z);

@@ -27,9 +27,10 @@
      KB_THERMAL_NODES    a row of eps at one of the neighbouring directions of a table: row first_row + i + nodes_cos j,
                          i of the table's cosines (ascending from 0 to 1), j of nodes_s equidistant values of s (above),
                          chosen with the weights of linear interpolation
-     KB_THERMAL_SMOOTH   the sum of c_i ref[i] (absent: 0) with c_0 = R, and of plastics c_1 = q (1 - R), c_2 = 1 - c_0 -
-                         c_1, of dielectrics c_1 = 1 - R and all times index^2 seen from inside, where equilibrium
-                         radiance is higher by that. R is Fresnel's reflectance. ref[i] is chosen in proportion to c_i
+     KB_THERMAL_SMOOTH   the sum of c_i ref[i] (absent: 0) with c_0 = R, and of plastics c_1 = q (1 - R),
+                         c_2 = 1 - c_0 - c_1, of dielectrics c_1 = 1 - R and all times index^2 seen from inside, where
+                         equilibrium radiance is higher by that. R is Fresnel's reflectance. ref[i] is chosen in
+                         proportion to c_i
      KB_THERMAL_ROUGH    the same with R from a table of KB_COMPENSATION_NODES by nodes_s positions as above (dielectrics:
                          outside, then inside); of plastics q (1 - R) is replaced by KB_THERMAL_COAT_NODES values at
                          equidistant cosines, which follow it */

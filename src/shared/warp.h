@@ -3,8 +3,8 @@
 // u, v are uniform in [0, 1). Directions are unit vectors of a local frame, z up. Densities are per solid
 // angle [1/sr] or per area of the unit disk. Including this header brings in fresnel.h, microfacet.h and
 // filter_sample.h.
-// Sources: Shirley, Chiu 1997 (disk); Malley's method (cosine); Pharr, Jakob, Humphreys, PBR 4th ed.,
-// appendix A.5.
+// Sources: Shirley, Chiu 1997 (disk); Malley's method (cosine);
+// Pharr, Jakob, Humphreys, PBR 4th ed., appendix A.5.
 #ifndef KILOBAND_SHARED_WARP_H
 #define KILOBAND_SHARED_WARP_H
 
@@ -22,8 +22,7 @@ KB_FN KbFloat2 kb_disk_concentric(float u, float v) {
   p.x = 0.0f;
   p.y = 0.0f;
   if (a == 0.0f && b == 0.0f) return p;
-  /* The radius is the larger coordinate; the angle runs over an eighth of a turn with the ratio of the two.
-   */
+  /* The radius is the larger coordinate; the angle runs over an eighth of a turn with their ratio. */
   const int wide = kb_fabs(a) > kb_fabs(b);
   const float radius = wide ? a : b;
   const float angle = wide ? 0.25f * KB_PI * (b / a) : 0.5f * KB_PI - 0.25f * KB_PI * (a / b);
@@ -46,8 +45,8 @@ KB_FN float kb_hemisphere_cosine_pdf(float cos_theta) {
   return kb_fmax(0.0f, cos_theta) * KB_INV_PI;
 }
 
-/* The direction of azimuth 2 pi v whose height above z is 1 - one_minus_z; no precision is lost near the
-   pole. */
+/* The direction of azimuth 2 pi v whose height above z is 1 - one_minus_z; no precision is lost
+   near the pole. */
 KB_FN KbFloat3 kb_direction_from_pole(float one_minus_z, float v) {
   const float sin_theta = kb_sqrt(kb_fmax(0.0f, one_minus_z * (2.0f - one_minus_z)));
   const float phi = 2.0f * KB_PI * v;

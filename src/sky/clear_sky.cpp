@@ -90,8 +90,8 @@ double ozone_mass(double elevation_deg) {
   return (1 + kHeight) / std::sqrt(c * c + 2 * kHeight);
 }
 
-/// The part of scattered light that goes forward, at the cosine of the sun's zenith angle (equations 3-11 to
-/// 3-15).
+/// The part of scattered light that goes forward, at the cosine of the sun's zenith angle
+/// (equations 3-11 to 3-15).
 double forward_part(double cosine) {
   const double a = std::log(1 - kAsymmetry);
   const double af = a * (1.459 + a * (0.1595 + a * 0.4129)), bf = a * (0.0783 + a * (-0.3824 - a * 0.5874));

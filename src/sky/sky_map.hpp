@@ -1,5 +1,5 @@
-// The clear sky as a latitude-longitude map, in the orientation of environment maps: +Y up, u = atan2(x, -z)
-// / 2 pi, v = acos(y) / pi, columns texel-centred, rows from pole to pole.
+// The clear sky as a latitude-longitude map, in the orientation of environment maps: +Y up,
+// u = atan2(x, -z) / 2 pi, v = acos(y) / pi, columns texel-centred, rows from pole to pole.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ ChannelList default_sky_bands();
 /// scaled band by band.
 class SkyMap {
  public:
-  /// width >= 8; height >= 5 and odd, so that a row lies on the horizon. throws InputError otherwise, and for
-  /// bands beyond 300 nm to 100 um
+  /// width >= 8; height >= 5 and odd, so that a row lies on the horizon.
+  /// throws InputError  otherwise, and for bands beyond 300 nm to 100 um
   SkyMap(const ClearSky& sky, ChannelList bands, uint32_t width, uint32_t height);
 
   uint32_t width() const { return width_; }

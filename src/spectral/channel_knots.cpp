@@ -83,8 +83,8 @@ struct Weighted {
   double value, weight;
 };
 
-/// The values of a channel with the fractions of it that have them: each piece in equal parts, by their
-/// middles.
+/// The values of a channel with the fractions of it that have them:
+/// each piece in equal parts, by their middles.
 std::vector<Weighted> values_of_channel(const ChannelKnots& sampled, std::size_t k) {
   constexpr std::size_t kParts = 8, kFewest = 4096;
   const uint32_t first = sampled.first[k], end = sampled.first[k + 1];

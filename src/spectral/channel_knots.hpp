@@ -23,8 +23,8 @@ struct ChannelKnots {
 };
 
 /// The spectrum at lambda = (1 - mu) min + mu max: the very knots of tabulated spectra; of others those of a
-/// table with a relative error of 1e-5. name is for messages. throws InputError  more knots than 2^28 in all
-/// channels together
+/// table with a relative error of 1e-5. name: for messages.
+/// throws InputError  more knots than 2^28 in all channels together
 ChannelKnots sampled_knots(const Spectrum& spectrum, const ChannelList& channels, const std::string& name);
 
 /// The same values in ascending order: mu is the fraction of the channel where the value is smaller.

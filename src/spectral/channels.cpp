@@ -55,8 +55,8 @@ std::size_t parse_count(const std::string& where, std::string_view text) {
   return count;
 }
 
-/// "first:last:count": the edges are first + (last - first) i / count, so that neighbours share their edge
-/// exactly.
+/// "first:last:count": the edges are first + (last - first) i / count,
+/// so that neighbours share their edge exactly.
 ChannelList parse_range(const std::string& where, std::string_view text) {
   std::vector<std::string_view> parts;
   for (std::size_t colon; (colon = text.find(':')) != std::string_view::npos; text.remove_prefix(colon + 1))

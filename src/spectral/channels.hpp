@@ -8,8 +8,8 @@
 
 namespace kiloband {
 
-/// One channel: the interval [min_nm, max_nm], min < max. `name` is empty for channels without a name of
-/// their own.
+/// One channel: the interval [min_nm, max_nm], min < max.
+/// `name` is empty for channels without a name of their own.
 struct Channel {
   double min_nm = 0;
   double max_nm = 0;

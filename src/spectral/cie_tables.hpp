@@ -8,8 +8,8 @@ namespace kiloband {
 inline constexpr int kCieEntries = 95;
 using CieTable = std::array<double, kCieEntries>;
 
-/// Colour matching function xbar of the 1931 2-degree observer. Source: CIE 018:2019, table of the CIE 1931
-/// standard observer.
+/// Colour matching function xbar of the 1931 2-degree observer.
+/// Source: CIE 018:2019, table of the CIE 1931 standard observer.
 inline constexpr CieTable kCieX = {
     0.0001299,    0.0002321,    0.0004149,    0.0007416,    0.001368,     0.002236,     0.004243,
     0.00765,      0.01431,      0.02319,      0.04351,      0.07763,      0.13438,      0.21477,
@@ -26,8 +26,8 @@ inline constexpr CieTable kCieX = {
     4.150994e-05, 2.935326e-05, 2.067383e-05, 1.455977e-05, 1.025398e-05, 7.221456e-06, 5.085868e-06,
     3.581652e-06, 2.522525e-06, 1.776509e-06, 1.251141e-06};
 
-/// Colour matching function ybar of the 1931 2-degree observer. Source: CIE 018:2019, table of the CIE 1931
-/// standard observer.
+/// Colour matching function ybar of the 1931 2-degree observer.
+/// Source: CIE 018:2019, table of the CIE 1931 standard observer.
 inline constexpr CieTable kCieY = {
     3.917e-06,  6.965e-06,  1.239e-05,  2.202e-05,  3.9e-05,   6.4e-05,    0.00012,    0.000217,   0.000396,
     0.00064,    0.00121,    0.00218,    0.004,      0.0073,    0.0116,     0.01684,    0.023,      0.0298,
@@ -41,8 +41,8 @@ inline constexpr CieTable kCieY = {
     4.24e-05,   3e-05,      2.12e-05,   1.499e-05,  1.06e-05,  7.4657e-06, 5.2578e-06, 3.7029e-06, 2.6078e-06,
     1.8366e-06, 1.2934e-06, 9.1093e-07, 6.4153e-07, 4.5181e-07};
 
-/// Colour matching function zbar of the 1931 2-degree observer. Source: CIE 018:2019, table of the CIE 1931
-/// standard observer.
+/// Colour matching function zbar of the 1931 2-degree observer.
+/// Source: CIE 018:2019, table of the CIE 1931 standard observer.
 inline constexpr CieTable kCieZ = {
     0.0006061,  0.001086,    0.001946, 0.003486, 0.006450001, 0.01054999, 0.02005001,   0.03621,
     0.06785001, 0.1102,      0.2074,   0.3713,   0.6456,      1.0390501,  1.3856,       1.62296,

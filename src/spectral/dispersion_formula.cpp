@@ -17,8 +17,8 @@ class Coefficients {
  public:
   explicit Coefficients(const std::vector<double>& values) : values_(values) {}
   double operator()(std::size_t i) const { return i <= values_.size() ? values_[i - 1] : 0; }
-  /// Sum over the pairs (C_i, C_i+1), i = first, first + 2 ..., as far as given. A pair with C_i = 0 adds
-  /// nothing.
+  /// Sum over the pairs (C_i, C_i+1), i = first, first + 2 ..., as far as given.
+  /// A pair with C_i = 0 adds nothing.
   template <class Term>
   double sum_pairs(std::size_t first, Term term) const {
     double sum = 0;

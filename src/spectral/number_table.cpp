@@ -78,8 +78,8 @@ std::optional<double> radis_number(const std::vector<std::string>& comments, std
   return std::nullopt;
 }
 
-/// RADIS states the range of wavenumbers whatever the unit of the first column is: the one that fits the
-/// range is meant.
+/// RADIS states the range of wavenumbers whatever the unit of the first column is:
+/// the one that fits the range is meant.
 std::optional<WavelengthUnit> radis_unit(const NumberTable& table) {
   const std::optional<double> min = radis_number(table.comments, "wavenum_min");
   const std::optional<double> max = radis_number(table.comments, "wavenum_max");

@@ -35,9 +35,10 @@ struct ColumnRule {
   bool ignore_more = true;
 };
 
-/// Parses lines of numbers; '#' comments; up to three header lines (no field of them is a number) before the
-/// first row. first_line  number of the text's first line in the file throws InputError  "file:line: ..."
-/// with the first thing that is wrong
+/// Parses lines of numbers; '#' comments;
+/// up to three header lines (no field of them is a number) before the first row.
+/// first_line  number of the text's first line in the file
+/// throws InputError  "file:line: ..." with the first thing that is wrong
 NumberTable parse_number_table(const std::filesystem::path& file, std::string_view text,
                                const ColumnRule& rule, int first_line = 1);
 
@@ -46,7 +47,8 @@ NumberTable parse_number_table(const std::filesystem::path& file, std::string_vi
 std::string column_text(const NumberTable& table, std::size_t column);
 
 /// The unit of the first column as the file states it: its name, RADIS's wavenumber range, comments. Nothing
-/// stated: nm is meant. throws InputError  a unit of frequency or energy; comments that contradict each other
+/// stated: nm is meant.
+/// throws InputError  a unit of frequency or energy; comments that contradict each other
 std::optional<WavelengthUnit> stated_wavelength_unit(const NumberTable& table);
 
 /// Whether RADIS wrote the file.

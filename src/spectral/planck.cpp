@@ -49,8 +49,8 @@ double integrate_narrow(double min_nm, double max_nm, double temperature_k) {
 
 }  // namespace
 
-// exp(-x) / (1 - exp(-x)) instead of 1 / (exp(x) - 1): the latter overflows at x = 709 where B can still be
-// 1e-288.
+// exp(-x) / (1 - exp(-x)) instead of 1 / (exp(x) - 1): the latter overflows at x = 709 where B
+// can still be 1e-288.
 double planck_radiance(double lambda_nm, double temperature_k) {
   if (!(lambda_nm > 0) || !(temperature_k >= 0))
     throw std::logic_error("planck_radiance: wavelength must be positive and temperature not negative");

@@ -8,8 +8,8 @@
 namespace kiloband {
 namespace {
 
-// Nodes of the 15-point Kronrod rule on [-1, 1], positive half; the odd ones (index 1, 3, 5, 7) are the Gauss
-// nodes.
+// Nodes of the 15-point Kronrod rule on [-1, 1], positive half;
+// the odd ones (index 1, 3, 5, 7) are the Gauss nodes.
 constexpr std::array<double, 8> kNodes = {
     0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
     0.864864423359769072789712788640926, 0.741531185599394439863864773280788,

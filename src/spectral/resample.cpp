@@ -35,8 +35,8 @@ Spectrum::Range widened(std::span<const double> knots_nm, double min_nm, double 
   return range;
 }
 
-/// The table's range: the widened request, ending earlier where the data do (outside, the spectrum is 0 or
-/// flat).
+/// The table's range: the widened request, ending earlier where the data do
+/// (outside, the spectrum is 0 or flat).
 Spectrum::Range table_range(const Spectrum& spectrum, double min_nm, double max_nm) {
   const std::optional<Spectrum::Range> data = spectrum.data_range();
   Spectrum::Range range = widened(spectrum.knots_nm(), min_nm, max_nm);
@@ -46,8 +46,8 @@ Spectrum::Range table_range(const Spectrum& spectrum, double min_nm, double max_
 }
 
 /// Largest |table - spectrum| over the table's range. A table's error is largest at the knots of either
-/// function, for others at the breaks or inside a cell: there it is measured at the quarters and stated 5 %
-/// larger.
+/// function, for others at the breaks or inside a cell: there it is measured at the quarters
+/// and stated 5 % larger.
 double measure_error(const RegularTable& table, const Spectrum& spectrum) {
   const double min_nm = table.min_nm;
   const std::size_t cells = table.values.size() - 1;
@@ -83,8 +83,8 @@ RegularTable sampled(const Request& request, std::size_t cells) {
   return table;
 }
 
-/// Whether all knots are on the lattice of `count` - 1 equal steps, within 1e-3 of a step (as Mitsuba 3
-/// decides).
+/// Whether all knots are on the lattice of `count` - 1 equal steps, within 1e-3 of a step
+/// (as Mitsuba 3 decides).
 bool is_regular(std::span<const double> knots_nm) {
   if (knots_nm.size() < 2) return false;
   const double step_nm = (knots_nm.back() - knots_nm.front()) / static_cast<double>(knots_nm.size() - 1);
@@ -114,8 +114,8 @@ RegularTable clipped(const Request& request) {
 }
 
 /// Number of cells of the coarsest lattice through both ends and all knots between them; 0 if there is none
-/// with fewer than `max_cells`. Euclid's algorithm on lengths, in which less than 1e-6 of the range is
-/// nothing.
+/// with fewer than `max_cells`. Euclid's algorithm on lengths,
+/// in which less than 1e-6 of the range is nothing.
 std::size_t common_cells(const Request& request, std::size_t max_cells) {
   std::vector<double> points = {request.max_nm};
   request.spectrum.node().append_breaks(request.min_nm, request.max_nm, points);
@@ -182,14 +182,14 @@ RegularTable resample(const Spectrum& spectrum, double min_nm, double max_nm,
   const std::optional<Spectrum::Range> data = spectrum.data_range();
   const auto [table_min_nm, table_max_nm] = table_range(spectrum, min_nm, max_nm);
   if (!(table_min_nm < table_max_nm) || (data && (data->max_nm <= min_nm || data->min_nm >= max_nm))) {
-    // The request has no or only one point in common with the data: 0 or the end value, or a product's
-    // values.
+    // The request has no or only one point in common with the data: 0 or the end value,
+    // or a product's values.
     const bool ends = data && (!spectrum.extrapolates() || spectrum.node().is_flat_outside());
     if (ends)
       return flat_table(spectrum.extrapolates() ? spectrum(0.5 * (min_nm + max_nm)) : 0, min_nm, max_nm);
   }
-  // The table ends where the data do only if they end inside the request; both flags are one, so one sharp
-  // end suffices.
+  // The table ends where the data do only if they end inside the request;
+  // both flags are one, so one sharp end suffices.
   const bool sharp = data && !spectrum.extrapolates() && (data->min_nm > min_nm || data->max_nm < max_nm);
   const Request request{
       spectrum, table_min_nm, table_max_nm, !sharp, options.relative_error * magnitude, options.max_entries};

@@ -25,8 +25,8 @@ double luminance(const Rgb& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }
 
-/// From grey straight to the colour; where that gets stuck, along the line from grey to the colour in small
-/// steps.
+/// From grey straight to the colour; where that gets stuck, along the line from grey
+/// to the colour in small steps.
 Vec3 solve_polynomial(const Rgb& rgb) {
   constexpr double kGoal = 1e-9;
   constexpr int kMaxIterations = 200, kSteps = 32;

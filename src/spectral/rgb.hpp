@@ -14,8 +14,8 @@ using Rgb = std::array<double, 3>;
 /// in [0,1]). Solved for (damped Gauss-Newton in CIELAB as in the paper, from grey), not looked up. Grey
 /// gives c0 = c1 = 0; black and white have c2 = -1e5 and 1e5, where S is 0 and 1 to single precision. The
 /// residual is below 1e-4 in each component everywhere in the cube; nearly all of it is the white of S = 1
-/// under the CIE's tables, (1.000095, 0.999982, 0.999906), by which colours are divided so that greys are
-/// flat.
+/// under the CIE's tables, (1.000095, 0.999982, 0.999906), by which colours are divided so
+/// that greys are flat.
 std::array<double, 3> solve_sigmoid(const Rgb& rgb);
 
 /// Reflectance of a linear sRGB colour; components in [0,1], InputError otherwise.

@@ -169,8 +169,8 @@ void ColourQuadrature<Real>::add_point(double lambda_nm, double weight) {
   for (int k = 0; k < 3; ++k) weights_[k].push_back(static_cast<Real>(rgb[k]));
 }
 
-// S = 1/2 + v / (2 sqrt(1 + v^2)), dS/dv = 1 / (2 (1 + v^2)^(3/2)). The inner loops run over the lanes of a
-// register.
+// S = 1/2 + v / (2 sqrt(1 + v^2)), dS/dv = 1 / (2 (1 + v^2)^(3/2)).
+// The inner loops run over the lanes of a register.
 template <class Real>
 void ColourQuadrature<Real>::evaluate(const Vec3& q, Vec3& rgb, Mat3& jacobian) const {
   const Real q0 = static_cast<Real>(q[0]), q1 = static_cast<Real>(q[1]), q2 = static_cast<Real>(q[2]);

@@ -50,8 +50,8 @@ double flat_sigmoid(double value);
 /// At v = -1e5 S is 2.5e-11, and 1 - S at +1e5: 0 and 1 to single precision.
 inline constexpr double kLargestSigmoid = 1e5;
 
-/// Bound of the polynomial's coefficients in u: steeper edges change no colour by 1e-5, and cost digits in
-/// single precision.
+/// Bound of the polynomial's coefficients in u: steeper edges change no colour by 1e-5,
+/// and cost digits in single precision.
 inline constexpr double kLargestPolynomial = 2000;
 
 /// From the polynomial in u to the one in nm.

@@ -10,8 +10,8 @@
 
 namespace kiloband {
 
-/// Immutable and cheap to copy. Units are the user's: reflectance [1], radiance [W m^-2 sr^-1 nm^-1], index
-/// [1].
+/// Immutable and cheap to copy. Units are the user's: reflectance [1],
+/// radiance [W m^-2 sr^-1 nm^-1], index [1].
 class Spectrum {
  public:
   struct Range {
@@ -22,8 +22,8 @@ class Spectrum {
   Spectrum();  // constant 0
   static Spectrum constant(double value);
   /// Piecewise linear through the points; 0 outside, or the end values if `extrapolate`.
-  /// lambda_nm strictly increasing, as many as values, at least 1; throws InputError otherwise or if a number
-  /// is not finite.
+  /// lambda_nm  strictly increasing, as many as values, at least 1
+  /// throws InputError  otherwise, or if a number is not finite
   static Spectrum tabulated(std::vector<double> lambda_nm, std::vector<double> values,
                             bool extrapolate = false);
   /// Jakob-Hanika sigmoid: scale * S(c0 x^2 + c1 x + c2), x = clamp(lambda_nm, 360, 830). See rgb.hpp.
@@ -39,8 +39,8 @@ class Spectrum {
   /// out[i] = (*this)(lambda_nm[i]); lambda in any order.
   void evaluate(std::span<const double> lambda_nm, std::span<double> out) const;
 
-  /// Least upper bound over [min_nm, max_nm] for tables and constants; for other kinds a bound within 1e-3
-  /// relative.
+  /// Least upper bound over [min_nm, max_nm] for tables and constants;
+  /// for other kinds a bound within 1e-3 relative.
   double max_over(double min_nm, double max_nm) const;
   double min_over(double min_nm, double max_nm) const;
   /// Integral over [min_nm, max_nm]: exact for tables, relative error < 1e-9 otherwise.
@@ -48,8 +48,8 @@ class Spectrum {
   double mean(double min_nm, double max_nm) const { return integral(min_nm, max_nm) / (max_nm - min_nm); }
 
   bool is_constant() const;
-  /// What planck() was given, if this is Planck's law (scaled or not): consumers evaluate it rather than
-  /// tabulate it.
+  /// What planck() was given, if this is Planck's law (scaled or not):
+  /// consumers evaluate it rather than tabulate it.
   struct PlanckParameters {
     double temperature_k;
     double scale;
@@ -71,8 +71,8 @@ class Spectrum {
   std::shared_ptr<const Node> node_;
 };
 
-/// A table with a regular step: value(lambda) = lerp at (lambda - min_nm) / step_nm; outside 0 or the end
-/// value.
+/// A table with a regular step: value(lambda) = lerp at (lambda - min_nm) / step_nm;
+/// outside 0 or the end value.
 struct RegularTable {
   double min_nm = 0;
   double step_nm = 1;
@@ -90,8 +90,8 @@ struct ResampleOptions {
 
 /// The coarsest of the tried regular tables that reproduces `spectrum` on [min_nm, max_nm] within the error
 /// bound. Data that are already regular are taken over exactly (their own step, whole data range clipped to
-/// the request). Discontinuities at the ends of the data stay sharp: the table begins and ends where the data
-/// do.
+/// the request). Discontinuities at the ends of the data stay sharp:
+/// the table begins and ends where the data do.
 RegularTable resample(const Spectrum& spectrum, double min_nm, double max_nm,
                       const ResampleOptions& options = {});
 

@@ -1,5 +1,5 @@
-// What a Spectrum points to: one immutable node per kind. Only the .cpp files of this folder include this
-// header.
+// What a Spectrum points to: one immutable node per kind.
+// Only the .cpp files of this folder include this header.
 #pragma once
 
 #include <memory>

@@ -60,8 +60,8 @@ ValueBounds TableNode::enclosure(double min_nm, double max_nm) const {
   return result;
 }
 
-// Trapezoids summed directly: differences of a running sum would lose the digits of small parts beside large
-// ones.
+// Trapezoids summed directly: differences of a running sum would lose the digits
+// of small parts beside large ones.
 double TableNode::integral(double min_nm, double max_nm) const {
   double sum = 0;
   if (extrapolate_ && min_nm < lambda_nm_.front())

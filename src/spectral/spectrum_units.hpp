@@ -27,8 +27,7 @@ double to_nanometres(double value, WavelengthUnit unit);
 
 /// The first unit of wavelength named in the text as a word of its own ("wavelength_um", "Wavelength
 /// (micrometers)", "wavenumber", "cm-1"); Latin-1 and UTF-8 micro signs are understood. Lengths in a unit of
-/// power
-/// ("W/m2/nm") are none.
+/// power ("W/m2/nm") are none.
 std::optional<WavelengthUnit> find_unit(std::string_view text);
 /// Whether the first word of the text is a unit of wavelength: "microns".
 bool begins_with_unit(std::string_view text);

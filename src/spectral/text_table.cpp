@@ -29,8 +29,8 @@ void split_blanks(std::string_view line, std::size_t max_fields, std::vector<std
   }
 }
 
-/// A value out of double's range: from_chars does not say on which side. The exponent's sign does for what
-/// people write.
+/// A value out of double's range: from_chars does not say on which side.
+/// The exponent's sign does for what people write.
 double out_of_range_value(std::string_view text) {
   const std::size_t exponent = text.find_first_of("eE");
   const bool tiny = exponent == std::string_view::npos ? text.find("0.0") != std::string_view::npos

@@ -33,8 +33,8 @@ std::optional<ValueScale> absorption_scale(const std::string& where, std::string
   return ValueScale{unit->factor, false, true};
 }
 
-/// Other areas or solid angles than the kind's are a different quantity; its factor is the best that can be
-/// done.
+/// Other areas or solid angles than the kind's are a different quantity;
+/// its factor is the best that can be done.
 void check_quantity(const std::string& where, const ValueUnit& unit, ValueKind kind,
                     const DiagnosticSink& sink) {
   if (!is_power(kind)) return;
@@ -69,8 +69,8 @@ std::optional<ValueUnit> listed_unit(const NumberTable& table, std::size_t colum
   return std::nullopt;
 }
 
-/// The one unit of power that comments speak of; units of two factors (a lamp of 1000 W/m2) only if they are
-/// one.
+/// The one unit of power that comments speak of;
+/// units of two factors (a lamp of 1000 W/m2) only if they are one.
 std::optional<ValueUnit> unit_in_comments(const NumberTable& table) {
   std::optional<ValueUnit> found;
   for (const std::string& comment : table.comments) {

@@ -20,8 +20,8 @@ struct ValueUnit {
 
 /// The first unit of power in the text that is understood, or else the first. Factors are joined by "/",
 /// "per", blanks, "*", "." or "_"; what follows a slash stands below it unless its exponent is negative
-/// ("W/m2 sr um"); "cm-1" is a wavenumber. Latin-1 and UTF-8 spellings of micro, superscripts and middle dots
-/// are understood.
+/// ("W/m2 sr um"); "cm-1" is a wavenumber. Latin-1 and UTF-8 spellings of micro,
+/// superscripts and middle dots are understood.
 std::optional<ValueUnit> find_power_unit(std::string_view text);
 
 /// The first inverse length in the text: "1/m", "cm-1", "km^-1", "per cm".

@@ -88,8 +88,8 @@ Comparison compare_paired(const ReplicateImage& a, const ReplicateImage& b, cons
 /// throws std::logic_error  the truth has not the image's channels (and pixels)
 Comparison compare_truth(const ReplicateImage& a, const Truth& truth, const ComparisonOptions& options);
 
-/// The same for images that come in strips from top to bottom, each a multiple of kTileEdge rows but the
-/// last.
+/// The same for images that come in strips from top to bottom,
+/// each a multiple of kTileEdge rows but the last.
 class StripComparison {
  public:
   /// replicates_b: ignored for a truth.

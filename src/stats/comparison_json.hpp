@@ -1,5 +1,5 @@
-// Parts of a comparison as JSON; what is written with them is described where it is (docs/compare.md,
-// validation/suite/results.hpp).
+// Parts of a comparison as JSON; what is written with them is described
+// where it is (docs/compare.md, validation/suite/results.hpp).
 #pragma once
 
 #include <nlohmann/json.hpp>

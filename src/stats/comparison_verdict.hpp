@@ -5,8 +5,8 @@
 
 namespace kiloband::stats {
 
-/// Whether the replicates of both sides hold the same number of samples (to one sample), as tests of
-/// variances need.
+/// Whether the replicates of both sides hold the same number of samples (to one sample),
+/// as tests of variances need.
 bool replicates_have_same_sizes(const UnitSample& a, const UnitSample& b);
 
 /// Means of the whole image.
@@ -16,7 +16,8 @@ void add_image_means(const Contrast& contrast, Comparison& comparison);
 void leave_out_skewed(Comparison& comparison);
 
 /// Lists the tests with their levels, the notes, and whether all passed. Tests that saw nothing are named in
-/// a note and take no share of alpha. throws InputError  none saw anything, and nothing is not finite
+/// a note and take no share of alpha.
+/// throws InputError  none saw anything, and nothing is not finite
 void judge(Comparison& comparison, const ComparisonOptions& options, bool same_sizes);
 
 }  // namespace kiloband::stats

@@ -2,8 +2,8 @@
 //
 // N samples of a unit are dealt to R replicates of n_r samples. With the replicate means m_r
 //     m = sum n_r m_r / N,   V = sum n_r (m_r - m)^2 / (N (R - 1)),
-// as film/statistics.hpp has it, V with R - 1 degrees of freedom. Two sides: D = m_A - m_B, V = V_A + V_B
-// with
+// as film/statistics.hpp has it, V with R - 1 degrees of freedom. Two sides: D = m_A - m_B,
+// V = V_A + V_B with
 //     dof = V^2 / (V_A^2 / (R_A - 1) + V_B^2 / (R_B - 1))        (Welch 1947).
 // Pairs of equal seed: the same of the differences m_A,r - m_B,r. A known truth: D = m - truth.
 // The rows e_r = sqrt(n_r / (N (R - 1))) (m_r - m) of both sides have V as their sum of squares in each
@@ -51,8 +51,8 @@ Contrast paired_contrast(const UnitSample& a, const UnitSample& b, double roundi
 Contrast truth_contrast(const UnitSample& a, const TruthValues& truth, double rounding);
 
 /// Number of contributions that differ from zero, as far as replicate means tell: if a share f of them is not
-/// zero and contributions come at random (Poisson), there were -R ln(1 - f); infinite if no replicate is
-/// zero.
+/// zero and contributions come at random (Poisson), there were -R ln(1 - f);
+/// infinite if no replicate is zero.
 double contributions(const UnitSample& sample, std::size_t channel);
 
 }  // namespace kiloband::stats

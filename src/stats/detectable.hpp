@@ -9,8 +9,8 @@ namespace kiloband::stats {
 
 inline constexpr double kPower = 0.9;
 
-/// Of a unit and channel, relative to |mean of A|: standard error of the difference, and what counts as
-/// rounding.
+/// Of a unit and channel, relative to |mean of A|: standard error of the difference,
+/// and what counts as rounding.
 struct RelativeError {
   float error = 0, slack = 0, dof = 0;
   uint32_t channel = 0;
@@ -18,8 +18,8 @@ struct RelativeError {
 
 /// Biases relative to the channel's mean that a test detects with probability kPower:
 ///     MDB = (t_{1 - level / (2 tests)} + t_{power}) SE / mean + slack,
-/// with Student's quantiles, and Bonferroni over units and channels (so it is stated too large rather than
-/// too small).
+/// with Student's quantiles, and Bonferroni over units and channels
+/// (so it is stated too large rather than too small).
 struct Detectable {
   double typical = 0;  // median over units of the median channel
   double best = 0;     // smallest over units of the median channel

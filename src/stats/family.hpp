@@ -1,16 +1,17 @@
 // Error rates of a whole run: levels of its tests, and the rule for repeating what failed.
 //
-// A run of C cases at the family-wise rate alpha gives each case alpha / C and each of a case's T tests alpha
-// / (C T) (Bonferroni: the tests of a case look at the same images, so nothing is known of their dependence).
+// A run of C cases at the family-wise rate alpha gives each case alpha / C and each of a case's T tests
+// alpha / (C T) (Bonferroni: the tests of a case look at the same images, so nothing is known
+// of their dependence).
 //
 // A case that fails is rendered once more, with fresh seeds and kRepeatSamples times the samples, and is
 // judged by its second result alone. The two results are independent, so for a program without faults a run
 // fails with probability at most
 //     sum over cases of first_c * again_c = C * (first / C) * (again / C) <= first * again,
-// where `first` and `again` are the family-wise rates of the two stages. With 1e-2 each that is 1e-4 (1e-4 /
-// C in fact), and one run in a hundred repeats a case. A fault that the first stage sees at t is seen at 2 t
-// by the second, so the repetition costs hardly any power, while a single stage at 1e-4 would need a bias
-// larger by a seventh to see it at all.
+// where `first` and `again` are the family-wise rates of the two stages. With 1e-2 each that is 1e-4
+// (1e-4 / C in fact), and one run in a hundred repeats a case. A fault that the first stage sees at t is seen
+// at 2 t by the second, so the repetition costs hardly any power, while a single stage at 1e-4 would need a
+// bias larger by a seventh to see it at all.
 #pragma once
 
 #include <cstddef>

@@ -1,17 +1,15 @@
 // The largest |t| among the channels of a unit, and how often chance alone makes one as large.
 //
-// All channels of a path share its decisions, so their t are far from independent and K tests at level alpha
-// / K would give power away. Westfall and Young (1993) take the joint distribution from the data: flip the
-// signs of the replicates (or permute their labels), compute max |t| again. Here a whole run is tested at
-// 1e-4, thousands of units at 1e-9 each; no number of permutations that anybody waits for resolves that.
-// Therefore
+// All channels of a path share its decisions, so their t are far from independent and K tests at level
+// alpha / K would give power away. Westfall and Young (1993) take the joint distribution from the data: flip
+// the signs of the replicates (or permute their labels), compute max |t| again. Here a whole run is tested at
+// 1e-4, thousands of units at 1e-9 each; no number of permutations that anybody waits
+// for resolves that. Therefore
 //  * random rotations in the space of the replicates instead of sign flips, of which these are a finite
-//  subset (Langsrud,
-//    Statistics and Computing 15, 2005): exact for normal replicate means, whatever the correlation of the
-//    channels;
-//  * the tail by importance sampling (Naiman, Priebe, J. Comp. Graph. Stat. 10, 2001). With A_c = {|t_c| >=
-//  t} under
-//    rotation and S = number of channels with |t_c| >= t,
+//    subset (Langsrud, Statistics and Computing 15, 2005): exact for normal replicate means, whatever the
+//    correlation of the channels;
+//  * the tail by importance sampling (Naiman, Priebe, J. Comp. Graph. Stat. 10, 2001). With
+//    A_c = {|t_c| >= t} under rotation and S = number of channels with |t_c| >= t,
 //        P(max |t| >= t) = sum_c P(A_c) E[1 / S | A_c] = K p E[1 / S | A_c, c uniform],
 //    where p is Student's tail: the Bonferroni bound K p times a factor in [1 / K, 1] that some hundred draws
 //    give within percents, for any p.
@@ -41,14 +39,14 @@ Strongest strongest_channel(const Contrast& contrast, const std::vector<bool>& w
 
 inline constexpr int kRotations = 256;
 
-/// The p-value of the unit: max |t| over the wanted channels. Without rows (variances alone) the Bonferroni
-/// bound.
+/// The p-value of the unit: max |t| over the wanted channels.
+/// Without rows (variances alone) the Bonferroni bound.
 double max_t_p(const Contrast& contrast, const std::vector<bool>& wanted, const Strongest& strongest,
                uint64_t seed);
 
 /// The same by `permutations` random divisions of all replicates into sides of the given sizes (an exact test
-/// where both sides have one distribution): (1 + hits) / (1 + permutations). What max_t_p is measured
-/// against.
+/// where both sides have one distribution): (1 + hits) / (1 + permutations).
+/// What max_t_p is measured against.
 double label_permutation_p(const UnitSample& a, const UnitSample& b, int permutations, uint64_t seed);
 /// By random signs of a - b (paired; exact for symmetric differences).
 double sign_flip_p(const UnitSample& a, const UnitSample& b, int permutations, uint64_t seed);

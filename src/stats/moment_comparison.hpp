@@ -2,8 +2,8 @@
 //
 // Nothing says how pixels and channels depend on each other. Channels: the Bonferroni bound. Pixels: where
 // they share random numbers (wavelength offsets, filters wider than a pixel) the variance of a tile is not
-// the sum of its pixels'; tiles and the image are tested only if the caller knows that pixels are
-// independent.
+// the sum of its pixels'; tiles and the image are tested only if the caller knows
+// that pixels are independent.
 #pragma once
 
 #include "stats/comparison.hpp"
@@ -22,8 +22,8 @@ struct MomentImage {
 };
 
 /// The moments of replicates; one less than have samples in the pixel are its degrees of freedom. The
-/// variance is NaN with fewer than two, the mean without any; the mean is infinite where a replicate is not
-/// finite.
+/// variance is NaN with fewer than two, the mean without any;
+/// the mean is infinite where a replicate is not finite.
 MomentImage moments_of(const ReplicateImage& image);
 
 /// Strips as in StripComparison. A pixel whose mean is NaN in all channels on both sides is left out;

@@ -3,8 +3,8 @@
 // The p-value of a unit is that of its largest |t| over the channels (max_t.hpp). Over the units: Sidak,
 // which bounds two-sided tests of any correlation. A pixel in which hardly any path arrives has no
 // distribution to speak of: its channels with fewer than kMinContributions contributions are not tested there
-// but pooled with those of the tile, and pools that are still too thin are left to the next scale. All of it
-// is counted.
+// but pooled with those of the tile, and pools that are still too thin are left to the next scale.
+// All of it is counted.
 #pragma once
 
 #include <cstdint>

@@ -2,18 +2,16 @@
 //
 // F tests take the fourth moment of a normal distribution for granted and fail on renders. Here
 //  * per unit: after Brown and Forsythe (J. Am. Stat. Assoc. 69, 1974) the distances |m_r - median| of both
-//  sides, compared
-//    by t with R_A + R_B - 2 degrees of freedom (sides that agree have one distribution); over channels and
-//    units as for means. The median is that of both sides together: a mean that differs is seen here too, but
-//    medians of their own lie on other steps where few paths arrive (95 % false alarms). Of the roots of the
-//    distances: with 32 replicates the t of the distances themselves cannot pass 7.5, however different the
-//    variances are, and thousands of pixels demand more.
+//    sides, compared by t with R_A + R_B - 2 degrees of freedom (sides that agree have one distribution);
+//    over channels and units as for means. The median is that of both sides together: a mean that differs is
+//    seen here too, but medians of their own lie on other steps where few paths arrive (95 % false alarms).
+//    Of the roots of the distances: with 32 replicates the t of the distances themselves cannot pass 7.5,
+//    however different the variances are, and thousands of pixels demand more.
 //  * pooled over the image, in two ways that see different things. With d_r = |m_r - median of both sides
-//  together|
+//    together|
 //    - scatter: 2 d_r / s, d_r cut at kScatterCut times their median and s the mean of both sides. Does not
-//    feel the
-//      tails, so that a change of all that is usual is seen in the noisiest images. The cut pulls the ratio
-//      towards 1, by a tenth of its logarithm for normal noise;
+//      feel the tails, so that a change of all that is usual is seen in the noisiest images. The cut pulls
+//      the ratio towards 1, by a tenth of its logarithm for normal noise;
 //    - variance: d_r^2 / s, s the mean of both sides. Feels the tails.
 //    Both are averaged over the pixels, replicate by replicate, and compared by Welch's test: whatever pixels
 //    have in common (wavelength offsets, scrambles) is common to a replicate and part of its error; bright
@@ -22,16 +20,16 @@
 //    instead of 1 % for lognormal noise; a jackknife of ln s^2 has more than 10 % where two fireflies meet
 //    all pixels.) The mean over the channels is tested as one channel more.
 // Replicate means scatter with 1 / n_r: both sides must have the same number of samples in a replicate. Sides
-// that are not the same estimator (other samplers, wavelength modes) may differ in variance without being
-// wrong.
+// that are not the same estimator (other samplers, wavelength modes) may differ
+// in variance without being wrong.
 #pragma once
 
 #include "stats/scale_test.hpp"
 
 namespace kiloband::stats {
 
-/// sqrt(n_r / mean n) |m_r - median|, as means of weight 1; the median is that of `other` too if there is
-/// one.
+/// sqrt(n_r / mean n) |m_r - median|, as means of weight 1;
+/// the median is that of `other` too if there is one.
 UnitSample deviations_from_median(const UnitSample& sample, const UnitSample* other = nullptr);
 
 /// Contrast of sqrt|m_r - median|; what of a distance is below `rounding` of the mean counts as none.

@@ -1,5 +1,5 @@
-// The scenes of scenes/analytic, rendered as a user renders them and compared with the closed forms that they
-// state.
+// The scenes of scenes/analytic, rendered as a user renders them and compared
+// with the closed forms that they state.
 //
 // Each scene's comment names its channels and the expected channel values. The mean over the image is
 // compared by a t-test over the means of the 16 replicates, which are independent. All comparisons together

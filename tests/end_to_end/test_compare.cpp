@@ -53,8 +53,8 @@ void expect_detectable(const std::string& text, const nlohmann::json& json) {
   }
 }
 
-/// Level of a comparison: 1e-3, so a right program fails with probability 2e-3 at most, for any seeds; these
-/// are fixed.
+/// Level of a comparison: 1e-3, so a right program fails with probability 2e-3 at most,
+/// for any seeds; these are fixed.
 TEST(Compare, OtherSeedsAgreeAndHalfAsMuchAgainIsFound) {
   const TemporaryFolder folder;
   render(folder, "a.hdr", "1");

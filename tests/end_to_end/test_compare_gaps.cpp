@@ -1,5 +1,5 @@
-// `kiloband compare` where values are missing or not finite, and where nothing says how many samples a cube
-// has.
+// `kiloband compare` where values are missing or not finite,
+// and where nothing says how many samples a cube has.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -42,8 +42,8 @@ double sum_of(const Cube& cube) {
   return sum;
 }
 
-/// Each instruction set that this machine has renders the same paths but for rounding; one that it lacks is
-/// exit code 3.
+/// Each instruction set that this machine has renders the same paths but for rounding;
+/// one that it lacks is exit code 3.
 TEST(Determinism, InstructionSets) {
   const TemporaryFolder folder;
   data_of(folder, {"--isa", "sse4"});

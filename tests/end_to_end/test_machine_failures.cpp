@@ -1,5 +1,5 @@
-// What the machine refuses ends with exit code 3 and leaves nothing behind, and what stood there before
-// stays.
+// What the machine refuses ends with exit code 3 and leaves nothing behind,
+// and what stood there before stays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -105,8 +105,8 @@ TEST(MachineFailure, NoThreads) {
   EXPECT_EQ(render("4", least + four).err, "");
 }
 
-/// A file size limit stands for a full disk: the system refuses the space in the same way, with another
-/// reason.
+/// A file size limit stands for a full disk: the system refuses the space in the same way,
+/// with another reason.
 TEST(MachineFailure, NoSpace) {
   const TemporaryFolder folder;
   folder.write("a.exr", "old");

@@ -3,8 +3,8 @@
 // scripts/check_kernels.sh runs all scenes of the zoo (KILOBAND_CHECK_ALL=1), ctest the first few.
 //
 // Its search for uninitialised values is not used: Oclgrind 21.10 does not know LLVM's `freeze` there and
-// reports what was copied by struct. Kernels are built without inlining, as it knows no noalias scopes
-// either.
+// reports what was copied by struct. Kernels are built without inlining,
+// as it knows no noalias scopes either.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -111,8 +111,8 @@ TEST(OpenclLimits, LongPathsInLittleMemory) {
 
 /// Launches aim at half of the given time. How long one takes on a busy machine is not ours to say: other
 /// work only lengthens it. So of several renders the one with the shortest longest launch counts, and those
-/// over all paths of a round (dpept) are held against the same without a limit, which is several times the
-/// given time.
+/// over all paths of a round (dpept) are held against the same without a limit,
+/// which is several times the given time.
 TEST(OpenclLimits, LaunchesAreShort) {
   const FlatScene scene = closed_room(96, 12, "400:700:1600");
   for (const gpu::Method method : {gpu::Method::kDpeptBatch, gpu::Method::kDpeptPath}) {

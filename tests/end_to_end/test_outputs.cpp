@@ -1,5 +1,5 @@
-// What a render of the Cornell box writes: names, contents that agree between formats, replicates,
-// statistics.
+// What a render of the Cornell box writes: names, contents that agree between
+// formats, replicates, statistics.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -112,8 +112,8 @@ TEST(Outputs, ExtensionsInCapitalsMeanTheSame) {
   EXPECT_EQ(read_cube(folder / "a.EXR").mean, read_cube(folder / "b.exr").mean);
 }
 
-/// With 4 replicates of 8 samples, the result is the plain mean of the replicate files, and its variance s^2
-/// / 4.
+/// With 4 replicates of 8 samples, the result is the plain mean of the replicate files,
+/// and its variance s^2 / 4.
 TEST(Outputs, KeptReplicatesGiveTheMeanAndItsVariance) {
   const TemporaryFolder folder;
   const Outcome outcome = run_program(

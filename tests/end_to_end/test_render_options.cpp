@@ -42,8 +42,8 @@ TEST(RenderOptions, CommandLineBeatsTheScene) {
   EXPECT_EQ(stats["rays"], stats["paths"]);
 }
 
-/// A square of 1 m at 1 m in a field of view of 90 degrees along `axis`: 2 m of that side of the image are
-/// seen.
+/// A square of 1 m at 1 m in a field of view of 90 degrees along `axis`: 2 m of that side
+/// of the image are seen.
 std::size_t pixels_of_the_square(const TemporaryFolder& folder, const std::string& axis,
                                  const std::string& size) {
   folder.write("square.xml", scene_text(R"(<sensor type="perspective"><float name="fov" value="90"/>
@@ -74,8 +74,8 @@ TEST(RenderOptions, TimeStops) {
                                            "a.hdr", "--stats", "a.json", "--variance"}));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json stats = read_json(folder, "a.json");
-  // One sample of a block (32 x 32) is the grain: far below a second even with sanitizers and a loaded
-  // machine.
+  // One sample of a block (32 x 32) is the grain: far below a second even with sanitizers
+  // and a loaded machine.
   EXPECT_GE(stats["seconds"].get<double>(), 0.45);
   EXPECT_LT(stats["seconds"].get<double>(), 5);
   EXPECT_GE(stats["spp"].get<uint64_t>(), 16u);

@@ -1,5 +1,5 @@
-// Sensor responses through the program, in a scene whose every pixel is known: an empty sky of 1 W m^-2 sr^-1
-// nm^-1.
+// Sensor responses through the program, in a scene whose every pixel is known:
+// an empty sky of 1 W m^-2 sr^-1 nm^-1.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// The generated scenes: the same bytes in every run and on every machine, and read and rendered by the
-// program.
+// The generated scenes: the same bytes in every run and on every machine,
+// and read and rendered by the program.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

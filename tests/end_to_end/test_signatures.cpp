@@ -151,8 +151,8 @@ TEST(Signatures, SphereBeforeATelescope) {
   EXPECT_NEAR(number(read_table(folder, "t.csv")[0], "distance_m"), 100 - 2.0 / 3, 0.02);
 }
 
-/// Cropping a cube does not change what its pixels cover; a sensor band of the render's own channels is their
-/// sum.
+/// Cropping a cube does not change what its pixels cover;
+/// a sensor band of the render's own channels is their sum.
 TEST(Signatures, CropsAndSensorsAgree) {
   const TemporaryFolder folder;
   folder.write("a.xml", body_scene(telescope(30, "box"), "sphere"));

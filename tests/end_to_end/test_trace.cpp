@@ -32,8 +32,8 @@ std::string skeleton(const std::string& text) {
   return kept;
 }
 
-/// Both backends follow one sequence of shapes, kinds and spectra: what parts them, if anything does, is
-/// rounding.
+/// Both backends follow one sequence of shapes, kinds and spectra: what parts them,
+/// if anything does, is rounding.
 TEST(Trace, BackendsAgree) {
   const TemporaryFolder folder;
   for (const std::string sample : {"0", "1", "17"}) {

@@ -1,5 +1,5 @@
-// kiloband validate as a user runs it. What its comparisons are worth: tests/unit/stats,
-// validation/README.md.
+// kiloband validate as a user runs it.
+// What its comparisons are worth: tests/unit/stats, validation/README.md.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -176,8 +176,8 @@ TEST(Validate, AWrongClosedFormFails) {
       folder / "out/cubes/analytic/point_light/cpu_shared_sobol_repeated__failed_.hdr"));
 }
 
-/// In the place of python3: Mitsuba 9.8.7 with one scene, which passes on the CPU and then fails as `last`
-/// does.
+/// In the place of python3: Mitsuba 9.8.7 with one scene, which passes on the CPU
+/// and then fails as `last` does.
 Outcome validate_with_mitsuba(const TemporaryFolder& folder, const std::string& last,
                               const std::vector<std::string>& arguments, Treatment treatment = {}) {
   std::filesystem::create_directories(folder / "scenes/analytic");

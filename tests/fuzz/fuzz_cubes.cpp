@@ -1,5 +1,5 @@
-// Targets: cubes on disk. What can be read is converted, looked at through sensors, and written and read
-// again.
+// Targets: cubes on disk. What can be read is converted, looked at through sensors,
+// and written and read again.
 #include <algorithm>
 
 #include "film/camera_geometry.hpp"
@@ -128,8 +128,9 @@ void use(const std::filesystem::path& file) {
 }
 
 /// The files of an ENVI cube one after the other, between lines "----": the header and the data of the
-/// values, of the variances, of the auxiliary images. Lengths are not part of the format so that mutations
-/// leave it whole. returns the header of the values
+/// values, of the variances, of the auxiliary images.
+/// Lengths are not part of the format so that mutations leave it whole.
+/// returns the header of the values
 std::filesystem::path write_envi_files(std::string_view bytes) {
   constexpr std::string_view kBetween = "\n----\n";
   for (const char* name :

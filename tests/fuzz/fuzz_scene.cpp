@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::size_t kMostChannels = 8;  // of a scene's own; more take long, not another way
 
-/// The emissivities of rough materials are integrated over all directions: under sanitizers that takes half a
-/// minute.
+/// The emissivities of rough materials are integrated over all directions:
+/// under sanitizers that takes half a minute.
 bool is_slow(std::string_view bytes) {
   return bytes.find("rough") != bytes.npos && bytes.find("thermal") != bytes.npos;
 }

@@ -46,8 +46,8 @@ bool accept_or_refuse(const std::function<void()>& use);
 /// How often `use` has ended without an error: what a corpus is good for.
 std::size_t accepted_uses();
 
-/// A file of this process with these bytes, for readers that take a path. The next file of the same name
-/// replaces it.
+/// A file of this process with these bytes, for readers that take a path.
+/// The next file of the same name replaces it.
 std::filesystem::path scratch_file(const std::string& name, std::string_view bytes);
 /// The folder of the scratch files.
 const std::filesystem::path& scratch_folder();

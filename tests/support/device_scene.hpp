@@ -30,8 +30,8 @@ inline KbSceneConstants probe_constants(const FlatScene& scene) {
 }
 
 /// Kernels take the scene first: `__kernel void f(KB_SCENE_PARAMS, __global const float* in, ...)`; run()
-/// gives them the scene's buffers and then its own arguments. Probe  OpenclProbe, or anything with its
-/// upload() and run()
+/// gives them the scene's buffers and then its own arguments.
+/// Probe  OpenclProbe, or anything with its upload() and run()
 template <class Probe>
 class DeviceScene {
  public:

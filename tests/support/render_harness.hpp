@@ -48,21 +48,20 @@ struct RenderResult {
 /// throws what reading, flattening and rendering throw
 RenderResult render(const RenderSpec& spec);
 
-/// A square diffuse-free default sensor block: perspective at `origin` looking at `target`, box filter, size
-/// x size pixels.
+/// A perspective sensor at `origin` looking at `target`, box filter, size x size pixels.
 std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees,
                                uint32_t size);
 
-/// An existing folder of public scenes and meshes (KILOBAND_DATA, or shared/data beside the checkout), or
-/// empty.
+/// An existing folder of public scenes and meshes (KILOBAND_DATA, or shared/data beside
+/// the checkout), or empty.
 std::filesystem::path data_directory();
 
-/// |value - expected| in standard errors; infinite if the error is 0 and they differ by more than 1e-5
-/// relative.
+/// |value - expected| in standard errors; infinite if the error is 0 and they differ by more
+/// than 1e-5 relative.
 double z_score(double value, double expected, double variance);
 
-/// Two-sided critical |t| for `tests` simultaneous tests at family-wise rate alpha (Sidak) with R - 1 degrees
-/// of freedom.
+/// Two-sided critical |t| for `tests` simultaneous tests at family-wise rate alpha
+/// (Sidak) with R - 1 degrees of freedom.
 double critical_t(double alpha, std::size_t tests, uint32_t replicates);
 
 }  // namespace kiloband::test

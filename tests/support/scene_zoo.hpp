@@ -1,5 +1,5 @@
-// A table of small scenes that together use everything a scene file can say: what tests of backends loop
-// over.
+// A table of small scenes that together use everything a scene file can say:
+// what tests of backends loop over.
 #pragma once
 
 #include <filesystem>
@@ -32,8 +32,8 @@ const ZooScene& zoo_scene(const std::string& name);
 
 inline const char* const kZooBands = "450:650:4";
 
-/// A folder with the pictures, meshes and indices that the scenes name, unique to this object; removed with
-/// it.
+/// A folder with the pictures, meshes and indices that the scenes name,
+/// unique to this object; removed with it.
 class ZooFolder {
  public:
   ZooFolder();

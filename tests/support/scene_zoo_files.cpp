@@ -54,8 +54,8 @@ const char* const kPrism =
     "v -0.5 -1 0\nv 0.5 -1 0\nv 0 -1 0.866\nv -0.5 1 0\nv 0.5 1 0\nv 0 1 0.866\n"
     "f 1 2 3\nf 6 5 4\nf 1 4 5 2\nf 2 5 6 3\nf 3 6 4 1\n";
 
-/// Reflectances in regular bands, a lamp in irregular ones, a sky whose sun is bright in the short bands
-/// only.
+/// Reflectances in regular bands, a lamp in irregular ones, a sky whose sun is bright
+/// in the short bands only.
 void write_spectral_images(const fs::path& folder) {
   ChannelList regular, irregular, sky;
   for (int i = 0; i < 22; ++i) regular.push_back({440.0 + 10 * i, 450.0 + 10 * i, ""});

@@ -11,8 +11,8 @@
 namespace kiloband::test {
 
 /// What KILOBAND_TEST_BACKEND says: "cpu" (also when it is not set), "opencl" (the method that the backend
-/// chooses), "opencl:pt", "opencl:dpept-path" or "opencl:dpept-batch". throws std::runtime_error for anything
-/// else
+/// chooses), "opencl:pt", "opencl:dpept-path" or "opencl:dpept-batch".
+/// throws std::runtime_error  anything else
 std::string test_backend_name();
 
 /// isa, threads: of the CPU backend; OpenCL ignores them.

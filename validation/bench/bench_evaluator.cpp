@@ -1,5 +1,5 @@
-// Speed of deferred evaluation: ns per channel and vertex, film accumulation and resampling of spectra
-// included.
+// Speed of deferred evaluation: ns per channel and vertex, film accumulation and resampling
+// of spectra included.
 //
 // Paths as in a Cornell box: 1024 pixels of a block, one path each, 3 vertices in the mean (a light sample
 // and a scattering event each, shadowed now and then), five named reflectances, one tabulated lamp. `shared`

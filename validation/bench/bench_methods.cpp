@@ -2,7 +2,7 @@
 // model of bytes and operations beside the measurement.
 //
 //   bench_methods [--device N|NAME] [--pool 8192] [--size 128] [--spp 16] [--rounds 3] [--json FILE]
-//   [SCENE.xml]
+//                 [SCENE.xml]
 //
 // Paths per second are wall time of whole renders (compiled kernels; median of the rounds). Evaluation is
 // device time of the kernels that evaluate (pt_update; dpept_path; dpept_batch) per channel and vertex.

@@ -1,5 +1,5 @@
-// Path generation against the bare ray queries that it contains, and whole renders against the number of
-// channels.
+// Path generation against the bare ray queries that it contains,
+// and whole renders against the number of channels.
 //
 //   bench_paths --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 //

@@ -8,8 +8,8 @@
 
 namespace kiloband {
 
-/// Five named reflectances (rows 0-4) and one tabulated lamp (row 5) in `channels` equal channels over
-/// 380-780 nm.
+/// Five named reflectances (rows 0-4) and one tabulated lamp (row 5) in `channels` equal
+/// channels over 380-780 nm.
 inline FlatScene synthetic_scene(std::size_t channels) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0.1, 0.9);

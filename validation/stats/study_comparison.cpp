@@ -1,6 +1,6 @@
 // Simulated false-alarm rates and power of the comparison core. Prints tables in Markdown.
-// Usage: study_comparison [trials] [rates|truth|means|variances|channels]...     (200 trials and all parts
-// without arguments)
+// Usage: study_comparison [trials] [rates|truth|means|variances|channels]...
+// (200 trials and all parts without arguments)
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// The cases. A new one: a scene file in scenes/analytic that states its channels and expected values, or a
-// line below.
+// The cases. A new one: a scene file in scenes/analytic that states its channels
+// and expected values, or a line below.
 #include <fmt/format.h>
 
 #include <algorithm>

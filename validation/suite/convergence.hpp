@@ -2,11 +2,11 @@
 //
 // Error of an N-sample image without any reference: R images of N samples with independent random numbers
 // scatter about their mean with the variance of one such image, so for pixel p and channel c
-//     s^2(p, c) = 1 / (R - 1) sum_r (m_r - m)^2,     rms relative error = sqrt(mean_{p,c} s^2 / (mean of the
-//     image)^2),
+//     s^2(p, c) = 1 / (R - 1) sum_r (m_r - m)^2,
+//     rms relative error = sqrt(mean_{p,c} s^2 / (mean of the image)^2),
 // unbiased in s^2 whatever the sampler, as long as replicates are independent (they are). The slope is the
-// least squares line of ln error over ln N, weighted equally; its standard error comes from the jackknife
-// over replicates.
+// least squares line of ln error over ln N, weighted equally;
+// its standard error comes from the jackknife over replicates.
 #pragma once
 
 #include <string>

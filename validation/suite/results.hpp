@@ -3,8 +3,7 @@
 //   DIR/results.json
 //   DIR/junit.xml
 //   DIR/cubes/CASE/SIDE.hdr (ENVI, mean and variance of every pixel): the first side of each case, and both
-//   sides of
-//                           every comparison that failed; names in results.json
+//                           sides of every comparison that failed; names in results.json
 #pragma once
 
 #include <filesystem>
@@ -33,7 +32,8 @@ std::string to_junit(const SuiteResult& result);
 /// throws DeviceError  the folder cannot be written to
 void prepare_results(const std::filesystem::path& directory);
 
-/// Writes all of it. throws DeviceError  a file cannot be written
+/// Writes all of it.
+/// throws DeviceError  a file cannot be written
 void write_results(const std::filesystem::path& directory, const SuiteResult& result,
                    const RunRecord& record);
 

@@ -18,8 +18,8 @@ uint64_t seed_of(uint64_t run_seed, const std::string& case_name, const std::str
 }
 
 /// Degradation gives all of a path's weight to one channel of K: a pixel whose rare path was not met has
-/// neither the right mean nor a warning, and the other estimator has met it (as against a truth,
-/// stats/comparison.hpp).
+/// neither the right mean nor a warning, and the other estimator has met it
+/// (as against a truth, stats/comparison.hpp).
 bool has_fine_scales(const Pairing& pairing) {
   return pairing.a.rough_dispersion == pairing.b.rough_dispersion;
 }
@@ -53,8 +53,8 @@ class CaseRun {
   }
 
  private:
-  /// Equal seeds follow from equal names of the side: pairs of equal seed share one. `stopped`: not to be
-  /// kept.
+  /// Equal seeds follow from equal names of the side: pairs of equal seed share one.
+  /// `stopped`: not to be kept.
   const Rendering& side(const Configuration& configuration, const std::string& seed_name, int attempt) {
     const std::string key = configuration.label() + "\n" + seed_name + "\n" + std::to_string(attempt);
     if (const auto found = renderings_.find(key); found != renderings_.end()) return found->second;

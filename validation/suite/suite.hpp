@@ -1,5 +1,5 @@
-// A whole validation run: cases, hard cases, convergence, an independent renderer; one family-wise error
-// rate.
+// A whole validation run: cases, hard cases, convergence, an independent renderer;
+// one family-wise error rate.
 #pragma once
 
 #include <filesystem>
@@ -48,8 +48,8 @@ struct SuiteResult {
   bool passed() const;
 };
 
-/// What a run will do, and the errors, as run_suite(): names of cases, "hard/...", "convergence/..." and
-/// "mitsuba/...".
+/// What a run will do, and the errors, as run_suite(): names of cases, "hard/...",
+/// "convergence/..." and "mitsuba/...".
 std::vector<std::string> planned_names(const SuiteSettings& settings);
 
 /// The rate of false alarms is divided over kHardStatisticalFigures of a backend: the case whose figures are

@@ -1,5 +1,5 @@
-// Tables of wrong input: each case must end with exit code 2, exactly its message, and no file more than
-// before.
+// Tables of wrong input: each case must end with exit code 2, exactly its message,
+// and no file more than before.
 #pragma once
 
 #include <string>

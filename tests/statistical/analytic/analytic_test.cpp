@@ -194,8 +194,8 @@ void expect_mean(const std::string& what, double mean, double variance, double e
 }
 
 namespace {
-/// Property of the running test in the report (--gtest_output=xml): the largest of its comparisons of image
-/// means.
+/// Property of the running test in the report (--gtest_output=xml): the largest
+/// of its comparisons of image means.
 void record_detectable_bias(double bias) {
   static const ::testing::TestInfo* test = nullptr;
   static double largest = 0;

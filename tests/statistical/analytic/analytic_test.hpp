@@ -7,8 +7,8 @@
 // always passes or always fails.
 //
 // A passing test says little if its error bar is wide. Tests of image means therefore also state the bias
-// that they would detect with probability 0.9, (t_alpha + t_0.9) standard errors, and fail if it is larger
-// than promised.
+// that they would detect with probability 0.9, (t_alpha + t_0.9) standard errors,
+// and fail if it is larger than promised.
 //
 // Channels of a path are dependent, and so are pixels of a 32x32 block when they share wavelengths: means
 // over the image are taken from replicate means of the image, never pooled from pixels.
@@ -30,8 +30,8 @@ inline constexpr double kFamilyErrorRate = 1e-4;
 /// Upper bound of the comparisons in this program; checked while they are made.
 inline constexpr std::size_t kComparisons = 2000;
 inline constexpr uint32_t kReplicates = 64;
-/// Relative allowance for single precision and for tabulated spectra (their stated bound is 1e-5 of the
-/// maximum).
+/// Relative allowance for single precision and for tabulated spectra
+/// (their stated bound is 1e-5 of the maximum).
 inline constexpr double kRounding = 2e-5;
 
 /// Wavelength mode and sampler, for parametrised tests.

@@ -3,16 +3,15 @@
 //
 // The receiving plane is y = 0 with normal +Y; the camera looks obliquely at a patch of about a millimetre
 // around the origin, over which E is linear in position to 1e-6, so that the image mean is the value at the
-// origin. Reflectance and radiance differ from channel to channel and are linear within each. With E per unit
-// radiance:
+// origin. Reflectance and radiance differ from channel to channel and are linear within each.
+// With E per unit radiance:
 //   sphere, radius R, centre at distance d under the angle theta to the normal, wholly above the horizon:
 //     E = pi (R / d)^2 cos theta
 //   disk of radius r parallel to the plane at height h, its axis at lateral distance a:
-//     E = (pi / 2) (1 - (a^2 + h^2 - r^2) / sqrt((a^2 + h^2 + r^2)^2 - 4 a^2 r^2)),   for a = 0: pi r^2 /
-//     (r^2 + h^2)
+//     E = (pi / 2) (1 - (a^2 + h^2 - r^2) / sqrt((a^2 + h^2 + r^2)^2 - 4 a^2 r^2)),
+//     for a = 0: pi r^2 / (r^2 + h^2)
 //   polygon wholly above the horizon (Lambert 1760): E = 1/2 |sum over edges Gamma_i (n . g_i)|, with Gamma_i
-//   the angle
-//     under which the edge is seen and g_i the unit normal of the plane through the edge and the point
+//     the angle under which the edge is seen and g_i the unit normal of the plane through edge and point
 //
 // The renderer adds light samples and BSDF samples weighted by the power heuristic. To see the second kind
 // alone, a transparent sheet (mask of opacity 0) stands before the light: it stops shadow rays, and what a
@@ -169,8 +168,8 @@ TEST(DirectArea, BsdfSamplesAlone) {
   }
 }
 
-/// Emission leaves on the side of the normal only: turned away, the light gives exactly nothing; flip_normals
-/// turns back.
+/// Emission leaves on the side of the normal only: turned away, the light gives exactly nothing;
+/// flip_normals turns back.
 TEST(DirectArea, LightsShineOnTheSideOfTheirNormal) {
   const std::string up = rotate('x', -90) + translate({0, 1, 0});
   const std::string flip = "<boolean name=\"flip_normals\" value=\"true\"/>";

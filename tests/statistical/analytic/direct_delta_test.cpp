@@ -1,17 +1,19 @@
 // Point, spot and directional lights and environments on a diffuse plane: L = rho E / pi (max_depth 2).
 //
-// The plane is y = 0, seen as in direct_area_test.cpp. Irradiance at the origin, theta the angle of
-// incidence:
+// The plane is y = 0, seen as in direct_area_test.cpp. Irradiance at the origin,
+// theta the angle of incidence:
 //   point of intensity I at distance d: E = I cos theta / d^2
-//   spot: the same times the ramp (cutoff - angle) / (cutoff - beam) in the angle to its axis, 1 inside the
-//   beam directional of irradiance E0 (across the direction): E = E0 cos theta constant environment of
-//   radiance L0: E = pi L0 environment map: E = integral of L(omega) cos theta over the upper hemisphere, by
-//   quadrature. Between texels L is
-//     bilinear in the azimuth phi (columns centred at (c + 1/2) / W of a turn) and the polar angle (rows at r
-//     / (H - 1) of pi, the first at +Y); direction (sin phi sin theta, cos theta, -cos phi sin theta).
+//   spot: the same times the ramp (cutoff - angle) / (cutoff - beam) in the angle to its axis,
+//     1 inside the beam
+//   directional of irradiance E0 (across the direction): E = E0 cos theta
+//   constant environment of radiance L0: E = pi L0
+//   environment map: E = integral of L(omega) cos theta over the upper hemisphere, by quadrature. Between
+//     texels L is bilinear in the azimuth phi (columns centred at (c + 1/2) / W of a turn) and the polar
+//     angle (rows at r / (H - 1) of pi, the first at +Y); direction (sin phi sin theta, cos theta, -cos phi
+//     sin theta).
 //
-// Lights of one direction have no variance but that of wavelength (shared by all paths). Detectable bias: 0.1
-// %; environments 0.5 %.
+// Lights of one direction have no variance but that of wavelength (shared by all paths).
+// Detectable bias: 0.1 %; environments 0.5 %.
 #include <cmath>
 #include <numbers>
 
@@ -63,8 +65,8 @@ TEST_P(DirectDeltaTest, PointLight) {
   }
 }
 
-/// A spot at (0.6, 0.8, 0) m, 1 m from the origin under 36.9 degrees, whose axis passes the origin by `aside`
-/// degrees.
+/// A spot at (0.6, 0.8, 0) m, 1 m from the origin under 36.9 degrees, whose axis passes the origin
+/// by `aside` degrees.
 TEST_P(DirectDeltaTest, SpotOnItsAxisAndInItsFalloff) {
   constexpr double kCutoff = 30, kBeam = 12;
   for (const double aside : {0.0, 8.0, 15.0, 25.0, 29.0, 31.0, 90.0}) {
@@ -168,8 +170,8 @@ TEST(DirectDelta, EnvironmentMapTurned) {
   expect_image_mean(result, channel_integrals(radiance, result), 0.005);
 }
 
-/// The map itself, seen by a camera: the image mean over a narrow field is the bilinear lookup in its
-/// direction.
+/// The map itself, seen by a camera: the image mean over a narrow field is the bilinear
+/// lookup in its direction.
 TEST(DirectDelta, EnvironmentMapSeenDirectly) {
   const TemporaryFolder folder;
   std::vector<float> image;

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// A plane of dispersive glass: reflection keeps all channels, transmission one. Detectable bias:
-/// 1.5 %.
+/// A plane of dispersive glass: reflection keeps all channels, transmission one.
+/// Detectable bias: 1.5 %.
 TEST(Dispersion, PlaneBoundaryPerWavelength) {
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());
@@ -144,8 +144,8 @@ TEST(Dispersion, HeroesHaveLessVariance) {
   EXPECT_GT(variance[0] / variance[1], 8);
 }
 
-/// A white sky alone: a smooth ball of glass vanishes in every channel, dispersive or not. Detectable bias: 1
-/// %.
+/// A white sky alone: a smooth ball of glass vanishes in every channel, dispersive or not.
+/// Detectable bias: 1 %.
 TEST(Dispersion, GlassBallVanishesInTheFurnace) {
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());

@@ -9,8 +9,8 @@
 // one below, whose lit sides are seen from the other side of the light. Of a neighbour's light they see less
 // than 1 % of what they see of their own. Hits are exact: 0 or 1. Samples only tell lit from unlit: a
 // receiver's own light gives it about `dim` (kDim by quadrature over the pixel), and a twentieth and a
-// quarter of that are far from what noise does to 512 samples a pixel; cpu_lights and gpu_lights test
-// densities.
+// quarter of that are far from what noise does to 512 samples a pixel;
+// cpu_lights and gpu_lights test densities.
 #include "spectral/planck.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 
@@ -127,8 +127,8 @@ double centre_of(std::size_t cell) {
   return kPitch * static_cast<double>(cell) + kPixel * kLightAt;
 }
 
-/// A row of pixels of size kPixel, which sees the cells from +Z or -Z; rays begin near_clip before the camera
-/// at |z| = 100.
+/// A row of pixels of size kPixel, which sees the cells from +Z or -Z;
+/// rays begin near_clip before the camera at |z| = 100.
 RenderResult EmissionSide::render_row(int max_depth, const std::string& body, std::size_t cells,
                                       bool from_above, double near_clip, uint64_t samples,
                                       const char* band) const {
@@ -205,8 +205,8 @@ TEST_F(EmissionSide, OfClosedShapesFromOutside) {
                });
 }
 
-/// Rays begin in the plane z = 0, inside: one shape of each pair is empty, in the other is a receiver that
-/// faces up.
+/// Rays begin in the plane z = 0, inside: one shape of each pair is empty,
+/// in the other is a receiver that faces up.
 TEST_F(EmissionSide, OfClosedShapesFromInside) {
   const std::vector<Cell> cells = cells_of(kClosed);
   std::string body;
@@ -237,8 +237,8 @@ TEST_F(EmissionSide, OfNormalsThatDifferWithinAMesh) {
   }
 }
 
-/// One-sided: black from behind, to light that falls on it; by Kirchhoff's law it then emits all, in front
-/// half.
+/// One-sided: black from behind, to light that falls on it;
+/// by Kirchhoff's law it then emits all, in front half.
 TEST_F(EmissionSide, IsThatOfBsdfAndThermalEmission) {
   std::vector<Cell> cells = cells_of(kFlat);
   const std::string grey = bsdf("diffuse", flat("reflectance", 0.5));

@@ -6,8 +6,8 @@
 // unlimited value. Channel values are the integrals over wavelength of these functions; Le and rho are linear
 // within each channel.
 //
-// Error rate: 1e-4 for the whole program. Detectable bias of every channel's image mean: stated with each
-// test.
+// Error rate: 1e-4 for the whole program. Detectable bias of every channel's image mean:
+// stated with each test.
 #include <cmath>
 
 #include "spectral/planck.hpp"

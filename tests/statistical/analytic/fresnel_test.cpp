@@ -1,15 +1,15 @@
-// Smooth boundaries, slabs and mirrors against Fresnel's formulas (fresnel_exact.hpp, double, independent
-// code).
+// Smooth boundaries, slabs and mirrors against Fresnel's formulas
+// (fresnel_exact.hpp, double, independent code).
 //
 // A camera looks along one ray at a plane z = 0 under the angle theta. One light stands where the mirrored
 // ray goes and emits in the first channel only, another where the refracted ray goes and emits in the second:
 // one render shows
 //   R L1                  in the first channel and
 //   (1 - R) L2 / eta^2    in the second, eta the index of the far side over that of the camera's side:
-// radiance shrinks by eta^2 when it leaves the denser side. A parallel slab, summing its inner reflections,
-// shows
-//   R L1 (1 + (1 - R)^2 / (1 - R^2)) = 2 R / (1 + R) L1   and   (1 - R)^2 / (1 - R^2) L2 = (1 - R) / (1 + R)
-//   L2,
+// radiance shrinks by eta^2 when it leaves the denser side.
+// A parallel slab, summing its inner reflections, shows
+//   R L1 (1 + (1 - R)^2 / (1 - R^2)) = 2 R / (1 + R) L1   and
+//   (1 - R)^2 / (1 - R^2) L2 = (1 - R) / (1 + R) L2,
 // with the unpolarised R at each boundary, as the renderer has it. Conductors show R(n, k) per wavelength,
 // without variance but that of the wavelength.
 //
@@ -62,8 +62,8 @@ std::string glass(double index) {
 
 constexpr double kAngles[] = {0, 30, 56.31, 80};  // the third is Brewster's for 1.5
 
-/// From outside and from inside (the plane turned over); inside, 56.31 and 80 degrees are beyond the critical
-/// angle.
+/// From outside and from inside (the plane turned over);
+/// inside, 56.31 and 80 degrees are beyond the critical angle.
 TEST(Fresnel, DielectricBoundary) {
   for (const double index : {1.5, 2.4}) {
     for (const bool inside : {false, true}) {

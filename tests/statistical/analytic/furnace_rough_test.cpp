@@ -4,11 +4,11 @@
 // with density D(m) G1(i) max(i.m, 0) / cos_i (it integrates to 1), so with F on the facet
 //     albedo = int D(m) G1(i) max(i.m, 0) / cos_i [ F G1(o_r) + (1 - F) G1(o_t) / eta^2 ] dm
 // where o_r is mirrored, o_t refracted at m; G1 = 0 for directions on the wrong side of the plane. The second
-// term is for dielectrics: radiance that comes out of the denser side is divided by eta^2. Integrated here in
-// double, with
-//     Beckmann  D = exp(-tan^2 / a^2) / (pi a^2 cos^4),  G1 = 1 / (1 + L), L = (erf(x) - 1) / 2 + exp(-x^2) /
-//     (2 x sqrt(pi)), GGX       D = a^2 / (pi cos^4 (a^2 + tan^2)^2),  L = (sqrt(1 + 1 / x^2) - 1) / 2,   x =
-//     1 / (a tan theta)
+// term is for dielectrics: radiance that comes out of the denser side is divided by eta^2.
+// Integrated here in double, with
+//     Beckmann  D = exp(-tan^2 / a^2) / (pi a^2 cos^4),  L = (erf(x) - 1) / 2 + exp(-x^2) / (2 x sqrt(pi)),
+//     GGX       D = a^2 / (pi cos^4 (a^2 + tan^2)^2),    L = (sqrt(1 + 1 / x^2) - 1) / 2,
+//     G1 = 1 / (1 + L),  x = 1 / (a tan theta)
 // (Walter et al. 2007, Heitz 2014). Roughness that differs along x and y: directions are stretched, a becomes
 // the roughness along their azimuth. Nothing is above 1: what is missing is the energy of multiple
 // scattering, at most 2 % at roughness 0.1.
@@ -151,8 +151,8 @@ TEST_P(RoughMetalTest, AlbedoWithFresnel) {
   }
 }
 
-/// A rough glass boundary from outside (eta 1.5) and, with exchanged indices, from inside. Detectable bias: 1
-/// %.
+/// A rough glass boundary from outside (eta 1.5) and, with exchanged indices, from inside.
+/// Detectable bias: 1 %.
 TEST(RoughFurnace, DielectricBoundary) {
   for (const Facets& f : facets()) {
     for (const double eta : {1.5, 1 / 1.5}) {

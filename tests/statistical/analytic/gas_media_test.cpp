@@ -1,6 +1,6 @@
 // Which gas a ray is in: boundaries, nested and overlapping shapes, glass bodies, atmospheres and escaping
-// rays, cameras in gas. Coefficients are flat, so that nothing is random: optical depths are exact to
-// rounding.
+// rays, cameras in gas. Coefficients are flat, so that nothing is random:
+// optical depths are exact to rounding.
 #include "base/error.hpp"
 #include "gas_scenes.hpp"
 #include "spectral/planck.hpp"

@@ -39,8 +39,8 @@ struct LineComb {
            lambdas + "\"/><string name=\"values\" value=\"" + values + "\"/></spectrum>";
   }
 
-  /// Integral over the channel of f(lambda, kappa), f smooth in both: Simpson's rule on eight parts of every
-  /// piece.
+  /// Integral over the channel of f(lambda, kappa), f smooth in both:
+  /// Simpson's rule on eight parts of every piece.
   template <class F>
   double integral(const Channel& channel, const F& f) const {
     double sum = 0;

@@ -1,8 +1,8 @@
 // Homogeneous gases: Beer-Lambert and emission along path and shadow rays, against closed forms that are
 // integrated over each channel line by line.
 //
-// A ray through gas of coefficient kappa and temperature T over the length d in front of the radiance L0
-// shows
+// A ray through gas of coefficient kappa and temperature T over the length d in front
+// of the radiance L0 shows
 //   L = L0 exp(-kappa d) + B(T) (1 - exp(-kappa d)).
 // The lines are Lorentz shapes of half width 0.05 nm every nanometre from 4500.5 to 4509.5 nm; channels are
 // wider than the lines (10 nm, 1 nm), about as wide (0.1 nm on a line's flank) and narrower (0.004 nm).
@@ -72,8 +72,8 @@ double atmosphere_bias(const Mode& mode) {
   return mode.wavelengths == WavelengthMode::kShared ? 0.04 : 0.02;
 }
 
-/// An atmosphere along the camera ray and the light's: both lengths count, and its emission along the camera
-/// ray.
+/// An atmosphere along the camera ray and the light's: both lengths count,
+/// and its emission along the camera ray.
 TEST_P(GasTest, PointLightThroughAnAtmosphere) {
   const LineComb comb(0.3);
   const std::string plane = shape("rectangle", bsdf("diffuse", flat("reflectance", 0.8)));
@@ -93,9 +93,8 @@ TEST_P(GasTest, PointLightThroughAnAtmosphere) {
 }
 
 /// A square lamp of 2 m at a height of 1 m over the receiver, by light and BSDF samples together:
-///   E = L0 int exp(-kappa r) cos^2 / r^2 dA, by the midpoint rule on 100 x 100 parts. kappa is flat here.
-///   Detectable
-/// bias: 0.5 %.
+///   E = L0 int exp(-kappa r) cos^2 / r^2 dA, by the midpoint rule on 100 x 100 parts.
+/// kappa is flat here. Detectable bias: 0.5 %.
 TEST(Gas, AreaLightThroughAnAtmosphere) {
   constexpr double kKappa = 0.7;
   const std::string plane =
@@ -120,8 +119,8 @@ TEST(Gas, AreaLightThroughAnAtmosphere) {
 }
 
 /// From nearly nothing to black: a column of 1 m of flat gas, optical depths from 1e-8 to 1e4, seen against a
-/// black wall. 1 - exp(-x) must keep its relative accuracy, which leaves nothing to sample but the
-/// wavelength.
+/// black wall. 1 - exp(-x) must keep its relative accuracy, which leaves nothing to sample
+/// but the wavelength.
 TEST(Gas, OpticalDepthsFromEmptyToBlack) {
   for (const double depth : {1e-8, 1e-4, 1e-2, 1.0, 30.0, 1e4}) {
     for (const Mode& mode : all_modes()) {
@@ -159,8 +158,9 @@ TEST_P(GasTest, IsothermalEnclosureShowsPlancksLaw) {
 }
 
 /// Light of the environment on a diffuse plane: through a box above it, not through the atmosphere. The box
-/// is so wide that every direction up to 89.4 degrees passes both of its faces. E = 2 pi L int exp(-kappa d /
-/// c) c dc = 2 pi L E_3(kappa d). Detectable bias: 0.5 %.
+/// is so wide that every direction up to 89.4 degrees passes both of its faces.
+///   E = 2 pi L int exp(-kappa d / c) c dc = 2 pi L E_3(kappa d)
+/// Detectable bias: 0.5 %.
 TEST(Gas, EnvironmentThroughABox) {
   const std::string plane = shape("rectangle", bsdf("diffuse", flat("reflectance", 0.7)));
   const std::string box =
@@ -181,8 +181,8 @@ TEST(Gas, EnvironmentThroughABox) {
 }
 
 /// Correlated k is exact here as well: one gas, a flat lamp, and a temperature at which Planck's law is flat
-/// around 4.5 um. With stratified offsets it hardly varies. Detectable bias: 0.4 %, with independent offsets
-/// per path 3 %.
+/// around 4.5 um. With stratified offsets it hardly varies.
+/// Detectable bias: 0.4 %, with independent offsets per path 3 %.
 TEST_P(GasTest, CorrelatedKOfOneGas) {
   const LineComb comb(2);
   const std::string choice = "<string name=\"spectral\" value=\"correlated_k\"/>";

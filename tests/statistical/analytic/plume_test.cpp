@@ -72,8 +72,8 @@ struct Ray {
   double from[3], to[3];
 };
 
-/// A plume whose state at a point is `field`, in front of the lamp, along a ray. cube: the shape that holds
-/// it.
+/// A plume whose state at a point is `field`, in front of the lamp, along a ray.
+/// cube: the shape that holds it.
 void expect_along(const Ray& ray, Point (*field)(double x, double y, double z), const std::string& cube,
                   double kappa, double hot, const std::filesystem::path& folder = ".") {
   SCOPED_TRACE(kappa);
@@ -105,8 +105,8 @@ std::string jet_medium(double kappa) {
                     number("float", "spread", kSpread) + number("float", "length", kLength));
 }
 
-/// Across the jet near its nozzle and far from it, and along it, thin to thick. The box is 8 m wide around
-/// the jet.
+/// Across the jet near its nozzle and far from it, and along it, thin to thick.
+/// The box is 8 m wide around the jet.
 TEST(Plume, JetAgainstFineQuadrature) {
   const Ray rays[] = {
       {{5, 0.1, 0.5}, {-5, 0.1, 0.5}}, {{5, -0.2, 4.5}, {-5, 0.3, 4.2}}, {{0.1, 0.05, 9}, {-0.02, 0, -3}}};

@@ -71,8 +71,8 @@ Point advance(Point origin, Point d, Point on_plane, Point normal) {
   return origin + dot(on_plane + -1.0 * origin, normal) / dot(d, normal) * d;
 }
 
-/// Where on the slit (m from its centre) the ray of film position s in [0, 1] arrives, and what is
-/// transmitted.
+/// Where on the slit (m from its centre) the ray of film position s in [0, 1] arrives,
+/// and what is transmitted.
 struct Arrival {
   double across;
   double transmittance;

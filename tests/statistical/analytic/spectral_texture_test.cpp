@@ -4,12 +4,12 @@
 // normal every point shows its reflectance, and the image mean is the mean of the texels' spectra
 // (texture_test.cpp). Under an environment of constant radiance L it shows rho L. Under a map of W x H texels
 // that is black but for texel (x, y), a radiance L there is a tent L (1 - |a|)(1 - |b|), a in columns, b in
-// rows; with the pole over the square and H = 5, y = 1 (theta = pi / 4, reaching from 0 to pi / 2) the
-// irradiance is
-//   E = L (2 pi / W) int_0^{pi/2} (1 - |theta - pi/4| / (pi/4)) cos theta sin theta dtheta = L (2 pi / W) /
-//   pi.
-// Between band centres spectra are linear, so channels that lie between two centres have the integrals of the
-// knots.
+// rows; with the pole over the square and H = 5,
+// y = 1 (theta = pi / 4, reaching from 0 to pi / 2) the irradiance is
+//   E = L (2 pi / W) int_0^{pi/2} (1 - |theta - pi/4| / (pi/4)) cos theta sin theta dtheta
+//     = L (2 pi / W) / pi.
+// Between band centres spectra are linear, so channels that lie between two centres have
+// the integrals of the knots.
 //
 // Error rate: 1e-4 for the whole program. Detectable bias: 0.5 %, of the single texel 1 %.
 #include <cmath>

@@ -61,8 +61,8 @@ TEST_P(BitmapTest, MeanOfAGreyImageIsTheMeanOfItsTexels) {
   }
 }
 
-/// Two texels, the upper one bright: v = 0 is the top row, at +y of the rectangle's uv... seen as rows of the
-/// image.
+/// Two texels, the upper one bright: v = 0 is the top row, at +y of the rectangle's uv...
+/// seen as rows of the image.
 TEST(Textures, RowsOfABitmapLieAlongV) {
   const TemporaryFolder folder;
   folder.write("image.pfm", pfm_image(2, 2, 1, {0.9f, 0.7f, 0.3f, 0.1f}));

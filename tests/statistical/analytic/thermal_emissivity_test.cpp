@@ -1,7 +1,6 @@
 // The emissivity of rough aluminium against its directional-hemispherical reflectance, which is computed here
 // on its own: for light from v, with m the facet's normal,
-//   E = int D(m) G1(v) max(v.m, 0) / v.z G1(o) dm   and   rho = F-weighted E (1 + F0 (1 - E) / E),  eps = 1 -
-//   rho
+//   E = int D(m) G1(v) max(v.m, 0) / v.z G1(o) dm,   rho = F-weighted E (1 + F0 (1 - E) / E),   eps = 1 - rho
 // by the midpoint rule over the hemisphere of normals in double (furnace_rough_test.cpp has the formulas of D
 // and G1), with Fresnel's formulas as complex amplitudes. A plate of 300 K in the void (0 K) shows eps B.
 //
@@ -114,8 +113,8 @@ TEST(Emissivity, RoughAluminiumEmitsWhatItDoesNotReflect) {
 }
 
 /// Facets that reflect everything: nothing is left to emit, to the precision of the compensation tables. A
-/// rough mirror of 300 K under a black sky of 300 K that shows more or less than B would have gained or lost
-/// energy: 1e-3.
+/// rough mirror of 300 K under a black sky of 300 K that shows more or less than B would have gained
+/// or lost energy: 1e-3.
 TEST(Emissivity, RoughMirrorsReflectEverything) {
   for (const Plate& plate : {Plate{true, 0.1, 0.1}, Plate{false, 0.5, 0.5}, Plate{true, 0.2, 0.6}}) {
     for (const double degrees : {5.0, 60.0, 85.0}) {

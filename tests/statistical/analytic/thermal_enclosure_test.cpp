@@ -1,11 +1,11 @@
 // Isothermal enclosures: everything at one temperature, whatever materials. In equilibrium radiance is
 // Planck's law everywhere and in every direction, so every channel of every pixel is its integral over the
 // channel; what a surface emits is exactly what it lacks in reflected and transmitted light (Kirchhoff). Any
-// fault of an emissivity, of a compensated BSDF or of their agreement shows, multiplied by the number of
-// bounces.
+// fault of an emissivity, of a compensated BSDF or of their agreement shows,
+// multiplied by the number of bounces.
 //
-// Error rate: 1e-4 for the whole program. Detectable bias of every channel's image mean: stated with each
-// test.
+// Error rate: 1e-4 for the whole program. Detectable bias of every channel's image mean:
+// stated with each test.
 #include <cmath>
 
 #include "spectral/planck.hpp"
@@ -119,8 +119,8 @@ TEST_P(Isothermal, AmbientTemperatureGivesPlancksLaw) {
   expect_image_mean(result, planck_integrals(result, kTemperature), 0.02);
 }
 
-/// The same temperature as every shape's own: lights, with next-event estimation and MIS. Detectable bias: 2
-/// %.
+/// The same temperature as every shape's own: lights, with next-event estimation and MIS.
+/// Detectable bias: 2 %.
 TEST_P(Isothermal, LightsGivePlancksLaw) {
   const Enclosure e = enclosures()[GetParam()];
   const RenderResult result = render_valid(isothermal(e, false), kBands, {}, {32, 52});

@@ -1,8 +1,9 @@
-// Hot shapes as lights: closed forms of what a Lambertian plane sees of them, with next-event estimation and
-// without.
+// Hot shapes as lights: closed forms of what a Lambertian plane sees of them,
+// with next-event estimation and without.
 //
-//   sphere  of radius r at height h above a receiver of reflectance rho: irradiance pi eps B (r/h)^2 straight
-//   below disk    of radius r at height h, parallel: irradiance pi eps B r^2 / (r^2 + h^2) below its centre
+//   sphere  of radius r at height h above a receiver of reflectance rho:
+//           irradiance pi eps B (r/h)^2 straight below
+//   disk    of radius r at height h, parallel: irradiance pi eps B r^2 / (r^2 + h^2) below its centre
 // (radiative view factors, e.g. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-12 and
 // C-8). A receiver that emits nothing (0 K) shows rho / pi times the irradiance. Without next-event
 // estimation: a mask of opacity 1 - 2^-20 over the receiver would not do, so lights are given the ambient
@@ -61,8 +62,8 @@ TEST(ThermalLight, SphereAboveALambertianReceiver) {
   expect_image_mean(ambient, reflected(ambient, factor, kEmissivity), 0.03);
 }
 
-/// A disk whose front faces the receiver, and one that shows its black back: emissivity 1. Detectable bias: 1
-/// %.
+/// A disk whose front faces the receiver, and one that shows its black back: emissivity 1.
+/// Detectable bias: 1 %.
 TEST(ThermalLight, DiskShowsItsFrontOrItsBlackBack) {
   const double r = 0.8, h = 1.2;
   for (const bool front : {true, false}) {

@@ -101,8 +101,8 @@ TEST_F(Methods, AgreeForAnyNumberOfChannelsWithResponses) {
 }
 
 /// The kernels are the same text with parts left out, without contraction: the same bits. By default scenes
-/// that together need every feature; with KILOBAND_THOROUGH set, every scene and method (minutes of kernel
-/// builds).
+/// that together need every feature; with KILOBAND_THOROUGH set, every scene and method
+/// (minutes of kernel builds).
 TEST_F(Methods, SpecialisedKernelsGiveTheSameBits) {
   const bool thorough = std::getenv("KILOBAND_THOROUGH") != nullptr;
   std::vector<std::string> scenes{"diffuse_room", "crop_window", "hidden_emitters", "thermal", "temperature_field", "plumes"};

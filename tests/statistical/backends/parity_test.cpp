@@ -2,16 +2,14 @@
 //
 // Every scene of the zoo, both samplers with both wavelength modes, several replicates and samples: 24576
 // paths a scene. A path has parted if its triangles, lobes, lights, rows or texels differ anywhere, or if its
-// value in a channel differs by more than 1e-4 of its largest channel (values_agree() says what is asked of
-// paths near 0).
+// value in a channel differs by more than 1e-4 of its largest channel
+// (values_agree() says what is asked of paths near 0).
 //   decisions     at most 0.1 % of a scene's paths may differ, 2 % with long specular chains, 0.5 % with
-//   plumes: where
-//                 the cells of a segment end follows about a hundred comparisons, each of which falls
-//                 otherwise if it lies within the rounding of the ray's two ends
+//                 plumes: where the cells of a segment end follows about a hundred comparisons, each of which
+//                 falls otherwise if it lies within the rounding of the ray's two ends
 //   with values   0.1 % on rough scenes, 2 % with long specular chains, and 0.5 % with curved reflectors: a
-//   ball of
-//                 radius r that is hit from d metres under cos multiplies an error of the hit point by
-//                 2 d / (r cos). With 5e-7 m, a unit in the last place at the camera's 4 m, two balls are
+//                 ball of radius r that is hit from d metres under cos multiplies an error of the hit point
+//                 by 2 d / (r cos). With 5e-7 m, a unit in the last place at the camera's 4 m, two balls are
 //                 enough for 1e-4; neither backend is nearer to the truth. 1 % with plumes: other cells are
 //                 other approximations, within the tolerance of shared/plume.h.
 // These are limits on counts, not estimates.

@@ -85,8 +85,8 @@ TEST_F(SumsInParts, OfAnySizeGiveTheBitsOfOneDelivery) {
   }
 }
 
-/// The methods dpept keep the derived channels of whole rounds alone: parts that end there, as SumRule::step
-/// says.
+/// The methods dpept keep the derived channels of whole rounds alone: parts that end there,
+/// as SumRule::step says.
 TEST_F(SumsInParts, WithDerivedChannelsEndWhereTheRuleSays) {
   for (const std::string name : {"cpu", "opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"}) {
     const auto renderer =

@@ -1,22 +1,21 @@
-// With different seeds the backends agree as two estimates of the same image do: in their means and their
-// variances.
+// With different seeds the backends agree as two estimates of the same image do:
+// in their means and their variances.
 //
 // Every scene of the zoo: the CPU against each OpenCL method, R = 32 replicates of 2 samples on either side.
 // All pixels, all tiles of 8 x 8 and the whole image are tested in every channel; none is forgiven.
 //   means      two-sample t-test of the replicate means, 2 R - 2 degrees of freedom. Both sides have one
-//   distribution
-//              if the backends agree, so the difference is symmetric however skewed it is. Added to its error
-//              is 1e-5 of the mean for rounding, which is all that differs where a pixel is constant.
+//              distribution if the backends agree, so the difference is symmetric however skewed it is. Added
+//              to its error is 1e-5 of the mean for rounding, which is all that differs where a pixel is
+//              constant.
 //   variances  Brown-Forsythe: the distances of the replicate means from their pixel's median, in units of
-//   the pixel's
-//              mean distance on both sides, averaged over the pixels of a tile or of the image. That gives a
-//              number per replicate (pixels share wavelengths, replicates share nothing), to which the same
-//              t-test applies.
+//              the pixel's mean distance on both sides, averaged over the pixels of a tile or of the image.
+//              That gives a number per replicate (pixels share wavelengths, replicates share nothing), to
+//              which the same t-test applies.
 // Family-wise error rate 1e-4 over all scenes: a third each for all tests of pixels, of tiles and of images
 // (Sidak). What the tests of the image would detect is printed: bias of the mean, and of the standard
 // deviation, both relative, in the worst channel. (Where all noise is that of the shared wavelengths,
-// standard deviations say little; the run with wavelengths of each path tells. Far smaller biases show in
-// parity_test.cpp.)
+// standard deviations say little; the run with wavelengths of each path tells.
+// Far smaller biases show in parity_test.cpp.)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -113,8 +112,8 @@ Comparison compare_means(const Image& a, const Image& b, const Unit& unit, std::
   return compare(x, y, critical, kRounding * std::max(std::abs(mean_of(x)), std::abs(mean_of(y))));
 }
 
-/// Adds the distances of one pixel in units of their mean. Where it is below rounding, both sides are
-/// constant.
+/// Adds the distances of one pixel in units of their mean.
+/// Where it is below rounding, both sides are constant.
 void add_distances(const Image& a, const Image& b, uint32_t pixel, std::size_t channel, Replicates& sum_a,
                    Replicates& sum_b) {
   const Replicates x = unit_means(a, {pixel}, channel), y = unit_means(b, {pixel}, channel);

@@ -7,8 +7,8 @@
 // seen, is 1 / sqrt(q).
 //
 // Units of one image are dependent (they share paths, and wavelength offsets over 32 x 32 pixels); seeds are
-// not. The ratio's own standard error is therefore a jackknife over groups of seeds, which assumes nothing
-// about units.
+// not. The ratio's own standard error is therefore a jackknife over groups of seeds,
+// which assumes nothing about units.
 #pragma once
 
 #include <cstddef>

@@ -175,8 +175,8 @@ class DispersiveChannels : public ::testing::Test {
 };
 
 TEST_F(DispersiveChannels, SmoothGlassAgreesInTheMean) {
-  // One of K channels goes on behind the glass: noisier with every channel. Detectable: 11 % of a channel's
-  // image mean.
+  // One of K channels goes on behind the glass: noisier with every channel.
+  // Detectable: 11 % of a channel's image mean.
   expect_same_means(spec("dielectric"), {{"400:700:7", {0, 3, 6}}, {"400-500, 450-550, 600-601", {0, 1, 2}}},
                     0.11);
 }

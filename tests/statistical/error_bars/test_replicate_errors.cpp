@@ -95,8 +95,8 @@ TEST_P(ReplicateErrors, MatchTheSpreadOverSeeds) {
 }
 
 TEST_P(ReplicateErrors, MatchForOtherSizes) {
-  // 40 samples: sizes 2 and 3, where the estimate is unbiased only if a replicate's variance falls like 1 /
-  // size; 128: 8 stratified samples each. Pixels alone, at a standard error of 2 %.
+  // 40 samples: sizes 2 and 3, where the estimate is unbiased only if a replicate's variance falls like
+  // 1 / size; 128: 8 stratified samples each. Pixels alone, at a standard error of 2 %.
   for (const uint64_t spp : {40u, 128u}) {
     const Studies studies = study(GetParam(), spp, 60);
     expect_honest("pixels_" + std::to_string(spp), studies.pixels, kLargestStandardError);

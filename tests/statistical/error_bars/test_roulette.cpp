@@ -1,10 +1,10 @@
 // Russian roulette where one narrow channel is bright and all others are dark.
 //
-// A closed box whose walls all emit Le and reflect diffusely with albedo rho contains the radiance L = Le +
-// rho L, so L = Le / (1 - rho) in every direction: 50 Le at rho = 0.98 (550-551 nm), 1.11 Le at 0.1
+// A closed box whose walls all emit Le and reflect diffusely with albedo rho contains the radiance
+// L = Le + rho L, so L = Le / (1 - rho) in every direction: 50 Le at rho = 0.98 (550-551 nm), 1.11 Le at 0.1
 // (elsewhere). A survival probability from the mean albedo (0.39 here) would be below rho^2 = 0.96 and make
-// the variance at 550 nm infinite; a cap below 1 would read low. Depth is unlimited; the guide bands are the
-// channels.
+// the variance at 550 nm infinite; a cap below 1 would read low. Depth is unlimited;
+// the guide bands are the channels.
 //
 // Means: over kSeeds seeds x 8 pixels x 32 samples the bright channel's relative standard error is 0.2 %;
 // three channels are tested at a family-wise error rate of 1e-4 (|t| < 4.2): a bias of 1.2 % is detected with

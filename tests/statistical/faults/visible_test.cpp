@@ -1,6 +1,6 @@
 // Every planted fault changes the image of a scene that has what it needs, on the backend that has it, and
-// nothing else: equal seeds, so images without a fault are the same bits. 32 x 32 pixels, 2 replicates of 4
-// samples.
+// nothing else: equal seeds, so images without a fault are the same bits.
+// 32 x 32 pixels, 2 replicates of 4 samples.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -5,9 +5,8 @@
 //   KILOBAND_SHIM_CODE      the code that it gives, a number (default -5, CL_OUT_OF_RESOURCES)
 //   KILOBAND_SHIM_REPEAT    1: all later calls fail too
 //   KILOBAND_SHIM_REPORT    file to write at exit: a line "NAME CALLS" per function, then "live_buffers N",
-//   the
-//                           references to buffers that were not released, and "failed N", the calls that were
-//                           failed
+//                           the references to buffers that were not released, and "failed N", the calls that
+//                           were failed
 //
 // In sanitizer builds run with ASAN_OPTIONS=verify_asan_link_order=0.
 #define CL_TARGET_OPENCL_VERSION 120

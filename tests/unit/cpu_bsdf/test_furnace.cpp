@@ -1,8 +1,8 @@
 // White furnace: mean weights (directional albedo with all reflectances 1 and F = 1 for metals) against
 // integrals that share nothing with the code under test.
 //
-// Rough models scatter once; what would hit the surface again is lost. The loss is known: the tests compare
-// with it.
+// Rough models scatter once; what would hit the surface again is lost.
+// The loss is known: the tests compare with it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -71,8 +71,8 @@ TEST(Furnace, RoughModelsLoseExactlyWhatScattersAgain) {
   for (const Case& c : scattering_cases()) {
     const KbMaterial& m = c.material;
     if (!is_rough(m)) continue;
-    // Without visible normals weights have a long tail when rough: only moderate roughness has a usable
-    // standard error.
+    // Without visible normals weights have a long tail when rough:
+    // only moderate roughness has a usable standard error.
     if (!(m.flags & KB_MATERIAL_SAMPLE_VISIBLE) && std::max(m.alpha_u, m.alpha_v) > 0.1f) continue;
     SCOPED_TRACE(c.name);
     const double index = c.dispersion.eta > 0 ? c.dispersion.eta : m.eta;

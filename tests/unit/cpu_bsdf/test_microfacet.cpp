@@ -1,5 +1,5 @@
-// The building blocks: Fresnel's formulas, the inverse error function, distributions of normals, rough
-// transmittance.
+// The building blocks: Fresnel's formulas, the inverse error function,
+// distributions of normals, rough transmittance.
 #include <gtest/gtest.h>
 
 #include <boost/math/special_functions/erf.hpp>
@@ -76,8 +76,8 @@ TEST(Microfacet, ReferenceIsNormalised) {
 }
 
 // Table nodes against the integral over slopes, the internal reflectance against the same 64-node mean.
-// Tolerances: Gauss-Legendre with 32 points against a midpoint rule, both good to about 1e-3 at grazing
-// angles.
+// Tolerances: Gauss-Legendre with 32 points against a midpoint rule,
+// both good to about 1e-3 at grazing angles.
 TEST(RoughTransmittance, MatchesTheIntegralOverSlopes) {
   for (uint32_t distribution : {KB_MICROFACET_BECKMANN, KB_MICROFACET_GGX})
     for (float alpha : {0.05f, 0.3f, 0.7f}) {

@@ -60,8 +60,8 @@ TEST(BsdfSampling, DirectionsFollowTheDensity) {
 }
 
 // The density integrates to 1 less what is lost below the horizon, which an independent integral over visible
-// normals knows. Tolerance 1e-3: the error of the midpoint rule at the horizon's edge and of the adaptive
-// quadrature.
+// normals knows. Tolerance 1e-3: the error of the midpoint rule at the horizon's edge and
+// of the adaptive quadrature.
 TEST(BsdfSampling, DensityIntegratesToWhatIsNotLost) {
   for (const Case& c : scattering_cases()) {
     const KbMaterial& m = c.material;

@@ -87,8 +87,8 @@ KbMaterial prism_glass() {
   return m;
 }
 
-// In expectation every channel k gets F_k reflected and 1 - F_k transmitted, whatever its index:
-// probabilities cancel.
+// In expectation every channel k gets F_k reflected and 1 - F_k transmitted,
+// whatever its index: probabilities cancel.
 TEST(Dispersion, EveryChannelKeepsItsShare) {
   const KbMaterial m = prism_glass();
   for (double degrees : {5.0, 60.0, 88.0, 130.0, 138.0, 139.5, 175.0}) {

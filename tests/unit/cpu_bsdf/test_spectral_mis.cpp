@@ -75,8 +75,8 @@ TEST(SpectralMis, DirectionsFollowTheDensity) {
   }
 }
 
-/// Mean and its standard error of f_k |cos| / p over directions sampled for the heroes, or for index eta
-/// alone.
+/// Mean and its standard error of f_k |cos| / p over directions sampled for the heroes,
+/// or for index eta alone.
 struct Estimate {
   double mean = 0, error = 0;
 };
@@ -102,9 +102,8 @@ Estimate albedo(const HeroCase& c, float eta, bool alone, uint64_t seed) {
   return {mean, std::sqrt((squares / kDraws - mean * mean) / kDraws)};
 }
 
-// Indices between the heroes': the same mean as sampled alone. 32 two-sided tests
-// at 5 standard errors, family-wise error rate 2e-5; detectable bias: 7 standard errors, 0.2 to 3 %
-// (printed).
+// Indices between the heroes': the same mean as sampled alone. 32 two-sided tests at 5 standard errors,
+// family-wise error rate 2e-5; detectable bias: 7 standard errors, 0.2 to 3 % (printed).
 TEST(SpectralMis, EveryChannelHasItsOwnMean) {
   double widest = 0;
   uint64_t seed = 100;

@@ -5,8 +5,8 @@
 
 namespace kiloband::test {
 
-/// Adds absorption coefficients of line spectra, one of them sorted, and Planck's law for gases to a scene of
-/// make_scene().
+/// Adds absorption coefficients of line spectra, one of them sorted, and Planck's law for gases
+/// to a scene of make_scene().
 void add_gas(FlatScene& scene, std::mt19937& random);
 
 /// Paths as those of make_paths() between vertices of gas of every kind: segments that absorb and emit, light

@@ -84,8 +84,8 @@ TEST_P(Formulas, NonlinearAndDegraded) {
 }
 
 TEST_P(Formulas, TexelsAndWrapping) {
-  // 2 x 1 flat texels 0.2 and 0.6: the neighbour of the second is the first (repeat) or itself (mirror,
-  // clamp).
+  // 2 x 1 flat texels 0.2 and 0.6: the neighbour of the second is the first
+  // (repeat) or itself (mirror, clamp).
   FlatScene scene = constant_scene({{500, 501, {}}});
   scene.texels = {{0, 0, 1e10f, 0.2f}, {0, 0, 1e10f, 0.6f}};
   for (uint32_t wrap : {KB_WRAP_REPEAT, KB_WRAP_MIRROR, KB_WRAP_CLAMP})
@@ -108,8 +108,8 @@ TEST_P(Formulas, TexelsAndWrapping) {
 }
 
 TEST_P(Formulas, SigmoidsKeepRelativePrecision) {
-  // c2 = -1000: S = 1 / (4 v^2) = 2.5e-7 (1 - 3/(4 v^2)); 1/2 + v / (2 sqrt(1 + v^2)) in float would be 0 or
-  // 6e-8.
+  // c2 = -1000: S = 1 / (4 v^2) = 2.5e-7 (1 - 3/(4 v^2));
+  // 1/2 + v / (2 sqrt(1 + v^2)) in float would be 0 or 6e-8.
   FlatScene scene = constant_scene({{500, 501, {}}});
   scene.texels = {{1e-12f, 0, -1000, 1}};
   scene.textures = {{1, 1, 0, KB_WRAP_CLAMP, 0, KB_NONE, {}}};
@@ -122,8 +122,8 @@ TEST_P(Formulas, SigmoidsKeepRelativePrecision) {
 }
 
 TEST_P(Formulas, DerivedChannelsByHand) {
-  // Channel 0 lies inside channel 1, channel 2 apart: at the middle, 505 nm and 550 nm; 700 is outside the
-  // response.
+  // Channel 0 lies inside channel 1, channel 2 apart: at the middle, 505 nm and 550 nm;
+  // 700 is outside the response.
   FlatScene scene = constant_scene({{500, 510, {}}, {500, 600, {}}, {690, 710, {}}});
   scene.channel_scale = {2, 16, 64};
   DerivedChannels derived;

@@ -1,5 +1,5 @@
-// Fresnel reflectances against closed forms (which check the oracle too) and, over a wide grid, against the
-// oracle.
+// Fresnel reflectances against closed forms (which check the oracle too) and, over a wide grid,
+// against the oracle.
 #include <cmath>
 
 #include "random_scene.hpp"
@@ -7,8 +7,8 @@
 namespace kiloband::test {
 namespace {
 
-/// A scene whose channel k sees index n_k + i k_k, one path per cosine that reflects there towards a lamp of
-/// radiance 1.
+/// A scene whose channel k sees index n_k + i k_k, one path per cosine that reflects there towards
+/// a lamp of radiance 1.
 struct FresnelCase {
   FresnelCase(std::vector<double> n, std::vector<double> k, uint32_t kind, std::vector<float> cosines) {
     const std::size_t count = n.size();

@@ -69,8 +69,8 @@ TEST_P(GasOracle, OpticalDepthsFromEmptyToBlack) {
   }
 }
 
-/// Planck's law relative to a reference, over exponents hc / (k lambda T) of up to 240: plumes whose single
-/// cell is black.
+/// Planck's law relative to a reference, over exponents hc / (k lambda T) of up to 240: plumes whose
+/// single cell is black.
 TEST_P(GasOracle, PlanckRatioOverTheFloatRange) {
   std::mt19937 random(23);
   ChannelList channels;

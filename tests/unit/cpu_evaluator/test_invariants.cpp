@@ -1,5 +1,5 @@
-// What must hold whatever the scene: channels do not see each other, modes agree, nothing is written where it
-// must not be.
+// What must hold whatever the scene: channels do not see each other, modes agree,
+// nothing is written where it must not be.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -11,8 +11,8 @@ namespace {
 
 class Invariants : public EachIsa {};
 
-/// The scene and paths with channel k alone. Where a path degrades to another channel, that channel is not
-/// there.
+/// The scene and paths with channel k alone. Where a path degrades to another channel,
+/// that channel is not there.
 std::pair<FlatScene, PathBuffer> channel_alone(const FlatScene& scene, const PathBuffer& paths,
                                                std::size_t k) {
   FlatScene one = scene;

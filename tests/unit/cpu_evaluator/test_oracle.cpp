@@ -3,9 +3,8 @@
 // All terms are positive, so errors are relative to each channel's value, the strictest scale. An operation
 // rounds by at most 6e-8, a vertex takes at most about 20 of them (Fresnel, texture), a path here has at most
 // 8 vertices: 1e-5 is the sum of all worst cases, and what is seen is a tenth of it. A rough transmission has
-// the sixth power of components that are three roundings off, four without fused
-// multiply-adds (1.5e-6), besides: 2e-6 more for each. Below
-// 1e-30 of the channel's scale floats run out of range.
+// the sixth power of components that are three roundings off, four without fused multiply-adds (1.5e-6),
+// besides: 2e-6 more for each. Below 1e-30 of the channel's scale floats run out of range.
 #include <cmath>
 
 #include "random_scene.hpp"

@@ -36,8 +36,8 @@ void expect_irradiance(const FlatScene& scene, glm::vec3 point, glm::vec3 normal
   EXPECT_LT(6.1 * error, 1e-2 * expected);
 }
 
-/// Lambert's formula: E = 1/2 |sum of (angle of an edge) * (its normal, unit) . n| for a polygon above the
-/// horizon.
+/// Lambert's formula: E = 1/2 |sum of (angle of an edge) * (its normal, unit) .
+/// n| for a polygon above the horizon.
 double polygon_irradiance(const std::vector<glm::dvec3>& vertices, glm::dvec3 point, glm::dvec3 normal) {
   double sum = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -50,8 +50,8 @@ double polygon_irradiance(const std::vector<glm::dvec3>& vertices, glm::dvec3 po
 }
 
 TEST(Irradiance, Sphere) {
-  // pi (R / d)^2 cos, at three distances; the last nearly touches (horizon still below the sphere for n
-  // towards it).
+  // pi (R / d)^2 cos, at three distances;
+  // the last nearly touches (horizon still below the sphere for n towards it).
   for (const double d : {1.001, 2.5, 1e4}) {
     const FlatScene scene =
         scene_with_light(make_shape(KB_SHAPE_SPHERE, placed({0, 0, d}, 0.5, glm::dvec3(1))));

@@ -42,8 +42,8 @@ double expect_distribution(const FlatScene& scene, glm::vec3 point, const Direct
   return integral;
 }
 
-/// The same for the area light of shape 0, whose density needs a ray; also compares both densities sample by
-/// sample.
+/// The same for the area light of shape 0, whose density needs a ray;
+/// also compares both densities sample by sample.
 double expect_area_light(const FlatScene& scene, glm::vec3 point, const DirectionBins& bins, uint32_t seed,
                          double min_cosine = 0) {
   const auto density = [&](glm::dvec3 direction) -> double {

@@ -124,8 +124,8 @@ TEST(Intersection, HostileRaysMiss) {
                                   kInfinity, t));
 }
 
-/// Crossings of the canonical disk and cylinder in long double, with the inverse of to_world by Cramer's
-/// rule.
+/// Crossings of the canonical disk and cylinder in long double,
+/// with the inverse of to_world by Cramer's rule.
 Real nearest_reference(const KbShape& shape, Vec origin, Vec direction) {
   const float(&m)[12] = shape.to_world;
   const Vec x(m[0], m[4], m[8]), y(m[1], m[5], m[9]), z(m[2], m[6], m[10]), c(m[3], m[7], m[11]);

@@ -16,8 +16,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Surface, AttributesFollowTheParameterisation) {
-  // At u, v of each shape: position from the formulas of the conventions, normal and tangent by finite
-  // differences.
+  // At u, v of each shape: position from the formulas of the conventions,
+  // normal and tangent by finite differences.
   const glm::dmat4 to_world = placed({1, 2, 3}, 0.8, {2, 2, 2});
   const auto canonical = [](uint32_t type, double u, double v) -> glm::dvec3 {
     const double two_pi = 6.283185307179586;
@@ -125,8 +125,8 @@ TEST(RayOffset, FollowsTheCornersAndNotThePoint) {
   EXPECT_EQ(largest_coordinates(ball), glm::vec3(7, 3, 4));
 }
 
-/// Points next to an edge are kept eight offsets inside, others stay where they are; slivers keep a point
-/// too.
+/// Points next to an edge are kept eight offsets inside, others stay where they are;
+/// slivers keep a point too.
 TEST(RayOffset, KeepsPointsOffTheEdges) {
   const glm::vec3 corners[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   const glm::vec3 normal(0, 0, 4);

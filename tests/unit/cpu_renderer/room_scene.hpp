@@ -20,8 +20,8 @@ std::string film_text(const FilmSize& size);
 std::string camera_text(const FilmSize& size);
 
 /// A lit room with meshes and analytic shapes and every kind of path vertex but dispersive ones: diffuse,
-/// checkerboard, plastics, conductors, glass, a mask; an area light, a point light and a constant sky (the
-/// front is open).
+/// checkerboard, plastics, conductors, glass, a mask; an area light, a point light and a constant sky
+/// (the front is open).
 std::string room_parts();
 /// room_parts() before the camera; 4 channels and a response, 16 samples in 4 replicates.
 RenderSpec room_spec(const FilmSize& size);

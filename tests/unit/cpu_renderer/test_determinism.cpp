@@ -66,8 +66,8 @@ TEST(Determinism, CropsRenderThePixelsOfTheFullFilm) {
   }
 }
 
-/// A film of the room that holds sums, rendered in the given numbers of samples per replicate, one pass after
-/// the other.
+/// A film of the room that holds sums, rendered in the given numbers of samples per replicate,
+/// one pass after the other.
 std::vector<float> render_in_passes(const std::vector<uint32_t>& passes, SamplingSettings sampling) {
   const SceneDescription description = read_scene_text(room_spec({40, 40}).xml, "test.xml", ".", {});
   const FlatScene scene = flatten(description, {parse_channels("500:600:4"), {}, {}});

@@ -1,5 +1,5 @@
-// Scenes in which paths could live for ever or values leave the range of floats: none may produce an invalid
-// sample.
+// Scenes in which paths could live for ever or values leave the range of floats:
+// none may produce an invalid sample.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,8 +47,8 @@ void expect_sound(const RenderResult& result, double longest_mean_path) {
   for (const double value : result.variance) ASSERT_TRUE(std::isfinite(value));
 }
 
-// Roulette must see the texel that is hit: with the bound of the whole picture, 1 for its white texel, no
-// path would end.
+// Roulette must see the texel that is hit: with the bound of the whole picture, 1 for its white texel,
+// no path would end.
 TEST_F(HardScenes, PathsEndBetweenTexturedWallsWithOneWhiteTexel) {
   expect_sound(
       render_cavity(
@@ -64,8 +64,8 @@ TEST_F(HardScenes, PathsEndBetweenCheckerboards) {
                40);
 }
 
-// F is about 0.9 for n = 0.25, k = 3: roulette's bound must know it, and long chains of cosines are no
-// overflow.
+// F is about 0.9 for n = 0.25, k = 3: roulette's bound must know it,
+// and long chains of cosines are no overflow.
 TEST_F(HardScenes, PathsEndInMetalCavities) {
   const std::string metal =
       "<spectrum name=\"eta\" value=\"0.25\"/><spectrum name=\"k\" value=\"3\"/></bsdf>";

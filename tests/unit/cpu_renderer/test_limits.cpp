@@ -15,8 +15,8 @@ namespace {
 constexpr FilmSize kFilm{16, 16};
 constexpr double kWidthNm = 25;  // of the channels of 500:600:4
 
-/// A lamp of radiance 3 that fills the left half of the view, a diffuse wall of reflectance 0.5 in the right
-/// half.
+/// A lamp of radiance 3 that fills the left half of the view,
+/// a diffuse wall of reflectance 0.5 in the right half.
 std::string lamp_and_wall() {
   return "<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"2\" y=\"4\"/>"
          "<translate x=\"-2\"/></transform>"

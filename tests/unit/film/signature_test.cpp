@@ -237,8 +237,8 @@ TEST_F(Signatures, ReplicatesMustBeThoseOfTheCube) {
   EXPECT_FALSE(open_replicated_cube(file).has_errors());
 }
 
-/// Sums of channels and regions have the errors that the replicates give, though channels and pixels move
-/// together.
+/// Sums of channels and regions have the errors that the replicates give,
+/// though channels and pixels move together.
 TEST_F(Signatures, ReplicatesGiveErrorsToSumsAndRegions) {
   const auto file = write("a.hdr", 8, 2, 0.5f);
   CubeSelection selection;

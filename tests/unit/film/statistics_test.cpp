@@ -69,8 +69,8 @@ void expect_oracle(const ReplicateMoments& moments, const std::vector<Replicate>
   for (std::size_t k = 0; k < moments.channels(); ++k) {
     const Moments expected = oracle(replicates, k);
     EXPECT_NEAR(moments.mean(0)[k], expected.mean, mean_error * std::fabs(expected.mean)) << "channel " << k;
-    // d has an absolute error of some 1e-7 of the mean; with spread 1e-3 of it that is 1e-4 of a term of M2,
-    // at random.
+    // d has an absolute error of some 1e-7 of the mean;
+    // with spread 1e-3 of it that is 1e-4 of a term of M2, at random.
     const double spread = std::sqrt(expected.variance) / std::fabs(expected.mean);
     EXPECT_NEAR(variance[k], expected.variance, (2e-6 + 4e-7 / spread) * expected.variance)
         << "channel " << k;
@@ -86,8 +86,8 @@ TEST(ReplicateMoments, MatchesTheDoubleOracleWithUnequalSizes) {
   }
 }
 
-// Each replicate adds a rounding error below an ulp to the mean; 10^5 replicates of one sample must stay
-// below 1e-5.
+// Each replicate adds a rounding error below an ulp to the mean;
+// 10^5 replicates of one sample must stay below 1e-5.
 TEST(ReplicateMoments, ManyReplicatesLoseNothingVisible) {
   const std::size_t count = 10'000;
   const auto replicates = synthetic(count, 4, 5);
@@ -176,12 +176,12 @@ TEST(ReplicateMoments, RefusesWrongShapes) {
   EXPECT_THROW(ReplicateMoments(std::numeric_limits<std::size_t>::max() / 2, 3, true), std::length_error);
 }
 
-// E[V] = Var(mean) = sigma^2 / N for replicate means with variance sigma^2 / n_r: E[sum n_r (m_r - m)^2]
-// = sum n_r sigma^2/n_r - N sigma^2/N = (R - 1) sigma^2. Checked with 16 replicates, sizes 1 to 9 mixed in
-// each trial, of Gaussian means. V N/sigma^2 has variance 2/15, so the mean of T = 40000 trials has a
-// standard error of 0.0018. z test: a correct estimator fails for one seed in 1e6 (|z| > 4.9); a bias of 1.2
-// % would be caught with probability 0.95. Forgetting the weights or dividing by R instead of R - 1 (6 %)
-// fails.
+// E[V] = Var(mean) = sigma^2 / N for replicate means with variance sigma^2 / n_r:
+//   E[sum n_r (m_r - m)^2] = sum n_r sigma^2/n_r - N sigma^2/N = (R - 1) sigma^2.
+// Checked with 16 replicates, sizes 1 to 9 mixed in each trial, of Gaussian means. V N/sigma^2 has variance
+// 2/15, so the mean of T = 40000 trials has a standard error of 0.0018. z test: a correct estimator fails for
+// one seed in 1e6 (|z| > 4.9); a bias of 1.2 % would be caught with probability 0.95. Forgetting the weights
+// or dividing by R instead of R - 1 (6 %) fails.
 TEST(ReplicateMoments, VarianceEstimateIsUnbiased) {
   constexpr std::size_t kTrials = 40'000, kReplicates = 16;
   constexpr double kSigma = 3;

@@ -7,17 +7,14 @@ namespace kiloband::test {
 
 /// The allowances:
 ///   values, weights, densities  relative 2e-6 (exp, erf and sqrt of the device are within a few ulp), plus
-///   what the
-///       two ways to write Fresnel's reflectance F differ by: the CPU subtracts nearly equal numbers where F
-///       is small, which costs 5e-7 / sqrt(F) of F, and about eight roundings on either side leave 1e-6 of
-///       uncertainty in 1 - F.
+///       what the two ways to write Fresnel's reflectance F differ by: the CPU subtracts nearly equal numbers
+///       where F is small, which costs 5e-7 / sqrt(F) of F, and about eight roundings on either side leave
+///       1e-6 of uncertainty in 1 - F.
 ///   directions  1e-5 for all but one in 10^4 (Newton's method for Beckmann's normals may stop at either side
-///   of its
-///       threshold), 1e-3 for all. Weights and densities of a sample are therefore compared with the CPU's
-///       for the DEVICE's direction: at alpha = 1e-4 one ulp of a direction is 1e-3 of a density.
+///       of its threshold), 1e-3 for all. Weights and densities of a sample are therefore compared with the
+///       CPU's for the DEVICE's direction: at alpha = 1e-4 one ulp of a direction is 1e-3 of a density.
 ///   decisions  (what is sampled at all, the lobe, the kind) may differ for one query in 10^4: u within
-///   rounding of a
-///       probability.
+///       rounding of a probability.
 class Comparison {
  public:
   explicit Comparison(const Scene& scene) : scene_(scene) {}

@@ -78,8 +78,8 @@ KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, floa
                  float eta = 1.5f);
 std::string describe(const KbMaterial& material);
 
-/// Every material type; for rough ones both distributions, visible normals or all, four roughnesses, and
-/// indices.
+/// Every material type; for rough ones both distributions, visible normals or all,
+/// four roughnesses, and indices.
 std::vector<KbMaterial> every_material();
 
 }  // namespace kiloband::test

@@ -8,8 +8,8 @@
 namespace kiloband::test {
 namespace {
 
-/// `count` random queries. Half of the wo are samples of the CPU, so that narrow lobes are evaluated where
-/// they are.
+/// `count` random queries. Half of the wo are samples of the CPU,
+/// so that narrow lobes are evaluated where they are.
 void add_queries(const Scene& scene, uint32_t material, float dispersion_eta, int count, Uniform& uniform,
                  std::vector<Query>& queries) {
   for (int i = 0; i < count; ++i) {

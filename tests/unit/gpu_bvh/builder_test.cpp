@@ -1,5 +1,5 @@
-// The hierarchy's bytes and shape: the same for any number of threads, every primitive once, boxes that
-// contain.
+// The hierarchy's bytes and shape: the same for any number of threads, every primitive once,
+// boxes that contain.
 #include <gtest/gtest.h>
 
 #include <cstring>

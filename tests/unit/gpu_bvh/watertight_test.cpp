@@ -66,8 +66,8 @@ void expect_none(const Leaks& leaks) {
 
 class Watertight : public ::testing::TestWithParam<int> {};
 
-// 179 400 triangles. At the farthest offset coordinates are 1/64 apart: vertices coincide, triangles
-// degenerate.
+// 179 400 triangles. At the farthest offset coordinates are 1/64 apart:
+// vertices coincide, triangles degenerate.
 TEST_P(Watertight, Sphere) {
   const glm::vec3 centre = kOffsets[static_cast<std::size_t>(GetParam())];
   expect_none(count_leaks(uv_sphere(centre, 2, 300, 300), centre, 0.9f, kRays));

@@ -17,8 +17,8 @@ double interpolated(const gpu::ChannelTables& t, uint32_t row, std::size_t k, do
   return node[0] + (position - cell) * (static_cast<double>(node[t.layout.stride]) - node[0]);
 }
 
-/// Largest error of a row over random mu, relative to its largest value in the channel. float rounding
-/// included.
+/// Largest error of a row over random mu, relative to its largest value in the channel.
+/// float rounding included.
 double observed_error(const FlatScene& scene, const gpu::ChannelTables& t, uint32_t s, std::mt19937& random) {
   double worst = 0;
   for (std::size_t k = 0; k < scene.channels.size(); ++k) {

@@ -1,5 +1,5 @@
-// Runs the evaluation kernels on saved paths, with buffers of its own: what the renderer does, without
-// tracing.
+// Runs the evaluation kernels on saved paths, with buffers of its own:
+// what the renderer does, without tracing.
 #pragma once
 
 #include <cstdint>

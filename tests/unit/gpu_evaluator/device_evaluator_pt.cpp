@@ -146,8 +146,8 @@ PtTiming DeviceEvaluator::time_pt(uint32_t slots, uint32_t groups, uint32_t boun
     if (r > 0) timing.seconds = std::min(timing.seconds, processor_seconds() - start);
   }
   timing.state_bytes = 2 * floats * sizeof(float);
-  // A first bounce writes tau and L, others read and write them, the last reads them and updates sum and
-  // compensation.
+  // A first bounce writes tau and L, others read and write them,
+  // the last reads them and updates sum and compensation.
   timing.bytes = static_cast<double>(slots) * layout_.channels * (8.0 + 16.0 * (bounces - 2) + 8.0 + 16.0);
   return timing;
 }

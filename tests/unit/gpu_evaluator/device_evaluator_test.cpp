@@ -262,8 +262,8 @@ TEST(DeviceEvaluator, SpecialisedKernelsComputeTheSameBits) {
   const PathBuffer many = make_paths(w.scene, 400, random);
   EvaluatorProgram general({16, 2, false, 0});
   for (const auto& [macro, kinds] : features) {
-    // Paths whose vertices are all of the build's kinds; with a feature's macro alone the others are compiled
-    // out.
+    // Paths whose vertices are all of the build's kinds;
+    // with a feature's macro alone the others are compiled out.
     PathBuffer some;
     some.slots = many.slots;
     const bool textures = macro.find("TEXTURE") != std::string::npos;

@@ -10,8 +10,8 @@ uint32_t below(std::mt19937& random, std::size_t n) {
   return static_cast<uint32_t>(random() % n);
 }
 
-/// Values at steps of a simple fraction of the channels' width, over all channels and beyond, or ending at an
-/// edge.
+/// Values at steps of a simple fraction of the channels' width, over all channels and beyond,
+/// or ending at an edge.
 RegularTable stepped_table(const ChannelList& channels, double low, double high, bool extrapolate,
                            std::mt19937& random) {
   const double width = channels.front().width_nm();

@@ -1,5 +1,5 @@
-// Vertices of gas on an OpenCL device against the oracle, in all three methods; rows of lines; builds without
-// gas.
+// Vertices of gas on an OpenCL device against the oracle, in all three methods; rows of lines;
+// builds without gas.
 //
 // Tolerance as in device_evaluator_test.cpp. A line's flank of a hundredth of a channel turns the rounding of
 // mu, 3e-8, into 3e-6 of kappa.
@@ -68,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(, DeviceGas,
                                   (p.param.per_path ? "_per_path" : "_shared");
                          });
 
-/// Planck's law relative to a reference, over exponents hc / (k lambda T) of up to 240: plumes of one black
-/// cell.
+/// Planck's law relative to a reference, over exponents hc / (k lambda T) of up to 240: plumes
+/// of one black cell.
 TEST(DeviceGasPlanck, RatioOverTheFloatRange) {
   std::mt19937 random(33);
   EvaluatorProgram program({16, 1, false, 0});

@@ -1,5 +1,5 @@
-// Devices that fail: every call of every function in turn ends in one clear exception, without a leaked
-// buffer.
+// Devices that fail: every call of every function in turn ends in one clear exception,
+// without a leaked buffer.
 #include <sys/wait.h>
 
 #include <cstdio>

@@ -60,8 +60,8 @@ std::vector<ItemIn> random_pixels(const KbCamera& camera, std::size_t count) {
   return in;
 }
 
-/// Directions agree to a few units of their last place, `tolerance`, which on wide films is a fraction of a
-/// pixel.
+/// Directions agree to a few units of their last place, `tolerance`,
+/// which on wide films is a fraction of a pixel.
 void expect_rays(const KbCamera& camera, double tolerance) {
   FlatScene scene;
   scene.camera = camera;
@@ -88,8 +88,8 @@ TEST(GpuCamera, EveryTypeAndFilter) {
 }
 
 /// A narrow view on a film of 16384 pixels: a pixel is 6e-7 wide. The image plane's coordinates agree to 2e-7
-/// of half the film times the view's half width 5e-3, 2e-3 of a pixel; what is left is the rounding of unit
-/// vectors.
+/// of half the film times the view's half width 5e-3, 2e-3 of a pixel;
+/// what is left is the rounding of unit vectors.
 TEST(GpuCamera, WideFilms) {
   KbCamera camera = make_camera(KB_CAMERA_PERSPECTIVE, KB_FILTER_GAUSSIAN, 16384, 9001, 0.01);
   expect_rays(camera, 2e-7);

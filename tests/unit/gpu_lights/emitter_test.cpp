@@ -1,5 +1,5 @@
-// Light selection, sampling and densities on the device against src_cpu/emitter.cpp, which treats spheres in
-// double.
+// Light selection, sampling and densities on the device against src_cpu/emitter.cpp,
+// which treats spheres in double.
 #include "src_cpu/emitter.hpp"
 
 #include "scene/lattice_cdf.hpp"
@@ -60,8 +60,8 @@ std::vector<ItemIn> points_around(glm::dvec3 centre, double distance, std::size_
   return in;
 }
 
-/// How much rounding of positions, 5e-7 here, may move the density of sampling over an area: it goes with 1 /
-/// (distance from the light's plane) and the distance cubed.
+/// How much rounding of positions, 5e-7 here, may move the density of sampling over an area: it goes with
+/// 1 / (distance from the light's plane) and the distance cubed.
 double conditioning(const FlatScene& scene, const ItemIn& item) {
   const AreaLightSample sample =
       sample_area_light(scene, scene.shapes[0], get3(item, 0), item.f[4], get2(item, 5), false);
@@ -132,8 +132,8 @@ void expect_densities(const FlatScene& scene, const std::vector<ItemIn>& points,
   EXPECT_LE(parted, in.size() / 10000 + 2);
 }
 
-/// Off-surface targets of a float sphere: the position's rounding moves targets by up to one step of 256
-/// units.
+/// Off-surface targets of a float sphere: the position's rounding moves targets by up
+/// to one step of 256 units.
 double step(double coordinate) {
   return 1.5e-5 + 256 * 1.2e-7 * coordinate;
 }
@@ -179,8 +179,8 @@ TEST(GpuLights, DisksAndCylinders) {
   }
 }
 
-/// Meshes with uvs, a bitmap on them, normals all over the place, triangles of very different areas and a
-/// sliver.
+/// Meshes with uvs, a bitmap on them, normals all over the place,
+/// triangles of very different areas and a sliver.
 FlatScene mesh_light(uint32_t flags) {
   FlatScene scene = testing::scene_with_mesh({{0, 0, 0},
                                               {1, 0, 0},
@@ -256,8 +256,8 @@ TEST(GpuLights, PointsSpotsAndDirections) {
   }
 }
 
-/// Many emitters, some next to never chosen: the same choice for every random number, of the same
-/// probability.
+/// Many emitters, some next to never chosen: the same choice for every random number,
+/// of the same probability.
 TEST(GpuLights, SelectionIsExact) {
   FlatScene scene;
   Random random(21);

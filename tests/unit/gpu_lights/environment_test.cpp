@@ -1,5 +1,5 @@
-// Environments on the device against src_cpu/emitter_environment.cpp: coordinates, densities, poles and the
-// seam.
+// Environments on the device against src_cpu/emitter_environment.cpp: coordinates, densities,
+// poles and the seam.
 #include "scene/envmap_sampling.hpp"
 #include "src_cpu/emitter.hpp"
 #include "src_cpu/emitter_environment.hpp"

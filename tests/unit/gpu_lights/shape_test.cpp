@@ -1,5 +1,5 @@
-// Rays against analytic shapes on the device, which has no double, against src_cpu/shape_geometry.cpp, which
-// has.
+// Rays against analytic shapes on the device, which has no double,
+// against src_cpu/shape_geometry.cpp, which has.
 #include "src_cpu/ray_offset.hpp"
 #include "src_cpu/shape_geometry.hpp"
 #include "support.hpp"
@@ -50,8 +50,8 @@ OpenclProbe& probe() {
   return instance;
 }
 
-/// Spheres, disks and cylinders of `size`, centred `distance` sizes from the origin, turned, mirrored,
-/// flipped.
+/// Spheres, disks and cylinders of `size`, centred `distance` sizes from the origin,
+/// turned, mirrored, flipped.
 FlatScene shapes_of(double size, double distance) {
   FlatScene scene;
   const glm::dvec3 centre = size * distance * glm::normalize(glm::dvec3(1, -2, 0.7));
@@ -122,8 +122,8 @@ TEST(GpuShapes, HitsFarFromTheOrigin) {
   expect_hits(1, 1e4, 5);
 }
 
-/// Leaving a shape in any direction never finds it where the ray starts: what is found is what double
-/// precision finds.
+/// Leaving a shape in any direction never finds it where the ray starts:
+/// what is found is what double precision finds.
 void expect_clean_departure(double size, double offset) {
   const FlatScene scene = shapes_of(size, offset);
   Random random(5);

@@ -38,8 +38,8 @@ OpenclProbe& probe() {
   return instance;
 }
 
-/// Meshes with and without normals, uvs, flipped normals and mirroring, of several sizes; then analytic
-/// shapes.
+/// Meshes with and without normals, uvs, flipped normals and mirroring, of several sizes;
+/// then analytic shapes.
 FlatScene surface_scene() {
   FlatScene scene;
   Random random(9);
@@ -72,8 +72,8 @@ FlatScene surface_scene() {
   return scene;
 }
 
-/// A hit from 2 m away: of a triangle by barycentric coordinates, of an analytic shape by t (rounded, as hits
-/// are).
+/// A hit from 2 m away: of a triangle by barycentric coordinates, of an analytic shape by t
+/// (rounded, as hits are).
 ItemIn hit_of(const FlatScene& scene, const std::vector<KbPrimitive>& primitives, uint32_t index,
               Random& random) {
   ItemIn item{};

@@ -30,8 +30,8 @@ OpenclProbe& probe() {
   return instance;
 }
 
-/// Textures of several sizes in every wrap and filter mode under several maps, and checkerboards under the
-/// same maps.
+/// Textures of several sizes in every wrap and filter mode under several maps,
+/// and checkerboards under the same maps.
 FlatScene texture_scene() {
   const float maps[][6] = {{1, 0, 0, 0, 1, 0},
                            {3.7f, -1.2f, 0.3f, 0.9f, 2.1f, -17.4f},

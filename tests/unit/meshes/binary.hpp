@@ -39,8 +39,8 @@ inline std::string deflate(const std::string& plain) {
   return packed;
 }
 
-/// What stands inside the zlib stream of a serialized mesh, by default a quad of two triangles with z = 0 and
-/// no extras.
+/// What stands inside the zlib stream of a serialized mesh, by default a quad of two triangles
+/// with z = 0 and no extras.
 struct PlainMesh {
   uint32_t flags = 0x1000;
   std::string name = "quad";

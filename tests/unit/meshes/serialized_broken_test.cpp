@@ -18,8 +18,8 @@ struct SerializedBroken : testing::Test {
     options.shape_index = shape_index;
     return error_of(folder, [&] { read_serialized(path, options); });
   }
-  /// The message with the number of its byte replaced by N: inside a zlib stream it depends on how zlib
-  /// buffers.
+  /// The message with the number of its byte replaced by N: inside a zlib stream it depends
+  /// on how zlib buffers.
   std::string error_anywhere(const std::string& bytes) {
     std::string text = error(bytes);
     const std::string mark = "byte ";
@@ -126,8 +126,8 @@ TEST_F(SerializedBroken, EmptyMeshes) {
             "a.serialized: the mesh has no triangles");
 }
 
-// A stream of zeros that promises a gigabyte in a small file must not cost a gigabyte: the counts do not fit
-// it.
+// A stream of zeros that promises a gigabyte in a small file must not cost a gigabyte:
+// the counts do not fit it.
 TEST_F(SerializedBroken, SmallBombIsRefused) {
   PlainMesh bomb;
   bomb.vertices = 100'000'000;

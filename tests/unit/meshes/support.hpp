@@ -1,5 +1,5 @@
-// What the tests of this folder share: a temporary folder, the text of an InputError, collected diagnostics,
-// real data.
+// What the tests of this folder share: a temporary folder, the text of an InputError,
+// collected diagnostics, real data.
 #pragma once
 
 #include <cstdlib>

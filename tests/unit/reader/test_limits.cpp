@@ -1,5 +1,5 @@
-// What a scene file could multiply without end: files in files, elements of every kind, attributes,
-// references.
+// What a scene file could multiply without end: files in files,
+// elements of every kind, attributes, references.
 #include <gtest/gtest.h>
 
 #include "scene/xml_document.hpp"

@@ -19,8 +19,8 @@ namespace {
 constexpr uint64_t kFingerprint = 7;
 constexpr SumRule kRule{SumRule::Kind::kFolded, 4, 4, 1};
 // Bytes of the checkpoint below: magic, header and its checksum; samples of 2 replicates and 2 blocks of a
-// pixel; replicate 0 of block 0 (open sums), replicate 1 of block 1 (both kinds); values that are not finite,
-// checksum.
+// pixel; replicate 0 of block 0 (open sums), replicate 1 of block 1 (both kinds);
+// values that are not finite, checksum.
 constexpr std::size_t kHeader = 16, kTable = kHeader + 11 * 8, kFirst = kTable + 4 * 4,
                       kSecond = kFirst + 4 + 2 * 4, kEnd = kSecond + 4 + 2 * 4 + 2 * 8, kSize = kEnd + 16;
 

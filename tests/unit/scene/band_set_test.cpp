@@ -60,8 +60,8 @@ TEST(BandSet, OneBand) {
   EXPECT_NEAR(weights[0], 0.5, 1e-12);
 }
 
-/// The weights are means of the tents: the mean of a spectrum is exact, and bands that the channel does not
-/// see have 0.
+/// The weights are means of the tents: the mean of a spectrum is exact,
+/// and bands that the channel does not see have 0.
 TEST(BandSet, MeanWeights) {
   for (const bool extrapolate : {false, true}) {
     const BandSet set = irregular(extrapolate);

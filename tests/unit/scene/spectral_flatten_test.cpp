@@ -1,5 +1,5 @@
-// What flattening makes of spectral images: bounds, means, the choice of lights and directions, channel
-// scales.
+// What flattening makes of spectral images: bounds, means, the choice of lights
+// and directions, channel scales.
 #include <gtest/gtest.h>
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -50,8 +50,8 @@ TEST(SpectralFlatten, BoundsAndMeansOfBands) {
   EXPECT_FALSE(scene.band_sets[0].is_emission);
 }
 
-/// The specular share of a plastic tells the guide mean: at 430 nm both texels are half-way between two
-/// bands.
+/// The specular share of a plastic tells the guide mean:
+/// at 430 nm both texels are half-way between two bands.
 TEST(SpectralFlatten, GuideMeansWeighLobes) {
   const TemporaryFolder folder;
   write_cube(folder / "a.exr", 2, 1, kBands,
@@ -152,8 +152,8 @@ TEST(SpectralFlatten, EveryChannelHasOneVoteInTheChoiceOfDirections) {
   double solid_angle = 0;
   for (const int row : {1, 2})
     solid_angle += 2 * (std::cos(M_PI * row / 8) - std::cos(M_PI * (row + 1) / 8)) * (2 * M_PI / 16);
-  // 1 % of the directions are uniform in any case. Means by the sines of rows and by cells differ by 2 %
-  // here.
+  // 1 % of the directions are uniform in any case.
+  // Means by the sines of rows and by cells differ by 2 % here.
   EXPECT_NEAR(around, 0.99 * (0.5 + 0.5 * solid_angle / (4 * M_PI)) + 0.01 * solid_angle / (4 * M_PI), 0.01);
 }
 
@@ -193,8 +193,8 @@ TEST(SpectralFlatten, SampledDirectionsFollowTheirDensity) {
   EXPECT_GT(boost::math::cdf(boost::math::complement(distribution, statistic)), 1e-5);
 }
 
-/// Lights are chosen by what they emit in each channel: a map with the same power in each as a lamp gets the
-/// same part.
+/// Lights are chosen by what they emit in each channel: a map with the same power in each
+/// as a lamp gets the same part.
 TEST(SpectralFlatten, LightsAreChosenByThePowerOfBandsAndMixtures) {
   const TemporaryFolder folder;
   write_cube(folder / "one.exr", 1, 1, kBands,

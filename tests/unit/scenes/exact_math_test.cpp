@@ -1,5 +1,5 @@
-// The generator's elementary functions against those of the C library, and values that they must have on
-// every machine.
+// The generator's elementary functions against those of the C library,
+// and values that they must have on every machine.
 #include "scenes/generator/exact_math.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Primitives against closed forms of their volume: an inscribed mesh is smaller by a factor that its
-// divisions tell.
+// Primitives against closed forms of their volume: an inscribed mesh is smaller by a factor
+// that its divisions tell.
 #include "scenes/generator/primitives.hpp"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ void expect_sound(const Mesh& mesh, double volume, double tolerance) {
 
 TEST(Primitives, BoxWithRoundEdges) {
   const double x = 1.2, y = 0.5, z = 0.8, r = 0.05, a = x - 2 * r, b = y - 2 * r, c = z - 2 * r;
-  // Steiner's formula: inner box, its faces moved out by r, its edges as quarter cylinders, its corners as a
-  // ball.
+  // Steiner's formula: inner box, its faces moved out by r, its edges as quarter cylinders,
+  // its corners as a ball.
   const double volume =
       a * b * c + 2 * r * (a * b + b * c + c * a) + kPi * r * r * (a + b + c) + 4 * kPi / 3 * r * r * r;
   expect_sound(rounded_box({x, y, z}, r, 16), volume, 1e-4);
@@ -76,8 +76,8 @@ TEST(Primitives, PictureIsUprightForItsViewer) {
   }
 }
 
-/// Marching tetrahedra put vertices on the ball (but for those kept away from lattice points by 6 % of an
-/// edge).
+/// Marching tetrahedra put vertices on the ball (but for those kept away from lattice points
+/// by 6 % of an edge).
 TEST(Implicit, BallAndItsNormals) {
   const double step = 0.05;
   const Mesh mesh = surface_of([](Vec3 p) { return sphere_distance(p, {}, 0.5); },
@@ -89,8 +89,8 @@ TEST(Implicit, BallAndItsNormals) {
   }
 }
 
-/// Two balls that touch the lattice in hard ways, and a tunnel through a body: closed whatever the field
-/// does.
+/// Two balls that touch the lattice in hard ways, and a tunnel through a body:
+/// closed whatever the field does.
 TEST(Implicit, StaysManifold) {
   const auto bodies = [](Vec3 p) {
     const double two =

@@ -1,5 +1,5 @@
-// Statistical helpers of the tests: Pearson's chi-square test, and tests of direction sampling against a
-// density.
+// Statistical helpers of the tests: Pearson's chi-square test,
+// and tests of direction sampling against a density.
 //
 // p-values are compared with kTestLevel: a correct implementation fails for one seed in 1e5 (seeds are fixed,
 // so that a passing test stays passing). What a test can see: with n samples in c cells a relative RMS error
@@ -65,8 +65,7 @@ inline std::pair<float, float> uniform_pair(uint64_t seed, uint32_t index) {
 }
 
 /// A grid over directions: theta in [0, theta_max] with cells that grow like i^2 (densities peak at the
-/// pole), phi in
-/// [-pi, pi].
+/// pole), phi in [-pi, pi].
 struct DirectionGrid {
   int theta_cells = 20, phi_cells = 20;
   double theta_max = 3.14159265358979324;

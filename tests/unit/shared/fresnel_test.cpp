@@ -16,8 +16,8 @@ struct Exact {
   Real reflectance, absorptance, cos_t;
 };
 
-// r_s = (c - n ct) / (c + n ct), r_p = (n c - ct) / (n c + ct) with complex n and ct = sqrt(1 - (1 - c^2) /
-// n^2).
+// r_s = (c - n ct) / (c + n ct), r_p = (n c - ct) / (n c + ct) with complex n
+// and ct = sqrt(1 - (1 - c^2) / n^2).
 Exact exact_fresnel(Real c, Complex n) {
   const Complex ct = std::sqrt(Complex(1) - (1 - c * c) / (n * n));
   const Real s = std::norm((c - n * ct) / (c + n * ct));
@@ -55,8 +55,8 @@ TEST(Fresnel, DielectricMatchesTheComplexFormula) {
       }
 }
 
-// F of an index difference d at normal incidence is (d / (2 + d))^2; textbook code in float loses it to
-// rounding.
+// F of an index difference d at normal incidence is (d / (2 + d))^2;
+// textbook code in float loses it to rounding.
 TEST(Fresnel, NearlyEqualIndicesKeepTheirDigits) {
   const float eta = 1.000277f;
   const double d = double{eta} - 1;

@@ -54,9 +54,10 @@ TEST(Microfacet, DistributionTimesCosineIntegratesToOne) {
     }
 }
 
-// Smith's G1 by its meaning: the projected area of the visible facets is that of the surface, integral G1(v,
-// m) max(0, v.m) D(m) dm = v.z. This is what normalises the density of visible normals, with G1 as closed
-// form against the integral without it: 1 + Lambda = (1 / v.z) integral max(0, v.m) D(m) dm.
+// Smith's G1 by its meaning: the projected area of the visible facets is that of the surface,
+//   integral G1(v, m) max(0, v.m) D(m) dm = v.z.
+// This is what normalises the density of visible normals, with G1 as closed form against the integral without
+// it: 1 + Lambda = (1 / v.z) integral max(0, v.m) D(m) dm.
 TEST(Microfacet, MaskingNormalisesVisibleNormals) {
   for (const kb_u32 distribution : kDistributions)
     for (const auto [au, av] : kRoughnesses)

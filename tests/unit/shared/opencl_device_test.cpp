@@ -1,9 +1,9 @@
 // The dual-language headers on an OpenCL device (PoCL in automated runs) against the same code on the host:
-// bit for bit where only integers and + - * / sqrt occur, within a few ulp where the device has its own sin,
-// exp, erf.
+// bit for bit where only integers and + - * / sqrt occur, within a few ulp where the device has its
+// own sin, exp, erf.
 //
-// Without an OpenCL device the test fails; the environment variable KILOBAND_NO_OPENCL=1 says that this is
-// known.
+// Without an OpenCL device the test fails; the environment variable KILOBAND_NO_OPENCL=1 says
+// that this is known.
 #include <CL/cl.h>
 #include <gtest/gtest.h>
 

@@ -71,8 +71,8 @@ KB_FN void kb_probe_put3(KbFloat3 v, KB_GLOBAL float* out) {
   out[2] = v.z;
 }
 
-/* With sin, cos, exp, log, erf. Points of a disk stay off its rim, where lifting them onto the sphere, sqrt(1
-   - r^2), turns an ulp of r into many. The values from 24 on come out of iterations or steep tails. */
+/* With sin, cos, exp, log, erf. Points of a disk stay off its rim, where lifting them onto the sphere,
+   sqrt(1 - r^2), turns an ulp of r into many. The values from 24 on come out of iterations or steep tails. */
 KB_FN void kb_probe_functions(KbFloat4 u, KB_GLOBAL float* out) {
   const KbFloat2 p = kb_disk_concentric(u.x, u.y);
   const KbFloat3 m = kb_normalize3(kb_float3(u.x - 0.5f, u.y - 0.5f, u.z + 0.5f));

@@ -1,5 +1,5 @@
-// Every header of src/shared compiles as OpenCL C 1.2, without a warning. Checked with clang, which needs no
-// device.
+// Every header of src/shared compiles as OpenCL C 1.2, without a warning.
+// Checked with clang, which needs no device.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

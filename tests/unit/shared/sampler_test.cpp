@@ -54,8 +54,8 @@ TEST(Sampler, KeyedAndDirectCallsAgree) {
   }
 }
 
-// Every argument that should matter does; with sobol the sample itself enters only through its replicate and
-// index.
+// Every argument that should matter does;
+// with sobol the sample itself enters only through its replicate and index.
 TEST(Sampler, SobolDependsOnSeedPixelReplicateIndexBlock) {
   const auto sobol = [](uint64_t seed, uint32_t pixel, uint32_t sample, uint32_t replicate, uint32_t index,
                         uint32_t block) {
@@ -109,8 +109,8 @@ TEST(Sampler, SharedAndPathMuAreStratified) {
 }
 
 // 2^16 mu of different blocks, replicates and seeds at one index are uniform and pairwise independent of a
-// neighbour: 16 x 16 cells of (mu, neighbour's mu), 65536 pairs; RMS errors of the cells from 4.6 % on are
-// found.
+// neighbour: 16 x 16 cells of (mu, neighbour's mu), 65536 pairs;
+// RMS errors of the cells from 4.6 % on are found.
 TEST(Sampler, MuIsUniformAndIndependentAmongItsKeys) {
   const auto test = [](const char* name, const auto& pair) {
     std::vector<double> observed(256), expected(256, 256.0);

@@ -1,5 +1,5 @@
-// Owen-scrambled Sobol points: the table against the direction numbers, stratification, unbiasedness,
-// independence.
+// Owen-scrambled Sobol points: the table against the direction numbers,
+// stratification, unbiasedness, independence.
 #include "shared/sobol.h"
 
 #include <gtest/gtest.h>
@@ -62,8 +62,8 @@ Point plain_sobol(uint32_t index) {
   return x;
 }
 
-// The first ten points of the sequence as printed by the program that Joe and Kuo distribute (Gray code
-// order).
+// The first ten points of the sequence as printed by the program that Joe and Kuo distribute
+// (Gray code order).
 TEST(Sobol, DirectionNumbersGiveThePublishedPoints) {
   const double expected[10][3] = {{0, 0, 0},
                                   {.5, .5, .5},
@@ -94,8 +94,8 @@ TEST(Sobol, TableMatchesTheDirectionNumbers) {
   }
 }
 
-// Nested scrambling: flipping bit b of x (from below, as reversed) leaves all result bits below b alone and
-// flips b.
+// Nested scrambling: flipping bit b of x (from below, as reversed) leaves all result bits below b
+// alone and flips b.
 TEST(Sobol, OwenHashIsANestedPermutation) {
   for (uint32_t i = 0; i < 2000; ++i) {
     const uint32_t x = kb_mix32(i, 2), seed = kb_mix32(i, 3), b = i % 32;
@@ -128,8 +128,8 @@ std::vector<Point> scrambled_points(int m, uint32_t first, uint32_t key0, uint32
   return points;
 }
 
-// Dimensions 0 and 1 are a (0, m, 2)-net in base 2: the first 2^m points, and every aligned run of 2^m points
-// later.
+// Dimensions 0 and 1 are a (0, m, 2)-net in base 2: the first 2^m points,
+// and every aligned run of 2^m points later.
 TEST(Sobol, FirstTwoDimensionsHitEveryElementaryIntervalOnce) {
   for (int m = 0; m <= 10; ++m)
     for (uint32_t key = 0; key < 6; ++key)
@@ -181,8 +181,9 @@ TEST(Sobol, EveryPointIsUnbiasedOverSeeds) {
   }
 }
 
-// Means of 16 points: unbiased, and their spread far below that of independent points (1/sqrt(12 * 16) =
-// 0.072 for f = x; scrambled nets: within each of 16 strata uniform, 1/sqrt(12)/16/4 = 0.0045).
+// Means of 16 points: unbiased, and their spread far below that of independent points
+// (1/sqrt(12 * 16) = 0.072 for f = x; scrambled nets: uniform within each of 16 strata,
+// 1/sqrt(12)/16/4 = 0.0045).
 TEST(Sobol, MeansOfPointSetsAreUnbiasedAndFarTighter) {
   std::vector<double> means;
   for (uint32_t key = 0; key < 4096; ++key) {
@@ -198,8 +199,8 @@ TEST(Sobol, MeansOfPointSetsAreUnbiasedAndFarTighter) {
 }
 
 // Joint uniformity of two coordinates, one from each of two point sets that should be independent, over keys:
-// 8 x 8 cells, 65536 pairs; see chi_square.hpp for error rate; RMS errors of the cells from 3.1 % on are
-// found.
+// 8 x 8 cells, 65536 pairs; see chi_square.hpp for error rate;
+// RMS errors of the cells from 3.1 % on are found.
 void expect_independent(uint32_t index, const auto& key_a, const auto& key_b) {
   for (int d = 0; d < 4; ++d) {
     std::vector<double> observed(64), expected(64, 1024.0);

@@ -91,8 +91,8 @@ TEST(Warp, ConeMatchesItsDensity) {
   }
 }
 
-// A star 1e-6 rad wide: cos rounds to 1 in float. The radius must still be spread like sqrt(u) and the
-// density finite.
+// A star 1e-6 rad wide: cos rounds to 1 in float.
+// The radius must still be spread like sqrt(u) and the density finite.
 TEST(Warp, TinyConeKeepsItsShape) {
   const double angle = 1e-6;
   const float one_minus_cos = kb_one_minus_cos(static_cast<float>(std::sin(angle) * std::sin(angle)));

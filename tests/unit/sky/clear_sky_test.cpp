@@ -1,5 +1,5 @@
-// The sky's irradiances against published figures: broadband sunlight, ASTM G173, empirical formulas of
-// thermal radiation.
+// The sky's irradiances against published figures: broadband sunlight, ASTM G173,
+// empirical formulas of thermal radiation.
 #include "sky/clear_sky.hpp"
 
 #include <gtest/gtest.h>
@@ -39,8 +39,8 @@ TEST(ClearSky, ParametersHaveTheirRanges) {
   EXPECT_EQ(error_of({.ground_emissivity = std::nan("")}), "ground emissivity nan: must be from 0 to 1");
 }
 
-/// 1 at the zenith (within 0.1 %), 1.994 at 30 degrees (Kasten and Young 1989), 36.5 at the horizon (Kasten
-/// 1966).
+/// 1 at the zenith (within 0.1 %), 1.994 at 30 degrees (Kasten and Young 1989),
+/// 36.5 at the horizon (Kasten 1966).
 TEST(ClearSky, AirMass) {
   EXPECT_NEAR(air_mass(90), 1, 1e-3);
   EXPECT_NEAR(air_mass(30), 1.994, 2e-3);
@@ -66,8 +66,8 @@ TEST(ClearSky, BroadbandDirectSunlight) {
   EXPECT_EQ(ClearSky({.sun_elevation_deg = -1}).rayleigh().integral(300, 20000), 0);
 }
 
-/// Clear skies are blue: molecules scatter more at 450 nm than at 650 nm, by a little more than (650/450)^4
-/// = 4.35 because the index of air falls with wavelength.
+/// Clear skies are blue: molecules scatter more at 450 nm than at 650 nm, by a little
+/// more than (650/450)^4 = 4.35 because the index of air falls with wavelength.
 TEST(ClearSky, ScatteredLightIsBlue) {
   const ClearSky sky({.aerosol_500nm = 0});
   EXPECT_GT(sky.rayleigh_depth(450) / sky.rayleigh_depth(650), 4.35);
@@ -106,8 +106,8 @@ TEST(ClearSky, ThermalRadiationOfTheAirAgreesWithPrata) {
   RecordProperty("highest", std::to_string(highest));
 }
 
-/// The window from 8 to 13 um is colder than the bands beside it, and colder at the zenith than at the
-/// horizon.
+/// The window from 8 to 13 um is colder than the bands beside it, and colder at the zenith
+/// than at the horizon.
 TEST(ClearSky, TheWindowIsCold) {
   const ClearSky sky({});
   const auto brightness = [&](double nm,

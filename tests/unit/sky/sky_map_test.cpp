@@ -20,8 +20,8 @@ struct Irradiance {
   double towards_sun = 0;  // on a plane that faces the sun, from within 3 degrees of it
 };
 
-/// The irradiances of the map interpolated as environment maps are, by a midpoint rule of 6 x 6 points per
-/// texel.
+/// The irradiances of the map interpolated as environment maps are,
+/// by a midpoint rule of 6 x 6 points per texel.
 Irradiance irradiance(const SkyMap& map, const std::vector<float>& values, std::size_t band, glm::dvec3 sun) {
   constexpr int kPoints = 6;
   const uint32_t width = map.width(), height = map.height();

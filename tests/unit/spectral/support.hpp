@@ -12,8 +12,8 @@
 
 namespace kiloband::test {
 
-/// What the InputError says that `action` throws, without the temporary folder's name; "" if it throws
-/// nothing.
+/// What the InputError says that `action` throws, without the temporary folder's name;
+/// "" if it throws nothing.
 template <class Action>
 std::string message_of(Action action, const std::string& folder = {}) {
   try {

@@ -20,8 +20,8 @@ TEST(Colour, MatchingFunctionsAtPublishedWavelengths) {
   EXPECT_GT(cie_y()(830), 0);
 }
 
-// The observer's three curves enclose equal areas (CIE); the trapezoid rule is exact for the interpolated
-// table.
+// The observer's three curves enclose equal areas (CIE);
+// the trapezoid rule is exact for the interpolated table.
 TEST(Colour, IntegralsOfTheMatchingFunctions) {
   EXPECT_NEAR(cie_y().integral(360, 830), 106.857028, 1e-6);
   EXPECT_NEAR(cie_x().integral(360, 830) / cie_y().integral(360, 830), 1, 2e-4);

@@ -22,8 +22,8 @@ std::string yaml_formula(int number, const std::string& range, const std::string
          "\n    wavelength_range: " + range + "\n    coefficients: " + coefficients + "\n";
 }
 
-// SCHOTT's data sheet of N-BK7: n_d (587.5618 nm) 1.51680, n_F (486.1327) 1.52238, n_C (656.2725) 1.51432,
-// n_1529.6 1.50091.
+// SCHOTT's data sheet of N-BK7: n_d (587.5618 nm) 1.51680, n_F (486.1327) 1.52238,
+// n_C (656.2725) 1.51432, n_1529.6 1.50091.
 TEST(OpticalConstants, BorosilicateGlassBySellmeier) {
   const OpticalConstants glass = read_text(
       "n.yml", yaml_formula(2, "0.3 2.5",

@@ -1,5 +1,5 @@
-// Damaged files: readers return or throw InputError; anything else (a crash, another exception, a hang) fails
-// the test.
+// Damaged files: readers return or throw InputError;
+// anything else (a crash, another exception, a hang) fails the test.
 #include <gtest/gtest.h>
 
 #include <functional>

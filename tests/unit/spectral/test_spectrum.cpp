@@ -18,8 +18,8 @@ double brute_integral(const Spectrum& s, double min_nm, double max_nm, int parts
   return sum * (max_nm - min_nm) / parts;
 }
 
-/// Checks max_over and min_over against dense samples and the kinks: bounds, and not wider than 1e-3 of the
-/// value.
+/// Checks max_over and min_over against dense samples and the kinks: bounds,
+/// and not wider than 1e-3 of the value.
 void expect_tight_bounds(const Spectrum& s, double min_nm, double max_nm,
                          const std::vector<double>& kinks_nm = {}) {
   double highest = -INFINITY, lowest = INFINITY;

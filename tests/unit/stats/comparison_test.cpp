@@ -77,8 +77,8 @@ TEST(Comparison, ConstantPixelsMustBeEqual) {
   EXPECT_EQ(other.decisive().worst->channel, 1u);
 }
 
-/// Pixels with a contribution now and then are pooled per tile, and the bias of all of them together is
-/// found.
+/// Pixels with a contribution now and then are pooled per tile, and the bias of all
+/// of them together is found.
 TEST(Comparison, ThinPixelsArePooled) {
   const auto sparse = [](uint64_t seed, double factor) {
     ReplicateImage image = image_of(seed, {32, 32, 32, 1});

@@ -110,8 +110,8 @@ TEST(Gaps, MomentsOfReplicates) {
   EXPECT_TRUE(std::isnan(m.mean[3])) << "no samples";
 }
 
-/// Light in every fourth replicate, in all pixels at once: tiles are as thin as pixels, the image alone is
-/// left.
+/// Light in every fourth replicate, in all pixels at once: tiles are as thin as pixels,
+/// the image alone is left.
 TEST(Gaps, ThinEverywhere) {
   const auto sparse = [](uint64_t seed) {
     ReplicateImage image = image_of(seed);

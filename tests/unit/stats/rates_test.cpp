@@ -1,6 +1,6 @@
 // False alarms: 40 comparisons without difference per distribution. Each test must have p < 5 % no more often
-// than a binomial law of rate 5 % allows at 1e-5 (9 of 40). Larger numbers:
-// validation/stats/study_comparison.
+// than a binomial law of rate 5 % allows at 1e-5 (9 of 40).
+// Larger numbers: validation/stats/study_comparison.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -12,8 +12,8 @@ struct SourceFile {
   std::string text;
 };
 
-/// All text files below these folders of the project (or these files), sorted by path. throws
-/// std::runtime_error  one of them does not exist
+/// All text files below these folders of the project (or these files), sorted by path.
+/// throws std::runtime_error  one of them does not exist
 std::vector<SourceFile> read_files(const std::vector<std::string>& places);
 
 /// Targets of the #include "..." lines with their line numbers.

@@ -140,8 +140,8 @@ TEST(Compensation, TablesFollowTheIndex) {
   }
 }
 
-/// With F = 1 everything is reflected: the compensated lobe integrates to 1 (by its own samples: weights
-/// average to 1).
+/// With F = 1 everything is reflected: the compensated lobe integrates
+/// to 1 (by its own samples: weights average to 1).
 TEST(Compensation, NothingIsLost) {
   const Facets f(true, 0.4, 0.4);
   KbMaterial m = material(KB_MATERIAL_ROUGH_CONDUCTOR, f);

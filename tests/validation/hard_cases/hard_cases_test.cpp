@@ -1,6 +1,6 @@
 // The hard cases at their quick level: every figure within its limit. Error rate: kHardFamilyRate for all of
-// a run together, see validation/suite/hard_cases/hard_cases.hpp; each figure is printed with its error and
-// its limit.
+// a run together, see validation/suite/hard_cases/hard_cases.hpp;
+// each figure is printed with its error and its limit.
 #include "validation/suite/hard_cases/hard_cases.hpp"
 
 #include <gtest/gtest.h>

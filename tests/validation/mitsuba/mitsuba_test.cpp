@@ -214,8 +214,8 @@ TEST(RunMitsuba, RunsTheScriptAndReadsItsFile) {
                 " --backends cpu,opencl:pt --seed 7 --rate 1e-05 --effort 0.25 --scenes box\n");
 }
 
-/// What keeps the script from being run has failed, as what it could not do: an hour of other cases is not
-/// lost.
+/// What keeps the script from being run has failed, as what it could not do:
+/// an hour of other cases is not lost.
 TEST(RunMitsuba, AResultThatCannotBeReplacedIsAFailure) {
   const ScratchFolder folder;
   fs::create_directories(folder.path() / "mitsuba.json" / "not empty");

@@ -1,5 +1,5 @@
-// Smooth glass at its limits: total internal reflection, nested bodies, and rough glass and mirrors of
-// roughness 1e-4.
+// Smooth glass at its limits: total internal reflection, nested bodies,
+// and rough glass and mirrors of roughness 1e-4.
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -95,8 +95,8 @@ std::vector<HardFigure> nested_glass(const HardCaseContext& context) {
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(8, 128, 2048))};
   const TrialImage image = trial.render(scene, settings);
   trial.exact("four bodies in a furnace", image, 0, 1, 5e-6, "sums of rounding, about 80 boundaries at most");
-  // A diffuse core behind three boundaries, reflectance 0.5: it sees the furnace too and shows less than 1,
-  // never more.
+  // A diffuse core behind three boundaries, reflectance 0.5: it sees the furnace too and shows less
+  // than 1, never more.
   trial.oracle("evaluation", scene, settings);
   return trial.finish();
 }

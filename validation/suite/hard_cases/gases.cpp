@@ -1,5 +1,5 @@
-// Gas of optical depth x from 1e-8 to 1e4: a column of 1 m at temperature T in front of a wall of radiance L0
-// shows
+// Gas of optical depth x from 1e-8 to 1e4: a column of 1 m at temperature T in front of a wall
+// of radiance L0 shows
 //   L = L0 exp(-x) + B(T) (1 - exp(-x)),
 // without variance. Relative to each term: 1 - exp(-x) must keep its accuracy where exp(-x) is 1 in float.
 #include <cmath>

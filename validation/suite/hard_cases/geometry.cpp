@@ -4,8 +4,8 @@
 // The furnace of these cases has no variance. A closed box of diffuse walls (reflectance rho) at the ambient
 // temperature T, with roulette behind the depth limit n, adds (1 - rho) B(T) at every vertex of every path:
 //   L = B (1 - rho) (1 + rho + ... + rho^(n-1)) = B (1 - rho^n).
-// Outside shines an environment of kOutside: a ray that leaves, or a shadow ray that passes a wall, shows at
-// once.
+// Outside shines an environment of kOutside: a ray that leaves,
+// or a shadow ray that passes a wall, shows at once.
 #include <cmath>
 #include <numbers>
 
@@ -90,8 +90,8 @@ std::vector<HardFigure> all_sizes(const HardCaseContext& context) {
       scene_text(kDepth, inside + small + large + ambient_element(kKelvin), kNoRoulette), settings);
   trial.exact("2e-6 m box within a 2e4 m lamp", both, 0, furnace_radiance(), kFurnaceLimit,
               "no light of the lamp comes in");
-  // A point light at height h over a tilted square of 2e4 m, seen at its foot: rho I cos / (pi h^2) with cos
-  // = 1.
+  // A point light at height h over a tilted square of 2e4 m, seen at its foot:
+  // rho I cos / (pi h^2) with cos = 1.
   const std::string ground =
       shape_element("rectangle", to_world_element(scale_step(1e4, 1e4, 1) + rotate_step(1, 0.4, 0, 30)) +
                                      diffuse(kReflectance));
@@ -108,8 +108,8 @@ std::vector<HardFigure> all_sizes(const HardCaseContext& context) {
   return trial.finish();
 }
 
-/// A square turned about x by `degrees`, under a directional light of irradiance 5 that comes from its y
-/// side.
+/// A square turned about x by `degrees`, under a directional light of irradiance 5 that
+/// comes from its y side.
 std::string sunlit_square(double half, double degrees, double sine) {
   const double angle = degrees * kPi / 180, y = -std::sqrt(1 - sine * sine), z = -sine;
   const std::string way =
@@ -159,11 +159,11 @@ std::vector<HardFigure> grazing_angles(const HardCaseContext& context) {
   return trial.finish();
 }
 
-/// A lamp of area 1e-6 m^2 and radiance L0 faces a diffuse square at distance h, seen at its foot: the
-/// irradiance of a square of half side a is E = L0 4 F, F = (2 a / s) atan(a / s) / 2 ... by Lambert's
-/// formula for a parallel rectangle above its corner, E = L0 / 2 (x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) +
-/// y / sqrt(1 + y^2) atan(x / sqrt(1 + y^2))) with x = y = a / h, four times; of a disk and a sphere of
-/// radius r: pi L0 r^2 / (h^2 + r^2) and pi L0 r^2 / h^2.
+/// A lamp of area 1e-6 m^2 and radiance L0 faces a diffuse square at distance h, seen at its foot. The
+/// irradiance of a square is four times Lambert's formula for a parallel rectangle above its corner,
+///   E = L0 / 2 (x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) + y / sqrt(1 + y^2) atan(x / sqrt(1 + y^2))),
+/// with x = y = a / h, a half its side; of a disk and a sphere of radius r: pi L0 r^2 / (h^2 + r^2) and
+/// pi L0 r^2 / h^2.
 std::vector<HardFigure> small_lights(const HardCaseContext& context) {
   Trial trial(context);
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(32, 256, 4096)),

@@ -1,10 +1,10 @@
-// No ray passes a closed surface: bodies that are lit from outside by an environment of 1e6 stay exactly
-// black inside.
+// No ray passes a closed surface: bodies that are lit from outside by an environment
+// of 1e6 stay exactly black inside.
 //
 // The camera stands inside; diffuse walls of reflectance 0.97 send paths on for 50 bounces, and every vertex
 // sends a shadow ray towards the environment. One ray that passed a wall would make a pixel positive: the
-// reference is 0, and the limit is 0. With no leak in n rays, the rate of leaks is below 9.2 / n at the level
-// 1e-4.
+// reference is 0, and the limit is 0. With no leak in n rays, the rate of leaks is below 9.2 / n
+// at the level 1e-4.
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
-// Long paths and many samples: an albedo of 1 - 1e-6 and other series of 1000 terms, mirrors, a million
-// samples.
+// Long paths and many samples: an albedo of 1 - 1e-6 and other series of 1000 terms, mirrors,
+// a million samples.
 #include <cmath>
 
 #include "validation/suite/hard_cases/groups.hpp"
@@ -25,14 +25,13 @@ double partial_sum(double rho, int n) {
   return -std::expm1(n * std::log1p(rho - 1)) / (1 - rho);
 }
 
-/// A closed box, reflectance rho = 1 - 1e-6, cut after 1000 vertices: L = Le (1 + rho + ... + rho^999), 999.5
-/// Le.
+/// A closed box, reflectance rho = 1 - 1e-6, cut after 1000 vertices:
+/// L = Le (1 + rho + ... + rho^999), 999.5 Le.
 ///   ambient temperature: Le = (1 - rho) B, no variance. rho in float is off by up to 3e-8, rho^i by i times
-///   that:
-///     1.5e-5 of the sum, and as much again for the rounding of the running product.
+///     that: 1.5e-5 of the sum, and as much again for the rounding of the running product.
 ///   area lights: Le by light and BSDF samples, roulette from the fifth vertex on: a t-test.
-/// The reflectance once flat, and once falling from 1 - 1e-6 to 1 - 3e-6 over the channel and back, so that
-/// it is a table.
+/// The reflectance once flat, and once falling from 1 - 1e-6 to 1 - 3e-6 over the channel and back,
+/// so that it is a table.
 std::vector<HardFigure> albedo_next_to_one(const HardCaseContext& context) {
   Trial trial(context);
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(1, 8, 64))};
@@ -59,10 +58,11 @@ std::vector<HardFigure> albedo_next_to_one(const HardCaseContext& context) {
   return trial.finish();
 }
 
-/// 1000 vertices where the throughput falls by e: rho = 0.999, by the ambient furnace and between two
-/// parallel mirrors,
-///   L = rho^1000 L0: the ray leaves after 1000 reflections towards an environment of L0 = 1. The float of
-///   0.999 is off by up to 3e-8 relative, its power by 3e-5, and 1000 products by a random walk of 2e-6.
+/// 1000 vertices where the throughput falls by e: rho = 0.999, by the ambient furnace
+/// and between two parallel mirrors,
+///   L = rho^1000 L0:
+/// the ray leaves after 1000 reflections towards an environment of L0 = 1. The float of 0.999 is off by up to
+/// 3e-8 relative, its power by 3e-5, and 1000 products by a random walk of 2e-6.
 std::vector<HardFigure> thousand_vertices(const HardCaseContext& context) {
   Trial trial(context);
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(1, 8, 64))};

@@ -3,8 +3,8 @@
 // A smooth surface in an environment of radiance 1 shows its reflectance, without variance. In double,
 // complex amplitudes from the boundary conditions (Born, Wolf, Principles of Optics, 1.5.2 and 14.2) with the
 // index N = n - i k:
-//   r_s = (cos - N cos') / (cos + N cos'), r_p = (N cos - cos') / (N cos + cos'), N sin' = sin; R = (|r_s|^2
-//   + |r_p|^2) / 2.
+//   r_s = (cos - N cos') / (cos + N cos'), r_p = (N cos - cos') / (N cos + cos'), N sin' = sin;
+//   R = (|r_s|^2 + |r_p|^2) / 2.
 // In float, R is a ratio of sums of positive terms and of one difference of order n - 1 or cos: an absolute
 // error of a few 6e-8 where R is of order 1, and of 6e-8 / R otherwise.
 #include <cmath>

@@ -1,5 +1,5 @@
-// Radiances from 1e-20 to 1e15 W m^-2 sr^-1 nm^-1, and an environment of which one pixel is a million times
-// brighter.
+// Radiances from 1e-20 to 1e15 W m^-2 sr^-1 nm^-1, and an environment of which one pixel is
+// a million times brighter.
 #include <bit>
 #include <cmath>
 #include <numbers>

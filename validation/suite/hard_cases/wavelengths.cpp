@@ -1,5 +1,5 @@
-// Channels of 1e-3 nm at 10 um, a ten-millionth of the wavelength and next to what a float can tell apart,
-// and of 1e4 nm.
+// Channels of 1e-3 nm at 10 um, a ten-millionth of the wavelength and next to what a float can tell
+// apart, and of 1e4 nm.
 #include <cmath>
 
 #include "validation/suite/hard_cases/groups.hpp"
@@ -26,8 +26,8 @@ constexpr Mode kModes[] = {{WavelengthMode::kShared, "shared"}, {WavelengthMode:
 
 /// A radiance that rises from 0 to 1 within the channel has the mean 1/2; one that rises within the second of
 /// three channels of 1e-3 nm side by side is 0, 1/2, 1 there: a wavelength that is wrong by a channel's width
-/// shows. Light of radiance a + b x on a reflectance of c + d x: the mean of the product, a c + (a d + b c) /
-/// 2 + b d / 3.
+/// shows. Light of radiance a + b x on a reflectance of c + d x: the mean of the product,
+/// a c + (a d + b c) / 2 + b d / 3.
 std::vector<HardFigure> narrow_channels(const HardCaseContext& context) {
   Trial trial(context);
   for (const Mode& mode : kModes) {
@@ -53,8 +53,8 @@ std::vector<HardFigure> narrow_channels(const HardCaseContext& context) {
   return trial.finish();
 }
 
-/// 10 to 20 um in one channel: a ramp from 0 to 1 (mean 1/2), and Planck's law at 300 K against Simpson's
-/// rule.
+/// 10 to 20 um in one channel: a ramp from 0 to 1 (mean 1/2),
+/// and Planck's law at 300 K against Simpson's rule.
 std::vector<HardFigure> wide_channels(const HardCaseContext& context) {
   Trial trial(context);
   double planck = 0;
