@@ -44,7 +44,8 @@ __kernel void dpept_batch(KB_EVALUATION_PARAMS, __global const KbSavedPath* rest
   const kb_u32 vectors = vector_count(&evaluation);
   TileSums sums;
   for (kb_u32 d = 0u; d < KB_PIXELS * KB_DERIVED; ++d) sums.derived[d] = 0.0f;
-  for (kb_u32 pixel = (kb_u32)get_group_id(0) * KB_PIXELS; pixel < pixels; pixel += (kb_u32)get_num_groups(0) * KB_PIXELS) {
+  for (kb_u32 pixel = (kb_u32)get_group_id(0) * KB_PIXELS; pixel < pixels;
+       pixel += (kb_u32)get_num_groups(0) * KB_PIXELS) {
     const kb_u32 end = min(pixel + KB_PIXELS, pixels);
     if (item >= vectors) keep_derived(partial, &sums, pixel, end, false); /* a work-item without channels */
     for (kb_u32 first = item; first < vectors; first += items * KB_VECTORS) {

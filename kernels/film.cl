@@ -53,7 +53,8 @@ __kernel void film_pack(__global const KbSpectraLayout* restrict layout, __globa
 }
 
 __kernel void film_unpack(__global const KbSpectraLayout* restrict layout, __global float* restrict values,
-                          kb_u32 film_pixels, kb_u32 first_pixel, kb_u32 pixels, __global const float* restrict packed) {
+                          kb_u32 film_pixels, kb_u32 first_pixel, kb_u32 pixels,
+                          __global const float* restrict packed) {
   const size_t i = get_global_id(0);
   if (i >= (size_t)pixels * (layout->channels + layout->derived)) return;
   values[place_of_packed(layout, film_pixels, first_pixel, i)] = packed[i];

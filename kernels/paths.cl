@@ -68,8 +68,8 @@ __kernel void generate(KB_SCENE_PARAMS, KB_POOL_PARAMS, __global const kb_u32* r
   for (kb_u32 i = 0u; i < KB_CHANNEL_BINS && pool.round->dispersion; ++i) pool.dispersion[slot].carried[i] = 1.0f;
 #endif
   const JobId id = job_id(&pool, &scene, state.job);
-  const CameraRay camera = sample_camera_ray(&scene, id.pixel.x, id.pixel.y,
-                                             kb_sampler_block(job_sampler(&pool, &id), KB_BLOCK_CAMERA));
+  const CameraRay camera =
+      sample_camera_ray(&scene, id.pixel.x, id.pixel.y, kb_sampler_block(job_sampler(&pool, &id), KB_BLOCK_CAMERA));
   KbRay ray;
   vstore3(camera.origin, 0, ray.origin);
   vstore3(camera.direction, 0, ray.direction);
@@ -85,10 +85,10 @@ __kernel void generate(KB_SCENE_PARAMS, KB_POOL_PARAMS, __global const kb_u32* r
 }
 
 __kernel void closest_hits(__global const KbShape* restrict shapes, __global const KbBvhNode* restrict nodes,
-                           __global const KbPrimitive* restrict primitives,
-                           __global const KbPathState* restrict states, __global const KbRay* restrict rays,
-                           __global KbHit* restrict hits, __global KbFaults* restrict faults,
-                           __global uint2* restrict tallies, __global const kb_u32* restrict queue, kb_u32 count) {
+                           __global const KbPrimitive* restrict primitives, __global const KbPathState* restrict states,
+                           __global const KbRay* restrict rays, __global KbHit* restrict hits,
+                           __global KbFaults* restrict faults, __global uint2* restrict tallies,
+                           __global const kb_u32* restrict queue, kb_u32 count) {
   if (get_global_id(0) >= count) return;
   const kb_u32 slot = queue[get_global_id(0)];
   if (!(states[slot].flags & KB_PATH_LIVE)) return;
@@ -136,10 +136,9 @@ static inline void advance(Bounce* b, __global const KbBvhNode* nodes, __global 
   (void)nodes, (void)faults;
 }
 
-__kernel void shade(KB_SCENE_PARAMS, KB_POOL_PARAMS, KB_CHANNEL_TABLE_PARAMS,
-                    __global const KbBvhNode* restrict nodes, __global const KbPrimitive* restrict primitives,
-                    __global const KbHit* restrict hits, __global uint2* restrict tallies,
-                    __global const kb_u32* restrict queue, kb_u32 count) {
+__kernel void shade(KB_SCENE_PARAMS, KB_POOL_PARAMS, KB_CHANNEL_TABLE_PARAMS, __global const KbBvhNode* restrict nodes,
+                    __global const KbPrimitive* restrict primitives, __global const KbHit* restrict hits,
+                    __global uint2* restrict tallies, __global const kb_u32* restrict queue, kb_u32 count) {
   if (get_global_id(0) >= count) return;
   KB_SCENE_INIT(scene);
   KB_POOL_INIT(pool);
@@ -186,8 +185,8 @@ __kernel void any_hits(__global const KbShape* restrict shapes, __global const K
   const KbShadowRay ray = shadows[slot];
   if (ray.t_max < 0.0f) return;
   kb_u32 fault = 0u;
-  const bool hidden = any_hit(nodes, primitives, shapes, vload3(0, ray.origin), vload3(0, ray.direction), ray.t_max,
-                              &fault);
+  const bool hidden =
+      any_hit(nodes, primitives, shapes, vload3(0, ray.origin), vload3(0, ray.direction), ray.t_max, &fault);
   ++tallies[slot].x;
   if (fault) atomic_or(&faults->code, fault);
   if (!KB_PLANTED(LIGHT_HIDDEN) && hidden)

@@ -41,7 +41,8 @@ static inline void add_batch_to_film(const Film* film, kb_u32 pixel, const Batch
 
 /* Bytes per channel: 16 for a bounce in between, 8 for a first one, 8 + 16 for a last one (the film's sums). */
 static inline void update_slot(const Evaluation* e, const Film* film, const KbPathState* state, kb_u32 slot,
-                               __global float* tau, __global float* radiance, kb_u32 item, kb_u32 items, float* derived) {
+                               __global float* tau, __global float* radiance, kb_u32 item, kb_u32 items,
+                               float* derived) {
   const kb_u32 pixel = state->job % e->round->padded_pixels;
   const PathSpectra spectra = path_spectra(e, pixel, state->job / e->round->padded_pixels);
   const kb_u32 vectors = vector_count(e);

@@ -10,8 +10,9 @@
 
 __kernel void resample_rows(__global const KbSpectraLayout* restrict layout, __global const float* restrict nodes,
                             __global const KbChannelTable* restrict tables, __global const KbCover* restrict cover,
-                            __global const KbCoverBreak* restrict cover_breaks, __global const float* restrict shared_mu,
-                            kb_u32 table_count, __global float* restrict dense) {
+                            __global const KbCoverBreak* restrict cover_breaks,
+                            __global const float* restrict shared_mu, kb_u32 table_count,
+                            __global float* restrict dense) {
   const kb_u32 vectors = layout->stride / KB_WIDTH;
   const size_t i = get_global_id(0);
   if (i >= (size_t)table_count * layout->rows * vectors) return;

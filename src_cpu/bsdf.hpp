@@ -33,8 +33,8 @@ struct BsdfValue {
 struct BsdfSample {
   glm::vec3 wo{0};
   float w0 = 0, w1 = 0;  // f |cos theta_o| / pdf without spectral factors (delta lobes: weight / probability)
-  float pdf =
-      0;  // solid angle [1/sr], or the discrete probability of a delta lobe; 0: no sample, the path ends
+  /// Solid angle [1/sr], or the discrete probability of a delta lobe; 0: no sample, the path ends.
+  float pdf = 0;
   float eta = 1;    // transmission: ratio of refractive indices, transmitted over incident side; else 1
   float bound = 0;  // upper bound of this sample's throughput factor over all channels, times eta^2: without
                     // the radiance scaling, as roulette wants it
@@ -58,8 +58,8 @@ struct MaterialContext {
   const KbMaterial* material = nullptr;
   const RoughTransmittance* rough_transmittance = nullptr;  // for KB_MATERIAL_ROUGH_PLASTIC, else unused
   DispersionState dispersion;                               // for KB_MATERIAL_DISPERSIVE, else unused
-  const float* compensation =
-      nullptr;  // for KB_MATERIAL_COMPENSATED: its table (shared/thermal.h), else unused
+  /// For KB_MATERIAL_COMPENSATED: its table (shared/thermal.h), else unused.
+  const float* compensation = nullptr;
 };
 
 /// E(wi) of a compensated material: the albedo of its single-scattering lobe. Source: shared/thermal.h.

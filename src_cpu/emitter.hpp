@@ -28,14 +28,14 @@ struct ThermalPoint {
 /// One sample of direct light at a point.
 struct LightSample {
   glm::vec3 direction{0};  // unit, from the shaded point towards the light
-  glm::vec3 target{
-      0};  // area and positional lights: the point on the light, moved off its surface towards its front
+  /// Area and positional lights: the point on the light, moved off its surface towards its front.
+  glm::vec3 target{0};
   bool infinite = false;  // environment and directional lights: no target
   bool delta = false;     // cannot be hit by BSDF sampling
-  float pdf =
-      0;  // solid angle times selection probability [1/sr]; delta lights: selection probability; 0: no sample
-  float factor =
-      0;  // incident radiance (or, for delta lights, irradiance) = factor * spectrum; about 1 for area lights
+  /// Solid angle times selection probability [1/sr]; delta lights: selection probability; 0: no sample.
+  float pdf = 0;
+  /// Incident radiance (or, for delta lights, irradiance) = factor * spectrum; about 1 for area lights.
+  float factor = 0;
   EmittedRadiance radiance;
   bool thermal = false;  // `radiance` is not set: the surface there emits towards -direction (thermal.hpp)
   ThermalPoint on;       // if thermal

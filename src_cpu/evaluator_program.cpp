@@ -106,8 +106,8 @@ void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const Sources& from,
     steps_.push_back({StepKind::kEmit, vertex.emit_weight, 0, nullptr, from.emit.row, nullptr});
   const bool nee = head & KB_VERTEX_NEE;
   const bool scatter = head & KB_VERTEX_SCATTER;
-  if ((head & (KB_VERTEX_DEGRADE | KB_VERTEX_DEFER)) || from.any_colour() || (head & KB_VERTEX_KIND_MASK) != KB_KIND_SCALED ||
-      (nee && !scatter && !last)) {
+  if ((head & (KB_VERTEX_DEGRADE | KB_VERTEX_DEFER)) || from.any_colour() ||
+      (head & KB_VERTEX_KIND_MASK) != KB_KIND_SCALED || (nee && !scatter && !last)) {
     add_general(vertex, from, spectra);
     return;
   }

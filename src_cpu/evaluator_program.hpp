@@ -50,7 +50,7 @@ class ProgramBuilder {
   std::vector<hwy::AlignedFreeUniquePtr<float[]>>
       scratch_;  // rows of this path; the first scratch_used_ are taken
   std::size_t scratch_used_ = 0;
-  std::vector<KbPlumeCell> cells_;       // reserved: generals point into it
+  std::vector<KbPlumeCell> cells_;  // reserved: generals point into it
   bool textured_ = false, gas_ = false;
 };
 

@@ -37,8 +37,8 @@ class TableMaker {
     RowFunction function;
     RowUnits units;
     double precision = 1;  // the error bound is divided by it
-    std::vector<std::pair<double, double>> ends =
-        {};                               // by channel, at mu 0 and 1; if not empty, nothing else counts
+    /// By channel, at mu 0 and 1; if not empty, nothing else counts.
+    std::vector<std::pair<double, double>> ends = {};
     const ChannelKnots* lines = nullptr;  // a gas's: then there is no function
   };
 

@@ -93,8 +93,7 @@ SessionSettings session_settings(const RenderOptions& options, const OutputFiles
   if (options.target_error)
     settings.stop.relative_error = parse_error("--target-error", *options.target_error);
   settings.stop.samples_per_pixel = options.spp;
-  if (!options.spp && settings.stop.is_fixed())
-    settings.stop.samples_per_pixel = scene.sensor.sample_count;
+  if (!options.spp && settings.stop.is_fixed()) settings.stop.samples_per_pixel = scene.sensor.sample_count;
   settings.replicates = options.replicates.value_or(kReplicates);
   if (options.resume && !options.replicates)  // more samples than before might be dealt to more replicates
     settings.replicates = checkpoint_replicates(*options.checkpoint).value_or(settings.replicates);
@@ -246,8 +245,9 @@ void add_sampling_options(CLI::App& command, RenderOptions& o) {
   o.backend.add_to(command);
   o.sampling.add_to(command);
   command
-      .add_option("--spp", o.spp,
-                  "samples per pixel; with --time or --target-error at most (default without these: the scene's)")
+      .add_option(
+          "--spp", o.spp,
+          "samples per pixel; with --time or --target-error at most (default without these: the scene's)")
       ->check(CLI::Range(uint64_t{1}, uint64_t{0xffffffff}));
   command.add_option("--time", o.time, "render for (at most) this long: 60s, 5min, 2h");
   command.add_option("--target-error", o.target_error,

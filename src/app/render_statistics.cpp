@@ -1,8 +1,7 @@
 #include "app/render_statistics.hpp"
 
-#include <sys/resource.h>
-
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
 

@@ -56,8 +56,8 @@ bool can_start_threads(unsigned count) {
 void require_threads(unsigned count, const std::string& user, const std::string& advice) {
   if (can_start_threads(count)) return;
   const std::string threads = count == 1 ? "a thread" : std::to_string(count) + " threads";
-  throw DeviceError("cannot start " + threads + " for " + user + ": " +
-                    thread_limit_text() + "; raise it, end other programs, or " + advice);
+  throw DeviceError("cannot start " + threads + " for " + user + ": " + thread_limit_text() +
+                    "; raise it, end other programs, or " + advice);
 }
 
 std::string thread_limit_text() {

@@ -79,8 +79,8 @@ class EnviPixels {
 
  private:
   static constexpr uint64_t kBlockBytes = 1u << 18;  // of one band, in one read
-  static constexpr std::size_t kBandsAtOnce =
-      16;  // read before they are interleaved: one cache line of a pixel
+  /// Read before they are interleaved: one cache line of a pixel.
+  static constexpr std::size_t kBandsAtOnce = 16;
 
   const char* fetch(uint64_t first_value, uint64_t values, char* to) {
     const uint64_t size = storage_.bytes_per_value();

@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are written in the machine's byte order");
 
 constexpr std::size_t kBandsAtOnce = kPlaneTile;  // one cache line of a pixel
-constexpr std::size_t kBufferBytes = 8u << 20;  // at most, unless a single row needs more
+constexpr std::size_t kBufferBytes = 8u << 20;    // at most, unless a single row needs more
 
 /// One data file with its header: values, variances or auxiliary planes.
 class EnviPart {

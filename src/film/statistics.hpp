@@ -30,8 +30,8 @@ class ReplicateMoments {
   std::size_t units() const;
   std::size_t channels() const;
   bool has_variance() const;
-  uint64_t samples(std::size_t unit) const;     // N
-  uint32_t replicates(std::size_t unit) const;  // R, those with n > 0
+  uint64_t samples(std::size_t unit) const;             // N
+  uint32_t replicates(std::size_t unit) const;          // R, those with n > 0
   std::span<const float> mean(std::size_t unit) const;  // 0 for N = 0
   /// Variance of the mean; NaN with fewer than two replicates. out has one entry per channel.
   void variance_of_mean(std::size_t unit, std::span<float> out) const;

@@ -35,7 +35,8 @@ class Session {
   RenderReport run() {
     const PixelRect image{scene_.film.crop_x, scene_.film.crop_y, scene_.film.crop_width,
                           scene_.film.crop_height};
-    const bool revisits = settings_.checkpoint || !settings_.stop.is_fixed();  // passes come back to replicates
+    // Passes come back to replicates.
+    const bool revisits = settings_.checkpoint || !settings_.stop.is_fixed();
     const FilmOptions options = film_options(revisits);
     const std::size_t row_bytes =
         image.width * (SpectralFilm::bytes_per_pixel(options) + output_bytes_per_pixel());

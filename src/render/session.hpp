@@ -76,10 +76,10 @@ struct RenderReport {
   StopReason ended_by = StopReason::kSamples;
   uint64_t pixels_without_sample = 0;
   uint64_t underflowed_values = 0;  // positive in the film, 0 as the file's float
-  uint64_t overflowed_values =
-      0;  // means (of replicates too) that are infinite or NaN, their pixel having samples
+  /// Means (of replicates too) that are infinite or NaN, their pixel having samples.
+  uint64_t overflowed_values = 0;
   uint64_t overflowed_variances = 0;
-  uint64_t resumed_samples = 0;     // pixel samples that came from a checkpoint
+  uint64_t resumed_samples = 0;  // pixel samples that came from a checkpoint
   bool interrupted = false;
   bool streamed = false;  // strips, since the film did not fit the budget
   std::vector<std::filesystem::path> written;

@@ -227,8 +227,8 @@ struct Shape {
   bool flip_normals = false;
   std::shared_ptr<const Bsdf> bsdf;  // never null: the default is filled in
   std::optional<AreaEmitter> emitter;
-  std::optional<ThermalEmitter> thermal;  // never together with `emitter`
-  SourcePosition emitter_position;        // of either
+  std::optional<ThermalEmitter> thermal;   // never together with `emitter`
+  SourcePosition emitter_position;         // of either
   std::shared_ptr<const Medium> interior;  // null: none
   std::variant<MeshShape, SphereShape, DiskShape, CylinderShape> geometry;
 };

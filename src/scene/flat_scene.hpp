@@ -28,8 +28,8 @@ struct SceneFeatures {
   bool thermal = false;            // surfaces emit by Kirchhoff's law
   bool compensation = false;       // rough ones among them
   bool temperature_field = false;  // and their temperature depends on the place
-  bool gas = false;    // media or null boundaries
-  bool plume = false;  // media that vary in space
+  bool gas = false;                // media or null boundaries
+  bool plume = false;              // media that vary in space
 
   /// Names of the features that are present, for `info` and the statistics.
   std::vector<std::string> names() const;
@@ -112,7 +112,8 @@ struct FlatScene {
   std::vector<float> emitter_cdf;          // emitters + 1 entries, 0 to 1, see lattice_cdf.hpp
   uint32_t environment = KB_NONE;          // emitter index of the constant or envmap emitter
   EnvmapSampling envmap;
-  std::array<double, 3> origin{};  // where the coordinates of all of this begin, in the scene file's: 0 unless it is far
+  /// Where the coordinates of all of this begin, in the scene file's: 0 unless it is far.
+  std::array<double, 3> origin{};
   KbFloat3 scene_centre{0, 0, 0};
   float scene_radius = 0;  // bounding sphere of the geometry, m
 

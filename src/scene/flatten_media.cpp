@@ -48,7 +48,8 @@ void Flattener::set_grid(KbMedium& record, const GridField& grid) {
     record.reference_k = std::max(record.reference_k, node.temperature_k);
     out_.plume_nodes.push_back({node.temperature_k, node.scale});
   }
-  set_to_local(record, placed(grid.to_world), {grid.nodes[0] - 1.0, grid.nodes[1] - 1.0, grid.nodes[2] - 1.0});
+  set_to_local(record, placed(grid.to_world),
+               {grid.nodes[0] - 1.0, grid.nodes[1] - 1.0, grid.nodes[2] - 1.0});
 }
 
 void Flattener::set_jet(KbMedium& record, const JetField& jet) {

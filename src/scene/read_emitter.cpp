@@ -123,7 +123,8 @@ constexpr EmitterType kTypes[] = {
     {"point", read_point},       {"spot", read_spot},     {"directional", read_directional}};
 
 [[noreturn]] void refuse(const ObjectReader& object) {
-  object.refuse_type({"area", "thermal", "constant", "envmap", "spectral_envmap", "point", "spot", "directional"});
+  object.refuse_type(
+      {"area", "thermal", "constant", "envmap", "spectral_envmap", "point", "spot", "directional"});
 }
 
 }  // namespace

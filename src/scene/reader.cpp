@@ -148,7 +148,8 @@ class SceneReader {
     if (scene_.shapes.empty() && environments_ == 0 && !scene_.ambient_temperature_k)
       scene.fail_here("has neither a shape nor an environment");
     bool lit = !scene_.emitters.empty() || scene_.ambient_temperature_k;
-    for (const Shape& shape : scene_.shapes) lit = lit || shape.emitter || shape.thermal || emits(shape.interior);
+    for (const Shape& shape : scene_.shapes)
+      lit = lit || shape.emitter || shape.thermal || emits(shape.interior);
     lit = lit || emits(scene_.atmosphere);
     if (!lit) scene.fail_here("has no emitter");
   }

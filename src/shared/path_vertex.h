@@ -84,7 +84,7 @@ KB_STATIC_ASSERT(sizeof(KbPathVertex) == 32, path_vertex_size);
    The neighbours x1 = x0 + 1 and y1 = y0 + 1 are wrapped again by the texture's rule. */
 typedef struct {
   kb_u32 texture;
-  kb_u32 xy;   /* x0 | y0 << 16 */
+  kb_u32 xy; /* x0 | y0 << 16 */
   float fx, fy;
 } KbTextureSample;
 KB_STATIC_ASSERT(sizeof(KbTextureSample) == 16, texture_sample_size);

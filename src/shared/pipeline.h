@@ -40,7 +40,7 @@ typedef struct {
   float filter_ratio;                   /* gaussian: radius / stddev of the table */
   kb_u32 atmosphere;                    /* medium outside all interiors, or KB_NONE */
   kb_u16 camera_media[KB_MEDIUM_DEPTH]; /* where rays begin: as KbGasState::inside */
-  kb_u32 gas;         /* 1: the scene has media or null boundaries */
+  kb_u32 gas;                           /* 1: the scene has media or null boundaries */
   kb_u32 reserved[2];
 } KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);

@@ -30,49 +30,50 @@ enum KbMaterialType {
 #define KB_MICROFACET_BECKMANN 0u
 #define KB_MICROFACET_GGX 1u
 
-#define KB_MATERIAL_NONLINEAR 1u         /* plastic: colour shifts by internal scattering */
-#define KB_MATERIAL_DISPERSIVE 2u        /* dielectric: eta depends on the wavelength, rows eta_row / eta_ext_row */
-#define KB_MATERIAL_SAMPLE_VISIBLE 4u    /* rough: sample visible normals */
-#define KB_MATERIAL_PERFECT_MIRROR 8u    /* conductor: eta 0, k 1, reflectance 1 at every wavelength */
-#define KB_MATERIAL_COMPENSATED 16u      /* rough: scaled by 1 / E, the albedo of single scattering, see thermal.h */
+#define KB_MATERIAL_NONLINEAR 1u      /* plastic: colour shifts by internal scattering */
+#define KB_MATERIAL_DISPERSIVE 2u     /* dielectric: eta depends on the wavelength, eta_row / k_row */
+#define KB_MATERIAL_SAMPLE_VISIBLE 4u /* rough: sample visible normals */
+#define KB_MATERIAL_PERFECT_MIRROR 8u /* conductor: eta 0, k 1, reflectance 1 at every wavelength */
+#define KB_MATERIAL_COMPENSATED 16u   /* rough: scaled by 1 / E, its single-scattering albedo (thermal.h) */
 
 /* One leaf BSDF. Spectral quantities are references; scalars that steer sampling are averages over the guide bands. */
 typedef struct {
-  kb_u32 type;      /* KbMaterialType */
-  kb_u32 flags;     /* KB_MATERIAL_* */
-  kb_u32 ref_a;     /* diffuse: reflectance; conductor, plastic: specular reflectance; dielectric: specular reflectance */
-  kb_u32 ref_b;     /* plastic: diffuse reflectance; dielectric: specular transmittance; compensated conductor: ref_a
-                       times the reflectance at normal incidence */
-  kb_u32 eta_row;   /* conductor: n; dispersive dielectric: interior index; else KB_NONE */
-  kb_u32 k_row;     /* conductor: k; dispersive dielectric: exterior index row, or KB_NONE for the constant eta_ext */
+  kb_u32 type;         /* KbMaterialType */
+  kb_u32 flags;        /* KB_MATERIAL_* */
+  kb_u32 ref_a;        /* diffuse: reflectance; conductor, plastic, dielectric: specular reflectance */
+  kb_u32 ref_b;        /* plastic: diffuse reflectance; dielectric: specular transmittance;
+                          compensated conductor: ref_a times the reflectance at normal incidence */
+  kb_u32 eta_row;      /* conductor: n; dispersive dielectric: interior index; else KB_NONE */
+  kb_u32 k_row;        /* conductor: k; dispersive dielectric: exterior index, or KB_NONE: eta_ext */
   kb_u32 distribution; /* KB_MICROFACET_* */
-  float alpha_u;    /* roughness along the tangent */
+  float alpha_u;       /* roughness along the tangent */
   float alpha_v;
-  float eta;        /* dielectric, plastic: interior over exterior index (guide mean when dispersive) */
-  float eta_ext;    /* dispersive: constant exterior index */
-  float fdr_int;    /* plastic: diffuse Fresnel reflectance from inside */
-  float specular_weight; /* plastic: probability scale of the specular lobe, s / (s + d) of the guide means, mixed with uniform */
-  float bound_a;    /* upper bound of ref_a over guide and rendered channels */
-  float bound_b;    /* the same of ref_b */
-  kb_u32 table;     /* as flattened: where a compensated material's table begins in the thermal tables, else KB_NONE;
-                       OpenCL: where the material's table of scalars begins (rough plastic, conductors, then the
-                       compensation), or KB_NONE */
+  float eta;             /* dielectric, plastic: interior over exterior index (guide mean when dispersive) */
+  float eta_ext;         /* dispersive: constant exterior index */
+  float fdr_int;         /* plastic: diffuse Fresnel reflectance from inside */
+  float specular_weight; /* plastic: probability scale of the specular lobe,
+                            s / (s + d) of the guide means, mixed with uniform */
+  float bound_a;         /* upper bound of ref_a over guide and rendered channels */
+  float bound_b;         /* the same of ref_b */
+  kb_u32 table;          /* as flattened: where a compensated material's table begins in the thermal tables,
+                            else KB_NONE; OpenCL: where the material's table of scalars begins
+                            (rough plastic, conductors, then the compensation), or KB_NONE */
 } KbMaterial;
 KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 
 #define KB_SURFACE_TRANSMISSIVE 1u /* one material, both sides, not flipped */
-#define KB_SURFACE_TWO_SIDED 2u    /* back != KB_NONE: the frame is flipped for directions below the surface */
+#define KB_SURFACE_TWO_SIDED 2u    /* back != KB_NONE: the frame is flipped for directions from below */
 #define KB_SURFACE_THERMAL 4u      /* emits by Kirchhoff's law: front_thermal, back_thermal */
 #define KB_SURFACE_NULL 8u         /* nothing but the boundary of a medium: rays go on; no materials */
 
 /* What a shape's bsdf comes to: the materials of its two sides and its opacity. */
 typedef struct {
-  kb_u32 front;   /* material index; null surfaces: KB_NONE */
-  kb_u32 back;    /* material index, or KB_NONE: black from behind */
-  kb_u32 flags;   /* KB_SURFACE_* */
-  kb_u32 opacity_ref; /* bitmap reference, or KB_NONE for the constant */
-  float opacity;  /* 1: no mask */
-  kb_u32 front_thermal, back_thermal; /* KB_SURFACE_THERMAL: KbThermal (thermal.h) of a side, or KB_NONE: emits nothing */
+  kb_u32 front;                       /* material index; null surfaces: KB_NONE */
+  kb_u32 back;                        /* material index, or KB_NONE: black from behind */
+  kb_u32 flags;                       /* KB_SURFACE_* */
+  kb_u32 opacity_ref;                 /* bitmap reference, or KB_NONE for the constant */
+  float opacity;                      /* 1: no mask */
+  kb_u32 front_thermal, back_thermal; /* KB_SURFACE_THERMAL: KbThermal (thermal.h), or KB_NONE */
   kb_u32 reserved;
 } KbSurface;
 KB_STATIC_ASSERT(sizeof(KbSurface) == 32, surface_size);
@@ -97,15 +98,15 @@ KB_STATIC_ASSERT(sizeof(KbSurface) == 32, surface_size);
 
 typedef struct {
   kb_u32 width, height;
-  kb_u32 first_texel;     /* into the texel array, row 0 = v 0 = top; 0 of spectral texels */
-  kb_u32 wrap;            /* KB_WRAP_* */
-  kb_u32 flags;           /* KB_TEXTURE_* */
-  kb_u32 illuminant_row;  /* spectrum multiplied on top (D65 for RGB emission), or KB_NONE */
-  float to_uv[6];         /* row-major 2x3: uv' = M (u, v, 1) */
-  kb_u32 first_bound;     /* into the bounds of texels, in the order of the texels */
-  kb_u32 values;          /* spectral texels: floats of one */
-  kb_u32 first_row;       /* KB_TEXTURE_BANDS: number of the band set; KB_TEXTURE_WEIGHTS: row of the first spectrum */
-  kb_u32 first_value;     /* spectral texels: where they begin on a device, in units of KB_VALUE_UNIT floats */
+  kb_u32 first_texel;    /* into the texel array, row 0 = v 0 = top; 0 of spectral texels */
+  kb_u32 wrap;           /* KB_WRAP_* */
+  kb_u32 flags;          /* KB_TEXTURE_* */
+  kb_u32 illuminant_row; /* spectrum multiplied on top (D65 for RGB emission), or KB_NONE */
+  float to_uv[6];        /* row-major 2x3: uv' = M (u, v, 1) */
+  kb_u32 first_bound;    /* into the bounds of texels, in the order of the texels */
+  kb_u32 values;         /* spectral texels: floats of one */
+  kb_u32 first_row;      /* KB_TEXTURE_BANDS: the band set; KB_TEXTURE_WEIGHTS: row of the first spectrum */
+  kb_u32 first_value;    /* spectral texels: where they begin on a device, in units of KB_VALUE_UNIT floats */
 } KbTexture;
 KB_STATIC_ASSERT(sizeof(KbTexture) == 64, texture_size);
 
@@ -119,11 +120,11 @@ KB_STATIC_ASSERT(sizeof(KbCheckerboard) == 32, checkerboard_size);
 enum KbShapeType { KB_SHAPE_MESH = 0, KB_SHAPE_SPHERE = 1, KB_SHAPE_DISK = 2, KB_SHAPE_CYLINDER = 3 };
 
 #define KB_SHAPE_FLIP_NORMALS 1u /* turns all normals; spheres: also set by a to_world that mirrors */
-#define KB_SHAPE_HAS_NORMALS 2u /* mesh: interpolated normals */
+#define KB_SHAPE_HAS_NORMALS 2u  /* mesh: interpolated normals */
 #define KB_SHAPE_HAS_UVS 4u
 #define KB_SHAPE_LIT_BOTH_SIDES 8u /* as a light: both sides are sampled */
-#define KB_SHAPE_NULL 16u /* its surface is KB_SURFACE_NULL */
-#define KB_SHAPE_MIRRORED 32u /* mesh: its corners stand clockwise seen from its front (before KB_SHAPE_FLIP_NORMALS) */
+#define KB_SHAPE_NULL 16u          /* its surface is KB_SURFACE_NULL */
+#define KB_SHAPE_MIRRORED 32u      /* mesh: clockwise seen from its front (before KB_SHAPE_FLIP_NORMALS) */
 
 /* Whether the normal that the order of a triangle's corners gives points to its back. */
 KB_FN bool kb_winding_is_turned(kb_u32 shape_flags) {
@@ -139,9 +140,9 @@ typedef struct {
   kb_u32 emitter;        /* area emitter, or KB_NONE */
   kb_u32 first_triangle; /* mesh: into the triangle array (3 vertex indices each, absolute) */
   kb_u32 triangle_count;
-  kb_u32 first_cdf;      /* emitting mesh: into area_cdf, triangle_count + 1 entries from 0 to 1; else KB_NONE */
-  float area;            /* m^2 */
-  float to_world[12];    /* row-major 3x4 */
+  kb_u32 first_cdf;   /* emitting mesh: into area_cdf, triangle_count + 1 entries from 0 to 1; else KB_NONE */
+  float area;         /* m^2 */
+  float to_world[12]; /* row-major 3x4 */
   float to_object[12];
 } KbShape;
 KB_STATIC_ASSERT(sizeof(KbShape) == 128, shape_size);
@@ -158,15 +159,15 @@ enum KbEmitterType {
 };
 
 typedef struct {
-  kb_u32 type;       /* KbEmitterType */
-  kb_u32 ref;        /* radiance, intensity or irradiance: spectrum or bitmap reference (per nm) */
-  kb_u32 shape;      /* area: shape index */
-  float select_pdf;  /* probability that next-event estimation selects this emitter */
-  float cos_cutoff;  /* spot: no light beyond */
-  float cos_beam;    /* spot: full intensity inside */
-  float cutoff_angle;/* spot, rad */
-  float beam_width;  /* spot, rad */
-  float to_world[12];  /* point, spot: position in the last column; directional: local +Z = propagation */
+  kb_u32 type;        /* KbEmitterType */
+  kb_u32 ref;         /* radiance, intensity or irradiance: spectrum or bitmap reference (per nm) */
+  kb_u32 shape;       /* area: shape index */
+  float select_pdf;   /* probability that next-event estimation selects this emitter */
+  float cos_cutoff;   /* spot: no light beyond */
+  float cos_beam;     /* spot: full intensity inside */
+  float cutoff_angle; /* spot, rad */
+  float beam_width;   /* spot, rad */
+  float to_world[12]; /* point, spot: position in the last column; directional: local +Z = propagation */
   float to_object[12];
 } KbEmitter;
 KB_STATIC_ASSERT(sizeof(KbEmitter) == 128, emitter_size);
@@ -184,16 +185,16 @@ enum KbMediumType {
 #define KB_PLUME_LADDER 4
 
 typedef struct {
-  kb_u32 type;       /* KbMediumType */
-  kb_u32 row;        /* absorption at scale 1, 1/m */
-  kb_u32 emit_row;   /* Planck's law at reference_k, or KB_NONE: does not emit */
-  float scale;       /* of all columns */
-  float reference_k; /* temperature of emit_row; the hottest of a plume */
-  kb_u32 first_node; /* grid: into the node array */
-  kb_u32 nodes[3];   /* grid: along x, y, z; x varies fastest */
+  kb_u32 type;                    /* KbMediumType */
+  kb_u32 row;                     /* absorption at scale 1, 1/m */
+  kb_u32 emit_row;                /* Planck's law at reference_k, or KB_NONE: does not emit */
+  float scale;                    /* of all columns */
+  float reference_k;              /* temperature of emit_row; the hottest of a plume */
+  kb_u32 first_node;              /* grid: into the node array */
+  kb_u32 nodes[3];                /* grid: along x, y, z; x varies fastest */
   float temperature_k, ambient_k; /* jet: on the axis at its beginning, and around it */
   float radius, spread, length;   /* jet: in its own coordinates */
-  float second[KB_PLUME_LADDER];  /* plume: hc / (k lambda reference_k) at the wavelengths that cells follow */
+  float second[KB_PLUME_LADDER]; /* plume: hc / (k lambda reference_k) at the wavelengths that cells follow */
   kb_u32 reserved[2];
   float to_local[12]; /* world to the jet's coordinates, or to node numbers */
 } KbMedium;
@@ -210,17 +211,17 @@ KB_STATIC_ASSERT(sizeof(KbMedium) == 128, medium_size);
 
 /* local +Z views, +Y is up, +X is the image's LEFT. Film position s in [0,1]^2 of the full (uncropped) film, s_y down. */
 typedef struct {
-  kb_u32 type;           /* KB_CAMERA_* */
-  kb_u32 film_width, film_height; /* full film, pixels */
-  kb_u32 filter;         /* KB_FILTER_* */
-  float filter_radius;   /* pixels */
-  float filter_stddev;   /* gaussian: pixels */
-  float tan_half_fov_x;  /* perspective: half the image plane's width at distance 1 */
-  float principal_x, principal_y; /* offsets as fractions of the film */
-  float near_clip, far_clip;      /* m, along the view direction */
+  kb_u32 type;                           /* KB_CAMERA_* */
+  kb_u32 film_width, film_height;        /* full film, pixels */
+  kb_u32 filter;                         /* KB_FILTER_* */
+  float filter_radius;                   /* pixels */
+  float filter_stddev;                   /* gaussian: pixels */
+  float tan_half_fov_x;                  /* perspective: half the image plane's width at distance 1 */
+  float principal_x, principal_y;        /* offsets as fractions of the film */
+  float near_clip, far_clip;             /* m, along the view direction */
   float aperture_radius, focus_distance; /* thinlens, m */
   kb_u32 reserved0, reserved1, reserved2;
-  float to_world[12];    /* row-major 3x4, may scale for orthographic cameras */
+  float to_world[12]; /* row-major 3x4, may scale for orthographic cameras */
   kb_u32 reserved[4];
 } KbCamera;
 KB_STATIC_ASSERT(sizeof(KbCamera) == 128, camera_size);

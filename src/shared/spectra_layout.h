@@ -12,13 +12,13 @@ typedef struct {
   kb_u32 rows;           /* of all kinds */
   kb_u32 unit_row;       /* width_k / channel_scale_k: emission of 1 W m^-2 sr^-1 nm^-1 */
   kb_u32 wavelength_row; /* clamp(lambda_k, 360, 830) - KB_TEXTURE_CENTRE_NM, nm */
-  kb_u32 derived_row;    /* first of the derived channels' rows: response times channel_scale_k / derived scale */
+  kb_u32 derived_row;    /* first row of derived channels: response times channel_scale_k / derived scale */
   kb_u32 derived;        /* D */
   kb_u32 overlapping;    /* 0: every wavelength is covered once, KbCover is not read */
   kb_u32 film_width;     /* of the full film, pixels */
   kb_u32 film_columns;   /* floats of a film pixel: stride, and D rounded up to a multiple of 16 */
-  kb_u32 band_row;       /* three rows for each band set: a band's number, bands from there on, unit (0 outside) */
-  kb_u32 planck_row;     /* five rows for Planck's law at any temperature (KB_PLANCK_*), or KB_NONE as 0xffffffff */
+  kb_u32 band_row;       /* per band set three rows: a band's number, bands from there on, unit (0 outside) */
+  kb_u32 planck_row;     /* five rows for Planck's law at any temperature (KB_PLANCK_*), or 0xffffffff */
   kb_u32 lambda_row;     /* lambda_k, nm; 0xffffffff where the scene has no plume */
   kb_u32 reserved[3];
 } KbSpectraLayout;

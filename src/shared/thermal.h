@@ -17,7 +17,7 @@
      s = (p y)^2 / ((o x)^2 + (p y)^2) in [0, 1] (0 where both are 0), o and p = alpha_u and alpha_v, whose fourth roots
          for dielectrics, where the true azimuth counts too (Fresnel's reflectance, total reflection). */
 #define KB_COMPENSATION_NODES 257
-#define KB_COMPENSATION_HEADER 4 /* nodes of s, nodes of the index, first index, index nodes per unit of the index */
+#define KB_COMPENSATION_HEADER 4 /* nodes of s, nodes of the index, first index, its nodes per unit */
 
 /* ---- thermal emission ----------------------------------------------------------------------------------------------
    What one side of a surface emits towards a direction: eps B(lambda, T), eps = 1 - what it reflects and transmits of
@@ -34,21 +34,26 @@
      KB_THERMAL_ROUGH    the same with R from a table of KB_COMPENSATION_NODES by nodes_s positions as above (dielectrics:
                          outside, then inside); of plastics q (1 - R) is replaced by KB_THERMAL_COAT_NODES values at
                          equidistant cosines, which follow it */
-enum KbThermalType { KB_THERMAL_UNIFORM = 0, KB_THERMAL_NODES = 1, KB_THERMAL_SMOOTH = 2, KB_THERMAL_ROUGH = 3 };
+enum KbThermalType {
+  KB_THERMAL_UNIFORM = 0,
+  KB_THERMAL_NODES = 1,
+  KB_THERMAL_SMOOTH = 2,
+  KB_THERMAL_ROUGH = 3
+};
 #define KB_THERMAL_COAT_NODES 64
 #define KB_THERMAL_TRANSMITS 1u /* a dielectric */
 
 typedef struct {
-  kb_u32 type;      /* KbThermalType */
-  kb_u32 flags;     /* KB_THERMAL_TRANSMITS */
-  kb_u32 ref[3];    /* emission spectra or bitmaps or checkerboards of them, or KB_NONE */
-  kb_u32 table;     /* into the thermal tables (OpenCL: into the tables of materials), or KB_NONE */
+  kb_u32 type;   /* KbThermalType */
+  kb_u32 flags;  /* KB_THERMAL_TRANSMITS */
+  kb_u32 ref[3]; /* emission spectra or bitmaps or checkerboards of them, or KB_NONE */
+  kb_u32 table;  /* into the thermal tables (OpenCL: into the tables of materials), or KB_NONE */
   kb_u32 nodes_cos, nodes_s;
   kb_u32 first_row;
-  float eta;        /* interior over exterior index */
-  float q;          /* smooth plastic */
+  float eta;              /* interior over exterior index */
+  float q;                /* smooth plastic */
   float alpha_u, alpha_v; /* what s is made of; KB_THERMAL_NODES: roots of the roughnesses */
-  kb_u32 field;     /* where T depends on the place: a bitmap of kelvins, or KB_FIELD_VERTEX; else KB_NONE */
+  kb_u32 field; /* where T depends on the place: a bitmap of kelvins, or KB_FIELD_VERTEX; else KB_NONE */
   kb_u32 field_offset; /* KB_FIELD_VERTEX: T of vertex i is thermal table entry field_offset + i (mod 2^32) */
   kb_u32 reserved;
 } KbThermal;

@@ -13,6 +13,7 @@ struct InfraredRow {
   double ozone;  // (atm cm)^-1
 };
 
+// clang-format off
 inline constexpr InfraredRow kInfrared[] = {
     {4000, 0.1, 0.6, 0},
     {4250, 0.1, 530, 0},
@@ -70,5 +71,6 @@ inline constexpr InfraredRow kInfrared[] = {
     {40000, 10000, 0, 0},
     {100000, 10000, 0, 0},
 };
+// clang-format on
 
 }  // namespace kiloband

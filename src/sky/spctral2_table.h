@@ -13,6 +13,7 @@ struct Spctral2Row {
   double mixed;             // per air mass: uniformly mixed gases
 };
 
+// clang-format off
 inline constexpr Spctral2Row kSpctral2[] = {
     {300, 0.5359, 0, 10, 0},
     {305, 0.5583, 0, 4.8, 0},
@@ -137,5 +138,6 @@ inline constexpr Spctral2Row kSpctral2[] = {
     {3900, 0.0095, 0.17, 0, 0.29},
     {4000, 0.0086, 0.0045, 0, 0.025},
 };
+// clang-format on
 
 }  // namespace kiloband

@@ -15,9 +15,9 @@ namespace kiloband {
 
 struct NumberTable {
   std::filesystem::path file;
-  std::vector<std::string> names;     // of the columns, from the last header line; empty without one
+  std::vector<std::string> names;  // of the columns, from the last header line; empty without one
   std::vector<std::vector<std::string>> headers;  // the fields of every header line
-  std::vector<std::string> comments;  // without '#', header lines included
+  std::vector<std::string> comments;              // without '#', header lines included
   std::size_t columns = 0;
   std::size_t row_fields = 0;   // fields of the first row, those that are not read included
   std::vector<double> numbers;  // rows x columns

@@ -35,21 +35,24 @@ void scale_cube(const TemporaryFolder& folder, const std::string& from, const st
 void expect_detectable(const std::string& text, const nlohmann::json& json) {
   EXPECT_TRUE(json["passed"]);
   EXPECT_EQ(json["power"], 0.9);
-  expect_text(text,
-              "detectable bias: from these differences on, relative to the mean of A there, a difference is found "
-              "with a probability of 90 % or more, at a rate of false alarms of 0.001 for all tests together\n");
-  const auto percent = [](const nlohmann::json& share) { return fmt::format("{:.2g} %", 100 * share.get<double>()); };
-  for (const auto& [scale, typical] : {std::pair{"image", "in the median channel"},
-                                       std::pair{"tile", "of the median value"},
-                                       std::pair{"pixel", "of the median value"}}) {
+  expect_text(
+      text,
+      "detectable bias: from these differences on, relative to the mean of A there, a difference is found "
+      "with a probability of 90 % or more, at a rate of false alarms of 0.001 for all tests together\n");
+  const auto percent = [](const nlohmann::json& share) {
+    return fmt::format("{:.2g} %", 100 * share.get<double>());
+  };
+  for (const auto& [scale, typical] :
+       {std::pair{"image", "in the median channel"}, std::pair{"tile", "of the median value"},
+        std::pair{"pixel", "of the median value"}}) {
     const auto& bias = json["detectable_bias"][scale];
     ASSERT_TRUE(bias["median"].is_number()) << scale;
     EXPECT_GT(bias["median"].get<double>(), 0);
     EXPECT_GE(bias["worst"].get<double>(), bias["median"].get<double>());
     const auto& channel = json["channels"][bias["worst_channel"].get<std::size_t>()];
     EXPECT_EQ(bias["worst_channel_name"], channel["name"]);
-    expect_text(text, fmt::format("  {:<5}  {} {}, {} in the worst ({})\n", scale, percent(bias["median"]), typical,
-                                  percent(bias["worst"]), channel["name"].get<std::string>()));
+    expect_text(text, fmt::format("  {:<5}  {} {}, {} in the worst ({})\n", scale, percent(bias["median"]),
+                                  typical, percent(bias["worst"]), channel["name"].get<std::string>()));
   }
 }
 

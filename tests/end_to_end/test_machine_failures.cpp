@@ -90,14 +90,16 @@ TEST(MachineFailure, NoThreads) {
   };
   // 3 of OpenMP beside the first, and as many of TBB, at least one per processor.
   const uint64_t processors = std::thread::hardware_concurrency();
-  const uint64_t one = std::max<uint64_t>(1, processors - 1), four = 3 + std::max<uint64_t>(3, processors - 1);
+  const uint64_t one = std::max<uint64_t>(1, processors - 1),
+                 four = 3 + std::max<uint64_t>(3, processors - 1);
   for (const uint64_t limit : {least, least + four - 1}) {
     const Outcome outcome = render("4", limit);
     EXPECT_EQ(outcome.code, 3);
-    EXPECT_EQ(outcome.err, "kiloband: cannot start " + std::to_string(four) + " threads for the CPU backend: " +
-                               kRefusal + std::to_string(limit) +
-                               ") or of its container is reached; raise it, end other programs, or give fewer "
-                               "--threads\n");
+    EXPECT_EQ(outcome.err,
+              "kiloband: cannot start " + std::to_string(four) + " threads for the CPU backend: " + kRefusal +
+                  std::to_string(limit) +
+                  ") or of its container is reached; raise it, end other programs, or give fewer "
+                  "--threads\n");
   }
   EXPECT_EQ(folder.list(), Names{});
   EXPECT_EQ(render("1", least).code, 3);

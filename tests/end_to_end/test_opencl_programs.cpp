@@ -125,9 +125,10 @@ TEST_F(CachedPrograms, RefusedByTheDriver) {
 TEST_F(CachedPrograms, FolderThatIsNone) {
   fs::remove_all(cache_ / "kiloband");
   cache_.write("kiloband", "a file");
-  EXPECT_EQ(render({}, "warning: cannot write '" + (cache_ / "kiloband/programs").string() +
-                           "': Not a directory: compiled kernels are not kept, and every run compiles anew\n"),
-            image_);
+  EXPECT_EQ(
+      render({}, "warning: cannot write '" + (cache_ / "kiloband/programs").string() +
+                     "': Not a directory: compiled kernels are not kept, and every run compiles anew\n"),
+      image_);
 }
 
 /// PoCL has no device where its folder cannot be written: it gets another one, which is removed.
@@ -149,10 +150,11 @@ TEST_F(CachedPrograms, FolderOfTheDriverThatIsNone) {
 }
 
 TEST(OpenclProgram, NoFolderForTheDriver) {
-  expect_failure({{"POCL_CACHE_DIR", "/dev/null/x"}, {"TMPDIR", "/dev/null"}},
-                 "kiloband: no OpenCL device: the OpenCL drivers here have none; PoCL's folder for compiled "
-                 "kernels '/dev/null/x' cannot be written (Not a directory), and neither can a folder of temporary "
-                 "files: set POCL_CACHE_DIR to one that can\n");
+  expect_failure(
+      {{"POCL_CACHE_DIR", "/dev/null/x"}, {"TMPDIR", "/dev/null"}},
+      "kiloband: no OpenCL device: the OpenCL drivers here have none; PoCL's folder for compiled "
+      "kernels '/dev/null/x' cannot be written (Not a directory), and neither can a folder of temporary "
+      "files: set POCL_CACHE_DIR to one that can\n");
 }
 
 /// PoCL's linker looks there first for a library that its own scripts name. Relative names of the driver's folder
@@ -161,9 +163,9 @@ TEST(OpenclProgram, NothingIsTakenFromTheCurrentFolder) {
   const TemporaryFolder folder;
   folder.write("libgcc_s.so.1", "this is not the library");
   std::filesystem::create_directory(folder / "cache");
-  const Outcome outcome =
-      run_program(folder, kRender,
-                  {.environment = {{"POCL_CACHE_DIR", "cache"}, {"XDG_CACHE_HOME", (folder / "own").string()}}});
+  const Outcome outcome = run_program(
+      folder, kRender,
+      {.environment = {{"POCL_CACHE_DIR", "cache"}, {"XDG_CACHE_HOME", (folder / "own").string()}}});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, "");
   EXPECT_FALSE(std::filesystem::is_empty(folder / "cache"));

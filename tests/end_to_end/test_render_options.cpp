@@ -102,12 +102,13 @@ TEST(RenderOptions, TargetErrorStops) {
 /// A sky that is dark in the second channel of three; its radiance varies inside the others.
 TEST(RenderOptions, SamplesLimitTheTargetErrorAndTheWorstChannelIsNamed) {
   const TemporaryFolder folder;
-  folder.write("scene.xml",
-               scene_text(kSensor + R"(<emitter type="constant"><spectrum name="radiance" value="400:1, 499:2, )"
-                                    R"(499.001:0, 601:0, 601.001:1, 700:3"/></emitter>)"));
+  folder.write(
+      "scene.xml",
+      scene_text(kSensor + R"(<emitter type="constant"><spectrum name="radiance" value="400:1, 499:2, )"
+                           R"(499.001:0, 601:0, 601.001:1, 700:3"/></emitter>)"));
   const Outcome outcome =
-      run_program(folder, {"render", "scene.xml", "--bands", "400:700:3", "--spp", "64", "--target-error", "0.001%",
-                           "--stats", "a.json", "-o", "a.hdr"});
+      run_program(folder, {"render", "scene.xml", "--bands", "400:700:3", "--spp", "64", "--target-error",
+                           "0.001%", "--stats", "a.json", "-o", "a.hdr"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const nlohmann::json stats = read_json(folder, "a.json");
   EXPECT_EQ(stats["ended_by"], "spp");
@@ -117,11 +118,11 @@ TEST(RenderOptions, SamplesLimitTheTargetErrorAndTheWorstChannelIsNamed) {
   const auto& worst = stats["worst_channel"];
   EXPECT_EQ(worst["name"], worst["index"] == 0 ? "400-500 nm" : "600-700 nm");
   EXPECT_EQ(worst["max_nm"].get<double>() - worst["min_nm"].get<double>(), 100);
-  const std::string figures =
-      fmt::format("relative error (RMS of the pixels over the image's mean): {:.3g} % in the worst channel ({}), {:.3g} "
-                  "% in the median one; channels without light, left out: 1\n",
-                  100 * stats["worst_relative_error"].get<double>(), worst["name"].get<std::string>(),
-                  100 * stats["median_relative_error"].get<double>());
+  const std::string figures = fmt::format(
+      "relative error (RMS of the pixels over the image's mean): {:.3g} % in the worst channel ({}), {:.3g} "
+      "% in the median one; channels without light, left out: 1\n",
+      100 * stats["worst_relative_error"].get<double>(), worst["name"].get<std::string>(),
+      100 * stats["median_relative_error"].get<double>());
   expect_text(outcome.err, figures);
   expect_text(outcome.err, "ended by --spp\n");
   expect_text(outcome.err, "warning: --target-error 0.001% was not reached: ended by --spp; " + figures);

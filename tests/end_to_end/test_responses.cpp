@@ -83,10 +83,11 @@ TEST(Responses, BandsStateTheirOwnWavelengths) {
   const TemporaryFolder folder;
   folder.write("scene.xml", sky_scene("hdrfilm", ""));
   folder.write("camera.csv", "wavelength_nm,red,peak\n614,1,0\n648,1,1\n682,1,0\n");
-  ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "380:2540:2", "--response",
-                                                           "camera.csv", "-o", "a.hdr", "-o", "a.exr"}))
-                .code,
-            0);
+  ASSERT_EQ(
+      run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "380:2540:2", "--response",
+                                                     "camera.csv", "-o", "a.hdr", "-o", "a.exr"}))
+          .code,
+      0);
   ASSERT_EQ(run_program(folder, {"sensor", "a.hdr", "--response", "camera.csv", "-o", "b.hdr"}).code, 0);
   expect_text(folder.read("b.hdr"), "wavelength = {648, 648}\nfwhm = {68, 34}\n");
   for (const char* file : {"a.hdr", "a.exr", "b.hdr"}) {

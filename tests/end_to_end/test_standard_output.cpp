@@ -35,7 +35,8 @@ class Answers : public ::testing::Test {
   void expect_failure(const Names& arguments, StandardOutput out, const std::string& reason) {
     const Outcome outcome = run_program(folder_, arguments, {.out = out});
     EXPECT_EQ(outcome.code, 3) << arguments.front();
-    EXPECT_EQ(outcome.err, "kiloband: cannot write to standard output: " + reason + "\n") << arguments.front();
+    EXPECT_EQ(outcome.err, "kiloband: cannot write to standard output: " + reason + "\n")
+        << arguments.front();
   }
 
   TemporaryFolder folder_;
@@ -62,8 +63,8 @@ TEST_F(Answers, OfWhichTheReaderHasEnoughEndQuietly) {
 /// otherwise be opened in place of closed streams.
 TEST_F(Answers, ARenderNeedsNone) {
   const std::string expected = folder_.read("a.img");
-  const Names render{"render", "scene.xml", "--spp",       "8",       "--seed", "1",
-                     "--stats", "s.json",   "--replicates", "2", "-o",     "a.hdr"};
+  const Names render{"render",  "scene.xml", "--spp",        "8", "--seed", "1",
+                     "--stats", "s.json",    "--replicates", "2", "-o",     "a.hdr"};
   const Outcome outcome = run_program(folder_, render, {.out = StandardOutput::kClosed, .err_closed = true});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(folder_.read("a.img"), expected);

@@ -186,7 +186,7 @@ Outcome validate_with_mitsuba(const TemporaryFolder& folder, const std::string& 
                "#!/bin/sh\ncase $2 in --probe) echo 9.8.7; exit;; --list) echo box; exit;; esac\ncd '" +
                    folder.path().string() +
                    "'\n"
-               "\"$2\" --version > version\ncp passed.json \"$4/mitsuba.json\"\necho row\n" +
+                   "\"$2\" --version > version\ncp passed.json \"$4/mitsuba.json\"\necho row\n" +
                    last + "\n");
   std::filesystem::permissions(folder / "bin/python3", std::filesystem::perms::owner_all);
   folder.write(
@@ -242,9 +242,9 @@ TEST(Validate, NothingOfTheCurrentFolderIsExecuted) {
   std::filesystem::permissions(folder / "python3", std::filesystem::perms::owner_all);
   for (const char* module : {"numpy.py", "matplotlib.py", "json.py"})
     folder.write(module, "open('" + (folder / "executed").string() + "', 'a').write(__name__)\n");
-  const Outcome outcome =
-      run_program(folder, {"validate", "--quick", "--quiet", "analytic/planck", "--backends", "cpu", "-o", "out"},
-                  {.environment = {{"PATH", ":.:/usr/bin:/bin"}, {"PYTHONPATH", ":."}}});
+  const Outcome outcome = run_program(
+      folder, {"validate", "--quick", "--quiet", "analytic/planck", "--backends", "cpu", "-o", "out"},
+      {.environment = {{"PATH", ":.:/usr/bin:/bin"}, {"PYTHONPATH", ":."}}});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "executed")) << folder.read("executed");
 }

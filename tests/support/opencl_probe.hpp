@@ -5,9 +5,9 @@
 #define CL_HPP_TARGET_OPENCL_VERSION 120
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #include <CL/opencl.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -29,7 +29,8 @@ class OpenclProbe {
     queue = cl::CommandQueue(context, device);
     program = cl::Program(context, source);
     const std::string root = KILOBAND_SOURCE_DIR;
-    const std::string flags = "-cl-std=CL1.2 -I" + root + "/kernels -I" + root + "/src -I" + root + " " + options;
+    const std::string flags =
+        "-cl-std=CL1.2 -I" + root + "/kernels -I" + root + "/src -I" + root + " " + options;
     try {
       program.build(flags.c_str());
     } catch (const cl::Error&) {
@@ -42,7 +43,8 @@ class OpenclProbe {
   cl::Buffer upload(const std::vector<T>& values) {
     const std::size_t bytes = std::max<std::size_t>(values.size() * sizeof(T), 1);
     cl::Buffer buffer(context, CL_MEM_READ_WRITE, bytes);
-    if (!values.empty()) queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, values.size() * sizeof(T), values.data());
+    if (!values.empty())
+      queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, values.size() * sizeof(T), values.data());
     return buffer;
   }
   template <class T>

@@ -33,8 +33,8 @@ std::unique_ptr<Backend> make_test_backend(const FlatScene& scene, const Derived
   if (name.starts_with(prefix)) options.method = gpu::find_method(name.substr(prefix.size()));
   if (name != "opencl" && !options.method)
     throw std::runtime_error("KILOBAND_TEST_BACKEND=" + name + ": no such backend");
-  options.specialised =
-      false;  // one program for all tests; tests/statistical/backends compares it with the others
+  // One program for all tests; tests/statistical/backends compares it with the others.
+  options.specialised = false;
   return make_opencl_backend(scene, derived, settings, options);
 }
 

@@ -113,10 +113,11 @@ void measure(const Gas& gas, double width_nm, const Slab& slab) {
   const ChannelKnots sorted = sorted_knots(sampled);
   std::vector<Values> truth;
   for (std::size_t k = 0; k < channels.size(); ++k) truth.push_back(exact(sampled, k, channels[k], slab));
-  fmt::print("{} channels of {:g} nm, {:g} m at {:g} K: {} knots, sorted {}\n", gas.name, width_nm, slab.metres,
-             slab.temperature_k, sampled.mu.size(), sorted.mu.size());
+  fmt::print("{} channels of {:g} nm, {:g} m at {:g} K: {} knots, sorted {}\n", gas.name, width_nm,
+             slab.metres, slab.temperature_k, sampled.mu.size(), sorted.mu.size());
   for (const uint32_t samples : {1u, 4u, 16u, 64u, 256u, 1024u, 4096u}) {
-    const Values a = errors(sampled, truth, channels, slab, samples), b = errors(sorted, truth, channels, slab, samples);
+    const Values a = errors(sampled, truth, channels, slab, samples),
+                 b = errors(sorted, truth, channels, slab, samples);
     fmt::print("  N {:<5} sampled {:.2e} {:.2e}   correlated_k {:.2e} {:.2e}\n", samples, a.transmission,
                a.emission, b.transmission, b.emission);
   }

@@ -169,8 +169,7 @@ RenderResult render_valid(const std::string& xml, const std::string& bands, cons
   spec.directory = folder;
   spec.threads = 1;  // images are one or a few blocks, and programs run side by side
   spec.spp = effort.samples * effort.replicates;
-  spec.sampling = {mode.wavelengths, mode.sampler, effort.seed, effort.replicates,
-                   mode.rough_dispersion};
+  spec.sampling = {mode.wavelengths, mode.sampler, effort.seed, effort.replicates, mode.rough_dispersion};
   RenderResult result = render(spec);
   EXPECT_EQ(result.invalid_samples, 0u);
   EXPECT_EQ(result.replicates, effort.replicates);

@@ -105,7 +105,8 @@ TEST_F(Methods, AgreeForAnyNumberOfChannelsWithResponses) {
 /// (minutes of kernel builds).
 TEST_F(Methods, SpecialisedKernelsGiveTheSameBits) {
   const bool thorough = std::getenv("KILOBAND_THOROUGH") != nullptr;
-  std::vector<std::string> scenes{"diffuse_room", "crop_window", "hidden_emitters", "thermal", "temperature_field", "plumes"};
+  std::vector<std::string> scenes{"diffuse_room", "crop_window",       "hidden_emitters",
+                                  "thermal",      "temperature_field", "plumes"};
   std::vector<std::string> methods{"opencl:dpept-batch"};
   if (thorough) {
     scenes.clear();

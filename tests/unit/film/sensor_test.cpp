@@ -76,8 +76,8 @@ TEST(EffectiveBand, IsCentroidAndEquivalentWidth) {
               540.0 / 3 + 1000.0 / 3 + 7.5);
   expect_band(kRamp, all, 400 + 200.0 / 3 - 25, 400 + 200.0 / 3 + 25);
   // Two lobes; one of them negative; and only one where channels are.
-  expect_band(Spectrum::tabulated({500, 510, 510.001, 589.999, 590, 600}, {1, 1, 0, 0, 1, 1}), all, 550 - 10.0005,
-              550 + 10.0005);
+  expect_band(Spectrum::tabulated({500, 510, 510.001, 589.999, 590, 600}, {1, 1, 0, 0, 1, 1}), all,
+              550 - 10.0005, 550 + 10.0005);
   expect_band(Spectrum::tabulated({500, 510, 520, 530, 540}, {0, 1, 0, -1, 0}), all, 510, 530);
   expect_band(Spectrum::constant(2), {{500, 510, ""}, {505, 520, ""}, {700, 701, ""}}, 10900.5 / 21 - 10.5,
               10900.5 / 21 + 10.5);

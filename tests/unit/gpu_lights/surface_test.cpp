@@ -158,7 +158,8 @@ TEST(GpuSurface, OffsetsAreThoseOfTheCpuBitForBit) {
   const std::vector<ItemOut> out = run_items(probe(), "offset", FlatScene(), in);
   for (std::size_t i = 0; i < in.size(); ++i) {
     const glm::vec3 p = get3(in[i], 0), n = get3(in[i], 3);
-    ASSERT_EQ(get3(out[i], 0), offset_ray_origin(p, n, target_offset(surface_offset(glm::abs(p), n), n))) << i;
+    ASSERT_EQ(get3(out[i], 0), offset_ray_origin(p, n, target_offset(surface_offset(glm::abs(p), n), n)))
+        << i;
   }
 }
 

@@ -48,12 +48,14 @@ TEST(KernelSyntax, EveryFileCompilesAlone) {
 }
 
 TEST(KernelSyntax, EveryFeatureCanBeAbsent) {
+  // clang-format off
   const std::vector<std::string> features{
       "DIFFUSE",     "CONDUCTOR",       "ROUGH_CONDUCTOR", "DIELECTRIC",     "ROUGH_DIELECTRIC",
       "PLASTIC",     "ROUGH_PLASTIC",   "TWO_SIDED",       "MASK",           "DISPERSION",
       "BITMAP",      "CHECKERBOARD",    "AREA_LIGHT",      "CONSTANT_LIGHT", "ENVMAP_LIGHT",
       "DELTA_LIGHT", "ANALYTIC_SHAPES", "SPECTRAL_TEXTURE", "THERMAL",       "COMPENSATION",
       "TEMPERATURE_FIELD", "GAS", "PLUME"};
+  // clang-format on
   const auto defines = [&](const std::string& present, const std::string& value, const std::string& others) {
     std::string text = "-DKB_SPECIALISED";
     for (const std::string& f : features) text += " -DKB_HAS_" + f + "=" + (f == present ? value : others);

@@ -42,10 +42,9 @@ TEST_F(BrokenImages, Values) {
     return write_image(folder / "a.exr", 4, 3, kRgb, pixels, OIIO::TypeFloat);
   };
   EXPECT_EQ(error(write(0.0f)), "no error");
-  EXPECT_EQ(
-      error(write(-0.25f)),
-      "a.exr: pixel (1, 2), channel 2: -0.25: must be finite and >= 0 (down to -0.00486, 1 % of the "
-      "mean, is taken as 0)");
+  EXPECT_EQ(error(write(-0.25f)),
+            "a.exr: pixel (1, 2), channel 2: -0.25: must be finite and >= 0 (down to -0.00486, 1 % of the "
+            "mean, is taken as 0)");
   EXPECT_EQ(error(write(kNan)), "a.exr: pixel (1, 2), channel 2: nan: must be finite and >= 0");
   EXPECT_EQ(error(write(kInfinity)), "a.exr: pixel (1, 2), channel 2: inf: must be finite and >= 0");
   EXPECT_EQ(error(write_image(folder / "b.exr", 1, 1, kRgb, {0, -1e-30f, 0}, OIIO::TypeFloat)),
@@ -69,10 +68,9 @@ TEST_F(BrokenImages, SlightlyNegativeValuesAreTakenAsZero) {
   std::vector<float> sun(3000, 0.01f);
   sun[0] = 1000;
   sun[4] = -0.01f;
-  EXPECT_EQ(
-      error(write_image(folder / "sun.exr", 1000, 1, kRgb, sun, OIIO::TypeFloat)),
-      "sun.exr: pixel (1, 0), channel 1: -0.01: must be finite and >= 0 (down to -0.00343, 1 % of the "
-      "mean, is taken as 0)");
+  EXPECT_EQ(error(write_image(folder / "sun.exr", 1000, 1, kRgb, sun, OIIO::TypeFloat)),
+            "sun.exr: pixel (1, 0), channel 1: -0.01: must be finite and >= 0 (down to -0.00343, 1 % of the "
+            "mean, is taken as 0)");
 }
 
 TEST_F(BrokenImages, Channels) {

@@ -35,8 +35,7 @@ struct WrongValue {
 TEST(SpectralMessages, ValuesNameBandAndPixel) {
   const TemporaryFolder folder;
   const WrongValue wrong[] = {
-      {"negative", -0.5,
-       "-0.5: must be finite and >= 0 (down to -0.00417, 1 % of the mean, is taken as 0)"},
+      {"negative", -0.5, "-0.5: must be finite and >= 0 (down to -0.00417, 1 % of the mean, is taken as 0)"},
       {"nan", std::nan(""), "nan: must be finite and >= 0"},
       {"infinite", std::numeric_limits<double>::infinity(), "inf: must be finite and >= 0"}};
   for (const WrongValue& w : wrong) {

@@ -17,15 +17,16 @@ bool is_table(const std::string& path) {
 }
 
 TEST(Tree, FilesStayShort) {
-  for (const SourceFile& file : read_files({"src", "src_cpu", "src_gpu", "kernels", "scenes/generator", "tests"})) {
+  for (const SourceFile& file :
+       read_files({"src", "src_cpu", "src_gpu", "kernels", "scenes/generator", "tests"})) {
     if (is_table(file.path)) continue;
     EXPECT_LE(std::count(file.text.begin(), file.text.end(), '\n'), kMaxLines) << file.path;
   }
 }
 
 std::vector<SourceFile> all_files() {
-  return read_files({"src", "src_cpu", "src_gpu", "kernels", "tests", "validation", "docs", "scripts", "cmake",
-                     "scenes", "CMakeLists.txt", "CMakePresets.json", "README.md", "ARCHITECTURE.md",
+  return read_files({"src", "src_cpu", "src_gpu", "kernels", "tests", "validation", "docs", "scripts",
+                     "cmake", "scenes", "CMakeLists.txt", "CMakePresets.json", "README.md", "ARCHITECTURE.md",
                      "CONTRIBUTING.md", ".ci/run"});
 }
 
