@@ -10,7 +10,7 @@ build=(g++ cmake ninja-build pkg-config git ca-certificates
   libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev libboost-dev libboost-math-dev
   opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev)
 # libclang-rt-dev: libFuzzer and the sanitizers of clang; llvm: names of functions in their reports.
-tests=(libgtest-dev libbenchmark-dev clang libclang-rt-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib)
+tests=(libgtest-dev libbenchmark-dev clang clang-format libclang-rt-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib)
 
 packages=("${build[@]}")
 case "${1:-test}" in

@@ -46,7 +46,8 @@ bool ReadErrors::leave_out(const InputError& error) {
   if (error.position().line == 0) return false;
   Node* element = element_at(root_, error.position());
   if (!element || element == &root_ || element->left_out) return false;
-  const bool whole = std::ranges::any_of(root_.children, [&](const auto& child) { return child.get() == element; });
+  const bool whole =
+      std::ranges::any_of(root_.children, [&](const auto& child) { return child.get() == element; });
   if (whole) return false;
   element->left_out = true;
   return true;

@@ -23,9 +23,9 @@ DiagnosticSink without_repetitions(const DiagnosticSink& sink) {
 class SceneReader {
  public:
   SceneReader(SceneTree& tree, const ReadOptions& options)
-      : tree_(tree), sink_(without_repetitions(options.sink)), context_{tree, sink_, options.film_size,
-                                                                        {},   {},    {},
-                                                                        {},   {}},
+      : tree_(tree),
+        sink_(without_repetitions(options.sink)),
+        context_{tree, sink_, options.film_size, {}, {}, {}, {}, {}},
         errors_(*tree.root) {}
 
   SceneDescription run() {
@@ -56,7 +56,8 @@ class SceneReader {
     sensors_ += tag == "sensor";
     integrators_ += tag == "integrator";
     errors_.attempt([&] {
-      if (again) fail(child.place, scene.label() + ": " + ObjectReader(node).label() + " is in the scene already");
+      if (again)
+        fail(child.place, scene.label() + ": " + ObjectReader(node).label() + " is in the scene already");
       read_object(scene, child, node);
     });
   }

@@ -9,14 +9,15 @@ namespace kiloband::test {
 namespace {
 
 TEST(AllErrors, OfSeveralObjects) {
-  EXPECT_EQ(error_of(complete_scene(R"xml(<bsdf type="diffuse" id="a"><float name="reflectance" value="1.5"/></bsdf>
+  EXPECT_EQ(
+      error_of(complete_scene(R"xml(<bsdf type="diffuse" id="a"><float name="reflectance" value="1.5"/></bsdf>
 <bsdf type="velvet" id="b"/>
 <shape type="ply"><string name="filename" value="absent.ply"/></shape>
 <shape type="sphere"><float name="radius" value="-1"/></shape>)xml")),
-            "scene.xml:2:62: error: bsdf 'a': reflectance 1.5: must be in [0, 1]\n"
-            "scene.xml:3:13: error: bsdf type 'velvet' is not supported\n"
-            "scene.xml:4:50: error: file 'absent.ply' not found\n"
-            "scene.xml:5:50: error: sphere shape: radius -1: must be > 0");
+      "scene.xml:2:62: error: bsdf 'a': reflectance 1.5: must be in [0, 1]\n"
+      "scene.xml:3:13: error: bsdf type 'velvet' is not supported\n"
+      "scene.xml:4:50: error: file 'absent.ply' not found\n"
+      "scene.xml:5:50: error: sphere shape: radius -1: must be > 0");
 }
 
 TEST(AllErrors, OfOneObjectAndItsParts) {
@@ -48,8 +49,9 @@ TEST(AllErrors, WhatOthersReferToIsReportedOnce) {
 
 TEST(AllErrors, WhatIsMissingBecauseItWasWrongIsNone) {
   // Left out, the file name is missing; that is no second error.
-  EXPECT_EQ(error_of(complete_scene(R"xml(<shape type="obj"><integer name="filename" value="1"/></shape>)xml")),
-            "scene.xml:2:51: error: obj shape: parameter 'filename': expected a string, found an integer");
+  EXPECT_EQ(
+      error_of(complete_scene(R"xml(<shape type="obj"><integer name="filename" value="1"/></shape>)xml")),
+      "scene.xml:2:51: error: obj shape: parameter 'filename': expected a string, found an integer");
 }
 
 TEST(AllErrors, EndAfterTwenty) {
