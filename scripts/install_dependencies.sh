@@ -9,8 +9,9 @@ build=(g++ cmake ninja-build pkg-config git ca-certificates
   libembree-dev libtbb-dev libopenexr-dev libopenimageio-dev openimageio-tools libglm-dev libpugixml-dev zlib1g-dev libyaml-cpp-dev
   libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev libboost-dev libboost-math-dev
   opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev)
-# libclang-rt-dev: libFuzzer and the sanitizers of clang; llvm: names of functions in their reports.
-tests=(libgtest-dev libbenchmark-dev clang clang-format libclang-rt-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib)
+# libclang-rt-dev: libFuzzer and the sanitizers of clang; libomp-dev: OpenMP that ThreadSanitizer can follow (GCC's looks like
+# data races to it); llvm: names of functions in their reports.
+tests=(libgtest-dev libbenchmark-dev clang clang-format libclang-rt-dev libomp-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib)
 
 packages=("${build[@]}")
 case "${1:-test}" in

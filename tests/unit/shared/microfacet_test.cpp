@@ -63,7 +63,7 @@ TEST(Microfacet, MaskingNormalisesVisibleNormals) {
     for (const auto [au, av] : kRoughnesses)
       for (const double theta : {0.0, 0.5, 1.2, 1.5}) {
         const KbFloat3 v = direction(theta, 0.4);
-        const auto area = [=](const KbFloat3& m) {
+        const auto area = [=, au = au, av = av](const KbFloat3& m) {
           return kb_microfacet_d(distribution, au, av, m) * kb_fmax(0.0f, kb_dot3(v, m));
         };
         const double integral = integrate(hemisphere(40, 1), area) / v.z;
@@ -103,10 +103,12 @@ TEST(Microfacet, PeaksAndTailsAreFinite) {
 TEST(Microfacet, SamplesOfAllNormalsMatchTheirDensity) {
   for (const kb_u32 distribution : kDistributions)
     for (const auto [au, av] : kRoughnesses) {
-      const auto sample = [=](float u, float v) {
+      const auto sample = [=, au = au, av = av](float u, float v) {
         return std::optional(kb_microfacet_sample_all(distribution, au, av, u, v));
       };
-      const auto density = [=](const KbFloat3& m) { return kb_microfacet_all_pdf(distribution, au, av, m); };
+      const auto density = [=, au = au, av = av](const KbFloat3& m) {
+        return kb_microfacet_all_pdf(distribution, au, av, m);
+      };
       const DirectionTest test = test_directions(hemisphere(20, 2), 11, 200'000, sample, density);
       EXPECT_GT(test.chi_square.p_value, kTestLevel) << distribution << ' ' << au << ' ' << av;
       EXPECT_EQ(test.accepted, 1.0);
@@ -118,10 +120,10 @@ TEST(Microfacet, SamplesOfVisibleNormalsMatchTheirDensity) {
     for (const auto [au, av] : kRoughnesses)
       for (const double theta : {0.0, 0.7, 1.45}) {
         const KbFloat3 wi = direction(theta, 2.1);
-        const auto sample = [=](float u, float v) {
+        const auto sample = [=, au = au, av = av](float u, float v) {
           return std::optional(kb_microfacet_sample_visible(distribution, au, av, wi, u, v));
         };
-        const auto density = [=](const KbFloat3& m) {
+        const auto density = [=, au = au, av = av](const KbFloat3& m) {
           return kb_microfacet_visible_pdf(distribution, au, av, wi, m);
         };
         const DirectionTest test = test_directions(hemisphere(20, 2), 12, 100'000, sample, density);
