@@ -3,7 +3,7 @@
 # Texts are cut into raw string literals of at most 8000 bytes, below the limits of all compilers.
 set(chunk 8000)
 string(REPLACE "|" ";" files "${FILES}")
-set(text "// Made by cmake/embed_kernels.cmake.\n#include \"src_gpu/kernel_sources.hpp\"\n\n")
+set(text "// Made by cmake/embed_kernels.cmake.\n#include \"src_gpu/device/kernel_sources.hpp\"\n\n")
 string(APPEND text "namespace kiloband::gpu {\n\nconst SourceMap& embedded_sources() {\n  static const SourceMap kSources{\n")
 foreach(file IN LISTS files)
   file(READ "${ROOT}/${file}" rest)

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Builds build/faults, the program with planted faults (validation/faults), and checks it: every fault shows, and without
 # one the images are those of the normal build, bit by bit.
-# Usage: scripts/build_faults.sh [NORMAL_PROGRAM]   (build/release/src/app/kiloband by default; built if it is not there)
+# Usage: scripts/build_faults.sh [NORMAL_PROGRAM]   (build/release/app/kiloband by default; built if it is not there)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh test
-normal=${1:-build/release/src/app/kiloband}
+normal=${1:-build/release/app/kiloband}
 if [ ! -x "$normal" ]; then
   cmake --preset release
   cmake --build --preset release --target kiloband
@@ -19,7 +19,7 @@ out=build/faults/equal
 mkdir -p "$out"
 compare() {  # options of both renders
   "$normal" render "$@" --size 24x24 --spp 8 --seed 7 -o "$out/normal.hdr" 2> /dev/null
-  build/faults/src/app/kiloband render "$@" --size 24x24 --spp 8 --seed 7 -o "$out/faults.hdr" 2> /dev/null
+  build/faults/app/kiloband render "$@" --size 24x24 --spp 8 --seed 7 -o "$out/faults.hdr" 2> /dev/null
   cmp "$out/normal.img" "$out/faults.img"
   echo "the same bits: $*"
 }

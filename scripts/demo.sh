@@ -10,7 +10,7 @@ cmake --build --preset release --target kiloband
 
 out=build/demo
 mkdir -p "$out"
-build/release/src/app/kiloband render scenes/cornell_box/cornell_box.xml --spp "${SPP:-64}" --variance \
+build/release/app/kiloband render scenes/cornell_box/cornell_box.xml --spp "${SPP:-64}" --variance \
   -o "$out/cornell_box.exr" -o "$out/cornell_box.hdr" --preview "$out/cornell_box.png" --stats "$out/cornell_box.json"
 
 cat <<END
@@ -20,6 +20,6 @@ The Cornell box in 100 channels from 400 to 700 nm:
   $out/cornell_box.exr       spectral OpenEXR, mean spectral radiance and its variance: tev, oiiotool --info -v
   $out/cornell_box.hdr/.img  ENVI, channel values: QGIS, gdalinfo $out/cornell_box.img (Debian: gdal-bin)
   $out/cornell_box.json      statistics of the render
-Next: build/release/src/app/kiloband render --help, or the spectrum of the pixel at (128, 128):
-  build/release/src/app/kiloband convert $out/cornell_box.hdr $out/pixel.csv --pixel 128,128
+Next: build/release/app/kiloband render --help, or the spectrum of the pixel at (128, 128):
+  build/release/app/kiloband convert $out/cornell_box.hdr $out/pixel.csv --pixel 128,128
 END

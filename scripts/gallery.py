@@ -75,7 +75,7 @@ def draw(entry, preview, rows, out):
 def main():
     build, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     wanted = sys.argv[3:]
-    kiloband = build / "src/app/kiloband"
+    kiloband = build / "app/kiloband"
     scenes, work = build / "gallery/scenes", build / "gallery/cubes"
     out.mkdir(parents=True, exist_ok=True)
     work.mkdir(parents=True, exist_ok=True)

@@ -8,7 +8,7 @@
 #include "render/planted_helpers.hpp"
 #include "shared/planted_faults.h"
 #include "shared/sampler.h"
-#include "src_cpu/denormals.hpp"
+#include "src_cpu/path/denormals.hpp"
 
 namespace kiloband {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "film/spectral_film.hpp"
-#include "src_cpu/evaluator.hpp"
-#include "src_cpu/path_tracer.hpp"
+#include "src_cpu/evaluate/evaluator.hpp"
+#include "src_cpu/path/path_tracer.hpp"
 
 namespace kiloband {
 

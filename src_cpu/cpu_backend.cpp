@@ -9,9 +9,9 @@
 
 #include "base/threads.hpp"
 #include "src_cpu/block_worker.hpp"
-#include "src_cpu/boundary.hpp"
-#include "src_cpu/camera.hpp"
-#include "src_cpu/denormals.hpp"
+#include "src_cpu/geometry/boundary.hpp"
+#include "src_cpu/path/camera.hpp"
+#include "src_cpu/path/denormals.hpp"
 
 namespace kiloband {
 namespace {

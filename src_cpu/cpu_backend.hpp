@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "render/backend.hpp"
-#include "scene/derived_channels.hpp"
-#include "src_cpu/isa.hpp"
+#include "scene/description/derived_channels.hpp"
+#include "src_cpu/evaluate/isa.hpp"
 
 namespace kiloband {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "src_gpu/material_tables.hpp"
+#include "src_gpu/scene/material_tables.hpp"
 
 namespace kiloband::gpu {
 namespace {
@@ -56,7 +56,7 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       settings_(device_settings),
       shape_(evaluation_shape(device_context.device(), method, settings_.shared_wavelengths,
                               host.spectra.layout.channels)),
-      paths_(build_program(context, "paths.cl",
+      paths_(build_program(context, "path/paths.cl",
                            ProgramOptions{path_defines(host, settings_), settings_.program_cache})),
       scene_(memory, host.scene, host.material_tables),
       bvh_(memory, host.bvh),

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "render/backend.hpp"
-#include "scene/derived_channels.hpp"
-#include "src_gpu/device_scene.hpp"
-#include "src_gpu/evaluation.hpp"
-#include "src_gpu/path_pool.hpp"
-#include "src_gpu/round_plan.hpp"
+#include "scene/description/derived_channels.hpp"
+#include "src_gpu/evaluate/evaluation.hpp"
+#include "src_gpu/path/path_pool.hpp"
+#include "src_gpu/path/round_plan.hpp"
+#include "src_gpu/scene/device_scene.hpp"
 
 namespace kiloband::gpu {
 

@@ -11,9 +11,9 @@
 
 #include "base/diagnostics.hpp"
 #include "render/backend.hpp"
+#include "src_gpu/device/launch_pace.hpp"
 #include "src_gpu/device_state.hpp"
-#include "src_gpu/launch_pace.hpp"
-#include "src_gpu/round_plan.hpp"
+#include "src_gpu/path/round_plan.hpp"
 
 namespace kiloband::gpu {
 

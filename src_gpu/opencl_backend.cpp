@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "src_gpu/device.hpp"
+#include "src_gpu/device/device.hpp"
+#include "src_gpu/device/neutral_folder.hpp"
+#include "src_gpu/device/pocl_cache.hpp"
 #include "src_gpu/film_delivery.hpp"
 #include "src_gpu/group_renderer.hpp"
-#include "src_gpu/neutral_folder.hpp"
-#include "src_gpu/pocl_cache.hpp"
 
 namespace kiloband {
 namespace {

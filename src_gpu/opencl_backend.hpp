@@ -8,8 +8,8 @@
 
 #include "base/diagnostics.hpp"
 #include "render/backend.hpp"
-#include "scene/derived_channels.hpp"
-#include "src_gpu/round_plan.hpp"
+#include "scene/description/derived_channels.hpp"
+#include "src_gpu/path/round_plan.hpp"
 
 namespace kiloband {
 

@@ -21,7 +21,7 @@ void mean_of_folded(bool closed, const PixelSumsView& sums, std::span<float> mea
     mean[c] = static_cast<float>((std::bit_cast<double>(sums.closed[c]) + sums.open[c]) * factor);
 }
 
-/// As film_finish of kernels/film.cl, once the open sum is closed.
+/// As film_finish of kernels/film/film.cl, once the open sum is closed.
 void mean_of_compensated(const PixelSumsView& sums, std::span<float> mean) {
   const auto count = static_cast<float>(sums.count);
   for (std::size_t c = 0; c < mean.size(); ++c) {

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "film/scratch_memory.hpp"
+#include "files/scratch_memory.hpp"
 
 namespace kiloband {
 

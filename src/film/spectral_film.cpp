@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "film/scratch_memory.hpp"
+#include "files/scratch_memory.hpp"
 #include "film/spectral_film_sums.hpp"
 
 namespace kiloband {

@@ -11,7 +11,7 @@
 #include "base/diagnostics.hpp"
 #include "film/spectral_film.hpp"
 #include "render/traced_path.hpp"
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 
 namespace kiloband {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "film/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "render/checkpoint_reader.hpp"
 
 namespace kiloband {

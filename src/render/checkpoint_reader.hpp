@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "base/word_hash.hpp"
 #include "render/checkpoint.hpp"
 #include "render/checkpoint_source.hpp"
-#include "render/word_hash.hpp"
 
 namespace kiloband {
 

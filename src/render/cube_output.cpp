@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "film/cube_text.hpp"
-#include "film/file_set.hpp"
-#include "film/replicated_cube.hpp"
+#include "cube/cube_text.hpp"
+#include "files/file_set.hpp"
+#include "post/replicated_cube.hpp"
 
 namespace kiloband {
 namespace {

@@ -1,6 +1,6 @@
 #include "render/fingerprint.hpp"
 
-#include "render/word_hash.hpp"
+#include "base/word_hash.hpp"
 #include "spectral/channel_knots.hpp"
 
 namespace kiloband {

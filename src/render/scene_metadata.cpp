@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "film/cube_text.hpp"
+#include "cube/cube_text.hpp"
 
 namespace kiloband {
 namespace {

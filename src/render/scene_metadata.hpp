@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "film/camera_geometry.hpp"
-#include "scene/flat_scene.hpp"
+#include "post/camera_geometry.hpp"
+#include "scene/compile/flat_scene.hpp"
 
 namespace kiloband {
 

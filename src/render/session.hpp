@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/diagnostics.hpp"
-#include "film/cube_io.hpp"
+#include "cube/cube_io.hpp"
 #include "render/backend.hpp"
 #include "render/error_sums.hpp"
 

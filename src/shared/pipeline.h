@@ -216,7 +216,7 @@ KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
    at nodes[first + j * stride + k], j = 0 .. cells. */
 typedef struct {
   kb_u32 first;
-  kb_u32 cells; /* at least 1; 0: a gas's row, kernels/spectral_row.clh has its layout */
+  kb_u32 cells; /* at least 1; 0: a gas's row, kernels/evaluate/spectral_row.clh has its layout */
 } KbChannelTable;
 KB_STATIC_ASSERT(sizeof(KbChannelTable) == 8, channel_table_size);
 

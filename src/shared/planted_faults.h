@@ -11,7 +11,7 @@
 //
 // On the host they compare with the faults that are selected for the process
 // (validation/faults/selection.hpp). A program of kernels is compiled for one fault,
-// -DKB_PLANTED_SELECTED=number (src_gpu/program.cpp), which is therefore part of the key in the cache of
+// -DKB_PLANTED_SELECTED=number (src_gpu/device/program.cpp), which is therefore part of the key in the cache of
 // programs.
 //
 // KB_FAULT_* of shared/pipeline.h are something else: what goes wrong on devices.

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
+#include "src_gpu/device/launch_pace.hpp"
 #include "src_gpu/device_state.hpp"
-#include "src_gpu/launch_pace.hpp"
 #include "src_gpu/opencl_backend.hpp"
 #include "tests/support/render_harness.hpp"
 

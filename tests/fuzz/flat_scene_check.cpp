@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/flat_scene.hpp"
-#include "scene/reader.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "scene/read/reader.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace kiloband::fuzz {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene/description.hpp"
+#include "scene/description/description.hpp"
 
 namespace kiloband::fuzz {
 

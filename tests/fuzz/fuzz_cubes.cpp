@@ -2,11 +2,11 @@
 // and written and read again.
 #include <algorithm>
 
-#include "film/camera_geometry.hpp"
-#include "film/convert.hpp"
-#include "film/picture.hpp"
-#include "film/sensor_cube.hpp"
-#include "film/signature.hpp"
+#include "post/camera_geometry.hpp"
+#include "post/convert.hpp"
+#include "post/picture.hpp"
+#include "post/sensor_cube.hpp"
+#include "post/signature.hpp"
 #include "tests/fuzz/flat_scene_check.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/mesh.hpp"
+#include "scene/mesh/mesh.hpp"
 #include "tests/fuzz/flat_scene_check.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

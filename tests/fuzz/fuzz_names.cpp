@@ -2,11 +2,11 @@
 #include <set>
 
 #include "app/option_values.hpp"
-#include "film/convert.hpp"
-#include "film/cube_text.hpp"
-#include "film/exr_names.hpp"
-#include "scene/image_channels.hpp"
-#include "scene/image_format.hpp"
+#include "cube/cube_text.hpp"
+#include "cube/exr_names.hpp"
+#include "post/convert.hpp"
+#include "scene/image/channels.hpp"
+#include "scene/image/format.hpp"
 #include "spectral/materials/materials.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

@@ -1,5 +1,5 @@
 // Target: scene files. What is read is flattened for a few channels.
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "tests/fuzz/flat_scene_check.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

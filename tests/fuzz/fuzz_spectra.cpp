@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "film/sensor_cube.hpp"
-#include "scene/reader.hpp"
+#include "post/sensor_cube.hpp"
+#include "scene/read/reader.hpp"
 #include "spectral/channel_knots.hpp"
 #include "spectral/channels.hpp"
 #include "spectral/spectrum_files.hpp"

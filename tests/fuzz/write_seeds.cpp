@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "film/camera_geometry.hpp"
+#include "post/camera_geometry.hpp"
 #include "tests/fuzz/fuzz_checkpoint.hpp"
 #include "tests/support/scene_zoo.hpp"
 #include "tests/unit/film/cube_support.hpp"

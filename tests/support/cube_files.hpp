@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "film/cube_io.hpp"
+#include "cube/cube_io.hpp"
 
 namespace kiloband::test {
 

@@ -1,4 +1,4 @@
-// A FlatScene in the buffers of an OpenclProbe, in the order of KB_SCENE_PARAMS (kernels/scene.clh).
+// A FlatScene in the buffers of an OpenclProbe, in the order of KB_SCENE_PARAMS (kernels/base/scene.clh).
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "film/filter_table.hpp"
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 #include "shared/pipeline.h"
 #include "tests/support/opencl_probe.hpp"
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "tests/support/test_backend.hpp"
 
 namespace kiloband::test {

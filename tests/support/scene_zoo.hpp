@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/derived_channels.hpp"
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "scene/description/derived_channels.hpp"
 
 namespace kiloband::test {
 

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "base/temporary_folder.hpp"
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "tests/support/cube_files.hpp"
 #include "tests/support/scene_zoo.hpp"
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "render/backend.hpp"
-#include "scene/derived_channels.hpp"
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "scene/description/derived_channels.hpp"
 
 namespace kiloband::test {
 

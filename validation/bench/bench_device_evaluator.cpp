@@ -11,7 +11,7 @@
 #include <functional>
 #include <thread>
 
-#include "src_cpu/evaluator.hpp"
+#include "src_cpu/evaluate/evaluator.hpp"
 #include "tests/unit/gpu_evaluator/device_evaluator.hpp"
 #include "validation/bench/synthetic_paths.hpp"
 

@@ -12,7 +12,7 @@
 #include <random>
 #include <string>
 
-#include "src_cpu/evaluator.hpp"
+#include "src_cpu/evaluate/evaluator.hpp"
 #include "validation/bench/synthetic_paths.hpp"
 
 namespace kiloband {

@@ -22,10 +22,10 @@
 #include <numeric>
 
 #include "film/spectral_film.hpp"
-#include "scene/reader.hpp"
-#include "src_gpu/kernel.hpp"
+#include "scene/read/reader.hpp"
+#include "src_gpu/device/kernel.hpp"
+#include "src_gpu/device/program.hpp"
 #include "src_gpu/opencl_backend.hpp"
-#include "src_gpu/program.hpp"
 
 namespace kiloband {
 namespace {

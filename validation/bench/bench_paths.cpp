@@ -14,7 +14,7 @@
 #include <memory>
 #include <numeric>
 
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "src_cpu/block_worker.hpp"
 
 namespace kiloband {

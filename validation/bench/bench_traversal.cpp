@@ -1,4 +1,4 @@
-// Ray queries of kernels/bvh.clh against Embree's: the same rays, in one run.
+// Ray queries of kernels/geometry/bvh.clh against Embree's: the same rays, in one run.
 //
 //   bench_traversal [--threads N] [--width N] [SCENE.xml | cornell | conference]...
 //
@@ -19,14 +19,14 @@
 #include <string>
 #include <vector>
 
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "shared/philox.h"
 #include "shared/warp.h"
-#include "src_cpu/camera.hpp"
-#include "src_cpu/embree_scene.hpp"
-#include "src_cpu/ray_offset.hpp"
-#include "src_cpu/surface_hit.hpp"
-#include "src_gpu/bvh_builder.hpp"
+#include "src_cpu/geometry/embree_scene.hpp"
+#include "src_cpu/geometry/ray_offset.hpp"
+#include "src_cpu/geometry/surface_hit.hpp"
+#include "src_cpu/path/camera.hpp"
+#include "src_gpu/geometry/bvh_builder.hpp"
 #include "tests/support/opencl_probe.hpp"
 
 namespace kiloband {
@@ -48,7 +48,7 @@ constexpr const char* kConferenceScene = R"(<scene version="3.0.0">
 </scene>)";
 
 constexpr const char* kKernels = R"(
-#include "bvh.clh"
+#include "geometry/bvh.clh"
 __kernel void closest(__global const KbBvhNode* restrict nodes, __global const KbPrimitive* restrict primitives,
                       __global const KbShape* restrict shapes, __global const KbRay* restrict rays,
                       __global KbHit* restrict hits, __global kb_u32* restrict faults) {

@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "scene/flat_scene.hpp"
-#include "src_cpu/path_buffer.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "src_cpu/path/path_buffer.hpp"
 
 namespace kiloband {
 

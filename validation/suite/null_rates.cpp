@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "src_gpu/device.hpp"
+#include "src_gpu/device/device.hpp"
 #include "stats/distributions.hpp"
 #include "validation/suite/run_case.hpp"
 

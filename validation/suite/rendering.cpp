@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "film/spectral_film.hpp"
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "src_gpu/opencl_backend.hpp"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "render/backend.hpp"
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 #include "stats/replicate_image.hpp"
 
 namespace kiloband::validation {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "film/atomic_file.hpp"
-#include "film/cube_io.hpp"
+#include "cube/cube_io.hpp"
+#include "files/atomic_file.hpp"
 #include "film/statistics.hpp"
 #include "validation/suite/results.hpp"
 

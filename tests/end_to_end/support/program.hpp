@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "film/cube_io.hpp"
+#include "cube/cube_io.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {

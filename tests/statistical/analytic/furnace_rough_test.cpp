@@ -18,7 +18,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "src_cpu/bsdf.hpp"
+#include "src_cpu/bsdf/bsdf.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 

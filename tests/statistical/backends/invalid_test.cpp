@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "backend_images.hpp"
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 
 namespace kiloband::test {
 namespace {

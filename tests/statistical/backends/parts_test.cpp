@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "backend_images.hpp"
-#include "src_gpu/round_plan.hpp"
+#include "src_gpu/path/round_plan.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "src_cpu/evaluator.hpp"
+#include "src_cpu/evaluate/evaluator.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/backend.hpp"
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 
 namespace kiloband::test {
 

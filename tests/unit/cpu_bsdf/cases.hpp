@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "src_cpu/bsdf.hpp"
+#include "src_cpu/bsdf/bsdf.hpp"
 
 namespace kiloband::test {
 

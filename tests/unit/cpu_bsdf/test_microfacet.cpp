@@ -7,9 +7,9 @@
 
 #include "cases.hpp"
 #include "reference.hpp"
-#include "src_cpu/bsdf_rough_transmittance.hpp"
-#include "src_cpu/fresnel.hpp"
-#include "src_cpu/microfacet.hpp"
+#include "src_cpu/bsdf/fresnel.hpp"
+#include "src_cpu/bsdf/microfacet.hpp"
+#include "src_cpu/bsdf/rough_transmittance.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "cases.hpp"
 #include "chi_square.hpp"
-#include "src_cpu/spectral_mis.hpp"
+#include "src_cpu/path/spectral_mis.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "src_cpu/evaluator.hpp"
+#include "src_cpu/evaluate/evaluator.hpp"
 
 namespace kiloband::test {
 

@@ -1,5 +1,5 @@
 // Camera rays against closed forms, film positions against the reconstruction filters.
-#include "src_cpu/camera.hpp"
+#include "src_cpu/path/camera.hpp"
 
 #include <gtest/gtest.h>
 

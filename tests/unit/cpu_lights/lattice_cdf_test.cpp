@@ -1,5 +1,5 @@
 // Tables for choosing emitters and triangles: no positive weight is lost, and probabilities are exact.
-#include "scene/lattice_cdf.hpp"
+#include "scene/compile/lattice_cdf.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "scene/flattener.hpp"
+#include "scene/compile/flattener.hpp"
 #include "spectral/channels.hpp"
-#include "src_cpu/emitter_area.hpp"
+#include "src_cpu/light/area.hpp"
 #include "test_scene.hpp"
 
 namespace kiloband::testing {

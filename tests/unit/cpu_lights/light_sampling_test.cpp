@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "chi_square.hpp"
-#include "scene/envmap_sampling.hpp"
-#include "src_cpu/emitter.hpp"
-#include "src_cpu/texture_lookup.hpp"
+#include "scene/compile/envmap_sampling.hpp"
+#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 
 namespace kiloband::testing {

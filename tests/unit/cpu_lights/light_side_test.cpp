@@ -1,7 +1,7 @@
 // Which side of a mesh shines, where vertex normals and winding may say different things.
 #include <gtest/gtest.h>
 
-#include "src_cpu/emitter.hpp"
+#include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 
 namespace kiloband::testing {

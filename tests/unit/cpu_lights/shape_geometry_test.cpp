@@ -1,5 +1,5 @@
 // Intersections with analytic shapes against references in long double.
-#include "src_cpu/shape_geometry.hpp"
+#include "src_cpu/geometry/shape_geometry.hpp"
 
 #include <gtest/gtest.h>
 

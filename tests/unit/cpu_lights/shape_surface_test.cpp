@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "chi_square.hpp"
-#include "src_cpu/ray_offset.hpp"
-#include "src_cpu/shape_geometry.hpp"
+#include "src_cpu/geometry/ray_offset.hpp"
+#include "src_cpu/geometry/shape_geometry.hpp"
 #include "test_scene.hpp"
 
 namespace kiloband::testing {

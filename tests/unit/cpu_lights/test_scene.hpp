@@ -4,9 +4,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <vector>
 
-#include "scene/flat_scene.hpp"
-#include "src_cpu/shape_geometry.hpp"
-#include "src_cpu/surface_hit.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "src_cpu/geometry/shape_geometry.hpp"
+#include "src_cpu/geometry/surface_hit.hpp"
 
 namespace kiloband::testing {
 

@@ -1,5 +1,5 @@
 // Texture addressing against a plain reference in double precision.
-#include "src_cpu/texture_lookup.hpp"
+#include "src_cpu/geometry/texture_lookup.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "chi_square.hpp"
-#include "src_cpu/emitter.hpp"
+#include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 
 namespace kiloband::testing {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "src_cpu/channel_choice.hpp"
+#include "src_cpu/path/channel_choice.hpp"
 
 namespace kiloband::test {
 namespace {

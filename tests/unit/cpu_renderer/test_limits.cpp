@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "room_scene.hpp"
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 
 namespace kiloband::test {

@@ -7,8 +7,8 @@
 
 #include "base/temporary_folder.hpp"
 #include "room_scene.hpp"
-#include "src_cpu/evaluator.hpp"
-#include "src_cpu/path_tracer.hpp"
+#include "src_cpu/evaluate/evaluator.hpp"
+#include "src_cpu/path/path_tracer.hpp"
 
 namespace kiloband::test {
 namespace {

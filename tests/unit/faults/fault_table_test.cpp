@@ -72,7 +72,8 @@ TEST(FaultSelection, RefusesWhatThereIsNot) {
 /// A fault whose code does not compile would be a program that fails to build, not a wrong image.
 TEST(FaultKernels, CompileWithEachFault) {
   for (const PlantedFault& fault : planted_faults()) {
-    for (const std::string kernel : {"paths", "evaluate", "pt", "resample", "film"}) {
+    for (const std::string kernel :
+         {"path/paths", "evaluate/evaluate", "evaluate/pt", "evaluate/resample", "film/film"}) {
       const std::string command =
           std::string(KILOBAND_CLANG) +
           " -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -Wall -Wextra -Werror"

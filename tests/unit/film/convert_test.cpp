@@ -1,5 +1,5 @@
 // Selection, re-binning, cropping and tables of cubes.
-#include "film/convert.hpp"
+#include "post/convert.hpp"
 
 #include <gtest/gtest.h>
 

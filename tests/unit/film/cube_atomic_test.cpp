@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "cube_support.hpp"
-#include "film/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 
 namespace kiloband {
 namespace {

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "cube_support.hpp"
-#include "film/convert.hpp"
-#include "film/sensor_cube.hpp"
+#include "post/convert.hpp"
+#include "post/sensor_cube.hpp"
 
 namespace kiloband {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <set>
 
+#include "cube/cube_text.hpp"
+#include "cube/exr_names.hpp"
 #include "cube_support.hpp"
-#include "film/cube_text.hpp"
-#include "film/exr_names.hpp"
 
 namespace kiloband {
 namespace {

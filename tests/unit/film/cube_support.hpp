@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "film/cube_io.hpp"
+#include "cube/cube_io.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {

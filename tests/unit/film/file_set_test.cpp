@@ -1,5 +1,5 @@
 // Files that belong together, and temporary files.
-#include "film/file_set.hpp"
+#include "files/file_set.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

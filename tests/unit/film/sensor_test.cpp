@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "cube_support.hpp"
-#include "film/effective_band.hpp"
-#include "film/picture.hpp"
-#include "film/sensor_cube.hpp"
+#include "post/effective_band.hpp"
+#include "post/picture.hpp"
+#include "post/sensor_cube.hpp"
 
 namespace kiloband {
 namespace {

@@ -1,12 +1,12 @@
 // Cameras, masks, replicates and signatures of cubes with known contents.
-#include "film/signature.hpp"
+#include "post/signature.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "cube_support.hpp"
-#include "film/convert.hpp"
+#include "post/convert.hpp"
 
 namespace kiloband {
 namespace {

@@ -7,7 +7,7 @@
 #include <future>
 
 #include "cube_support.hpp"
-#include "film/atomic_file.hpp"
+#include "files/atomic_file.hpp"
 #include "tests/support/special_files.hpp"
 
 namespace kiloband {

@@ -6,14 +6,14 @@
 #include <map>
 #include <tuple>
 
-#include "scene/compensation.hpp"
+#include "scene/optics/compensation.hpp"
 #include "tests/support/opencl_probe.hpp"
 
 namespace kiloband::test {
 namespace {
 
 constexpr const char* kSource = R"(
-#include "bsdf.clh"
+#include "bsdf/bsdf.clh"
 typedef struct { float wi[3], wo[3], u_lobe, u[2], dispersion_eta, probability; kb_u32 material; } Query;
 typedef struct { float w0, w1, pdf; kb_u32 lobe_b; } Value;
 typedef struct { float wo[3], w0, w1, pdf, eta, bound; kb_u32 flags, kind; } Sample;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "src_cpu/bsdf.hpp"
+#include "src_cpu/bsdf/bsdf.hpp"
 
 namespace kiloband::test {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "probe.hpp"
-#include "src_cpu/conductor_bound.hpp"
-#include "src_gpu/material_tables.hpp"
+#include "src_cpu/bsdf/conductor_bound.hpp"
+#include "src_gpu/scene/material_tables.hpp"
 
 namespace kiloband::test {
 namespace {

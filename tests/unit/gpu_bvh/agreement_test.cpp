@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src_cpu/embree_scene.hpp"
+#include "src_cpu/geometry/embree_scene.hpp"
 #include "tests/unit/gpu_bvh/ray_tester.hpp"
 
 namespace kiloband::test {

@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "src_cpu/ray_offset.hpp"
+#include "src_cpu/geometry/ray_offset.hpp"
 #include "tests/unit/gpu_bvh/ray_tester.hpp"
 
 namespace kiloband::test {

@@ -8,7 +8,7 @@ namespace kiloband::test {
 namespace {
 
 constexpr const char* kKernels = R"(
-#include "bvh.clh"
+#include "geometry/bvh.clh"
 __kernel void closest(__global const KbBvhNode* nodes, __global const KbPrimitive* primitives,
                       __global const KbShape* shapes, __global const KbRay* rays, __global KbHit* hits,
                       __global kb_u32* faults) {

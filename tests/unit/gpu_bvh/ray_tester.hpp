@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 #include "shared/pipeline.h"
-#include "src_gpu/bvh_builder.hpp"
+#include "src_gpu/geometry/bvh_builder.hpp"
 #include "tests/support/opencl_probe.hpp"
 
 namespace kiloband::test {

@@ -3,8 +3,8 @@
 
 #include "base/error.hpp"
 #include "device_scene.hpp"
-#include "src_gpu/channel_cover.hpp"
-#include "src_gpu/channel_row.hpp"
+#include "src_gpu/scene/channel_cover.hpp"
+#include "src_gpu/scene/channel_row.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/flat_scene.hpp"
-#include "src_cpu/path_buffer.hpp"
-#include "src_gpu/channel_tables.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "src_cpu/path/path_buffer.hpp"
+#include "src_gpu/scene/channel_tables.hpp"
 #include "tests/support/opencl_probe.hpp"
 
 namespace kiloband::test {

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "src_gpu/program_cache.hpp"
+#include "src_gpu/device/program_cache.hpp"
 #include "tests/unit/gpu_host/gpu_fixture.hpp"
 
 namespace kiloband::gpu::test {

@@ -1,5 +1,5 @@
 // Listing and choosing devices.
-#include "src_gpu/device.hpp"
+#include "src_gpu/device/device.hpp"
 
 #include <gtest/gtest.h>
 

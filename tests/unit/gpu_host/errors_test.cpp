@@ -1,5 +1,5 @@
 // Which exception a code becomes, and what it says.
-#include "src_gpu/errors.hpp"
+#include "src_gpu/device/errors.hpp"
 
 #include <gtest/gtest.h>
 

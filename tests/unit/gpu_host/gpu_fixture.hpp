@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/temporary_folder.hpp"
-#include "src_gpu/program.hpp"
+#include "src_gpu/device/program.hpp"
 
 namespace kiloband::gpu::test {
 

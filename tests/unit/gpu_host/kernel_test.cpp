@@ -1,5 +1,5 @@
 // Arguments, launches and times.
-#include "src_gpu/kernel.hpp"
+#include "src_gpu/device/kernel.hpp"
 
 #include <stdexcept>
 

@@ -1,5 +1,5 @@
 // Buffers: transfers, the budget and its account.
-#include "src_gpu/memory.hpp"
+#include "src_gpu/device/memory.hpp"
 
 #include <numeric>
 #include <stdexcept>

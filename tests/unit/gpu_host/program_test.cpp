@@ -1,10 +1,10 @@
 // Building programs: logs that name the line, macros, and where a program comes from.
-#include "src_gpu/program.hpp"
+#include "src_gpu/device/program.hpp"
 
 #include <filesystem>
 #include <fstream>
 
-#include "src_gpu/program_cache.hpp"
+#include "src_gpu/device/program_cache.hpp"
 #include "tests/unit/gpu_host/gpu_fixture.hpp"
 
 namespace kiloband::gpu::test {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "src_gpu/program.hpp"
+#include "src_gpu/device/program.hpp"
 
 namespace {
 

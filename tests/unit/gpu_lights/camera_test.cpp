@@ -1,5 +1,5 @@
-// Camera rays on the device against src_cpu/camera.cpp, which places film positions in double.
-#include "src_cpu/camera.hpp"
+// Camera rays on the device against src_cpu/path/camera.cpp, which places film positions in double.
+#include "src_cpu/path/camera.hpp"
 
 #include "support.hpp"
 #include "tests/unit/cpu_lights/test_scene.hpp"
@@ -8,7 +8,7 @@ namespace kiloband::test {
 namespace {
 
 const char* const kSource = R"(
-#include "camera.clh"
+#include "path/camera.clh"
 __kernel void camera(ARGS) {
   ITEM
   KbFloat4 u;

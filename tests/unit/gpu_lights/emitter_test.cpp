@@ -1,9 +1,9 @@
-// Light selection, sampling and densities on the device against src_cpu/emitter.cpp,
+// Light selection, sampling and densities on the device against src_cpu/light/emitter.cpp,
 // which treats spheres in double.
-#include "src_cpu/emitter.hpp"
+#include "src_cpu/light/emitter.hpp"
 
-#include "scene/lattice_cdf.hpp"
-#include "src_cpu/emitter_area.hpp"
+#include "scene/compile/lattice_cdf.hpp"
+#include "src_cpu/light/area.hpp"
 #include "support.hpp"
 #include "tests/unit/cpu_lights/test_scene.hpp"
 
@@ -17,7 +17,7 @@ using testing::placed;
 using testing::scene_with_light;
 
 const char* const kSource = R"(
-#include "emitter.clh"
+#include "light/emitter.clh"
 __kernel void light(ARGS) {
   ITEM
   const LightSample s = sample_light(&scene, VEC3(0), VEC2(3), VEC2(5));

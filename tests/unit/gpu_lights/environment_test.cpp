@@ -1,9 +1,10 @@
-// Environments on the device against src_cpu/emitter_environment.cpp: coordinates, densities,
+// Environments on the device against src_cpu/light/environment.cpp: coordinates, densities,
 // poles and the seam.
-#include "scene/envmap_sampling.hpp"
-#include "src_cpu/emitter.hpp"
-#include "src_cpu/emitter_environment.hpp"
-#include "src_cpu/texture_lookup.hpp"
+#include "src_cpu/light/environment.hpp"
+
+#include "scene/compile/envmap_sampling.hpp"
+#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/light/emitter.hpp"
 #include "support.hpp"
 #include "tests/unit/cpu_lights/test_scene.hpp"
 
@@ -11,7 +12,7 @@ namespace kiloband::test {
 namespace {
 
 const char* const kSource = R"(
-#include "emitter.clh"
+#include "light/emitter.clh"
 __kernel void sample_map(ARGS) {
   ITEM
   const LightSample s = sample_light(&scene, (float3)(0.0f), (float2)(0.5f), VEC2(0));

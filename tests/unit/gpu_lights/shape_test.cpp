@@ -1,7 +1,7 @@
 // Rays against analytic shapes on the device, which has no double,
-// against src_cpu/shape_geometry.cpp, which has.
-#include "src_cpu/ray_offset.hpp"
-#include "src_cpu/shape_geometry.hpp"
+// against src_cpu/geometry/shape_geometry.cpp, which has.
+#include "src_cpu/geometry/ray_offset.hpp"
+#include "src_cpu/geometry/shape_geometry.hpp"
 #include "support.hpp"
 #include "tests/unit/cpu_lights/test_scene.hpp"
 
@@ -12,7 +12,7 @@ using testing::make_shape;
 using testing::placed;
 
 const char* const kSource = R"(
-#include "surface.clh"
+#include "geometry/surface.clh"
 __kernel void intersect(ARGS) {
   ITEM
   float t = -1.0f;

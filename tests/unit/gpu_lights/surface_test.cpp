@@ -1,7 +1,7 @@
-// Surface hits, frames and ray offsets on the device against src_cpu/surface_hit.cpp and ray_offset.hpp.
-#include "src_cpu/ray_offset.hpp"
-#include "src_cpu/shape_geometry.hpp"
-#include "src_cpu/surface_hit.hpp"
+// Surface hits, frames and ray offsets on the device against src_cpu/geometry/surface_hit.cpp and ray_offset.hpp.
+#include "src_cpu/geometry/ray_offset.hpp"
+#include "src_cpu/geometry/shape_geometry.hpp"
+#include "src_cpu/geometry/surface_hit.hpp"
 #include "support.hpp"
 #include "tests/unit/cpu_lights/test_scene.hpp"
 
@@ -9,7 +9,7 @@ namespace kiloband::test {
 namespace {
 
 const char* const kSource = R"(
-#include "surface.clh"
+#include "geometry/surface.clh"
 __kernel void hit(ARGS, __global const KbPrimitive* restrict primitives) {
   ITEM
   KbHit h;

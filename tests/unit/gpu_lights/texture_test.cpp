@@ -1,14 +1,14 @@
-// Texture addressing on the device against src_cpu/texture_lookup.cpp, which computes in double.
+// Texture addressing on the device against src_cpu/geometry/texture_lookup.cpp, which computes in double.
 #include <limits>
 
-#include "src_cpu/texture_lookup.hpp"
+#include "src_cpu/geometry/texture_lookup.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {
 namespace {
 
 const char* const kSource = R"(
-#include "texture.clh"
+#include "geometry/texture.clh"
 __kernel void resolve(ARGS) {
   ITEM
   const ResolvedSpectrum r = resolve_spectrum(&scene, in->u[0], VEC2(0));

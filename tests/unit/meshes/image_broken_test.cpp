@@ -6,7 +6,7 @@
 #include <random>
 
 #include "image_support.hpp"
-#include "scene/image.hpp"
+#include "scene/image/image.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "image_support.hpp"
-#include "scene/image_channels.hpp"
-#include "scene/image_format.hpp"
+#include "scene/image/channels.hpp"
+#include "scene/image/format.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -1,5 +1,5 @@
 // Images that are right, in every format.
-#include "scene/image.hpp"
+#include "scene/image/image.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "binary.hpp"
 #include "image_support.hpp"
-#include "scene/image_channels.hpp"
+#include "scene/image/channels.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "binary.hpp"
-#include "scene/mesh.hpp"
+#include "scene/mesh/mesh.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scene/mesh_finish.hpp"
+#include "scene/mesh/finish.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -1,7 +1,7 @@
 // OBJ files that are wrong, each with the exact message.
 #include <gtest/gtest.h>
 
-#include "scene/mesh.hpp"
+#include "scene/mesh/mesh.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scene/mesh.hpp"
+#include "scene/mesh/mesh.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

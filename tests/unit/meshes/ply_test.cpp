@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "binary.hpp"
-#include "scene/mesh.hpp"
+#include "scene/mesh/mesh.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <ctime>
 
-#include "scene/mesh.hpp"
+#include "scene/mesh/mesh.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

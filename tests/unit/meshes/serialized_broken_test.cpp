@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "binary.hpp"
-#include "scene/mesh.hpp"
+#include "scene/mesh/mesh.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

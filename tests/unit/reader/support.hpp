@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {

@@ -2,7 +2,7 @@
 // elements of every kind, attributes, references.
 #include <gtest/gtest.h>
 
-#include "scene/xml_document.hpp"
+#include "scene/xml/document.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

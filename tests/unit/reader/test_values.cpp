@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "scene/read_object.hpp"
-#include "scene/xml_values.hpp"
+#include "scene/read/object.hpp"
+#include "scene/xml/values.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

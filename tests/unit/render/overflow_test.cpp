@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "film/cube_io.hpp"
-#include "film/replicated_cube.hpp"
+#include "cube/cube_io.hpp"
+#include "post/replicated_cube.hpp"
 #include "render/session.hpp"
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "tests/support/render_harness.hpp"
 #include "tests/support/temporary_folder.hpp"

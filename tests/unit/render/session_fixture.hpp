@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "base/temporary_folder.hpp"
-#include "film/cube_io.hpp"
+#include "cube/cube_io.hpp"
 #include "render/session.hpp"
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "tests/support/render_harness.hpp"
 

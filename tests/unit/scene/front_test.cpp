@@ -1,7 +1,7 @@
 // Which way normals point in a flattened scene, and what a transform that mirrors does to them.
 #include <gtest/gtest.h>
 
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/scene/support.hpp"
 

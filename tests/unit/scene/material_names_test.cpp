@@ -1,7 +1,7 @@
 // What materials are called in `kiloband info` and `kiloband trace`.
 #include <gtest/gtest.h>
 
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 #include "tests/unit/scene/support.hpp"
 
 namespace kiloband::test {

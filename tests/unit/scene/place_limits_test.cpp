@@ -1,7 +1,7 @@
 // Places and sizes that single precision cannot take are errors, scenes larger than 10^4 m a warning.
 #include <gtest/gtest.h>
 
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 #include "tests/unit/scene/support.hpp"
 
 namespace kiloband::test {

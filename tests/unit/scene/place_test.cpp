@@ -1,7 +1,7 @@
 // Scenes far from their origin are moved to it; what stands there keeps its coordinates.
 #include <gtest/gtest.h>
 
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 #include "tests/unit/scene/support.hpp"
 
 namespace kiloband::test {

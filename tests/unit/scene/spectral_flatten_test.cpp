@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "scene/flat_scene.hpp"
-#include "src_cpu/emitter.hpp"
-#include "src_cpu/emitter_environment.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "src_cpu/light/emitter.hpp"
+#include "src_cpu/light/environment.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

@@ -1,5 +1,5 @@
 // Reading images of spectra and of weights.
-#include "scene/spectral_image.hpp"
+#include "scene/image/spectral_image.hpp"
 
 #include <gtest/gtest.h>
 

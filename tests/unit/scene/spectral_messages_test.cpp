@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/spectral_image.hpp"
+#include "scene/image/spectral_image.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

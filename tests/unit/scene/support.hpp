@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "tests/support/cube_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
-#include "src_cpu/emitter_environment.hpp"
+#include "src_cpu/light/environment.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -8,7 +8,7 @@
 namespace kiloband::test {
 
 struct SourceFile {
-  std::string path;  // from the project's root, "src/film/png.cpp"
+  std::string path;  // from the project's root, "src/post/png.cpp"
   std::string text;
 };
 

@@ -9,7 +9,7 @@
 namespace kiloband::test {
 namespace {
 
-constexpr std::ptrdiff_t kMaxLines = 300;
+constexpr std::ptrdiff_t kMaxLines = 400;
 
 /// Numbers from published sources; their length is not ours to choose.
 bool is_table(const std::string& path) {
@@ -18,14 +18,14 @@ bool is_table(const std::string& path) {
 
 TEST(Tree, FilesStayShort) {
   for (const SourceFile& file :
-       read_files({"src", "src_cpu", "src_gpu", "kernels", "scenes/generator", "tests"})) {
+       read_files({"src", "src_cpu", "src_gpu", "kernels", "app", "scenes/generator", "tests"})) {
     if (is_table(file.path)) continue;
     EXPECT_LE(std::count(file.text.begin(), file.text.end(), '\n'), kMaxLines) << file.path;
   }
 }
 
 std::vector<SourceFile> all_files() {
-  return read_files({"src", "src_cpu", "src_gpu", "kernels", "tests", "validation", "docs", "scripts",
+  return read_files({"src", "src_cpu", "src_gpu", "kernels", "app", "tests", "validation", "docs", "scripts",
                      "cmake", "scenes", "CMakeLists.txt", "CMakePresets.json", "README.md", "ARCHITECTURE.md",
                      "CONTRIBUTING.md", ".ci/run"});
 }

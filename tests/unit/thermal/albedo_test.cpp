@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include "scene/compensation.hpp"
-#include "scene/facet_quadrature.hpp"
+#include "scene/optics/compensation.hpp"
+#include "scene/optics/facet_quadrature.hpp"
 #include "shared/thermal.h"
-#include "src_cpu/bsdf.hpp"
+#include "src_cpu/bsdf/bsdf.hpp"
 
 namespace kiloband::test {
 namespace {

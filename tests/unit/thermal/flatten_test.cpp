@@ -1,8 +1,8 @@
 // From thermal emitters to records: what is shared, what is a light, and what is refused with which message.
 #include <gtest/gtest.h>
 
-#include "scene/flat_scene.hpp"
-#include "scene/reader.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "scene/read/reader.hpp"
 
 namespace kiloband::test {
 namespace {

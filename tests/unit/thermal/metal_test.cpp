@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "scene/metal_emissivity.hpp"
+#include "scene/optics/metal_emissivity.hpp"
 
 namespace kiloband::test {
 namespace {

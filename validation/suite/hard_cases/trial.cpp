@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "base/temporary_folder.hpp"
-#include "scene/reader.hpp"
+#include "scene/read/reader.hpp"
 #include "shared/sampler.h"
-#include "src_cpu/evaluator.hpp"
+#include "src_cpu/evaluate/evaluator.hpp"
 #include "stats/distributions.hpp"
 #include "validation/suite/rendering.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/backend.hpp"
-#include "scene/flat_scene.hpp"
+#include "scene/compile/flat_scene.hpp"
 #include "validation/suite/hard_cases/hard_cases.hpp"
 
 namespace kiloband::validation {

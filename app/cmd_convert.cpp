@@ -1,0 +1,100 @@
+// kiloband convert IN OUT: formats, channel selection, coarser channels;
+// pixels, regions and signatures as CSV.
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/messages.hpp"
+#include "app/render_options.hpp"
+#include "app/signature_options.hpp"
+#include "cube/cube_io.hpp"
+#include "cube/cube_text.hpp"
+#include "post/convert.hpp"
+
+namespace kiloband {
+namespace {
+
+struct ConvertOptions {
+  std::string in, out;
+  std::optional<std::string> wavelengths, select, range, rebin, crop, quantity;
+  PlaceOptions places;
+};
+
+WavelengthRange parse_range(const std::string& text) {
+  const ChannelList one = parse_channels_option("--range", text);
+  if (one.size() != 1) throw InputError("--range " + text + ": must be one interval such as 400-500");
+  return {one.front().min_nm, one.front().max_nm};
+}
+
+/// The option's value, or what stands in the file that it names.
+std::string text_or_file(const std::string& value) {
+  if (!std::filesystem::is_regular_file(value)) return value;
+  std::ifstream in(value, std::ios::binary);
+  std::string text(std::filesystem::file_size(value), '\0');
+  if (!in.read(text.data(), static_cast<std::streamsize>(text.size())))
+    throw InputError(fmt::format("--wavelengths {}: cannot be read", value));
+  return text;
+}
+
+CubeSelection selection_of(const ConvertOptions& options, const CubeInfo& info) {
+  CubeSelection selection;
+  if (options.wavelengths) selection.wavelengths = parse_band_wavelengths(text_or_file(*options.wavelengths));
+  if (options.select) selection.bands = parse_band_indices(*options.select, info.bands.size());
+  if (options.range) selection.range = parse_range(*options.range);
+  if (options.rebin) selection.rebin = parse_channels_option("--rebin", *options.rebin);
+  if (options.crop) selection.crop = parse_rect("--crop", *options.crop);
+  if (options.quantity == "integral") selection.quantity = Quantity::kIntegral;
+  if (options.quantity == "density") selection.quantity = Quantity::kDensity;
+  return selection;
+}
+
+int convert(const ConvertOptions& options) {
+  const DiagnosticSink sink = print_diagnostics(false);
+  const std::filesystem::path out = options.out;
+  const CubeInfo info = open_cube(options.in)->info();
+  check_holds_radiances(options.in, info);
+  CubeSelection selection = selection_of(options, info);
+  if (to_lower(out.extension().string()) != ".csv") {
+    if (options.places.any())
+      throw InputError("--pixel, --region and --signature write CSV: the output must end in .csv");
+    convert_cube(options.in, out, selection, sink);
+    tell("wrote {}\n", out.string());
+    return kDone;
+  }
+  if (!options.places.any())
+    throw InputError("CSV output needs --pixel X,Y, --region X,Y,WIDTH,HEIGHT or --signature");
+  if (options.places.signature && !selection.quantity) selection.quantity = Quantity::kIntegral;
+  const CubeChange change = [&](ReplicatedCube cube) {
+    return select_from_cube(std::move(cube), selection, sink);
+  };
+  write_places(options.places, options.in, change, out, sink);
+  tell("wrote {}\n", out.string());
+  return kDone;
+}
+
+}  // namespace
+
+Command add_convert(CLI::App& program) {
+  auto o = std::make_shared<ConvertOptions>();
+  CLI::App* command = program.add_subcommand(
+      "convert", "Convert a cube: EXR, ENVI, coarser channels; pixels, regions and signatures to CSV");
+  command->add_option("IN", o->in, "spectral EXR or ENVI cube")->required();
+  command->add_option("OUT", o->out, ".exr, .hdr (ENVI) or .csv")->required();
+  command->add_option(
+      "--wavelengths", o->wavelengths,
+      "wavelengths in nm for bands that have names only: red=600-700,green=500-600, or a file of "
+      "such entries");
+  command->add_option("--select", o->select, "channels by index from 0, such as 0-9,20");
+  command->add_option("--range", o->range, "channels inside an interval in nm, such as 400-500");
+  command->add_option("--rebin", o->rebin, "coarser channels, unions of whole ones: 400:700:10");
+  command->add_option("--crop", o->crop, "X,Y,WIDTH,HEIGHT");
+  command->add_option("--quantity", o->quantity, "of the values written")
+      ->check(CLI::IsMember({"integral", "density"}));
+  o->places.add_to(*command);
+  return [o] { return convert(*o); };
+}
+
+}  // namespace kiloband

@@ -1,0 +1,299 @@
+// kiloband render SCENE.xml: loads, renders, writes.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+
+#include "app/backend_options.hpp"
+#include "app/commands.hpp"
+#include "app/messages.hpp"
+#include "app/option_values.hpp"
+#include "app/output_files.hpp"
+#include "app/progress_bar.hpp"
+#include "app/render_options.hpp"
+#include "app/render_statistics.hpp"
+#include "app/sampling_options.hpp"
+#include "app/stop_signals.hpp"
+#include "files/atomic_file.hpp"
+#include "render/checkpoint.hpp"
+#include "render/scene_metadata.hpp"
+#include "render/session.hpp"
+
+namespace kiloband {
+namespace {
+
+struct RenderOptions {
+  SceneOptions scene;
+  std::vector<std::string> outputs, responses, aux;
+  BackendOptions backend;
+  SamplingOptions sampling;
+  std::string quantity;
+  std::optional<std::string> preview, stats, time, target_error, checkpoint, checkpoint_interval;
+  std::optional<uint64_t> spp;
+  std::optional<uint32_t> replicates;
+  bool variance = false, keep_replicates = false, resume = false, quiet = false;
+};
+
+constexpr uint32_t kReplicates = 16;  // unless --replicates says otherwise
+
+/// The scene is not needed for these; reading it may take long.
+OutputFiles output_files(const RenderOptions& options) {
+  OutputFiles files;
+  files.inputs = {{"the scene", options.scene.scene}};
+  for (const std::string& output : options.outputs) files.cubes.emplace_back(output);
+  if (files.cubes.empty())
+    files.cubes.push_back(std::filesystem::path(options.scene.scene).stem().string() + ".exr");
+  files.preview = options.preview;
+  files.stats = options.stats;
+  files.checkpoint = options.checkpoint;
+  if (options.keep_replicates) files.kept_replicates = options.replicates.value_or(kReplicates);
+  return files;
+}
+
+/// Error bars need two replicates: options that contradict this.
+void check_replicates(const RenderOptions& options) {
+  if (options.replicates.value_or(kReplicates) >= 2) return;
+  for (const auto& [name, given] : {std::pair{"--target-error", options.target_error.has_value()},
+                                    std::pair{"--variance", options.variance}}) {
+    if (given)
+      throw InputError(
+          fmt::format("{} needs error bars, --replicates 1 gives none: must be at least 2", name));
+  }
+}
+
+/// What becomes of the replicates where the samples do not suffice.
+void report_replicates(const RenderOptions& options, const SessionSettings& settings,
+                       const DiagnosticSink& sink) {
+  const uint32_t replicates = session_replicates(settings);
+  if (replicates >= settings.replicates) return;
+  const uint64_t samples = *settings.stop.samples_per_pixel;  // without it nothing is lowered
+  if (options.target_error && replicates < 2)
+    throw InputError(fmt::format(
+        "--target-error needs error bars: --spp {} makes 1 replicate, at least 4 are needed", samples));
+  if (options.variance && replicates < 2) {
+    warn(sink, {},
+         fmt::format("--variance: {} samples per pixel make 1 replicate: no error bars (the variance "
+                     "is NaN); at least 4 are needed",
+                     samples));
+  } else if (options.replicates) {
+    note(sink, {},
+         fmt::format("--replicates {}: {} samples per pixel make {} of at least 2 samples",
+                     settings.replicates, samples, replicates));
+  }
+}
+
+SessionSettings session_settings(const RenderOptions& options, const OutputFiles& files,
+                                 const SceneDescription& scene) {
+  SessionSettings settings;
+  if (options.time) settings.stop.seconds = parse_duration("--time", *options.time);
+  if (options.target_error)
+    settings.stop.relative_error = parse_error("--target-error", *options.target_error);
+  settings.stop.samples_per_pixel = options.spp;
+  if (!options.spp && settings.stop.is_fixed()) settings.stop.samples_per_pixel = scene.sensor.sample_count;
+  settings.replicates = options.replicates.value_or(kReplicates);
+  if (options.resume && !options.replicates)  // more samples than before might be dealt to more replicates
+    settings.replicates = checkpoint_replicates(*options.checkpoint).value_or(settings.replicates);
+  settings.variance = options.variance;
+  settings.keep_replicates = options.keep_replicates;
+  settings.outputs = files.cubes;
+  if (options.quantity == "integral") settings.quantity = Quantity::kIntegral;
+  if (options.quantity == "density") settings.quantity = Quantity::kDensity;
+  settings.preview = files.preview;
+  settings.aux = options.aux;
+  if (options.checkpoint) settings.checkpoint = *options.checkpoint;
+  if (options.checkpoint_interval) {
+    settings.checkpoint_interval_seconds =
+        parse_duration("--checkpoint-interval", *options.checkpoint_interval);
+  }
+  settings.resume = options.resume;
+  return settings;
+}
+
+/// A checkpoint belongs to one render; without one to go on from, the render starts afresh and says so.
+void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const SamplingSettings& sampling,
+                        const Backend& backend, const DerivedChannels& derived) {
+  if (!settings.checkpoint) return;
+  settings.fingerprint = render_fingerprint(scene, sampling, arithmetic_of(backend), derived);
+  if (settings.resume && !checkpoint_exists(*settings.checkpoint)) {
+    tell("note: no checkpoint {}: starting afresh\n", settings.checkpoint->string());
+  }
+}
+
+void describe_render(SessionSettings& settings, const RenderOptions& options, const FlatScene& scene,
+                     const SamplingSettings& sampling, const Backend& backend) {
+  settings.metadata["software"] = fmt::format("kiloband {}", KILOBAND_VERSION);
+  settings.metadata["scene"] = std::filesystem::path(options.scene.scene).filename().string();
+  settings.metadata["backend"] = backend.name();
+  settings.metadata["isa"] = backend.isa();
+  settings.metadata["seed"] = std::to_string(sampling.seed);
+  settings.metadata["sampler"] = to_string(sampling.sampler);
+  settings.metadata["wavelengths"] = to_string(sampling.wavelengths);
+  settings.metadata[kCameraKey] = camera_geometry(scene).to_text();
+  const bool objects = std::ranges::find(options.aux, "object") != options.aux.end();
+  if (const std::string names = object_names(scene); objects && !names.empty())
+    settings.metadata["objects"] = names;
+}
+
+void print_summary(const RenderReport& report, const Backend& backend, double setup_seconds) {
+  const uint64_t paths = backend.counters().paths;
+  tell("{} paths in {:.2f} s ({:.2f} Mpaths/s on {}, {}); set-up {:.2f} s, output {:.2f} s\n", paths,
+       report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, backend.name(),
+       backend.isa(), setup_seconds, report.output_seconds);
+  if (report.replicates < 2)
+    tell("1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
+  if (report.errors.worst) tell("{}\n", describe_errors(report));
+  for (const auto& file : report.written) tell("wrote {}\n", file.string());
+}
+
+/// Two rules and more, or one whose end is not its own.
+void print_end(const RenderOptions& options, const RenderReport& report) {
+  const int rules = options.spp.has_value() + options.time.has_value() + options.target_error.has_value();
+  if (report.ended_by == StopReason::kDark || (rules > 1 && !report.interrupted))
+    tell("ended by {}\n", to_string(report.ended_by));
+}
+
+/// The target was set, and something else ended the render.
+void warn_of_missed_target(const RenderOptions& options, const RenderReport& report,
+                           const DiagnosticSink& sink) {
+  if (!options.target_error || report.ended_by == StopReason::kError) return;
+  warn(sink, {},
+       fmt::format("--target-error {} was not reached: ended by {}; {}", *options.target_error,
+                   to_string(report.ended_by), describe_errors(report)));
+}
+
+void print_problems(const RenderReport& report, const Backend& backend) {
+  const uint64_t invalid = backend.counters().invalid_samples;
+  if (invalid > 0) {
+    tell("warning: {} invalid samples (not finite or endless) left the mean; the first:\n", invalid);
+    for (const InvalidSample& s : backend.invalid_samples()) {
+      tell("  pixel {},{} sample {}\n", s.x, s.y, s.sample);
+    }
+  }
+  if (report.underflowed_values > 0) {
+    tell("warning: {} values are too small for float32 and became 0\n", report.underflowed_values);
+  }
+  if (report.overflowed_values > 0) {
+    tell("warning: {} values are too large for float32 and became infinite or NaN\n",
+         report.overflowed_values);
+  }
+  if (report.overflowed_variances > 0) {
+    tell("warning: {} variances are too large for float32 and became infinite\n",
+         report.overflowed_variances);
+  }
+  if (report.pixels_without_sample > 0) {
+    tell("warning: {} pixels have no sample: NaN\n", report.pixels_without_sample);
+  }
+}
+
+OutputFiles checked_files(const RenderOptions& options) {
+  const OutputFiles files = output_files(options);
+  check_output_files(files);
+  if (!files.checkpoint) return files;
+  check_checkpoint_file(*files.checkpoint, options.resume);  // first: it says what is no regular file
+  check_writable(*files.checkpoint);
+  return files;
+}
+
+int render(const RenderOptions& options) {
+  std::signal(SIGPIPE, SIG_IGN);  // who reads our messages may go away before the render ends
+  const auto start = std::chrono::steady_clock::now();
+  const DiagnosticSink sink = print_diagnostics(options.quiet);
+  check_scene_file(options.scene.scene);
+  const OutputFiles files = checked_files(options);
+  check_replicates(options);
+  const LoadedScene loaded = load_scene(options.scene, sink);
+  SessionSettings settings = session_settings(options, files, loaded.description);
+  settings.sink = sink;
+  report_replicates(options, settings, sink);
+  const SamplingSettings sampling = options.sampling.settings(session_replicates(settings));
+  const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
+  const DerivedChannels derived = load_responses(options.responses, loaded, sink);
+  const auto backend = make_backend(options.backend, scene, derived, sampling, sink);
+  describe_render(settings, options, scene, sampling, *backend);
+  prepare_checkpoint(settings, scene, sampling, *backend, derived);
+  catch_stop_signals();
+  if (options.backend.backend == "auto" && !options.quiet) {
+    tell("backend {} ({}, {})\n", backend->name(), backend->device(), backend->isa());
+  }
+  const double setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  ProgressBar bar(!options.quiet);
+  Progress last;
+  const RenderReport report = run_session(scene, derived.bands, *backend, settings, stop_requested,
+                                          [&](const Progress& progress) { bar.update(last = progress); });
+  if (last.pixel_samples > 0) bar.finish(last);
+  if (!options.quiet) {
+    print_summary(report, *backend, setup);
+    print_end(options, report);
+  }
+  warn_of_missed_target(options, report, sink);
+  print_problems(report, *backend);
+  if (options.stats) {
+    const RenderContext context{
+        sampling, scene.film.crop_width, scene.film.crop_height, scene.channels.size(),
+        setup,    scene.features.names()};
+    write_file_atomically(*options.stats, statistics_json(context, report, *backend));
+  }
+  return report.interrupted ? kInterrupted : kDone;
+}
+
+void add_sampling_options(CLI::App& command, RenderOptions& o) {
+  o.backend.add_to(command);
+  o.sampling.add_to(command);
+  command
+      .add_option(
+          "--spp", o.spp,
+          "samples per pixel; with --time or --target-error at most (default without these: the scene's)")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{0xffffffff}));
+  command.add_option("--time", o.time, "render for (at most) this long: 60s, 5min, 2h");
+  command.add_option("--target-error", o.target_error,
+                     "render until the relative error of the worst channel is below: 1%");
+  command
+      .add_option("--replicates", o.replicates,
+                  "independent replicates that error bars come from (default: 16)")
+      ->check(CLI::Range(1, 4096));
+}
+
+void add_output_options(CLI::App& command, RenderOptions& o) {
+  command.add_option("-o", o.outputs, "output: .exr, or .hdr (ENVI); may be repeated (default: SCENE.exr)")
+      ->allow_extra_args(false);
+  command.add_flag("--variance", o.variance, "write the variance of the mean of every channel");
+  command.add_flag("--keep-replicates", o.keep_replicates,
+                   "also write the mean of every replicate (OUT.rNN)");
+  command.add_option("--response", o.responses, "file of sensor responses to accumulate; may be repeated")
+      ->allow_extra_args(false);
+  command.add_option("--aov", o.aux, "auxiliary images: depth,normal,object,material")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"depth", "normal", "object", "material"}));
+  command
+      .add_option("--quantity", o.quantity,
+                  "of the values on disk (default: density in EXR, integral in ENVI)")
+      ->check(CLI::IsMember({"integral", "density"}));
+  command.add_option("--preview", o.preview, "PNG preview");
+  auto* checkpoint =
+      command.add_option("--checkpoint", o.checkpoint, "new file that the unfinished render is saved in");
+  command.add_option("--checkpoint-interval", o.checkpoint_interval, "how often: 60s (the default), 10min")
+      ->needs(checkpoint);
+  command.add_flag("--resume", o.resume, "go on from the checkpoint; more --spp extend a render")
+      ->needs(checkpoint);
+  command.add_option("--stats", o.stats, "statistics as JSON");
+  command.add_flag("--quiet", o.quiet, "only errors and warnings");
+}
+
+}  // namespace
+
+Command add_render(CLI::App& program) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App* command = program.add_subcommand("render", "Render a scene into a spectral image");
+  options->scene.add_to(*command);
+  add_sampling_options(*command, *options);
+  add_output_options(*command, *options);
+  return [options] { return render(*options); };
+}
+
+}  // namespace kiloband

@@ -1,0 +1,149 @@
+// ENVI: band-sequential float32, little endian, written strip by strip at the bands' offsets.
+#include <algorithm>
+#include <bit>
+#include <future>
+
+#include "cube/band_planes.hpp"
+#include "cube/cube_layout.hpp"
+#include "cube/cube_text.hpp"
+#include "cube/envi_header.hpp"
+#include "files/atomic_file.hpp"
+#include "files/file_set.hpp"
+#include "files/input_file.hpp"
+
+namespace kiloband {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "files are written in the machine's byte order");
+
+constexpr std::size_t kBandsAtOnce = kPlaneTile;  // one cache line of a pixel
+constexpr std::size_t kBufferBytes = 8u << 20;    // at most, unless a single row needs more
+
+/// One data file with its header: values, variances or auxiliary planes.
+class EnviPart {
+ public:
+  EnviPart(const std::filesystem::path& stem, const CubeInfo& info, EnviContent content)
+      : width_(info.width),
+        height_(info.height),
+        bands_(content == EnviContent::kAux ? info.aux.size() : info.bands.size()),
+        data_(envi_file(stem, content, ".img")),
+        header_(envi_file(stem, content, ".hdr")) {
+    data_.preallocate(uint64_t{width_} * height_ * bands_ * sizeof(float));
+    header_.write_at(0, envi_header_text(info, content));
+  }
+
+  /// values are [row][x][band]; change makes of them what is written, as to_planes() has it.
+  template <class Change>
+  void write_rows(uint32_t y0, uint32_t rows, std::span<const float> values, Change change) {
+    const std::size_t bytes_per_row = kBandsAtOnce * width_ * sizeof(float);
+    const auto rows_at_once = static_cast<uint32_t>(std::max<std::size_t>(1, kBufferBytes / bytes_per_row));
+    for (uint32_t y = 0; y < rows; y += rows_at_once)
+      for (std::size_t first = 0; first < bands_; first += kBandsAtOnce)
+        write_block(y0, y, std::min(rows_at_once, rows - y), first, values, change);
+  }
+
+  AtomicFile& data() { return data_; }
+  AtomicFile& header() { return header_; }
+
+ private:
+  /// Bands `first` and up to 15 more of `rows` rows from row y of the strip: transposed,
+  /// then one write per band.
+  template <class Change>
+  void write_block(uint32_t y0, uint32_t y, uint32_t rows, std::size_t first, std::span<const float> values,
+                   Change change) {
+    const std::size_t count = std::min(kBandsAtOnce, bands_ - first), pixels = std::size_t{rows} * width_;
+    const std::size_t stride =
+        pixels + kPlaneTile;  // powers of two would put all bands into the same cache sets
+    buffer_.resize(kBandsAtOnce * stride);
+    const float* from = values.data() + std::size_t{y} * width_ * bands_;
+    to_planes(from, pixels, bands_, first, count, buffer_.data(), stride, change);
+    for (std::size_t k = 0; k < count; ++k) {
+      const uint64_t row = uint64_t{first + k} * height_ + y0 + y;
+      const auto* bytes = reinterpret_cast<const char*>(buffer_.data() + k * stride);
+      data_.write_at(row * width_ * sizeof(float), {bytes, pixels * sizeof(float)});
+    }
+  }
+
+  uint32_t width_, height_;
+  std::size_t bands_;
+  std::vector<float> buffer_;
+  AtomicFile data_, header_;
+};
+
+/// Removes X.var.* or X.aux.* that an earlier cube of ours left and this one has not; foreign files stay.
+void remove_stale(const std::filesystem::path& stem, EnviContent content) {
+  const auto header = envi_file(stem, content, ".hdr");
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(header, ignored)) return;
+  try {
+    if (!EnviHeader(header, read_small_file(header, 1u << 28)).find(kEnviLayoutKey)) return;
+  } catch (const std::runtime_error&) {
+    return;  // no header of ours
+  }
+  remove_output(header);
+  remove_output(envi_file(stem, content, ".img"));
+}
+
+class EnviWriter : public CubeWriter {
+ public:
+  EnviWriter(const std::filesystem::path& file, const CubeInfo& info, uint32_t rows_per_strip, Quantity given)
+      : stem_(envi_stem(file)),
+        order_(info, rows_per_strip),
+        conversion_(info.bands, given, info.quantity),
+        values_(std::make_unique<EnviPart>(stem_, info, EnviContent::kValues)) {
+    if (info.variance) variance_ = std::make_unique<EnviPart>(stem_, info, EnviContent::kVariance);
+    if (!info.aux.empty()) aux_ = std::make_unique<EnviPart>(stem_, info, EnviContent::kAux);
+  }
+
+  void write_rows(const CubeRows& strip) override {
+    order_.accept(strip);
+    std::future<void> variances;  // of another file: both at once
+    if (variance_)
+      variances = std::async(std::launch::async | std::launch::deferred, [&] {
+        variance_->write_rows(strip.y0, strip.rows, strip.variance,
+                              [&](auto... band) { conversion_.variances(band...); });
+      });
+    values_->write_rows(strip.y0, strip.rows, strip.mean, [&](auto... band) { conversion_.values(band...); });
+    if (variance_) variances.get();
+    if (aux_)
+      aux_->write_rows(
+          strip.y0, strip.rows, strip.aux,
+          [](std::size_t, const float* from, float* to, std::size_t n) { std::copy_n(from, n, to); });
+  }
+
+  uint64_t overflowed_values() const override { return conversion_.overflowed_values(); }
+  uint64_t overflowed_variances() const override { return conversion_.overflowed_variances(); }
+
+  /// An older cube's header goes first, so that no header ever describes data that are not its own; data
+  /// follow, the main header comes last.
+  void close(FileSet& files) override {
+    order_.finish();
+    files.before([this] {
+      remove_output(values_->header().name());
+      if (!variance_) remove_stale(stem_, EnviContent::kVariance);
+      if (!aux_) remove_stale(stem_, EnviContent::kAux);
+    });
+    const auto parts = {variance_.get(), aux_.get(), values_.get()};
+    for (EnviPart* part : parts)
+      if (part) files.add(part->data());
+    for (EnviPart* part : parts)
+      if (part) files.add(part->header());
+  }
+
+ private:
+  std::filesystem::path stem_;
+  StripOrder order_;
+  QuantityConversion conversion_;
+  std::unique_ptr<EnviPart> values_, variance_, aux_;
+};
+
+}  // namespace
+
+std::unique_ptr<CubeWriter> create_envi_writer(const std::filesystem::path& file, const CubeInfo& info,
+                                               uint32_t rows_per_strip, Quantity given) {
+  for (const auto& [key, value] : info.metadata)
+    if (key.empty()) throw InputError(file.string() + ": a metadata entry has no name");
+  return std::make_unique<EnviWriter>(file, info, rows_per_strip, given);
+}
+
+}  // namespace kiloband

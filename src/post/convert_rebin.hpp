@@ -1,0 +1,18 @@
+// Which fine bands make up a coarse channel.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cube/cube_io.hpp"
+
+namespace kiloband {
+
+/// Indices of bands that tile `coarse` exactly, without gap or overlap (edges may differ by 1e-9 of their
+/// wavelength, as edges computed along different ways do). A single band is preferred to several.
+/// what  names the channel in messages
+/// throws InputError  there are none; says what is in the way
+std::vector<std::size_t> bands_of_channel(const std::vector<Band>& bands, const Channel& coarse,
+                                          const std::string& what);
+
+}  // namespace kiloband

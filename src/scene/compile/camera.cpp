@@ -1,0 +1,33 @@
+#include <cmath>
+
+#include "scene/compile/flattener.hpp"
+
+namespace kiloband {
+
+void Flattener::set_camera() {
+  const Sensor& sensor = in_.sensor;
+  KbCamera& camera = out_.camera;
+  camera.film_width = sensor.film.width;
+  camera.film_height = sensor.film.height;
+  camera.filter = static_cast<uint32_t>(sensor.film.filter);
+  camera.filter_radius = static_cast<float>(sensor.film.filter_radius);
+  camera.filter_stddev = static_cast<float>(sensor.film.filter_stddev);
+  camera.principal_x = static_cast<float>(sensor.principal_point_x);
+  camera.principal_y = static_cast<float>(sensor.principal_point_y);
+  camera.near_clip = static_cast<float>(sensor.near_clip);
+  camera.far_clip = static_cast<float>(sensor.far_clip);
+  store_transform(placed(sensor.to_world), camera.to_world);
+  if (const auto* perspective = std::get_if<PerspectiveSensor>(&sensor.model)) {
+    camera.type = KB_CAMERA_PERSPECTIVE;
+    camera.tan_half_fov_x = static_cast<float>(std::tan(0.5 * perspective->fov_x));
+  } else if (const auto* lens = std::get_if<ThinLensSensor>(&sensor.model)) {
+    camera.type = KB_CAMERA_THINLENS;
+    camera.tan_half_fov_x = static_cast<float>(std::tan(0.5 * lens->fov_x));
+    camera.aperture_radius = static_cast<float>(lens->aperture_radius);
+    camera.focus_distance = static_cast<float>(lens->focus_distance);
+  } else {
+    camera.type = KB_CAMERA_ORTHOGRAPHIC;
+  }
+}
+
+}  // namespace kiloband

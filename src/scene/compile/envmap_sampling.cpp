@@ -1,0 +1,95 @@
+#include "scene/compile/envmap_sampling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "scene/compile/lattice_cdf.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr double kPi = 3.141592653589793238463;
+
+void check(uint32_t width, uint32_t height, std::span<const float> texel_weights) {
+  if (width == 0 || height == 0 || width > 65536 || height > 65536) {
+    throw std::logic_error("build_envmap_sampling: width and height must be in [1, 65536]");
+  }
+  if (texel_weights.size() != static_cast<std::size_t>(width) * height) {
+    throw std::logic_error("build_envmap_sampling: as many weights as texels are needed");
+  }
+  const auto valid = [](float w) { return std::isfinite(w) && w >= 0; };
+  if (!std::all_of(texel_weights.begin(), texel_weights.end(), valid)) {
+    throw std::logic_error("build_envmap_sampling: weights must be finite and not negative");
+  }
+}
+
+/// Integrals of sin theta over a row of cells, weighted with 1 - f (its upper texels) and f (its lower ones),
+/// where f goes linearly from 0 to 1. By parts: integral of f sin = ((sin b - sin a) / (b - a)) - cos b.
+struct RowIntegrals {
+  double upper, lower;
+
+  RowIntegrals(uint32_t row, uint32_t rows) {
+    const double a = kPi * row / rows, b = kPi * (row + 1) / rows;
+    const double both = 2 * std::sin(0.5 * (a + b)) * std::sin(0.5 * (b - a));
+    const double mean_cos = 2 * std::cos(0.5 * (a + b)) * std::sin(0.5 * (b - a)) / (b - a);
+    lower = std::clamp(mean_cos - std::cos(b), 0.0, both);
+    upper = both - lower;
+  }
+  double sum() const { return upper + lower; }
+};
+
+/// Integrals of the interpolated map over the cells of one row, [sr * weight], without the column width.
+void integrate_row(uint32_t width, uint32_t height, std::span<const float> texels, uint32_t row,
+                   const RowIntegrals& integrals, std::span<double> out) {
+  const float* upper = &texels[static_cast<std::size_t>(row) * width];
+  const float* lower = &texels[static_cast<std::size_t>(std::min(row + 1, height - 1)) * width];
+  for (uint32_t j = 0; j < width; ++j) {
+    const uint32_t next = j + 1 < width ? j + 1 : 0;
+    out[j] = 0.5 * (integrals.upper * (static_cast<double>(upper[j]) + upper[next]) +
+                    integrals.lower * (static_cast<double>(lower[j]) + lower[next]));
+  }
+}
+
+}  // namespace
+
+std::vector<double> row_solid_angles(uint32_t height) {
+  const uint32_t cells = std::max(height - 1, 1u);
+  std::vector<double> angles(height, 0.0);
+  for (uint32_t i = 0; i < cells; ++i) {
+    const RowIntegrals integrals(i, cells);
+    angles[i] += integrals.upper * height / 2;  // of 2, the sum over all cells
+    angles[std::min(i + 1, height - 1)] += integrals.lower * height / 2;
+  }
+  return angles;
+}
+
+EnvmapSampling build_envmap_sampling(uint32_t width, uint32_t height, std::span<const float> texel_weights) {
+  check(width, height, texel_weights);
+  const uint32_t rows = std::max(height - 1, 1u);
+  EnvmapSampling sampling{width, rows, std::vector<float>(rows + 1),
+                          std::vector<float>(static_cast<std::size_t>(rows) * (width + 1))};
+  std::vector<double> row(width), row_sums(rows);
+  double total = 0;
+  for (uint32_t i = 0; i < rows; ++i) {
+    integrate_row(width, height, texel_weights, i, RowIntegrals(i, rows), row);
+    for (const double w : row) row_sums[i] += w;
+    total += row_sums[i];
+  }
+  // Mixed density: (1 - share) weight / total + share * solid angle / 4 pi, cell by cell;
+  // 2 width sums all solid angles.
+  const double keep = total > 0 ? (1 - kEnvmapUniformShare) / total : 0;
+  const double uniform = (total > 0 ? kEnvmapUniformShare : 1) / (2.0 * width);
+  for (uint32_t i = 0; i < rows; ++i) {
+    const RowIntegrals integrals(i, rows);
+    integrate_row(width, height, texel_weights, i, integrals, row);
+    for (double& w : row) w = keep * w + uniform * integrals.sum();
+    std::ranges::copy(lattice_cdf(row), &sampling.row_cdf[static_cast<std::size_t>(i) * (width + 1)]);
+    row_sums[i] = keep * row_sums[i] + uniform * width * integrals.sum();
+  }
+  sampling.marginal_cdf = lattice_cdf(row_sums);
+  return sampling;
+}
+
+}  // namespace kiloband

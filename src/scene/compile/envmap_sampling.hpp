@@ -1,0 +1,39 @@
+// Importance sampling of lat-long environment maps: building EnvmapSampling.
+//
+// Cells are the patches of the bilinear interpolation, not texels: for a map of W x H texels there are
+// W columns, cell j on u in [(j + 0.5) / W, (j + 1.5) / W) modulo 1 (columns are texel-centred), and
+// max(H - 1, 1) rows, cell i on v in [i / rows, (i + 1) / rows) (rows align-corners). Within a cell
+// directions are uniform in solid angle: v = theta / pi goes with cos theta, u linearly.
+// The density [1/sr] is
+//
+//   p = (marginal_cdf[i+1] - marginal_cdf[i]) * (row_cdf[i][j+1] - row_cdf[i][j]) / solid angle of the cell
+//   solid angle = (2 pi / W) * (cos(pi i / rows) - cos(pi (i+1) / rows))
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/compile/flat_scene.hpp"
+
+namespace kiloband {
+
+/// The share of samples that are uniform over the sphere: bounds radiance / density
+/// where the guide bands see nothing.
+inline constexpr double kEnvmapUniformShare = 0.01;
+
+/// A cell's weight is the integral over its solid angle of the map interpolated between its 4 texels, mixed
+/// with kEnvmapUniformShare of the uniform density (all of it if the map is black). Cumulative values are
+/// multiples of 2^-24 and every cell has at least one unit: probabilities are exact in float and for 24-bit
+/// random numbers, and never 0.
+/// texel_weights  mean radiance of each texel over the guide bands, finite and >= 0, [row][column],
+///                row 0 at v = 0
+/// throws std::logic_error  width or height 0 or above 65536, a size that does not fit, an invalid weight
+EnvmapSampling build_envmap_sampling(uint32_t width, uint32_t height, std::span<const float> texel_weights);
+
+/// What the texels of each row count in the mean of the map over the sphere: the integral over the solid
+/// angle of the row's part in the interpolation, scaled so that the mean of all rows is 1. The sines of
+/// the rows' own angles would not do: both rows of a map of two lie at the poles. height >= 1
+std::vector<double> row_solid_angles(uint32_t height);
+
+}  // namespace kiloband

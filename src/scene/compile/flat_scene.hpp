@@ -1,0 +1,135 @@
+// FlatScene: the scene as plain arrays of the records in shared/records.h; what every backend renders.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/description/description.hpp"
+#include "shared/pipeline.h"
+#include "shared/records.h"
+#include "shared/thermal.h"
+#include "spectral/channel_knots.hpp"
+#include "spectral/channels.hpp"
+#include "spectral/spectrum.hpp"
+
+namespace kiloband {
+
+/// What the scene needs. Backends are specialised for it; what is false costs nothing.
+struct SceneFeatures {
+  bool diffuse = false, conductor = false, rough_conductor = false, dielectric = false,
+       rough_dielectric = false;
+  bool plastic = false, rough_plastic = false, two_sided = false, mask = false, dispersion = false;
+  bool bitmap = false, checkerboard = false, spectral_texture = false;
+  bool area_light = false, constant_light = false, envmap_light = false, delta_light = false;
+  bool analytic_shapes = false;
+  bool thermal = false;            // surfaces emit by Kirchhoff's law
+  bool compensation = false;       // rough ones among them
+  bool temperature_field = false;  // and their temperature depends on the place
+  bool gas = false;                // media or null boundaries
+  bool plume = false;              // media that vary in space
+
+  /// Names of the features that are present, for `info` and the statistics.
+  std::vector<std::string> names() const;
+};
+
+/// One row of the spectrum table.
+struct SpectrumRow {
+  std::string name;        // where it comes from, for messages
+  RegularTable table;      // reflectances, indices, tabulated emission
+  bool is_planck = false;  // then: planck_scale * planck_radiance(lambda, temperature_k) on [min_nm, max_nm],
+                           // times the table if that is not empty (an emissivity)
+  double temperature_k = 0, planck_scale = 1, planck_min_nm = 0, planck_max_nm = 1e300;
+  std::shared_ptr<const ChannelKnots> absorption;  // a gas's, 1/m: then `table` is empty
+  bool is_emission = false;                        // values are divided by the channel's scale
+  float bound = 0;                                 // upper bound over guide bands and rendered channels
+};
+
+/// Importance sampling of an environment map over its texels: piecewise constant in (u, v).
+struct EnvmapSampling {
+  uint32_t width = 0, height = 0;   // cells
+  std::vector<float> marginal_cdf;  // height + 1
+  std::vector<float> row_cdf;       // height rows of width + 1
+};
+
+/// The wavelengths of spectral texels (KB_TEXTURE_BANDS): a texel's spectrum is linear between band centres,
+/// constant from the outer centres to the outermost edges, and beyond these 0, or continued if `extrapolate`.
+struct BandSet {
+  std::vector<double> centres_nm;  // ascending
+  double min_nm = 0, max_nm = 0;   // outermost edges
+  bool extrapolate = false;
+  bool is_emission = false;  // values are divided by the channel's scale
+  double scale = 1;          // multiplies all values
+};
+
+/// The numbers of spectral texels, [y][x][value]; shared with the image that they were read from.
+using SpectralTexels = std::shared_ptr<const std::vector<float>>;
+
+/// The flattened scene. Positions carry one spare vertex at the end:
+/// ray tracers read vertices with 16-byte loads.
+struct FlatScene {
+  ChannelList channels;  // K rendered channels
+  ChannelList guide;     // guide bands
+  std::vector<double>
+      channel_scale;  // K powers of two; emission rows are divided by it, the film multiplies by it
+
+  std::vector<SpectrumRow> spectra;  // at most 65535
+  /// Means of reflectances over bins of channels, [spectrum][KB_CHANNEL_BINS]; empty without dispersion.
+  std::vector<float> channel_bins;
+  uint32_t unit_row = KB_NONE;  // a reflectance of 1, where the scene needs one (rough dispersive boundaries)
+  std::vector<KbTexture> textures;
+  std::vector<KbFloat4> texels;
+  std::vector<float> texel_bounds;  // per texel: upper bound of its spectrum over guide bands and channels
+  std::vector<BandSet> band_sets;
+  std::vector<SpectralTexels>
+      spectral_texels;  // by texture; null for others; may end before the last texture
+  std::vector<KbCheckerboard> checkerboards;
+
+  std::vector<KbMaterial> materials;
+  std::vector<KbSurface> surfaces;
+  std::vector<KbThermal> thermals;
+  std::vector<float>
+      thermal_tables;  // what KbThermal::table, field_offset and compensated KbMaterial::table refer to
+  std::vector<KbShape> shapes;
+  std::vector<std::string> shape_names, material_names;
+  std::vector<KbFloat3> positions;  // world, m
+  std::vector<KbFloat3> normals;    // world, unit; zero where a shape has none; empty if no shape has
+  std::vector<KbFloat2> uvs;        // empty if no shape has
+  std::vector<uint32_t> triangles;  // 3 absolute vertex indices each
+  std::vector<float> area_cdf;      // see KbShape::first_cdf, lattice_cdf.hpp
+
+  std::vector<KbMedium> media;
+  std::vector<std::string> medium_names;
+  std::vector<KbFloat2> plume_nodes;  // temperature (K) and scale, see KbMedium::first_node
+  std::vector<uint32_t> interiors;    // by shape: the medium inside, or KB_NONE; empty without gas
+  uint32_t atmosphere = KB_NONE;      // the medium outside all interiors
+  std::array<uint16_t, KB_MEDIUM_DEPTH> camera_media{};  // where rays begin: as KbGasState::inside
+
+  std::vector<KbEmitter> emitters;
+  std::vector<std::string> emitter_names;  // an area light's is its shape's; empty: without id
+  std::vector<float> emitter_cdf;          // emitters + 1 entries, 0 to 1, see lattice_cdf.hpp
+  uint32_t environment = KB_NONE;          // emitter index of the constant or envmap emitter
+  EnvmapSampling envmap;
+  /// Where the coordinates of all of this begin, in the scene file's: 0 unless it is far.
+  std::array<double, 3> origin{};
+  KbFloat3 scene_centre{0, 0, 0};
+  float scene_radius = 0;  // bounding sphere of the geometry, m
+
+  KbCamera camera{};
+  Film film;  // crop window; channels as in `channels`
+  Integrator integrator;
+  SceneFeatures features;
+};
+
+struct FlattenOptions {
+  ChannelList channels;  // rendered channels, not empty
+  ChannelList guide;     // empty: the rendered channels
+  DiagnosticSink sink;
+};
+
+/// throws InputError for what cannot be rendered in these channels (no data, more than 65535 spectra ...)
+FlatScene flatten(const SceneDescription& scene, const FlattenOptions& options);
+
+}  // namespace kiloband

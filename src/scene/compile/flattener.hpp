@@ -1,0 +1,179 @@
+// The steps of flattening; see flatten.cpp for their order. Internal to src/scene.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "scene/compile/flat_scene.hpp"
+#include "scene/compile/spectrum_table_builder.hpp"
+
+namespace kiloband {
+
+/// Turns a SceneDescription into the arrays of a FlatScene. Shared BSDFs and textures are flattened once.
+class Flattener {
+ public:
+  Flattener(const SceneDescription& description, const FlattenOptions& options);
+  FlatScene run();
+
+ private:
+  // flatten_textures.cpp
+  uint32_t reference(const Texture& texture, const SpectrumSource& use);
+  /// What a bitmap's values stand for; one image used in two ways is flattened twice.
+  enum class BitmapUse { kReflectance, kEmission, kOpacity };
+  uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use);
+  float texel_bound(const KbFloat4& texel) const;
+  // flatten_spectral.cpp
+  uint32_t spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
+                           const SpectrumSource& use);
+  uint32_t add_spectral_texture(const SpectralBitmapTexture& texture, const SpectrumSource& use,
+                                double scale);
+  void add_bands(KbTexture& record, const SpectralBitmapTexture& texture, const SpectrumSource& use,
+                 double scale);
+  void add_weights(KbTexture& record, const SpectralBitmapTexture& texture, const SpectrumSource& use);
+  uint32_t first_value_unit(const SpectralImage& image, const SourcePosition& position);
+  void add_spectral_environment(KbEmitter& record, const SpectralEnvmapEmitter& emitter,
+                                const SpectrumSource& use);
+
+  // flatten_textures.cpp
+  uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use);
+  double texture_mean(const Texture& texture);   // over the guide bands; a bitmap's by its texels' values
+  double texture_bound(const Texture& texture);  // over guide bands and channels
+  uint32_t d65_row();
+
+  // flatten_materials.cpp
+  /// heat: of the shape, or KB_NONE. Materials and surfaces with different heat are different.
+  uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
+  uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated, const std::string& outer_id);
+  KbMaterial make(const DiffuseBsdf& model, const std::string& name, const SourcePosition& position);
+  KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
+  KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
+  KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
+  void set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumSource& use);
+
+  // flatten_thermal.cpp
+  /// A temperature: of shapes that have the same, number or field.
+  struct Heat {
+    double temperature_k = 0;
+    uint32_t field = KB_NONE, field_offset = 0;
+    double mean_k = 0;  // of a field
+  };
+  /// Index of the shape's temperature, or KB_NONE where it does not emit by Kirchhoff's law.
+  uint32_t heat_of(const Shape& shape);
+  uint32_t image_heat(const std::shared_ptr<const BitmapTexture>& image);
+  uint32_t vertex_heat(const std::vector<float>& temperatures);
+  /// The row of an emissivity times Planck's law; of fields, of the emissivity alone.
+  uint32_t emission_row(uint32_t heat, const RegularTable& emissivity, const std::string& name);
+  uint32_t black_row(uint32_t heat);
+  /// What 1 - a reflectance emits; KB_NONE where that is 0.
+  uint32_t complement(uint32_t ref, uint32_t heat);
+  uint32_t complement_row(uint32_t row, uint32_t heat);
+  uint32_t complement_bitmap(uint32_t index, uint32_t heat);
+  uint32_t complement_checkerboard(uint32_t index, uint32_t heat);
+  /// The thermal record of a material, or of a black back; KB_NONE where nothing is emitted.
+  uint32_t thermal(const std::shared_ptr<const Bsdf>& bsdf, uint32_t material, uint32_t heat);
+  uint32_t black(uint32_t heat);
+  uint32_t add_thermal(KbThermal record, uint32_t heat);
+  KbThermal thermal_of(const KbMaterial& material, const std::string& name, uint32_t heat);
+  KbThermal thermal_of_metal(const KbMaterial& material, const std::string& name, uint32_t heat);
+  KbThermal thermal_of_plastic(const KbMaterial& material, uint32_t heat);
+  uint32_t nonlinear_complement(const KbMaterial& material, uint32_t heat);
+  void check_thermal(const Bsdf& bsdf, const KbMaterial& material) const;
+  void require_emission_data(const Texture& texture, const SpectrumSource& use) const;
+  void compensate(KbMaterial& material, const Bsdf& bsdf);
+  void add_thermal_emitter(uint32_t shape_index);
+  double emissivity_estimate(uint32_t thermal, double lambda_nm) const;
+  double reference_estimate(uint32_t ref, double lambda_nm) const;
+
+  // flatten_place.cpp
+  /// throws InputError  places and sizes that single precision cannot take
+  void check_places() const;
+  void set_origin();
+  Transform placed(const Transform& to_world) const;
+
+  // flatten_shapes.cpp
+  void add_shapes();
+  void add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh);
+  void add_areas(KbShape& record, const Shape& shape);
+  void compute_bounds();
+
+  // flatten_media.cpp
+  void add_media();
+  uint32_t medium(const std::shared_ptr<const Medium>& medium, uint32_t boundary);
+  uint32_t gas_emission_row(double temperature_k, uint32_t boundary, const std::string& name);
+  uint32_t add_medium(const KbMedium& record, const std::string& name, const SourcePosition& position);
+  uint32_t interior(uint32_t shape_index);
+  void set_grid(KbMedium& record, const GridField& grid);
+  void set_jet(KbMedium& record, const JetField& jet);
+  void set_ladder(KbMedium& record) const;
+
+  // flatten_emitters.cpp
+  void add_emitters();
+  void add_ambient_environment();
+  void add_area_emitter(uint32_t shape_index);
+  void add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumSource& use);
+  KbEmitter make_emitter(const Emitter& emitter);
+  void select_emitters();
+  void set_channel_scales();
+
+  // flatten_camera.cpp
+  void set_camera();
+
+  // flatten_channel_bins.cpp
+  void set_channel_bins();
+
+  const SceneDescription& in_;
+  const FlattenOptions& options_;
+  FlatScene out_;
+  SpectrumTableBuilder spectra_;
+  std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;  // by bsdf and heat
+  std::map<std::pair<const void*, bool>, uint32_t> materials_;     // by bsdf and compensation
+  std::map<const void*, uint32_t> checkerboards_;
+  std::map<std::pair<const void*, uint32_t>, uint32_t> media_;  // by medium and the boundary's material
+  std::vector<Heat> heats_;
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> emission_rows_, complements_,
+      thermals_;                                    // by what and heat
+  std::map<uint32_t, uint32_t> complement_texels_;  // first texel of the complement, by bitmap
+  std::map<const void*, uint32_t> image_heats_;
+  std::vector<uint32_t> heat_of_shape_;
+  std::map<std::pair<const void*, BitmapUse>, uint32_t> bitmaps_;
+  std::map<std::pair<const void*, bool>, uint32_t> spectral_bitmaps_;  // by texture and whether it emits
+  uint32_t d65_row_ = KB_NONE;
+  /// A sum of spectra.
+  using WeightedSpectra = std::vector<std::pair<Spectrum, double>>;
+  /// Per emitter: the spectrum that stands for its colour and the factor that makes it a power (W/nm);
+  /// mixtures have further terms.
+  struct EmitterPower {
+    Spectrum spectrum;
+    double factor;
+    WeightedSpectra more = {};
+    std::vector<double> by_band = {};  // if not empty: power in each guide band (W) instead
+  };
+  static EmitterPower scaled_power(const WeightedSpectra& colour, double factor);
+  static double band_power(const EmitterPower& power, const Channel& band);  // W
+
+  std::vector<EmitterPower> powers_;
+  std::map<uint32_t, WeightedSpectra> texture_colours_;   // of spectral textures: their mean
+  std::vector<Spectrum> emission_peaks_;                  // the largest value of spectral textures that emit
+  std::map<uint32_t, double> emission_row_factors_;       // largest weight of rows that are endmembers
+  uint64_t value_units_ = 0;                              // of spectral texels, see KbTexture::first_value
+  std::vector<double> texture_means_, texture_bounds_;    // per bitmap: mean value, largest texel bound
+  double raw_emission_peak_ = 0, rgb_emission_peak_ = 0;  // largest texel scale of emitting bitmaps
+};
+
+/// "bsdf 'wall'", for messages.
+std::string describe(const Bsdf& bsdf);
+
+/// KbTexture::first_texel of a bitmap of `count` texels after `before` others.
+/// name  the bitmap's, for messages
+/// throws InputError  the last texel's index does not fit into 32 bits
+uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePosition& position,
+                           const std::string& name);
+
+/// Row-major 3x4 of an affine transform.
+void store_transform(const Transform& transform, float (&out)[12]);
+/// Row-major 2x3.
+void store_uv_transform(const glm::dmat3& to_uv, float (&out)[6]);
+/// to_world and its inverse.
+void set_emitter_transforms(KbEmitter& record, const Transform& to_world);
+
+}  // namespace kiloband

@@ -1,0 +1,152 @@
+// Scenes that stand far from their origin. Coordinates are floats: at 10^6 m they are 6 cm apart, too coarse
+// for an aircraft in map coordinates. Everything is therefore moved, in double, so that the shapes are about
+// the origin; what stands there already keeps its very coordinates.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <optional>
+
+#include "scene/compile/flattener.hpp"
+#include "scene/read/limits.hpp"
+
+namespace kiloband {
+namespace {
+
+/// Moved is what lies farther from the origin than this many times its own size: from there on coordinates
+/// would lose more than five of their 24 bits.
+constexpr double kFar = 32;
+
+/// Beyond this single precision is no match for a scene whose other parts are metres: rays leave a surface by
+/// 2^-19 of its coordinates, 2 cm at this distance.
+constexpr double kFarApart = 1e4;            // m
+constexpr double kOffset = 1.0 / (1 << 18);  // of a coordinate: off one surface and onto the next
+
+struct Box {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void add(const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  bool is_empty() const { return !(low.x <= high.x); }
+  double largest_side() const {
+    const glm::dvec3 side = high - low;
+    return std::max({side.x, side.y, side.z});
+  }
+};
+
+/// World-space box of a shape's points, or of a box around a canonical analytic shape.
+void extend(const Shape& shape, Box& box) {
+  const auto add = [&](const glm::dvec3& p) { box.add(glm::dvec3(shape.to_world * glm::dvec4(p, 1))); };
+  if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry)) {
+    for (const Vec3f& p : mesh->mesh->positions) add({p[0], p[1], p[2]});
+    return;
+  }
+  for (int corner = 0; corner < 8; ++corner)
+    add({corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1});
+}
+
+/// An object with a name, at its place in the file.
+struct Part {
+  SourcePosition position;
+  std::string name;
+};
+
+std::string named(const char* kind, const std::string& id) {
+  return id.empty() ? kind : fmt::format("{} '{}'", kind, id);
+}
+
+[[noreturn]] void refuse(const Part& part, const std::string& what) {
+  throw InputError(part.position, part.name + ": " + what);
+}
+
+/// Single precision takes the coordinates, and the squares of their differences.
+void check_reach(const glm::dvec3& p, const Part& part) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(p[axis]) <= kMaxLength))
+      refuse(part, fmt::format("{} = {:g} m: must be within {:g} m of the origin", "xyz"[axis], p[axis],
+                               kMaxLength));
+}
+
+/// The same of sizes, which are divided by.
+void check_size(double size, const Part& part) {
+  if (!(size >= 1 / kMaxLength && size <= kMaxLength))
+    refuse(part,
+           fmt::format("a size of {:g} m: must be from {:g} to {:g} m", size, 1 / kMaxLength, kMaxLength));
+}
+
+void check_frame(const Transform& to_world, const Part& part) {
+  check_reach(glm::dvec3(to_world[3]), part);
+  for (int axis = 0; axis < 3; ++axis) check_size(glm::length(glm::dvec3(to_world[axis])), part);
+}
+
+/// Where a light without a surface stands; empty for those that are everywhere.
+std::optional<glm::dvec3> place_of(const Emitter& emitter) {
+  if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) return point->position;
+  if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model)) return glm::dvec3(spot->to_world[3]);
+  return std::nullopt;
+}
+
+void check_field(const std::shared_ptr<const Medium>& medium) {
+  if (!medium) return;
+  const Part part{medium->position, named("medium", medium->id)};
+  if (const auto* grid = std::get_if<GridField>(&medium->field)) check_frame(grid->to_world, part);
+  if (const auto* jet = std::get_if<JetField>(&medium->field)) {
+    check_frame(jet->to_world, part);
+    check_size(jet->radius, part);
+  }
+}
+
+}  // namespace
+
+void Flattener::check_places() const {
+  Box all;
+  const auto add = [&](const glm::dvec3& p, const Part& part) {
+    check_reach(p, part);
+    all.add(p);
+  };
+  for (const Shape& shape : in_.shapes) {
+    const Part part{shape.position, named("shape", shape.id)};
+    Box box;
+    extend(shape, box);
+    if (box.is_empty()) continue;
+    add(box.low, part);
+    add(box.high, part);
+    if (!std::holds_alternative<MeshShape>(shape.geometry)) check_frame(shape.to_world, part);
+    check_field(shape.interior);
+  }
+  check_field(in_.atmosphere);
+  for (const Emitter& emitter : in_.emitters)
+    if (const auto place = place_of(emitter)) add(*place, {emitter.position, named("emitter", emitter.id)});
+  const Part camera{in_.sensor.position, "sensor"};
+  check_frame(in_.sensor.to_world, camera);
+  add(glm::dvec3(in_.sensor.to_world[3]), camera);
+  const double side = all.largest_side();
+  if (side <= kFarApart * (1 + 1e-6)) return;
+  warn(options_.sink, {in_.file.string(), 0, 0},
+       fmt::format(
+           "parts of the scene are {:.3g} m apart, more than {:g} m: single precision loses details smaller "
+           "than {:.2g} m",
+           side, kFarApart, side / 2 * kOffset));
+}
+
+void Flattener::set_origin() {
+  Box box;
+  for (const Shape& shape : in_.shapes) extend(shape, box);
+  if (box.is_empty()) return;
+  const glm::dvec3 centre = 0.5 * (box.low + box.high);
+  if (!(glm::length(centre) > kFar * 0.5 * glm::length(box.high - box.low))) return;
+  for (int axis = 0; axis < 3; ++axis) out_.origin[axis] = centre[axis];
+}
+
+/// The transform to the coordinates of FlatScene.
+Transform Flattener::placed(const Transform& to_world) const {
+  const auto& o = out_.origin;
+  if (o[0] == 0 && o[1] == 0 && o[2] == 0) return to_world;
+  return glm::translate(Transform{1.0}, -glm::dvec3(o[0], o[1], o[2])) * to_world;
+}
+
+}  // namespace kiloband

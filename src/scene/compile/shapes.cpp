@@ -1,0 +1,173 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/compile/flattener.hpp"
+#include "scene/compile/lattice_cdf.hpp"
+
+namespace kiloband {
+namespace {
+
+KbFloat3 to_record(const glm::dvec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+glm::dvec3 to_glm(const KbFloat3& v) {
+  return {v.x, v.y, v.z};
+}
+
+/// Area of a canonical analytic shape under its transform
+/// (a similarity for spheres; see the reader's checks).
+double analytic_area(uint32_t type, const Transform& m) {
+  const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
+  const double pi = std::numbers::pi;
+  if (type == KB_SHAPE_SPHERE) return 4 * pi * glm::dot(x, x);
+  if (type == KB_SHAPE_DISK) return pi * glm::length(glm::cross(x, y));
+  return 2 * pi * glm::length(x) * glm::length(z);
+}
+
+bool mirrors(const Transform& to_world) {
+  return glm::determinant(glm::dmat3(to_world)) < 0;
+}
+
+/// Vertex normals in the world. Normals of the file are mapped;
+/// computed ones are those of the placed triangles.
+std::vector<KbFloat3> placed_normals(const Mesh& mesh, const Transform& to_world) {
+  const glm::dmat3 linear(to_world);
+  std::vector<KbFloat3> placed;
+  if (!mesh.front_by_normals && linear != glm::dmat3(1.0)) {
+    LinearMap map;
+    for (int column = 0; column < 3; ++column)
+      for (int axis = 0; axis < 3; ++axis) map[column][axis] = linear[column][axis];
+    for (const Vec3f& n : mapped_vertex_normals(mesh, map)) placed.push_back({n[0], n[1], n[2]});
+    return placed;
+  }
+  const glm::dmat3 normal_to_world = glm::transpose(glm::inverse(linear));
+  for (const Vec3f& n : mesh.normals) {
+    const glm::dvec3 world = normal_to_world * glm::dvec3(n[0], n[1], n[2]);
+    const double length = glm::length(world);
+    placed.push_back(to_record(length > 0 ? world / length : glm::dvec3(0)));
+  }
+  return placed;
+}
+
+/// World-space corners that enclose an analytic shape.
+void extend_bounds(const KbShape& shape, glm::dvec3& low, glm::dvec3& high) {
+  const float* m = shape.to_world;
+  const double z_low = shape.type == KB_SHAPE_SPHERE ? -1 : 0;
+  const double z_high = shape.type == KB_SHAPE_DISK ? 0 : 1;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? z_high : z_low);
+    glm::dvec3 world;
+    for (int row = 0; row < 3; ++row) {
+      world[row] = m[4 * row] * p.x + m[4 * row + 1] * p.y + m[4 * row + 2] * p.z + m[4 * row + 3];
+    }
+    low = glm::min(low, world);
+    high = glm::max(high, world);
+  }
+}
+
+}  // namespace
+
+void Flattener::add_shapes() {
+  for (const Shape& shape : in_.shapes) {
+    KbShape record{};
+    heat_of_shape_.push_back(heat_of(shape));
+    record.surface = surface(shape.bsdf, heat_of_shape_.back());
+    record.emitter = record.first_cdf = KB_NONE;
+    record.flags = shape.flip_normals ? KB_SHAPE_FLIP_NORMALS : 0;
+    if (out_.surfaces[record.surface].flags & KB_SURFACE_NULL) record.flags |= KB_SHAPE_NULL;
+    const Transform to_world = placed(shape.to_world);
+    store_transform(to_world, record.to_world);
+    store_transform(glm::inverse(to_world), record.to_object);
+    if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry)) {
+      record.type = KB_SHAPE_MESH;
+      add_mesh(record, shape, *mesh->mesh);
+    } else {
+      record.type = std::holds_alternative<SphereShape>(shape.geometry) ? KB_SHAPE_SPHERE
+                    : std::holds_alternative<DiskShape>(shape.geometry) ? KB_SHAPE_DISK
+                                                                        : KB_SHAPE_CYLINDER;
+      record.area = static_cast<float>(analytic_area(record.type, shape.to_world));
+      // A mirrored sphere shows its inside, as in Mitsuba, where disks and cylinders do not turn over.
+      if (record.type == KB_SHAPE_SPHERE && mirrors(shape.to_world)) record.flags ^= KB_SHAPE_FLIP_NORMALS;
+      out_.features.analytic_shapes = true;
+    }
+    out_.shapes.push_back(record);
+    out_.shape_names.push_back(shape.id.empty() ? fmt::format("shape {}", out_.shapes.size() - 1) : shape.id);
+    if (shape.emitter) add_area_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
+    if (shape.thermal) add_thermal_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
+  }
+}
+
+void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) {
+  const std::size_t first = out_.positions.size();
+  if (first + mesh.positions.size() > 0xffffffffu ||
+      out_.triangles.size() / 3 + mesh.triangles.size() > 0x7fffffffu) {
+    throw InputError(shape.position, "the scene has more vertices or triangles than 32-bit indices can name");
+  }
+  record.first_triangle = static_cast<uint32_t>(out_.triangles.size() / 3);
+  record.triangle_count = static_cast<uint32_t>(mesh.triangles.size());
+  const Transform placed_in_world = placed(shape.to_world);
+  for (const Vec3f& p : mesh.positions) {
+    out_.positions.push_back(to_record(glm::dvec3(placed_in_world * glm::dvec4(p[0], p[1], p[2], 1))));
+  }
+  if (!mesh.normals.empty()) {
+    record.flags |= KB_SHAPE_HAS_NORMALS;
+    out_.normals.resize(first, KbFloat3{0, 0, 0});
+    const std::vector<KbFloat3> normals = placed_normals(mesh, shape.to_world);
+    out_.normals.insert(out_.normals.end(), normals.begin(), normals.end());
+  }
+  if (!mesh.uvs.empty()) {
+    record.flags |= KB_SHAPE_HAS_UVS;
+    out_.uvs.resize(first, KbFloat2{0, 0});
+    for (const Vec2f& uv : mesh.uvs) out_.uvs.push_back({uv[0], uv[1]});
+  }
+  // A mirroring transform turns the winding; corners keep their order, which barycentric uv follow.
+  if (mesh.front_by_normals && mirrors(shape.to_world)) record.flags |= KB_SHAPE_MIRRORED;
+  for (const auto& triangle : mesh.triangles)
+    for (const uint32_t corner : triangle) out_.triangles.push_back(static_cast<uint32_t>(first) + corner);
+  if (!out_.normals.empty()) out_.normals.resize(out_.positions.size(), KbFloat3{0, 0, 0});
+  if (!out_.uvs.empty()) out_.uvs.resize(out_.positions.size(), KbFloat2{0, 0});
+  add_areas(record, shape);
+}
+
+/// The record's area; an area light also gets the table that its triangles are chosen by.
+void Flattener::add_areas(KbShape& record, const Shape& shape) {
+  std::vector<double> areas(record.triangle_count);
+  double total = 0;
+  for (uint32_t i = 0; i < record.triangle_count; ++i) {
+    const uint32_t* index = &out_.triangles[3 * (std::size_t{record.first_triangle} + i)];
+    const glm::dvec3 p0 = to_glm(out_.positions[index[0]]);
+    const glm::dvec3 e1 = to_glm(out_.positions[index[1]]) - p0;
+    const glm::dvec3 e2 = to_glm(out_.positions[index[2]]) - p0;
+    areas[i] = 0.5 * glm::length(glm::cross(e1, e2));
+    total += areas[i];
+  }
+  record.area = static_cast<float>(total);
+  record.first_cdf = KB_NONE;
+  if (!shape.emitter && !shape.thermal) return;
+  if (!std::isfinite(total)) throw InputError(shape.position, "area light: its area in m^2 must be finite");
+  check_lattice_items(areas.size(), shape.position, "triangles of an area light");
+  record.first_cdf = static_cast<uint32_t>(out_.area_cdf.size());
+  const std::vector<float> cdf = lattice_cdf(areas);
+  out_.area_cdf.insert(out_.area_cdf.end(), cdf.begin(), cdf.end());
+}
+
+void Flattener::compute_bounds() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  glm::dvec3 low(kInfinity), high(-kInfinity);
+  for (const KbFloat3& p : out_.positions) {
+    low = glm::min(low, to_glm(p));
+    high = glm::max(high, to_glm(p));
+  }
+  for (const KbShape& shape : out_.shapes) {
+    if (shape.type != KB_SHAPE_MESH) extend_bounds(shape, low, high);
+  }
+  if (!(low.x <= high.x)) return;  // no geometry: radius 0
+  out_.scene_centre = to_record(0.5 * (low + high));
+  out_.scene_radius = static_cast<float>(0.5 * glm::length(high - low));
+}
+
+}  // namespace kiloband

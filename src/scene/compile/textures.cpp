@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/compile/flattener.hpp"
+#include "spectral/colour.hpp"
+#include "spectral/rgb.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr float kFlatCoefficient = 1e10f;  // S(1e10) == 1: a spectrally flat texel, see records.h
+
+KbFloat4 flat_texel(float value) {
+  return {0, 0, kFlatCoefficient, value};
+}
+
+/// Reflectance: the sigmoid of the colour. Emission: twice the maximum times the sigmoid
+/// of rgb / (2 max), as Mitsuba.
+KbFloat4 upsampled_texel(const SigmoidTable& table, const float* rgb, bool emission) {
+  const float largest = std::max({rgb[0], rgb[1], rgb[2]});
+  if (largest <= 0) return flat_texel(0);
+  if (!emission && rgb[0] == rgb[1] && rgb[1] == rgb[2]) return flat_texel(rgb[0]);
+  const float scale = emission ? 2 * largest : 1;
+  const auto c = table({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
+  return {c[0], c[1], c[2], scale};
+}
+
+float value_of(const Image& image, std::size_t texel) {
+  if (image.channels == 1) return image.pixels[texel];
+  return (image.pixels[3 * texel] + image.pixels[3 * texel + 1] + image.pixels[3 * texel + 2]) / 3;
+}
+
+}  // namespace
+
+void store_uv_transform(const glm::dmat3& to_uv, float (&out)[6]) {
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 3; ++column) out[3 * row + column] = static_cast<float>(to_uv[column][row]);
+  }
+}
+
+uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePosition& position,
+                           const std::string& name) {
+  constexpr std::size_t kMost = std::size_t{1} << 32;
+  if (before > kMost || count > kMost - before) {
+    throw InputError(position,
+                     fmt::format("texture '{}': {} texels after {} of other textures: all textures of a "
+                                 "scene may have {} texels together",
+                                 name, count, before, kMost));
+  }
+  return static_cast<uint32_t>(before);
+}
+
+uint32_t Flattener::d65_row() {
+  if (d65_row_ == KB_NONE) d65_row_ = spectra_.row(illuminant_d65(), {"RGB emission (D65)", {}, true});
+  return d65_row_;
+}
+
+uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use) {
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture))
+    return KB_REF_SPECTRUM | spectra_.row(*spectrum, use);
+  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
+    return KB_REF_BITMAP | bitmap(*image, use.emission ? BitmapUse::kEmission : BitmapUse::kReflectance);
+  }
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    return KB_REF_BITMAP | spectral_bitmap(*spectral, use);
+  return KB_REF_CHECKERBOARD |
+         checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
+}
+
+uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use) {
+  const bool emission = use == BitmapUse::kEmission;
+  const auto [place, is_new] =
+      bitmaps_.try_emplace({texture.get(), use}, static_cast<uint32_t>(out_.textures.size()));
+  if (!is_new) return place->second;
+  out_.features.bitmap = true;
+  const Image& image = *texture->image;
+  KbTexture record{};
+  record.width = image.width;
+  record.height = image.height;
+  const std::size_t count = std::size_t{image.width} * image.height;
+  record.first_texel = static_cast<uint32_t>(out_.texels.size());  // never more of them than of bounds
+  record.first_bound = first_texel_index(out_.texel_bounds.size(), count, texture->position,
+                                         texture->id.empty() ? texture->file.string() : texture->id);
+  record.wrap = static_cast<uint32_t>(texture->wrap);
+  record.flags = texture->nearest ? KB_TEXTURE_NEAREST : 0;
+  record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
+  store_uv_transform(texture->to_uv, record.to_uv);
+
+  static const SigmoidTable kTable;
+  const bool flat = texture->raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emission);
+  double sum = 0;
+  double largest = 0;
+  double peak = 0;
+  for (std::size_t texel = 0; texel < count; ++texel) {
+    const float value = value_of(image, texel);
+    const float grey[3] = {value, value, value};
+    const float* rgb = image.channels == 1 ? grey : &image.pixels[3 * texel];
+    out_.texels.push_back(flat ? flat_texel(value) : upsampled_texel(kTable, rgb, emission));
+    sum += value;
+    out_.texel_bounds.push_back(texel_bound(out_.texels.back()));
+    largest = std::max(largest, double{out_.texel_bounds.back()});
+    peak = std::max(peak, double{out_.texels.back().w});
+  }
+  if (emission)
+    (texture->raw ? raw_emission_peak_ : rgb_emission_peak_) =
+        std::max(peak, texture->raw ? raw_emission_peak_ : rgb_emission_peak_);
+  texture_means_.push_back(sum / static_cast<double>(count));
+  texture_bounds_.push_back(largest);
+  out_.textures.push_back(record);
+  return place->second;
+}
+
+/// The sigmoid is monotonic in a parabola: its extremes are at the ends of the range or at the vertex.
+float Flattener::texel_bound(const KbFloat4& texel) const {
+  if (texel.x == 0 && texel.y == 0) return texel.w;
+  const Channel channels = hull(out_.channels), guide = hull(out_.guide);
+  const double low = std::clamp(std::min(channels.min_nm, guide.min_nm), kCieMinNm, kCieMaxNm);
+  const double high = std::clamp(std::max(channels.max_nm, guide.max_nm), kCieMinNm, kCieMaxNm);
+  const auto value = [&](double x) {
+    const double v = (texel.x * x + texel.y) * x + texel.z;
+    return 0.5 + 0.5 * v / std::sqrt(1 + v * v);
+  };
+  double largest = std::max(value(low), value(high));
+  const double vertex = -0.5 * texel.y / texel.x;
+  if (texel.x != 0 && vertex > low && vertex < high) largest = std::max(largest, value(vertex));
+  return static_cast<float>(texel.w * largest);
+}
+
+uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture,
+                                 const SpectrumSource& use) {
+  const auto [place, is_new] =
+      checkerboards_.try_emplace(texture.get(), static_cast<uint32_t>(out_.checkerboards.size()));
+  if (!is_new) return place->second;
+  out_.features.checkerboard = true;
+  KbCheckerboard record{};
+  record.ref0 = spectra_.row(texture->color0, {use.name + " color0", texture->position, use.emission});
+  record.ref1 = spectra_.row(texture->color1, {use.name + " color1", texture->position, use.emission});
+  store_uv_transform(texture->to_uv, record.to_uv);
+  out_.checkerboards.push_back(record);
+  return place->second;
+}
+
+double Flattener::texture_mean(const Texture& texture) {
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.guide_mean(*spectrum);
+  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
+    return texture_means_[bitmap(*image, BitmapUse::kReflectance)];
+  }
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    return texture_means_[spectral_bitmap(*spectral, {})];
+  const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
+  return 0.5 * (spectra_.guide_mean(board.color0) + spectra_.guide_mean(board.color1));
+}
+
+double Flattener::texture_bound(const Texture& texture) {
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.bound(*spectrum);
+  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
+    return texture_bounds_[bitmap(*image, BitmapUse::kReflectance)];
+  }
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    return texture_bounds_[spectral_bitmap(*spectral, {})];
+  const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
+  return std::max(spectra_.bound(board.color0), spectra_.bound(board.color1));
+}
+
+}  // namespace kiloband

@@ -1,0 +1,41 @@
+#include "scene/image/channels.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kiloband {
+namespace {
+
+int find(const std::vector<std::string>& names, const std::string& name) {
+  const auto place = std::find(names.begin(), names.end(), name);
+  return place == names.end() ? -1 : static_cast<int>(place - names.begin());
+}
+
+/// The channels prefix + R, G, B, or none.
+ChannelChoice find_rgb(const std::vector<std::string>& names, const std::string& prefix) {
+  const int r = find(names, prefix + "R"), g = find(names, prefix + "G"), b = find(names, prefix + "B");
+  return r >= 0 && g >= 0 && b >= 0 ? ChannelChoice{{r, g, b}, 3} : ChannelChoice{};
+}
+
+}  // namespace
+
+ChannelChoice choose_channels(const std::vector<std::string>& names, int alpha) {
+  if (const ChannelChoice rgb = find_rgb(names, ""); rgb.count > 0) return rgb;
+  const bool is_xyz = find(names, "X") >= 0 || find(names, "Z") >= 0;
+  if (const int y = find(names, "Y"); y >= 0 && !is_xyz) return {{y}, 1};
+  for (const std::string& name : names) {
+    if (!name.ends_with(".R")) continue;
+    if (const ChannelChoice layer = find_rgb(names, name.substr(0, name.size() - 1)); layer.count > 0)
+      return layer;
+  }
+  const int colours = static_cast<int>(names.size()) - (alpha >= 0 ? 1 : 0);
+  if (colours == 1) return {{alpha == 0 ? 1 : 0}, 1};
+  return {};
+}
+
+float decode_srgb(float encoded) {
+  const double v = encoded;
+  return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+}
+
+}  // namespace kiloband

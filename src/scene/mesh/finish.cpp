@@ -1,0 +1,49 @@
+#include "scene/mesh/finish.hpp"
+
+#include <algorithm>
+
+namespace kiloband {
+namespace {
+
+// Exact enough: the difference of two floats is nearly always exact in double,
+// and nothing under- or overflows.
+bool has_zero_area(const Mesh& mesh, const std::array<uint32_t, 3>& triangle) {
+  std::array<double, 3> e{}, f{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double origin = mesh.positions[triangle[0]][axis];
+    e[axis] = mesh.positions[triangle[1]][axis] - origin;
+    f[axis] = mesh.positions[triangle[2]][axis] - origin;
+  }
+  return e[1] * f[2] == e[2] * f[1] && e[2] * f[0] == e[0] * f[2] && e[0] * f[1] == e[1] * f[0];
+}
+
+void check_areas(const Mesh& mesh, const MeshFile& file, const DiagnosticSink& sink) {
+  const size_t total = mesh.triangles.size();
+  if (total == 0) file.fail("the mesh has no triangles");
+  const auto flat = static_cast<size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                                                      [&](const auto& t) { return has_zero_area(mesh, t); }));
+  const std::string of_all = " of " + std::to_string(total) + " triangles ";
+  if (flat == total) file.fail(std::to_string(flat) + of_all + "have zero area: nothing is left to render");
+  if (flat > 0)
+    warn(sink, {file.name}, std::to_string(flat) + of_all + (flat == 1 ? "has" : "have") + " zero area");
+}
+
+}  // namespace
+
+void finish_mesh(Mesh& mesh, const MeshFile& file, bool face_normals, const DiagnosticSink& sink) {
+  check_areas(mesh, file, sink);
+  if (face_normals) {
+    mesh.normals.clear();
+  } else if (mesh.normals.empty()) {
+    compute_vertex_normals(mesh);
+  } else {
+    mesh.front_by_normals = true;
+    const size_t replaced = repair_vertex_normals(mesh);
+    if (replaced == 0) return;
+    warn(sink, {file.name},
+         std::to_string(replaced) + " of " + std::to_string(mesh.normals.size()) +
+             " vertex normals are missing or zero: computed from the triangles");
+  }
+}
+
+}  // namespace kiloband

@@ -1,0 +1,18 @@
+// What every mesh reader does last: the checks and the normals that all formats share.
+#pragma once
+
+#include "scene/mesh/input.hpp"
+#include "scene/mesh/mesh.hpp"
+
+namespace kiloband {
+
+/// Normalises mesh.normals and replaces zero vectors by those of compute_vertex_normals().
+/// returns how many were replaced
+size_t repair_vertex_normals(Mesh& mesh);
+
+/// Checks the triangles' areas, then drops, computes or repairs vertex normals as mesh.hpp states. Indices
+/// must be in range.
+/// throws InputError  no triangle, or none with an area
+void finish_mesh(Mesh& mesh, const MeshFile& file, bool face_normals, const DiagnosticSink& sink);
+
+}  // namespace kiloband

@@ -1,0 +1,233 @@
+// The body of a PLY file: vertices and faces, whatever else is skipped.
+#include "scene/mesh/finish.hpp"
+#include "scene/mesh/ply_source.hpp"
+
+namespace kiloband {
+namespace {
+
+/// Where a vertex property goes: target[row * stride], or nowhere.
+struct Slot {
+  float* target = nullptr;
+  size_t stride = 0;
+};
+
+/// Reads the elements in the file's order. Source is PlyTextSource or PlyBinarySource.
+template <typename Source>
+class BodyReader {
+ public:
+  BodyReader(const PlyHeader& header, Source source, Mesh& mesh)
+      : header_(header), source_(source), mesh_(mesh) {}
+
+  void read() {
+    for (const PlyElement& element : header_.elements) {
+      element_ = &element;
+      if (element.properties.empty() || element.count == 0) continue;
+      if (element.name == "vertex") {
+        read_vertices(vertex_slots());
+      } else if (element.name == "face") {
+        read_faces();
+      } else {
+        for (row_ = 0; row_ < element.count; ++row_) skip_row();
+      }
+    }
+    source_.finish();
+  }
+
+ private:
+  std::vector<Slot> vertex_slots();
+  void bind(std::vector<Slot>& slots, std::initializer_list<const char*> names, float* first);
+  void read_vertices(const std::vector<Slot>& slots);
+  void read_faces();
+  void read_polygon();
+  uint32_t read_index();
+  void skip_row();
+  void skip_property();
+  double read(PlyType type);
+  uint64_t read_list_count();
+  /// "vertex 7: property 'x': message", with the position in front
+  [[noreturn]] void fail(const std::string& message) const {
+    source_.fail(element_->name + " " + std::to_string(row_) + ": property " + in_quotes(property_->name) +
+                 ": " + message);
+  }
+
+  const PlyHeader& header_;
+  Source source_;
+  Mesh& mesh_;
+  const PlyElement* element_ = nullptr;  // being read, as the next two
+  uint64_t row_ = 0;
+  const PlyProperty* property_ = nullptr;
+};
+
+template <typename Source>
+std::vector<Slot> BodyReader<Source>::vertex_slots() {
+  const size_t count = element_->count;
+  std::vector<Slot> slots(element_->properties.size());
+  mesh_.positions.resize(count);
+  bind(slots, {"x", "y", "z"}, mesh_.positions.data()->data());
+  const auto has = [this](const char* name) {
+    const int i = element_->find(name);
+    return i >= 0 && !element_->properties[i].is_list;
+  };
+  if (has("nx") && has("ny") && has("nz")) {
+    mesh_.normals.resize(count);
+    bind(slots, {"nx", "ny", "nz"}, mesh_.normals.data()->data());
+  }
+  for (const auto& [u, v] : {std::pair("u", "v"), std::pair("texture_u", "texture_v"), std::pair("s", "t")}) {
+    if (!mesh_.uvs.empty() || !has(u) || !has(v)) continue;
+    mesh_.uvs.resize(count);
+    bind(slots, {u, v}, mesh_.uvs.data()->data());
+  }
+  for (size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].target || element_->properties[i].is_list) continue;
+    std::vector<float>& values = mesh_.vertex_attributes[element_->properties[i].name];
+    values.resize(count);
+    slots[i] = {values.data(), 1};
+  }
+  return slots;
+}
+
+template <typename Source>
+void BodyReader<Source>::bind(std::vector<Slot>& slots, std::initializer_list<const char*> names,
+                              float* first) {
+  for (const char* name : names) slots[element_->find(name)] = {first++, names.size()};
+}
+
+template <typename Source>
+void BodyReader<Source>::read_vertices(const std::vector<Slot>& slots) {
+  for (row_ = 0; row_ < element_->count; ++row_) {
+    for (size_t i = 0; i < slots.size(); ++i) {
+      property_ = &element_->properties[i];
+      if (!slots[i].target) {
+        skip_property();
+        continue;
+      }
+      const double value = read(property_->type);
+      const auto narrow = static_cast<float>(value);
+      if (!std::isfinite(value)) fail("the value is not finite");
+      if (!std::isfinite(narrow)) fail("the value is too large for a float");
+      slots[i].target[row_ * slots[i].stride] = narrow;
+    }
+  }
+}
+
+template <typename Source>
+void BodyReader<Source>::read_faces() {
+  const bool plural = element_->find("vertex_indices") >= 0;
+  const std::string list = plural ? "vertex_indices" : "vertex_index";
+  mesh_.triangles.reserve(element_->count);
+  for (row_ = 0; row_ < element_->count; ++row_) {
+    for (const PlyProperty& property : element_->properties) {
+      property_ = &property;
+      if (property.name == list) {
+        read_polygon();
+      } else {
+        skip_property();
+      }
+    }
+  }
+}
+
+template <typename Source>
+void BodyReader<Source>::read_polygon() {
+  const uint64_t count = read_list_count();
+  if (count < 3) fail(std::to_string(count) + " corners, must be at least 3");
+  const uint32_t first = read_index();
+  uint32_t last = read_index();
+  for (uint64_t i = 2; i < count; ++i) {
+    const uint32_t next = read_index();
+    mesh_.triangles.push_back({first, last, next});
+    last = next;
+  }
+}
+
+template <typename Source>
+uint32_t BodyReader<Source>::read_index() {
+  const double index = read(property_->type);
+  const auto count = static_cast<double>(header_.find("vertex")->count);
+  if (!(index >= 0 && index < count)) {
+    fail("index " + std::to_string(static_cast<int64_t>(index)) + ": must be below " +
+         std::to_string(static_cast<int64_t>(count)) + ", the number of vertices");
+  }
+  return static_cast<uint32_t>(index);
+}
+
+template <typename Source>
+void BodyReader<Source>::skip_row() {
+  for (const PlyProperty& property : element_->properties) {
+    property_ = &property;
+    skip_property();
+  }
+}
+
+template <typename Source>
+void BodyReader<Source>::skip_property() {
+  const uint64_t count = property_->is_list ? read_list_count() : 1;
+  for (uint64_t i = 0; i < count; ++i) read(property_->type);
+}
+
+template <typename Source>
+double BodyReader<Source>::read(PlyType type) {
+  double value = 0;
+  if (!source_.read(type, value)) fail(source_.problem());
+  return value;
+}
+
+template <typename Source>
+uint64_t BodyReader<Source>::read_list_count() {
+  const double count = read(property_->count_type);
+  if (count < 0) fail("list of " + std::to_string(static_cast<int64_t>(count)) + " items");
+  return static_cast<uint64_t>(count);
+}
+
+/// What the body needs from the header before anything is allocated.
+void check_elements(const PlyHeader& header, const MeshFile& file) {
+  const PlyElement* vertex = header.find("vertex");
+  const PlyElement* face = header.find("face");
+  if (!vertex) file.fail("header: no element 'vertex'");
+  if (!face) file.fail("header: no element 'face'");
+  for (const char* name : {"x", "y", "z"}) {
+    const int i = vertex->find(name);
+    if (i < 0) file.fail_line(vertex->line, "header: element 'vertex' has no property " + in_quotes(name));
+    if (vertex->properties[i].is_list)
+      file.fail_line(vertex->line, "header: property " + in_quotes(name) + " must not be a list");
+  }
+  if (vertex->count > UINT32_MAX) file.fail_line(vertex->line, "header: more than 4294967295 vertices");
+  int list = face->find("vertex_indices");
+  if (list < 0) list = face->find("vertex_index");
+  if (list < 0)
+    file.fail_line(face->line, "header: element 'face' has no property 'vertex_indices' or 'vertex_index'");
+  const PlyProperty& indices = face->properties[list];
+  if (!indices.is_list || !is_integer(indices.type)) {
+    file.fail_line(face->line, "header: property " + in_quotes(indices.name) + " must be a list of integers");
+  }
+}
+
+void note_skipped(const PlyHeader& header, const MeshFile& file, const DiagnosticSink& sink) {
+  for (const PlyElement& element : header.elements) {
+    if (element.name == "vertex" || element.name == "face") continue;
+    note(sink, {file.name, static_cast<int>(element.line)},
+         "element " + in_quotes(element.name) + " is skipped");
+  }
+}
+
+}  // namespace
+
+Mesh read_ply(const std::filesystem::path& path, const MeshOptions& options, const DiagnosticSink& sink) {
+  const MeshFile file = load_mesh_file(path);
+  const PlyHeader header = read_ply_header(file);
+  check_elements(header, file);
+  note_skipped(header, file, sink);
+  Mesh mesh;
+  if (header.format == PlyFormat::kAscii) {
+    BodyReader(header, PlyTextSource(file, header), mesh).read();
+  } else {
+    BodyReader(header, PlyBinarySource(file, header), mesh).read();
+  }
+  if (options.flip_tex_coords) {
+    for (Vec2f& uv : mesh.uvs) uv[1] = 1.0f - uv[1];
+  }
+  finish_mesh(mesh, file, options.face_normals, sink);
+  return mesh;
+}
+
+}  // namespace kiloband

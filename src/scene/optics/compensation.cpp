@@ -1,0 +1,130 @@
+#include "scene/optics/compensation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "scene/optics/facet_quadrature.hpp"
+#include "shared/thermal.h"
+
+namespace kiloband {
+namespace {
+
+constexpr int kIndexNodes = 9;
+
+bool transmits(const KbMaterial& material) {
+  return material.type == KB_MATERIAL_ROUGH_DIELECTRIC;
+}
+
+/// Appends f over the grid of (x, s).
+void append_grid(const KbMaterial& material, const std::function<double(const glm::dvec3&)>& f,
+                 std::vector<float>& out) {
+  const Facets facets(material);
+  const uint32_t nodes_s = nodes_of_s(material);
+  for (uint32_t j = 0; j < nodes_s; ++j) {
+    const double s = nodes_s > 1 ? static_cast<double>(j) / (nodes_s - 1) : 0;
+    for (int i = 0; i < KB_COMPENSATION_NODES; ++i) {
+      const double x = static_cast<double>(i) / (KB_COMPENSATION_NODES - 1);
+      out.push_back(static_cast<float>(f(compensation_direction(facets, x, s, transmits(material)))));
+    }
+  }
+}
+
+/// Of anisotropic dielectrics, whose tables are coarse in s anyway, with fewer nodes: seconds are at stake.
+Albedo table_albedo(const KbMaterial& material, const Facets& facets, const glm::dvec3& v, double eta) {
+  return boundary_albedo(facets, v, eta, is_anisotropic(material) ? kFacetNodes / 2 : kFacetNodes);
+}
+
+double scattered(const KbMaterial& material, const Facets& facets, const glm::dvec3& v, double eta) {
+  const Albedo albedo = table_albedo(material, facets, v, eta);
+  return albedo.reflected + albedo.transmitted;
+}
+
+/// What a rough coating lets in at node i of the renderers' table (bsdf_rough_transmittance), from outside.
+double coat_transmittance(const Facets& facets, double eta, int node) {
+  const double cosine = std::max(1e-6, static_cast<double>(node) / (KB_THERMAL_COAT_NODES - 1));
+  return boundary_albedo(facets, {std::sqrt(1 - cosine * cosine), 0, cosine}, eta).transmitted;
+}
+
+/// The renderers' internal reflectance: 2 mean(R mu) over 64 equidistant cosines, both ends included.
+double internal_reflectance(const Facets& facets, double eta) {
+  double sum = 0;
+  for (int i = 0; i < KB_THERMAL_COAT_NODES; ++i) {
+    const double cosine = std::max(1e-6, static_cast<double>(i) / (KB_THERMAL_COAT_NODES - 1));
+    sum += cosine * boundary_albedo(facets, {std::sqrt(1 - cosine * cosine), 0, cosine}, 1 / eta).reflected;
+  }
+  return 2 * sum / KB_THERMAL_COAT_NODES;
+}
+
+}  // namespace
+
+std::vector<float> make_compensation_table(const KbMaterial& material, const IndexRange& index) {
+  const Facets facets(material);
+  if (!transmits(material)) {
+    std::vector<float> table{static_cast<float>(nodes_of_s(material)), 1, 0, 0};
+    append_grid(
+        material, [&](const glm::dvec3& v) { return mirror_albedo(facets, v); }, table);
+    return table;
+  }
+  const int nodes = index.max > index.min ? kIndexNodes : 1;
+  const double step = nodes > 1 ? (index.max - index.min) / (nodes - 1) : 0;
+  std::vector<float> table{static_cast<float>(nodes_of_s(material)), static_cast<float>(nodes),
+                           static_cast<float>(index.min), static_cast<float>(step > 0 ? 1 / step : 0)};
+  for (const bool inside : {false, true}) {
+    for (int i = 0; i < nodes; ++i) {
+      const double eta = index.min + i * step;
+      append_grid(
+          material,
+          [&](const glm::dvec3& v) { return scattered(material, facets, v, inside ? 1 / eta : eta); }, table);
+    }
+  }
+  return table;
+}
+
+std::vector<float> make_reflected_part(const KbMaterial& material) {
+  const Facets facets(material);
+  std::vector<float> table;
+  if (!transmits(material)) {
+    append_grid(
+        material,
+        [&](const glm::dvec3& v) {
+          return boundary_albedo(facets, v, material.eta).reflected / mirror_albedo(facets, v);
+        },
+        table);
+    return table;
+  }
+  for (const double eta : {double{material.eta}, 1.0 / material.eta}) {
+    append_grid(
+        material,
+        [&](const glm::dvec3& v) {
+          const Albedo albedo = table_albedo(material, facets, v, eta);
+          return albedo.reflected / (albedo.reflected + albedo.transmitted);
+        },
+        table);
+  }
+  return table;
+}
+
+double make_internal_reflectance(const KbMaterial& material) {
+  return internal_reflectance(Facets(material), material.eta);
+}
+
+// The base scatters T(wi) T(wo) cos_o / (pi eta^2 (1 - R_int)); over all wo that is T(wi) q with q = 2 int
+// T(c) c dc / (eta^2 (1 - R_int)), T linear between its nodes.
+std::vector<float> make_coat_part(const KbMaterial& material) {
+  const Facets facets(material);
+  const double eta = material.eta, step = 1.0 / (KB_THERMAL_COAT_NODES - 1);
+  std::vector<double> t;
+  for (int i = 0; i < KB_THERMAL_COAT_NODES; ++i) t.push_back(coat_transmittance(facets, eta, i));
+  double sum = 0;
+  for (int i = 0; i + 1 < KB_THERMAL_COAT_NODES; ++i) {
+    const double low = i * step, high = low + step;
+    sum += step / 3 * (t[i] * (2 * low + high) / 2 + t[i + 1] * (low + 2 * high) / 2) * 2;
+  }
+  const double q = sum / (eta * eta * (1 - internal_reflectance(facets, eta)));
+  std::vector<float> table;
+  for (const double value : t) table.push_back(static_cast<float>(value * q));
+  return table;
+}
+
+}  // namespace kiloband

@@ -1,0 +1,229 @@
+#include "scene/optics/metal_emissivity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kiloband {
+namespace {
+
+constexpr std::size_t kMostWavelengths = 4096;
+constexpr std::size_t kProbes = 24;
+constexpr int kCells = 512;  // of the table of facet cosines
+
+/// The error that interpolation may have.
+double allowed(double emissivity) {
+  return std::min(1e-4, std::max(1e-3 * emissivity, 1e-6));
+}
+
+double cell_cosine(int i) {
+  const double t = static_cast<double>(i) / kCells;
+  return t * t;
+}
+
+/// Largest error of a metal's absorptance between neighbours of `count` + 1 regular wavelengths,
+/// in allowed errors.
+double tabulation_error(const MetalSpectra& s, const Channel& range, std::size_t count) {
+  const auto lambda = [&](double i) {
+    return range.min_nm + i / static_cast<double>(count) * range.width_nm();
+  };
+  double worst = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const double cosine : {1.0, 0.2, 0.03}) {
+      const auto value = [&](double at) {
+        const double x = lambda(static_cast<double>(i) + at);
+        const double tint = s.tint(x);
+        return 1 - tint + tint * metal_absorptance(cosine, s.n(x), s.k(x));
+      };
+      const double low = value(0), high = value(1);
+      for (const double t : {0.25, 0.5, 0.75}) {
+        const double exact = value(t);
+        worst = std::max(worst, std::abs((1 - t) * low + t * high - exact) / (0.1 * allowed(exact)));
+      }
+    }
+  }
+  return worst;
+}
+
+/// Numbers of wavelengths: the fewest powers of two whose tables are good for a tenth
+/// of what directions may be off by.
+std::size_t count_cells(const MetalSpectra& spectra, const Channel& range) {
+  std::size_t cells = 1;
+  while (cells < kMostWavelengths && tabulation_error(spectra, range, cells) > 1) cells *= 2;
+  return cells;
+}
+
+std::size_t place_of(const std::vector<double>& values, bool largest) {
+  const auto found = largest ? std::ranges::max_element(values) : std::ranges::min_element(values);
+  return static_cast<std::size_t>(found - values.begin());
+}
+
+}  // namespace
+
+/// For one direction: how much of the lobe meets facets at which cosine, E included.
+class MetalEmissivity::Directions {
+ public:
+  explicit Directions(const std::optional<Facets>& facets) : facets_(facets) {}
+
+  bool rough() const { return facets_.has_value(); }
+  bool anisotropic() const { return facets_ && facets_->alpha_u != facets_->alpha_v; }
+
+  /// Weights of the cell cosines; their sum is E. Linear deposition: the absorptance is smooth over a cell.
+  std::vector<double> weights(double cosine, double s) const {
+    glm::dvec2 azimuth(std::sqrt((1 - s) / facets_->alpha_u), std::sqrt(s / facets_->alpha_v));
+    azimuth = glm::normalize(azimuth);
+    const double sine = std::sqrt((1 - cosine) * (1 + cosine));
+    const glm::dvec3 v(sine * azimuth.x, sine * azimuth.y, cosine);
+    std::vector<double> weights(kCells + 1, 0.0);
+    for (const VisibleFacet& f : visible_facets(*facets_, v)) {
+      const double c = std::clamp(glm::dot(v, f.normal), 0.0, 1.0);
+      const double weight = f.weight * facets_->masking(2 * c * f.normal - v);
+      const int i = std::min(static_cast<int>(std::sqrt(c) * kCells), kCells - 1);
+      const double t = (c - cell_cosine(i)) / (cell_cosine(i + 1) - cell_cosine(i));
+      weights[i] += (1 - t) * weight;
+      weights[i + 1] += t * weight;
+    }
+    return weights;
+  }
+
+  static std::vector<double> absorptances(double n, double k) {
+    std::vector<double> a;
+    for (int i = 0; i <= kCells; ++i) a.push_back(metal_absorptance(cell_cosine(i), n, k));
+    return a;
+  }
+
+  /// The formula of the header.
+  static double emissivity(const std::vector<double>& weights, const std::vector<double>& absorptances) {
+    double albedo = 0, absorbed = 0;
+    for (int i = 0; i <= kCells; ++i) albedo += weights[i], absorbed += weights[i] * absorptances[i];
+    const double mean = absorbed / albedo;
+    return mean + absorptances[kCells] * (1 - albedo) * (1 - mean);
+  }
+
+ private:
+  std::optional<Facets> facets_;
+};
+
+MetalEmissivity::MetalEmissivity(const MetalSpectra& spectra, const std::optional<Facets>& facets,
+                                 const Channel& range)
+    : directions_(std::make_unique<Directions>(facets)) {
+  const std::size_t cells = count_cells(spectra, range);
+  for (std::size_t i = 0; i <= cells; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(cells);
+    lambda_nm_.push_back((1 - t) * range.min_nm + t * range.max_nm);
+    n_.push_back(spectra.n(lambda_nm_.back()));
+    k_.push_back(spectra.k(lambda_nm_.back()));
+    tint_.push_back(spectra.tint(lambda_nm_.back()));
+  }
+  for (std::size_t i = 0; i < kProbes; ++i) probes_.push_back(i * cells / (kProbes - 1));
+  for (const bool largest : {false, true})
+    for (const auto* values : {&n_, &k_}) probes_.push_back(place_of(*values, largest));
+  std::ranges::sort(probes_);
+  probes_.erase(std::unique(probes_.begin(), probes_.end()), probes_.end());
+
+  choose_nodes_s();
+  cosines_ = {0};
+  const double starts[] = {0, 0.01, 0.1, 0.4, 1};
+  for (int i = 0; i < 4; ++i) {
+    refine(starts[i], starts[i + 1], 0);
+    cosines_.push_back(starts[i + 1]);
+  }
+}
+
+MetalEmissivity::~MetalEmissivity() = default;
+
+/// The emissivities at the probes.
+std::vector<double> MetalEmissivity::at(double cosine, double s) const {
+  std::vector<double> values;
+  if (!directions_->rough()) {
+    for (const std::size_t i : probes_)
+      values.push_back(1 - tint_[i] + tint_[i] * metal_absorptance(cosine, n_[i], k_[i]));
+    return values;
+  }
+  const std::vector<double> weights = directions_->weights(cosine, s);
+  for (const std::size_t i : probes_) {
+    const double e = Directions::emissivity(weights, Directions::absorptances(n_[i], k_[i]));
+    values.push_back(1 - tint_[i] + tint_[i] * e);
+  }
+  return values;
+}
+
+/// Adds nodes between two cosines until the line between neighbours is good enough.
+/// Returns whether any was needed.
+bool MetalEmissivity::refine(double from, double to, int depth) {
+  constexpr int kDeepest = 12;
+  constexpr double kSmallest = 1e-3;  // no node for the sake of directions closer to grazing
+  if (depth >= kDeepest || to <= kSmallest) return false;
+  bool good = true;
+  for (const double s : {0.0, 0.5, 1.0}) {
+    if (s > 0 && !directions_->anisotropic()) break;
+    const std::vector<double> low = at(from, s), high = at(to, s);
+    for (const double t : {0.25, 0.5, 0.75}) {
+      const std::vector<double> exact = at((1 - t) * from + t * to, s);
+      for (std::size_t i = 0; i < exact.size(); ++i)
+        good = good && std::abs((1 - t) * low[i] + t * high[i] - exact[i]) <= allowed(exact[i]);
+    }
+  }
+  if (good) return false;
+  const double middle = 0.5 * (from + to);
+  refine(from, middle, depth + 1);
+  cosines_.push_back(middle);
+  refine(middle, to, depth + 1);
+  return true;
+}
+
+void MetalEmissivity::choose_nodes_s() {
+  if (!directions_->anisotropic()) return;
+  constexpr uint32_t kMost = 17;
+  for (nodes_s_ = 3; nodes_s_ < kMost; nodes_s_ = 2 * nodes_s_ - 1) {
+    bool good = true;
+    const double step = 1.0 / (nodes_s_ - 1);
+    for (const double cosine : {0.05, 0.1, 0.25, 0.5, 0.8}) {
+      for (uint32_t j = 0; j + 1 < nodes_s_; ++j) {
+        const std::vector<double> low = at(cosine, j * step), high = at(cosine, (j + 1) * step);
+        const std::vector<double> exact = at(cosine, (j + 0.5) * step);
+        for (std::size_t i = 0; i < exact.size(); ++i)
+          good = good && std::abs(0.5 * (low[i] + high[i]) - exact[i]) <= allowed(exact[i]);
+      }
+    }
+    if (good) return;
+  }
+}
+
+RegularTable MetalEmissivity::tabulate(const std::vector<double>& values) const {
+  RegularTable table;
+  table.min_nm = lambda_nm_.front();
+  table.step_nm = (lambda_nm_.back() - lambda_nm_.front()) / static_cast<double>(lambda_nm_.size() - 1);
+  table.values = values;
+  table.extrapolate = true;
+  return table;
+}
+
+std::vector<RegularTable> MetalEmissivity::rows() const {
+  const std::size_t directions = cosines_.size() * nodes_s_, wavelengths = lambda_nm_.size();
+  std::vector<std::vector<double>> values(directions, std::vector<double>(wavelengths)), weights;
+  for (std::size_t d = 0; directions_->rough() && d < directions; ++d) {
+    const double s = nodes_s_ > 1 ? static_cast<double>(d / cosines_.size()) / (nodes_s_ - 1) : 0;
+    weights.push_back(directions_->weights(cosines_[d % cosines_.size()], s));
+  }
+  for (std::size_t i = 0; i < wavelengths; ++i) {
+    std::vector<double> absorptances;
+    if (directions_->rough()) absorptances = Directions::absorptances(n_[i], k_[i]);
+    for (std::size_t d = 0; d < directions; ++d) {
+      const double e = directions_->rough() ? Directions::emissivity(weights[d], absorptances)
+                                            : metal_absorptance(cosines_[d], n_[i], k_[i]);
+      values[d][i] = 1 - tint_[i] + tint_[i] * e;
+    }
+  }
+  std::vector<RegularTable> tables;
+  for (const auto& v : values) tables.push_back(tabulate(v));
+  return tables;
+}
+
+RegularTable MetalEmissivity::normal_reflectance() const {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < lambda_nm_.size(); ++i)
+    values.push_back(tint_[i] * (1 - metal_absorptance(1, n_[i], k_[i])));
+  return tabulate(values);
+}
+
+}  // namespace kiloband

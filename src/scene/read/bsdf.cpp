@@ -1,0 +1,218 @@
+// <bsdf type=...>
+#include <algorithm>
+
+#include "scene/read/context.hpp"
+#include "scene/read/ior.hpp"
+#include "scene/read/limits.hpp"
+#include "scene/xml/values.hpp"
+
+namespace kiloband {
+namespace {
+
+using Model = decltype(Bsdf::model);
+
+void check_alpha(const ObjectReader& object, std::string_view name, double alpha) {
+  object.check(alpha > 0, name, alpha, "must be > 0");
+  object.check(alpha >= kMinAlpha && alpha <= kMaxAlpha, name, alpha, "must be from 1e-06 to 100");
+}
+
+/// distribution, alpha or alpha_u and alpha_v, sample_visible. One alpha: isotropic.
+Roughness read_roughness(const ObjectReader& object, bool anisotropic) {
+  Roughness result;
+  result.distribution =
+      object.get_choice("distribution", {"beckmann", "ggx"}) == 1 ? Microfacet::kGgx : Microfacet::kBeckmann;
+  result.sample_visible = object.get_bool("sample_visible", true);
+  const double alpha = object.get_float("alpha", 0.1);
+  check_alpha(object, "alpha", alpha);
+  result.alpha_u = result.alpha_v = alpha;
+  if (!anisotropic || !(object.has("alpha_u") || object.has("alpha_v"))) return result;
+  if (object.has("alpha")) object.fail_at("alpha", "'alpha' together with 'alpha_u' or 'alpha_v'");
+  result.alpha_u = object.require_float("alpha_u");
+  result.alpha_v = object.require_float("alpha_v");
+  check_alpha(object, "alpha_u", result.alpha_u);
+  check_alpha(object, "alpha_v", result.alpha_v);
+  return result;
+}
+
+Texture reflectance(ReadContext& context, const ObjectReader& object, std::string_view name,
+                    const Texture& fallback) {
+  return read_texture(context, object, name, SpectrumUse::kReflectance, fallback);
+}
+
+Model read_diffuse(ReadContext& context, const ObjectReader& object) {
+  DiffuseBsdf bsdf;
+  bsdf.reflectance = reflectance(context, object, "reflectance", bsdf.reflectance);
+  return bsdf;
+}
+
+/// The index of a conductor: eta and k, a built-in metal or a file, or the perfect mirror.
+void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf& bsdf) {
+  const bool explicit_index = object.has("eta") || object.has("k");
+  bsdf.eta = read_spectrum(context, object, "eta", SpectrumUse::kQuantity, bsdf.eta);
+  bsdf.k = read_spectrum(context, object, "k", SpectrumUse::kQuantity, bsdf.k);
+  check_metal_index(bsdf.eta, object.label() + ": eta", object.value_place("eta"));
+  check_metal_index(bsdf.k, object.label() + ": k", object.value_place("k"));
+  const std::string material = object.get_string("material", "none");
+  if (object.has("material") && explicit_index)
+    object.fail_at("material", "'material' together with 'eta' or 'k'");
+  if (material != "none") {
+    object.fail_at("material",
+                   "material '" + material +
+                       "': only 'none' is supported; give 'metal' with a built-in metal or a file, or 'eta' "
+                       "and 'k'");
+  }
+  const auto constants = read_material(context, object, "metal", MaterialFamily::kMetal);
+  if (!constants) return;
+  if (explicit_index || object.has("material"))
+    object.fail_at("metal", "'metal' together with 'material', 'eta' or 'k'");
+  bsdf.eta = constants->n;
+  bsdf.k = *constants->k;
+}
+
+Model read_conductor(ReadContext& context, const ObjectReader& object, bool rough) {
+  ConductorBsdf bsdf;
+  read_metal(context, object, bsdf);
+  bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
+  if (rough) bsdf.roughness = read_roughness(object, true);
+  return bsdf;
+}
+
+/// int_ior or int_material (the same for ext): a constant or a dispersive index.
+Spectrum read_index(ReadContext& context, const ObjectReader& object, std::string_view ior,
+                    std::string_view material, double fallback) {
+  const double index = read_ior(object, ior, fallback);
+  const auto constants = read_material(context, object, material, MaterialFamily::kDielectric);
+  if (!constants) return Spectrum::constant(index);
+  if (object.has(ior)) {
+    object.fail_at(material, "'" + std::string(material) + "' together with '" + std::string(ior) + "'");
+  }
+  return constants->n;
+}
+
+Model read_dielectric(ReadContext& context, const ObjectReader& object, bool rough) {
+  DielectricBsdf bsdf;
+  bsdf.int_ior = read_index(context, object, "int_ior", "int_material", 1.5046);
+  bsdf.ext_ior = read_index(context, object, "ext_ior", "ext_material", 1.000277);
+  bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
+  bsdf.specular_transmittance =
+      reflectance(context, object, "specular_transmittance", bsdf.specular_transmittance);
+  if (!rough) return bsdf;
+  bsdf.roughness = read_roughness(object, true);
+  if (bsdf.int_ior.is_constant() && bsdf.ext_ior.is_constant() && bsdf.int_ior(550) == bsdf.ext_ior(550)) {
+    object.fail_at("int_ior", "int_ior and ext_ior are equal: there is no rough interface");
+  }
+  return bsdf;
+}
+
+Model read_plastic(ReadContext& context, const ObjectReader& object, bool rough) {
+  PlasticBsdf bsdf;
+  bsdf.diffuse_reflectance = reflectance(context, object, "diffuse_reflectance", bsdf.diffuse_reflectance);
+  bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
+  bsdf.int_ior = read_ior(object, "int_ior", bsdf.int_ior);
+  bsdf.ext_ior = read_ior(object, "ext_ior", bsdf.ext_ior);
+  bsdf.nonlinear = object.get_bool("nonlinear", false);
+  if (rough) bsdf.roughness = read_roughness(object, false);
+  return bsdf;
+}
+
+bool transmits(const Bsdf& bsdf) {
+  return std::holds_alternative<DielectricBsdf>(bsdf.model) || std::holds_alternative<MaskBsdf>(bsdf.model) ||
+         std::holds_alternative<NullBsdf>(bsdf.model);
+}
+
+Model read_two_sided(ReadContext& context, const ObjectReader& object) {
+  const std::vector<Node*> nested = object.nested("bsdf");
+  if (nested.empty() || nested.size() > 2) {
+    object.fail_here("needs 1 or 2 nested bsdfs, found " + std::to_string(nested.size()));
+  }
+  TwoSidedBsdf bsdf;
+  for (std::size_t i = 0; i < nested.size(); ++i) {
+    auto side = read_bsdf(context, *nested[i]);
+    if (transmits(*side))
+      object.fail_here("the nested " + ObjectReader(*nested[i]).label() + " transmits light");
+    if (std::holds_alternative<TwoSidedBsdf>(side->model))
+      object.fail_here("a nested bsdf is twosided itself");
+    (i == 0 ? bsdf.front : bsdf.back) = std::move(side);
+  }
+  return bsdf;
+}
+
+Model read_mask(ReadContext& context, const ObjectReader& object) {
+  MaskBsdf bsdf;
+  bsdf.opacity = reflectance(context, object, "opacity", bsdf.opacity);
+  if (std::holds_alternative<std::shared_ptr<const CheckerboardTexture>>(bsdf.opacity)) {
+    object.fail_at("opacity", "opacity: a checkerboard is not supported here");
+  }
+  if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(bsdf.opacity)) {
+    object.fail_at("opacity", "opacity: a spectral_bitmap is not supported here");
+  }
+  Node* nested = object.nested_one("bsdf");
+  if (!nested) object.fail_here("needs a nested bsdf");
+  bsdf.nested = read_bsdf(context, *nested);
+  if (std::holds_alternative<MaskBsdf>(bsdf.nested->model))
+    object.fail_here("the nested bsdf is a mask itself");
+  if (std::holds_alternative<NullBsdf>(bsdf.nested->model)) object.fail_here("the nested bsdf is null");
+  return bsdf;
+}
+
+Model read_conductor_smooth(ReadContext& c, const ObjectReader& o) {
+  return read_conductor(c, o, false);
+}
+Model read_conductor_rough(ReadContext& c, const ObjectReader& o) {
+  return read_conductor(c, o, true);
+}
+Model read_dielectric_smooth(ReadContext& c, const ObjectReader& o) {
+  return read_dielectric(c, o, false);
+}
+Model read_dielectric_rough(ReadContext& c, const ObjectReader& o) {
+  return read_dielectric(c, o, true);
+}
+Model read_plastic_smooth(ReadContext& c, const ObjectReader& o) {
+  return read_plastic(c, o, false);
+}
+Model read_plastic_rough(ReadContext& c, const ObjectReader& o) {
+  return read_plastic(c, o, true);
+}
+
+Model read_null(ReadContext&, const ObjectReader&) {
+  return NullBsdf{};
+}
+
+struct BsdfType {
+  std::string_view name;
+  Model (*read)(ReadContext&, const ObjectReader&);
+};
+
+constexpr BsdfType kTypes[] = {
+    {"diffuse", read_diffuse},
+    {"conductor", read_conductor_smooth},
+    {"roughconductor", read_conductor_rough},
+    {"dielectric", read_dielectric_smooth},
+    {"roughdielectric", read_dielectric_rough},
+    {"plastic", read_plastic_smooth},
+    {"roughplastic", read_plastic_rough},
+    {"twosided", read_two_sided},
+    {"mask", read_mask},
+    {"null", read_null},
+};
+
+}  // namespace
+
+std::shared_ptr<const Bsdf> read_bsdf(ReadContext& context, Node& node) {
+  const auto known = context.bsdfs.find(&node);
+  if (known != context.bsdfs.end()) return known->second;
+  const ObjectReader object(node);
+  const auto type = std::find_if(std::begin(kTypes), std::end(kTypes),
+                                 [&](const BsdfType& t) { return t.name == node.type; });
+  if (type == std::end(kTypes)) {
+    std::vector<std::string_view> names;
+    for (const BsdfType& t : kTypes) names.push_back(t.name);
+    object.refuse_type(names);
+  }
+  auto bsdf = std::make_shared<Bsdf>(Bsdf{node.id, node.place.position(), type->read(context, object)});
+  object.finish();
+  context.bsdfs.emplace(&node, bsdf);
+  return bsdf;
+}
+
+}  // namespace kiloband

@@ -1,0 +1,169 @@
+// <emitter type=...>
+#include <cmath>
+#include <numbers>
+
+#include "scene/read/context.hpp"
+#include "scene/read/limits.hpp"
+#include "scene/xml/values.hpp"
+#include "spectral/colour.hpp"
+
+namespace kiloband {
+namespace {
+
+using Model = decltype(Emitter::model);
+
+/// Mitsuba's default for an absent radiance or intensity of 1.
+Spectrum default_emission() {
+  return illuminant_d65();
+}
+
+Spectrum emission(ReadContext& context, const ObjectReader& object, std::string_view name, SpectrumUse use) {
+  return read_spectrum(context, object, name, use, default_emission());
+}
+
+/// The transform of an emitter that is not a surface.
+Transform rotation_and_position(const ObjectReader& object) {
+  Transform to_world = object.get_transform("to_world");
+  if (!is_similarity(glm::dmat3(to_world))) {
+    object.fail_at("to_world", "to_world must only rotate, move, mirror and scale uniformly");
+  }
+  // Its size means nothing here, but its square would have to fit into single precision.
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(glm::length(glm::dvec3(to_world[axis])) - 1) > 1e-6)
+      to_world[axis] = glm::dvec4(unit_vector(glm::dvec3(to_world[axis])), 0);
+  return to_world;
+}
+
+Model read_constant(ReadContext& context, const ObjectReader& object) {
+  return ConstantEmitter{emission(context, object, "radiance", SpectrumUse::kEmission)};
+}
+
+void check_map_size(const ObjectReader& object, const std::filesystem::path& file, uint32_t width,
+                    uint32_t height) {
+  if (width >= 2 && height >= 2) return;
+  object.fail_at("filename", "an environment map needs at least 2 x 2 pixels, '" + file.filename().string() +
+                                 "' has " + std::to_string(width) + " x " + std::to_string(height));
+}
+
+Model read_envmap(ReadContext& context, const ObjectReader& object) {
+  EnvmapEmitter envmap;
+  envmap.file = context.file(object, "filename");
+  envmap.scale = object.get_float("scale", 1);
+  object.check(envmap.scale >= 0, "scale", envmap.scale, "must be >= 0");
+  check_at_most(object, "scale", envmap.scale, kMaxQuantity);
+  envmap.to_world = rotation_and_position(object);
+  object.get_bool("mis_compensation", false);  // only concerns the noise of Mitsuba's sampling
+  const Place place = object.value_place("filename");
+  envmap.image = context.image(envmap.file, false, place);
+  check_map_size(object, envmap.file, envmap.image->width, envmap.image->height);
+  check_emission_image(*envmap.image, envmap.file, envmap.scale, object.label() + ": scale times", place);
+  return envmap;
+}
+
+Model read_spectral_envmap(ReadContext& context, const ObjectReader& object) {
+  SpectralEnvmapEmitter envmap;
+  const std::filesystem::path file = context.file(object, "filename");
+  envmap.scale = object.get_float("scale", 1);
+  object.check(envmap.scale >= 0, "scale", envmap.scale, "must be >= 0");
+  check_at_most(object, "scale", envmap.scale, kMaxQuantity);
+  envmap.to_world = rotation_and_position(object);
+  envmap.image = context.spectral_image(file, false, object.value_place("filename"));
+  check_map_size(object, file, envmap.image->width, envmap.image->height);
+  check_emission_image(*envmap.image, envmap.scale, object.label() + ": scale times",
+                       object.value_place("filename"));
+  return envmap;
+}
+
+Model read_point(ReadContext& context, const ObjectReader& object) {
+  PointEmitter point;
+  point.intensity = emission(context, object, "intensity", SpectrumUse::kIntensity);
+  if (object.has("position") && object.has("to_world")) {
+    object.fail_at("to_world", "'position' together with 'to_world'");
+  }
+  point.position = object.has("position") ? object.get_vector("position", {})
+                                          : glm::dvec3(object.get_transform("to_world")[3]);
+  return point;
+}
+
+Model read_spot(ReadContext& context, const ObjectReader& object) {
+  SpotEmitter spot;
+  spot.intensity = emission(context, object, "intensity", SpectrumUse::kIntensity);
+  const double cutoff = object.get_float("cutoff_angle", 20);
+  object.check(cutoff > 0 && cutoff < 180, "cutoff_angle", cutoff, "must be between 0 and 180 degrees");
+  const double beam = object.get_float("beam_width", 0.75 * cutoff);
+  object.check(beam >= 0 && beam <= cutoff, "beam_width", beam, "must be from 0 to cutoff_angle");
+  spot.cutoff_angle = cutoff * std::numbers::pi / 180;
+  spot.beam_width = beam * std::numbers::pi / 180;
+  if (object.has("texture")) object.fail_at("texture", "a spot light's texture is not supported");
+  spot.to_world = rotation_and_position(object);
+  return spot;
+}
+
+Model read_directional(ReadContext& context, const ObjectReader& object) {
+  DirectionalEmitter directional;
+  directional.irradiance = emission(context, object, "irradiance", SpectrumUse::kIrradiance);
+  if (object.has("direction") && object.has("to_world")) {
+    object.fail_at("to_world", "'direction' together with 'to_world'");
+  }
+  const glm::dvec3 direction = object.has("direction") ? object.get_vector("direction", {})
+                                                       : glm::dvec3(object.get_transform("to_world")[2]);
+  const glm::dvec3 unit = unit_vector(direction);
+  if (unit == glm::dvec3(0)) object.fail_at("direction", "direction: its length must be > 0");
+  directional.direction = unit;
+  return directional;
+}
+
+struct EmitterType {
+  std::string_view name;
+  Model (*read)(ReadContext&, const ObjectReader&);
+};
+
+constexpr EmitterType kTypes[] = {
+    {"constant", read_constant}, {"envmap", read_envmap}, {"spectral_envmap", read_spectral_envmap},
+    {"point", read_point},       {"spot", read_spot},     {"directional", read_directional}};
+
+[[noreturn]] void refuse(const ObjectReader& object) {
+  object.refuse_type(
+      {"area", "thermal", "constant", "envmap", "spectral_envmap", "point", "spot", "directional"});
+}
+
+}  // namespace
+
+/// Mitsuba's weight for choosing lights. Ours are chosen by what they emit: only the noise differs.
+void accept_sampling_weight(const ReadContext& context, const ObjectReader& object) {
+  if (!object.has("sampling_weight")) return;
+  const double weight = object.get_float("sampling_weight", 1);
+  object.check(weight > 0, "sampling_weight", weight, "must be > 0");
+  if (weight != 1) {
+    note(context.sink, object.value_place("sampling_weight").position(),
+         object.label() + ": 'sampling_weight' has no meaning here: lights are chosen by their power");
+  }
+}
+
+AreaEmitter read_area_emitter(ReadContext& context, Node& node) {
+  const ObjectReader object(node);
+  for (const EmitterType& type : kTypes) {
+    if (node.type == type.name)
+      fail(node.type_place, object.label() + ": only area and thermal emitters can be part of a shape");
+  }
+  if (node.type != "area") refuse(object);
+  if (object.has("to_world")) object.fail_at("to_world", "an area emitter has no transform of its own");
+  accept_sampling_weight(context, object);
+  AreaEmitter emitter{read_texture(context, object, "radiance", SpectrumUse::kEmission, default_emission())};
+  object.finish();
+  return emitter;
+}
+
+Emitter read_emitter(ReadContext& context, Node& node) {
+  const ObjectReader object(node);
+  for (const EmitterType& type : kTypes) {
+    if (node.type != type.name) continue;
+    accept_sampling_weight(context, object);
+    Emitter emitter{node.id, node.place.position(), type.read(context, object)};
+    object.finish();
+    return emitter;
+  }
+  refuse(object);
+}
+
+}  // namespace kiloband

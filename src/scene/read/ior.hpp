@@ -1,0 +1,28 @@
+// Indices of refraction: numbers, Mitsuba's material names, built-in materials, files of optical constants.
+#pragma once
+
+#include <optional>
+
+#include "scene/read/context.hpp"
+#include "spectral/spectrum_files.hpp"
+
+namespace kiloband {
+
+/// A number or one of Mitsuba's names ("bk7", "water", ...). An <integer> is refused, as in Mitsuba.
+/// throws InputError  unknown name; not > 0
+double read_ior(const ObjectReader& object, std::string_view name, double fallback);
+
+enum class MaterialFamily { kMetal, kDielectric };
+
+/// The optical constants that a string parameter names; nullopt if the parameter is absent. A value with '.'
+/// or '/' and the name of an existing file are files, all else built-in materials of the family.
+/// n must be > 0, k >= 0; metals have k. With the boolean parameter `extrapolate` the end values
+/// continue outside the data.
+/// throws InputError  neither a file nor a built-in name (with names near it)
+std::optional<OpticalConstants> read_material(ReadContext& context, const ObjectReader& object,
+                                              std::string_view name, MaterialFamily family);
+
+/// throws InputError at `place`  n or k of a conductor is above kMaxMetalIndex
+void check_metal_index(const Spectrum& spectrum, const std::string& label, const Place& place);
+
+}  // namespace kiloband

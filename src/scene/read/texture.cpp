@@ -1,0 +1,105 @@
+// <texture type="bitmap"> and <texture type="checkerboard">.
+#include <algorithm>
+#include <span>
+
+#include "scene/read/context.hpp"
+#include "scene/read/limits.hpp"
+#include "scene/xml/values.hpp"
+#include "spectral/value_scale.hpp"
+
+namespace kiloband {
+namespace {
+
+Texture read_bitmap(ReadContext& context, const ObjectReader& object) {
+  auto bitmap = std::make_shared<BitmapTexture>();
+  bitmap->id = object.node().id;
+  bitmap->position = object.node().place.position();
+  bitmap->file = context.file(object, "filename");
+  bitmap->raw = object.get_bool("raw", false);
+  bitmap->nearest = object.get_choice("filter_type", {"bilinear", "nearest"}) == 1;
+  constexpr WrapMode kModes[] = {WrapMode::kRepeat, WrapMode::kMirror, WrapMode::kClamp};
+  bitmap->wrap = kModes[object.get_choice("wrap_mode", {"repeat", "mirror", "clamp"})];
+  bitmap->to_uv = object.get_uv_transform("to_uv", context.sink);
+  object.get_choice("format", {"auto", "variant", "fp16"});  // how Mitsuba stores it: no meaning here
+  object.finish();
+  bitmap->image = context.image(bitmap->file, bitmap->raw, object.value_place("filename"));
+  return std::shared_ptr<const BitmapTexture>(std::move(bitmap));
+}
+
+Texture read_checkerboard(ReadContext& context, const ObjectReader& object) {
+  auto board = std::make_shared<CheckerboardTexture>();
+  board->id = object.node().id;
+  board->position = object.node().place.position();
+  board->color0 = read_spectrum(context, object, "color0", SpectrumUse::kReflectance, board->color0);
+  board->color1 = read_spectrum(context, object, "color1", SpectrumUse::kReflectance, board->color1);
+  board->to_uv = object.get_uv_transform("to_uv", context.sink);
+  object.finish();
+  return std::shared_ptr<const CheckerboardTexture>(std::move(board));
+}
+
+}  // namespace
+
+Texture read_texture_object(ReadContext& context, Node& node) {
+  const auto known = context.textures.find(&node);
+  if (known != context.textures.end()) return known->second;
+  const ObjectReader object(node);
+  Texture texture = node.type == "bitmap"            ? read_bitmap(context, object)
+                    : node.type == "spectral_bitmap" ? read_spectral_bitmap(context, object)
+                                                     : read_checkerboard(context, object);
+  context.textures.emplace(&node, texture);
+  return texture;
+}
+
+namespace {
+
+/// "label 1e+20 at pixel (1, 2) of 'sky.exr': must be <= ...": the first value that is too large.
+void check_pixels(std::span<const float> values, std::size_t values_per_pixel, uint32_t width, double scale,
+                  const std::string& file, const std::string& label, const Place& place) {
+  const auto found = std::ranges::find_if(values, [&](float v) { return v * scale > kMaxEmission; });
+  if (found == values.end()) return;
+  const std::size_t pixel = static_cast<std::size_t>(found - values.begin()) / values_per_pixel;
+  fail(place, label + " " + format_number(*found * scale) + " at pixel (" + std::to_string(pixel % width) +
+                  ", " + std::to_string(pixel / width) + ") of '" + file +
+                  "': " + at_most(kMaxEmission, unit_of(ValueKind::kRadiance)));
+}
+
+}  // namespace
+
+void check_emission_image(const Image& image, const std::filesystem::path& file, double scale,
+                          const std::string& label, const Place& place) {
+  check_pixels(image.pixels, image.channels, image.width, scale, file.filename().string(), label, place);
+}
+
+void check_emission_image(const SpectralImage& image, double scale, const std::string& label,
+                          const Place& place) {
+  check_pixels(*image.values, image.values_per_pixel, image.width, scale, image.file.filename().string(),
+               label, place);
+}
+
+void check_emission_texture(const Texture& texture, const std::string& label, const Place& place) {
+  if (const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture))
+    check_emission_image(*(*bitmap)->image, (*bitmap)->file, 1, label, place);
+  const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture);
+  if (!spectral) return;
+  double largest = 1;  // of the endmembers, if the values are weights
+  for (const Spectrum& endmember : (*spectral)->endmembers)
+    largest = std::max(largest, endmember.max_over(1, 1e9));
+  check_emission_image(*(*spectral)->image, largest, label, place);
+}
+
+void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place) {
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    check_spectral_reflectance(**spectral, label, place);
+  const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture);
+  if (!bitmap) return;
+  const Image& image = *(*bitmap)->image;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (image.pixels[i] <= 1) continue;
+    const std::size_t pixel = i / image.channels;
+    fail(place, label + " " + format_number(static_cast<double>(image.pixels[i])) + " at pixel (" +
+                    std::to_string(pixel % image.width) + ", " + std::to_string(pixel / image.width) +
+                    ") of '" + (*bitmap)->file.filename().string() + "': must be in [0, 1]");
+  }
+}
+
+}  // namespace kiloband

@@ -1,0 +1,250 @@
+#include "scene/xml/document.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <pugixml.hpp>
+
+namespace kiloband {
+namespace {
+
+/// Byte offsets to lines and columns. Lines end at '\n'.
+class LineTable {
+ public:
+  LineTable(std::string_view text, const std::string* file) : file_(file), size_(text.size()) {
+    starts_.push_back(0);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '\n') starts_.push_back(i + 1);
+    }
+  }
+
+  Place at(std::size_t offset) const {
+    offset = std::min(offset, size_);
+    const auto next = std::upper_bound(starts_.begin(), starts_.end(), offset);
+    const auto line = static_cast<int>(next - starts_.begin());
+    return {file_, line, static_cast<int>(offset - *(next - 1)) + 1};
+  }
+
+ private:
+  const std::string* file_;
+  std::size_t size_;
+  std::vector<std::size_t> starts_;
+};
+
+/// Length of the valid UTF-8 sequence at `i`, 0 if it is invalid
+/// (RFC 3629: no overlong forms, no surrogates).
+std::size_t utf8_length(std::string_view text, std::size_t i) {
+  const auto byte = [&](std::size_t k) {
+    return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u;
+  };
+  const auto tail = [&](std::size_t k) { return (byte(k) & 0xC0u) == 0x80u; };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return tail(1) ? 2 : 0;
+  if (lead >= 0xE0 && lead <= 0xEF) {
+    const unsigned low = lead == 0xE0 ? 0xA0 : 0x80, high = lead == 0xED ? 0x9F : 0xBF;
+    return byte(1) >= low && byte(1) <= high && tail(2) ? 3 : 0;
+  }
+  if (lead >= 0xF0 && lead <= 0xF4) {
+    const unsigned low = lead == 0xF0 ? 0x90 : 0x80, high = lead == 0xF4 ? 0x8F : 0xBF;
+    return byte(1) >= low && byte(1) <= high && tail(2) && tail(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+void check_characters(std::string_view text, const LineTable& lines) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c < 0x20 && c != '\t' && c != '\n' && c != '\r') {
+      fail(lines.at(i), "control character with code " + std::to_string(c) + " is not allowed in XML");
+    }
+    const std::size_t length = utf8_length(text, i);
+    if (length == 0) fail(lines.at(i), "not valid UTF-8");
+    i += length;
+  }
+}
+
+/// Counts elements by their start tags before memory is taken for any; comments are passed over.
+void count_elements(std::string_view text, const LineTable& lines, XmlTotals& totals) {
+  for (std::size_t i = text.find('<'); i < text.size(); i = text.find('<', i + 1)) {
+    if (text.substr(i).starts_with("<!--")) {
+      i = text.find("-->", i + 4);
+      if (i == std::string_view::npos) return;  // pugixml says what is wrong
+    } else if (i + 1 < text.size() && text[i + 1] != '/' && text[i + 1] != '!' && text[i + 1] != '?' &&
+               ++totals.elements > kMaxElements) {
+      fail(lines.at(i + 1), "more than " + std::to_string(kMaxElements) +
+                                " elements, those of included files counted each time");
+    }
+  }
+}
+
+void check_size(std::string_view text, const LineTable& lines, XmlTotals& totals) {
+  if (text.size() > kMaxFileBytes) fail(lines.at(0), "larger than 256 MiB");
+  totals.bytes += text.size();
+  if (totals.bytes > kMaxSceneBytes)
+    fail(lines.at(0), "the files of the scene are larger than 1 GiB together");
+}
+
+/// Appends a code point as UTF-8.
+void append_utf8(std::string& out, uint32_t code) {
+  if (code < 0x80) {
+    out += static_cast<char>(code);
+  } else if (code < 0x800) {
+    out += static_cast<char>(0xC0 | (code >> 6));
+    out += static_cast<char>(0x80 | (code & 0x3F));
+  } else {
+    if (code < 0x10000) {
+      out += static_cast<char>(0xE0 | (code >> 12));
+    } else {
+      out += static_cast<char>(0xF0 | (code >> 18));
+      out += static_cast<char>(0x80 | ((code >> 12) & 0x3F));
+    }
+    out += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
+    out += static_cast<char>(0x80 | (code & 0x3F));
+  }
+}
+
+/// Replaces "#65", "#x41" or a predefined name; false if there is no such character or name.
+bool append_entity(std::string& out, std::string_view name) {
+  constexpr std::pair<std::string_view, char> kNames[] = {
+      {"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}};
+  for (const auto& [known, character] : kNames) {
+    if (name == known) return out += character, true;
+  }
+  if (!name.starts_with('#')) return false;
+  name.remove_prefix(1);
+  const bool hex = name.starts_with('x');
+  if (hex) name.remove_prefix(1);
+  uint32_t code = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), code, hex ? 16 : 10);
+  const bool valid = error == std::errc{} && end == name.data() + name.size() && code >= 0x20 &&
+                     code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
+  if (valid) append_utf8(out, code);
+  return valid;
+}
+
+/// Turns pugixml's nodes into XmlElements. Parsing replaces nothing in the buffer,
+/// so pointers give exact offsets.
+class Converter {
+ public:
+  Converter(const char* base, const LineTable& lines) : base_(base), lines_(lines) {}
+
+  XmlElement document(const pugi::xml_document& document) {
+    pugi::xml_node root;
+    for (const pugi::xml_node node : document.children()) {
+      if (node.type() == pugi::node_declaration) {
+        check_encoding(node);
+      } else if (node.type() != pugi::node_element) {
+        refuse(node);
+      } else if (root) {
+        fail(place(node), std::string("a second root element <") + node.name() + ">");
+      } else {
+        root = node;
+      }
+    }
+    if (!root) fail(lines_.at(0), "no root element");
+    return element(root, 1);
+  }
+
+ private:
+  Place place(const pugi::xml_node& node) const {
+    return lines_.at(static_cast<std::size_t>(node.offset_debug()));
+  }
+  Place place(const char* text) const { return lines_.at(static_cast<std::size_t>(text - base_)); }
+
+  void check_encoding(const pugi::xml_node& declaration) const {
+    std::string encoding = declaration.attribute("encoding").value();
+    std::transform(encoding.begin(), encoding.end(), encoding.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+    if (!encoding.empty() && encoding != "utf-8" && encoding != "us-ascii") {
+      fail(place(declaration.attribute("encoding").value()),
+           "encoding '" + encoding + "' is not supported: use UTF-8");
+    }
+  }
+
+  [[noreturn]] void refuse(const pugi::xml_node& node) const {
+    if (node.type() == pugi::node_doctype) fail(place(node), "document type declarations are not supported");
+    const char* text = node.value();
+    fail(place(text + std::strspn(text, " \t\r\n")), "text between elements is not allowed");
+  }
+
+  std::string decode(const char* raw) const {
+    std::string out;
+    for (const char* c = raw; *c; ++c) {
+      if (*c == '<') fail(place(c), "'<' in an attribute value: write &lt;");
+      if (*c != '&') {
+        out += *c == '\t' || *c == '\n' || *c == '\r' ? ' ' : *c;
+        continue;
+      }
+      const char* end = c + std::strcspn(c, "; ");
+      const std::string name(c + 1, end);
+      if (*end != ';' || !append_entity(out, name))
+        fail(place(c), "unknown entity '&" + name.substr(0, 20) + "'");
+      c = end;
+    }
+    return out;
+  }
+
+  XmlAttribute attribute(const XmlElement& owner, const pugi::xml_attribute& source) const {
+    if (owner.find(source.name())) {
+      fail(place(source.name()), std::string("attribute '") + source.name() + "' is given twice");
+    }
+    return {source.name(), decode(source.value()), place(source.name()), place(source.value())};
+  }
+
+  XmlElement element(const pugi::xml_node& node, int depth) {
+    XmlElement result{node.name(), place(node), {}, {}};
+    if (depth > kMaxNesting)
+      fail(result.place, "nested more than " + std::to_string(kMaxNesting) + " levels deep");
+    for (const pugi::xml_attribute source : node.attributes()) {
+      result.attributes.push_back(attribute(result, source));
+      if (result.attributes.size() > kMaxAttributes)
+        fail(result.attributes.back().place,
+             "<" + result.tag + ">: more than " + std::to_string(kMaxAttributes) + " attributes");
+    }
+    for (const pugi::xml_node child : node.children()) {
+      if (child.type() != pugi::node_element) refuse(child);
+      result.children.push_back(element(child, depth + 1));
+    }
+    return result;
+  }
+
+  const char* base_;
+  const LineTable& lines_;
+};
+
+}  // namespace
+
+SourcePosition Place::position() const {
+  return {file ? *file : std::string(), line, column};
+}
+
+void fail(const Place& place, const std::string& message) {
+  throw InputError(place.position(), message);
+}
+
+const XmlAttribute* XmlElement::find(std::string_view attribute) const {
+  for (const XmlAttribute& candidate : attributes) {
+    if (candidate.name == attribute) return &candidate;
+  }
+  return nullptr;
+}
+
+XmlElement parse_xml(std::string text, const std::string* file, XmlTotals& totals) {
+  const LineTable lines(text, file);
+  check_size(text, lines, totals);
+  check_characters(text, lines);
+  count_elements(text, lines, totals);
+  // No escapes, no white space conversion: the buffer stays as it is, and undefined entities remain visible.
+  constexpr unsigned kFlags =
+      pugi::parse_fragment | pugi::parse_cdata | pugi::parse_doctype | pugi::parse_declaration;
+  pugi::xml_document document;
+  const auto result = document.load_buffer_inplace(text.data(), text.size(), kFlags, pugi::encoding_utf8);
+  if (!result) {
+    fail(lines.at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0))),
+         std::string("not well-formed XML: ") + result.description());
+  }
+  return Converter(text.data(), lines).document(document);
+}
+
+}  // namespace kiloband

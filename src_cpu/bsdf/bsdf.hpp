@@ -1,0 +1,118 @@
+// Wavelength-independent part of the BSDFs on the CPU: what sampling, densities and saved vertices need.
+//
+// A BSDF value times |cos theta_o| is split into a part that does not depend on wavelength and the spectral
+// factors that deferred evaluation applies (KbVertexKind in shared/records.h). Directions are unit vectors in
+// the local shading frame (z = normal), both pointing away from the surface; wi is where the path comes from,
+// wo where it goes.
+//
+// Conventions, which are Mitsuba 3's: reflecting materials are black from behind (cos_i <= 0 or cos_o <= 0),
+// transmitted radiance is scaled by 1 / eta^2 (radiance transport), cosines are those of the shading frame.
+// Roughness below 1e-4 is 1e-4. Differences: Beckmann's masking is exact (Mitsuba's rational fit is off by up
+// to 0.35 %), plastic lobes are chosen with 10 % uniform mixed in, and a rough dielectric whose lobe float
+// directions cannot resolve (min(alpha) * |eta - 1| < 3e-6) acts as a smooth one.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "shared/records.h"
+#include "src_cpu/bsdf/rough_transmittance.hpp"
+
+namespace kiloband {
+
+/// The weights of one direction pair, for KbVertexKind eval_kind(material).
+struct BsdfValue {
+  float w0 = 0, w1 = 0;  // f |cos theta_o| without spectral factors [1/sr]; see KB_KIND_*
+  float pdf = 0;         // solid angle [1/sr], of sample_bsdf choosing wo (0 for delta lobes)
+  bool lobe_b = false;   // KB_KIND_SCALED: the factor is S_b instead of S_a (dielectric transmittance)
+};
+
+/// A vertex has one kind: for materials with a non-delta lobe `kind` equals eval_kind(material), so that
+/// light and BSDF samples can share a vertex. Only rough dielectrics may need S_a for one and S_b for the
+/// other: w0 * S_a is then KB_KIND_TWO_TERM with (w0, 0), w0 * S_b with (0, w0).
+struct BsdfSample {
+  glm::vec3 wo{0};
+  float w0 = 0, w1 = 0;  // f |cos theta_o| / pdf without spectral factors (delta lobes: weight / probability)
+  /// Solid angle [1/sr], or the discrete probability of a delta lobe; 0: no sample, the path ends.
+  float pdf = 0;
+  float eta = 1;    // transmission: ratio of refractive indices, transmitted over incident side; else 1
+  float bound = 0;  // upper bound of this sample's throughput factor over all channels, times eta^2: without
+                    // the radiance scaling, as roulette wants it
+  bool delta = false;
+  bool transmission = false;
+  uint8_t kind = KB_KIND_SCALED;  // how w0, w1 are to be evaluated
+  bool lobe_b = false;         // KB_KIND_SCALED: the factor is S_b instead of S_a (dielectric transmittance)
+  bool needs_channel = false;  // dispersive transmission with probability pdf: the caller chooses a channel
+                               // and calls transmit_dispersive; wo, w0 and bound are not set
+};
+
+/// The wavelength that a dispersive material is evaluated for after degradation. Before it, reflection by a
+/// smooth dielectric is for all channels (KB_KIND_DISPERSIVE) while transmission needs a channel
+/// to be chosen by the caller.
+struct DispersionState {
+  float eta = 0;  // interior over exterior index at the chosen wavelength; 0: not degraded
+};
+
+/// A material with what is kept beside its record.
+struct MaterialContext {
+  const KbMaterial* material = nullptr;
+  const RoughTransmittance* rough_transmittance = nullptr;  // for KB_MATERIAL_ROUGH_PLASTIC, else unused
+  DispersionState dispersion;                               // for KB_MATERIAL_DISPERSIVE, else unused
+  /// For KB_MATERIAL_COMPENSATED: its table (shared/thermal.h), else unused.
+  const float* compensation = nullptr;
+};
+
+/// E(wi) of a compensated material: the albedo of its single-scattering lobe. Source: shared/thermal.h.
+float lobe_albedo(const MaterialContext& context, glm::vec3 wi);
+
+/// Value and density for wi -> wo; zero for delta materials and for directions
+/// that the material does not scatter to.
+/// throws std::logic_error  a rough plastic without table, a rough dispersive dielectric that is not degraded
+BsdfValue eval_bsdf(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo);
+
+/// Chooses a direction; the weights are f |cos theta_o| / pdf of the whole material for non-delta lobes, and
+/// of the chosen lobe for delta ones. u_lobe and u uniform in [0,1).
+/// throws as eval_bsdf
+BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lobe, glm::vec2 u);
+
+/// Second half of a sample with needs_channel: refracts wi for the chosen channel.
+/// eta_channel  interior over exterior index at the channel's wavelength
+/// probability  of getting here: the sample's pdf times the probability of the channel
+/// returns pdf == 0 on total internal reflection (this channel is carried by the reflected sample alone)
+BsdfSample transmit_dispersive(const KbMaterial& material, glm::vec3 wi, float eta_channel,
+                               float probability);
+
+/// A pair of directions at a rough dispersive boundary, for every channel at once. For reflection the vertex
+/// is KB_KIND_DISPERSIVE with w0 = weight, w1 = cosine; for transmission KB_KIND_ROUGH_TRANSMISSION with
+/// w0 = weight and the directions (shared/rough_transmission.h).
+struct BoundaryPair {
+  float weight = 0;  // f |cos theta_o| [1/sr] without Fresnel's reflectance; or without the factor T; 0: none
+  float cosine = 0;  // reflection: of wi and the half vector, negative from inside
+  bool transmission = false;
+};
+BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo);
+
+/// Is a rough boundary's lobe too narrow for float directions, so that it is treated as smooth?
+/// eta  either ratio of the two indices
+bool acts_smooth(const KbMaterial& material, float eta);
+
+/// The kind of eval_bsdf's weights for this material.
+inline uint8_t eval_kind(const KbMaterial& material) {
+  switch (material.type) {
+    case KB_MATERIAL_CONDUCTOR:
+    case KB_MATERIAL_ROUGH_CONDUCTOR:
+      return material.flags & KB_MATERIAL_PERFECT_MIRROR ? KB_KIND_SCALED : KB_KIND_CONDUCTOR;
+    case KB_MATERIAL_PLASTIC:
+    case KB_MATERIAL_ROUGH_PLASTIC:
+      return material.flags & KB_MATERIAL_NONLINEAR ? KB_KIND_NONLINEAR : KB_KIND_TWO_TERM;
+    default:
+      return KB_KIND_SCALED;
+  }
+}
+
+/// True if the material has a non-delta lobe, so that next-event estimation makes sense.
+inline bool has_smooth_lobe(const KbMaterial& material) {
+  return material.type != KB_MATERIAL_CONDUCTOR && material.type != KB_MATERIAL_DIELECTRIC;
+}
+
+}  // namespace kiloband

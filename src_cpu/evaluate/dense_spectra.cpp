@@ -1,0 +1,233 @@
+#include "src_cpu/evaluate/dense_spectra.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "render/planted_helpers.hpp"
+#include "shared/planted_faults.h"
+#include "spectral/planck.hpp"
+
+namespace kiloband {
+namespace {
+
+/// Stores x as the sum of two floats: 48 bits, so that differences of rows keep float precision.
+void split(double x, float& high, float& low) {
+  high = static_cast<float>(x);
+  low = static_cast<float>(x - high);
+}
+
+/// What a Planck row multiplies Planck's law by.
+double planck_factor(const SpectrumRow& row, double lambda_nm) {
+  if (lambda_nm < row.planck_min_nm || lambda_nm > row.planck_max_nm) return 0;
+  return row.planck_scale * (row.table.values.empty() ? 1 : row.table(lambda_nm));
+}
+
+double planck_at(double lambda_nm, double temperature_k) {
+  if (KB_PLANTED(PLANCK_SECOND)) temperature_k *= kPlanckSecond_nm_k / 1.44e7;
+  return planck_radiance(lambda_nm, temperature_k);
+}
+
+double value_at(const SpectrumRow& row, double lambda_nm) {
+  if (!row.is_planck)
+    return row.table(KB_PLANTED(SPECTRUM_NEAREST) ? nearest_entry_nm(row.table, lambda_nm) : lambda_nm);
+  return planck_factor(row, lambda_nm) * planck_at(lambda_nm, row.temperature_k);
+}
+
+}  // namespace
+
+template <class T>
+hwy::AlignedFreeUniquePtr<T[]> aligned_zeros(std::size_t n) {
+  auto memory = hwy::AllocateAligned<T>(std::max<std::size_t>(n, 1));
+  if (!memory) throw std::bad_alloc();
+  std::fill_n(memory.get(), n, T{0});
+  return memory;
+}
+template hwy::AlignedFreeUniquePtr<float[]> aligned_zeros<float>(std::size_t);
+template hwy::AlignedFreeUniquePtr<double[]> aligned_zeros<double>(std::size_t);
+template hwy::AlignedFreeUniquePtr<int32_t[]> aligned_zeros<int32_t>(std::size_t);
+
+DenseSpectra::DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kernels)
+    : scene_(scene),
+      kernels_(kernels),
+      channels_(scene.channels.size()),
+      padded_(pad_channels(channels_)),
+      lambda_(aligned_zeros<double>(padded_)),
+      texture_lambda_(aligned_zeros<double>(padded_)),
+      unit_emission_(aligned_zeros<float>(padded_)),
+      zeros_(aligned_zeros<float>(padded_)),
+      rows_(scene.spectra.size()),
+      material_rows_(scene.materials.size()),
+      float_tables_(scene.spectra.size()) {
+  if (scene.channel_scale.size() != channels_)
+    throw std::logic_error("dense spectra: channel_scale has not K entries");
+  for (std::size_t k = 0; k < channels_; ++k) {
+    min_nm_.push_back(scene.channels[k].min_nm);
+    max_nm_.push_back(scene.channels[k].max_nm);
+    emission_factor_.push_back(scene.channels[k].width_nm() / scene.channel_scale[k]);
+    unit_emission_[k] = static_cast<float>(emission_factor_[k]);
+  }
+  for (const SpectrumRow& row : scene.spectra) is_emission_.push_back(row.is_emission);
+  for (const KbTexture& texture : scene.textures) {
+    if (texture.illuminant_row != KB_NONE) is_emission_.at(texture.illuminant_row) = true;
+  }
+}
+
+void DenseSpectra::begin(double mu, bool fast) {
+  mu_ = mu;
+  fast_ = fast;
+  ++generation_;
+  used_ = 0;
+  for (std::size_t k = 0; k < channels_; ++k) lambda_[k] = (1 - mu) * min_nm_[k] + mu * max_nm_[k];
+}
+
+void DenseSpectra::throw_bad_row(uint32_t s) {
+  throw std::logic_error("saved path: spectrum " + std::to_string(s) + " does not exist");
+}
+
+/// A row of the pool. Its padding is zero: rows are only ever written in their first K
+/// entries, or zeros beyond.
+float* DenseSpectra::new_row() {
+  if (used_ == pool_.size()) pool_.push_back(aligned_zeros<float>(padded_));
+  return pool_[used_++].get();
+}
+
+const double* DenseSpectra::texture_lambda() {
+  if (texture_generation_ != generation_) {
+    for (std::size_t k = 0; k < channels_; ++k) texture_lambda_[k] = std::clamp(lambda_[k], 360.0, 830.0);
+    texture_generation_ = generation_;
+  }
+  return texture_lambda_.get();
+}
+
+const float* DenseSpectra::planck_second() {
+  if (!planck_second_) planck_second_ = aligned_zeros<float>(padded_);
+  if (planck_second_generation_ != generation_) {
+    std::fill_n(planck_second_.get(), padded_, 1.0f);
+    for (std::size_t k = 0; k < channels_; ++k)
+      planck_second_[k] = static_cast<float>(kPlanckSecond_nm_k / lambda_[k]);
+    planck_second_generation_ = generation_;
+  }
+  return planck_second_.get();
+}
+
+const float* DenseSpectra::make_spectrum(uint32_t s) {
+  float* out = new_row();
+  const SpectrumRow& row = scene_.spectra[s];
+  if (row.absorption) {
+    for (std::size_t k = 0; k < channels_; ++k) out[k] = static_cast<float>((*row.absorption)(k, mu_));
+  } else if (fast_ && !row.is_planck && !is_emission_[s]) {
+    const std::vector<float>& table = float_table(s);
+    kernels_.sample_table(
+        {table.data(), table.size(), row.table.min_nm, row.table.step_nm, row.table.extrapolate},
+        lambda_.get(), channels_, out);
+    std::fill(out + channels_, out + padded_, 0.0f);
+  } else {
+    fill_exact(s, out);
+  }
+  rows_[s] = {generation_, out};
+  return out;
+}
+
+const std::vector<double>& DenseSpectra::planck(double temperature_k) {
+  PlanckRow& row = planck_[temperature_k];
+  if (row.generation == generation_) return row.radiance;
+  row.generation = generation_;
+  row.radiance.resize(channels_);
+  for (std::size_t k = 0; k < channels_; ++k)
+    row.radiance[k] = planck_at(lambda_[k], temperature_k) * emission_factor_[k];
+  return row.radiance;
+}
+
+void DenseSpectra::fill_planck(double temperature_k, const float* emissivity, float* out) {
+  if (planck_generation_ != generation_) {
+    planck_a_.resize(channels_);
+    planck_b_.resize(channels_);
+    for (std::size_t k = 0; k < channels_; ++k) {
+      const PlanckTerms terms = planck_terms(lambda_[k]);
+      planck_a_[k] = terms.a * emission_factor_[k];
+      planck_b_[k] = terms.b;
+    }
+    planck_generation_ = generation_;
+  }
+  std::fill(out, out + padded_, 0.0f);
+  if (!(temperature_k > 0)) return;
+  const double inverse = 1 / temperature_k;
+  for (std::size_t k = 0; k < channels_; ++k) {
+    const double e = std::exp(-planck_b_[k] * inverse);
+    out[k] = static_cast<float>(planck_a_[k] * e / (1 - e));
+  }
+  if (!emissivity) return;
+  for (std::size_t k = 0; k < channels_; ++k) out[k] *= emissivity[k];
+}
+
+void DenseSpectra::fill_exact(uint32_t s, float* out) {
+  const SpectrumRow& row = scene_.spectra[s];
+  if (row.is_planck && is_emission_[s]) {
+    const std::vector<double>& radiance = planck(row.temperature_k);
+    for (std::size_t k = 0; k < channels_; ++k)
+      out[k] = static_cast<float>(planck_factor(row, lambda_[k]) * radiance[k]);
+    return;
+  }
+  for (std::size_t k = 0; k < channels_; ++k) {
+    const double value = value_at(row, lambda_[k]);
+    out[k] = static_cast<float>(is_emission_[s] ? value * emission_factor_[k] : value);
+  }
+}
+
+const std::vector<float>& DenseSpectra::float_table(uint32_t s) {
+  std::vector<float>& table = float_tables_[s];
+  if (table.empty()) {
+    const std::vector<double>& values = scene_.spectra[s].table.values;
+    if (values.size() < 2) throw std::logic_error("dense spectra: a table has fewer than 2 entries");
+    table.assign(values.begin(), values.end());
+  }
+  return table;
+}
+
+DenseSpectra::MaterialRows& DenseSpectra::material_rows(uint32_t material) {
+  if (material >= material_rows_.size()) throw std::logic_error("saved path: material does not exist");
+  const KbMaterial& record = scene_.materials[material];
+  if (record.eta_row >= rows_.size()) throw_bad_row(record.eta_row);
+  return material_rows_[material];
+}
+
+std::array<const float*, 3> DenseSpectra::conductor(uint32_t material) {
+  MaterialRows& rows = material_rows(material);
+  if (rows.generation[0] != generation_) {
+    const KbMaterial& record = scene_.materials[material];
+    if (record.k_row >= rows_.size()) throw_bad_row(record.k_row);
+    rows.data[0] = {new_row(), new_row(), new_row()};
+    for (std::size_t k = 0; k < channels_; ++k) {
+      double n = value_at(scene_.spectra[record.eta_row], lambda_[k]);
+      double absorption = value_at(scene_.spectra[record.k_row], lambda_[k]);
+      if (KB_PLANTED(FRESNEL_NK)) std::swap(n, absorption);
+      split((n - 1) * (n + 1) - absorption * absorption, rows.data[0][0][k], rows.data[0][1][k]);
+      rows.data[0][2][k] = static_cast<float>(n * absorption);
+    }
+    rows.generation[0] = generation_;
+  }
+  return {rows.data[0][0], rows.data[0][1], rows.data[0][2]};
+}
+
+std::array<const float*, 2> DenseSpectra::dispersive(uint32_t material, bool inside) {
+  MaterialRows& rows = material_rows(material);
+  if (rows.generation[inside] != generation_) {
+    const KbMaterial& record = scene_.materials[material];
+    if (record.k_row != KB_NONE && record.k_row >= rows_.size()) throw_bad_row(record.k_row);
+    rows.data[inside] = {new_row(), new_row(), nullptr};
+    for (std::size_t k = 0; k < channels_; ++k) {
+      const double interior = value_at(scene_.spectra[record.eta_row], lambda_[k]);
+      const double exterior =
+          record.k_row == KB_NONE ? record.eta_ext : value_at(scene_.spectra[record.k_row], lambda_[k]);
+      const double e = inside ? exterior / interior : interior / exterior;
+      split((e - 1) * (e + 1), rows.data[inside][0][k], rows.data[inside][1][k]);
+    }
+    rows.generation[inside] = generation_;
+  }
+  return {rows.data[inside][0], rows.data[inside][1]};
+}
+
+}  // namespace kiloband

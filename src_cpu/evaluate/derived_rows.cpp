@@ -1,0 +1,115 @@
+#include "src_cpu/evaluate/derived_rows.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace kiloband {
+namespace {
+
+/// Where a table can be other than 0, nm.
+Channel support(const RegularTable& table) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (table.extrapolate) return {-kInfinity, kInfinity, {}};
+  // The last entry's wavelength may round to a hair beyond it.
+  const double last_nm =
+      table.min_nm + table.step_nm * static_cast<double>(table.values.size() - 1) * (1 + 1e-11);
+  return {table.min_nm, last_nm, {}};
+}
+
+}  // namespace
+
+DerivedRows::DerivedRows(const FlatScene& scene, const DerivedChannels& derived,
+                         const EvaluatorKernels& kernels, std::size_t film_offset)
+    : scene_(scene), derived_(derived), kernels_(kernels) {
+  for (const RegularTable& response : derived.responses) rows_.push_back(make_row(response));
+  for (const Channel& channel : scene.channels) {
+    sorted_min_.push_back(channel.min_nm);
+    sorted_max_.push_back(channel.max_nm);
+  }
+  std::sort(sorted_min_.begin(), sorted_min_.end());
+  std::sort(sorted_max_.begin(), sorted_max_.end());
+  for (std::size_t k = 1; k < sorted_min_.size(); ++k) overlapping_ |= sorted_min_[k] < sorted_max_[k - 1];
+  inverse_cover_.assign(pad_channels(scene.channels.size()), 1.0f);
+  accumulators_ = aligned_zeros<float>(rows_.size() * kMaxLanes);
+  make_plan();
+  plan_.offset = film_offset;
+}
+
+DerivedRows::Row DerivedRows::make_row(const RegularTable& response) const {
+  Row row;
+  const Channel range = support(response);
+  const auto covers = [&](const Channel& c) { return c.max_nm >= range.min_nm && c.min_nm <= range.max_nm; };
+  std::size_t first = scene_.channels.size(), end = 0;
+  for (std::size_t k = 0; k < scene_.channels.size(); ++k) {
+    if (!covers(scene_.channels[k])) continue;
+    first = std::min(first, k);
+    row.scale = end == 0 ? scene_.channel_scale[k] : std::max(row.scale, scene_.channel_scale[k]);
+    end = k + 1;
+  }
+  if (end == 0) return row;
+  row.first_group = first / kRowPadding;
+  row.group_count = (end - 1) / kRowPadding + 1 - row.first_group;
+  row.factor = aligned_zeros<float>(row.group_count * kRowPadding);
+  row.weights = aligned_zeros<float>(row.group_count * kRowPadding);
+  for (std::size_t k = first; k < end; ++k) {
+    if (covers(scene_.channels[k]))
+      row.factor[k - row.first_group * kRowPadding] = static_cast<float>(scene_.channel_scale[k] / row.scale);
+  }
+  row.table.assign(response.values.begin(), response.values.end());
+  return row;
+}
+
+void DerivedRows::make_plan() {
+  const std::size_t groups = pad_channels(scene_.channels.size()) / kRowPadding;
+  for (std::size_t g = 0; g < groups; ++g) {
+    group_first_.push_back(static_cast<uint32_t>(entries_.size()));
+    for (std::size_t d = 0; d < rows_.size(); ++d) {
+      const Row& row = rows_[d];
+      if (g < row.first_group || g >= row.first_group + row.group_count) continue;
+      entries_.push_back({static_cast<uint32_t>(d), row.weights.get() + (g - row.first_group) * kRowPadding});
+    }
+  }
+  group_first_.push_back(static_cast<uint32_t>(entries_.size()));
+  plan_ = {rows_.size(), group_first_.data(), entries_.data(), accumulators_.get(), 0};
+}
+
+void DerivedRows::count_cover(const double* lambda_nm) {
+  const auto up_to = [](const std::vector<double>& edges, double x) {
+    return std::upper_bound(edges.begin(), edges.end(), x) - edges.begin();
+  };
+  for (std::size_t k = 0; k < scene_.channels.size(); ++k) {
+    const auto cover = up_to(sorted_min_, lambda_nm[k]) - up_to(sorted_max_, lambda_nm[k]);
+    inverse_cover_[k] = 1.0f / static_cast<float>(std::max<std::ptrdiff_t>(cover, 1));
+  }
+}
+
+void DerivedRows::fill(std::size_t d, const DenseSpectra& spectra) {
+  Row& row = rows_[d];
+  const RegularTable& response = derived_.responses[d];
+  const std::size_t first = row.first_group * kRowPadding;
+  const std::size_t n = row.group_count * kRowPadding;
+  if (n == 0) return;
+  if (spectra.fast()) {
+    kernels_.sample_table(
+        {row.table.data(), row.table.size(), response.min_nm, response.step_nm, response.extrapolate},
+        spectra.lambda_nm() + first, n, row.weights.get());
+  } else {
+    for (std::size_t i = 0; i < n; ++i) {
+      row.weights[i] =
+          row.factor[i] > 0 ? static_cast<float>(response(spectra.lambda_nm()[first + i])) : 0.0f;
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) row.weights[i] *= row.factor[i] * inverse_cover_[first + i];
+}
+
+const DerivedPlan* DerivedRows::plan(const DenseSpectra& spectra) {
+  if (rows_.empty()) return nullptr;
+  if (generation_ != spectra.generation()) {
+    if (overlapping_) count_cover(spectra.lambda_nm());
+    for (std::size_t d = 0; d < rows_.size(); ++d) fill(d, spectra);
+    generation_ = spectra.generation();
+  }
+  return &plan_;
+}
+
+}  // namespace kiloband

@@ -1,0 +1,81 @@
+#include "src_cpu/evaluate/evaluator.hpp"
+
+#include <stdexcept>
+
+#include "src_cpu/evaluate/derived_rows.hpp"
+#include "src_cpu/evaluate/evaluator_program.hpp"
+
+namespace kiloband {
+
+static_assert(Evaluator::kChannelPadding == kRowPadding);
+
+struct Evaluator::Impl {
+  Impl(const FlatScene& scene, const DerivedChannels& derived_channels, Isa isa)
+      : derived(derived_channels),
+        kernels(evaluator_kernels(resolve_isa(isa))),
+        derived_offset(pad_channels(scene.channels.size())),
+        spectra(scene, kernels),
+        derived_rows(scene, derived, kernels, derived_offset),
+        builder(scene, kernels) {
+    const std::size_t groups = (derived_offset + pad_channels(derived_rows.count())) / kRowPadding;
+    stride = (groups | 1) * kRowPadding;
+  }
+
+  float* film_row(const SavedPath& path, std::span<float> sums) const {
+    const std::size_t first = path.pixel * stride;
+    if (first + stride > sums.size()) throw std::logic_error("saved path: pixel beyond the sums");
+    return sums.data() + first;
+  }
+
+  /// One path at the offset of `spectra`, all channels: with blocks of channels as the outer loop over
+  /// resolved paths, 0.084 instead of 0.066 ns per channel and vertex were measured
+  /// (AVX-512, K = 512, 1024 pixels).
+  void add(const PathBuffer& paths, std::size_t p, std::span<float> sums) {
+    const SavedPath& path = paths.paths[p];
+    if (std::size_t{path.first} + path.count > paths.slots.size())
+      throw std::logic_error("saved path: slots beyond the buffer");
+    if (path.count == 0) return;
+    PathProgram program = builder.build(std::span(paths.slots).subspan(path.first, path.count), spectra);
+    program.derived = derived_rows.plan(spectra);
+    if (p + 1 < paths.paths.size()) program.next_film = film_row(paths.paths[p + 1], sums);
+    kernels.evaluate_path(program, film_row(path, sums));
+  }
+
+  const DerivedChannels derived;
+  const EvaluatorKernels& kernels;
+  std::size_t derived_offset, stride = 0;
+  DenseSpectra spectra;
+  DerivedRows derived_rows;
+  ProgramBuilder builder;
+};
+
+Evaluator::Evaluator(const FlatScene& scene, const DerivedChannels& derived, Isa isa)
+    : impl_(std::make_unique<Impl>(scene, derived, isa)) {}
+Evaluator::~Evaluator() = default;
+Evaluator::Evaluator(Evaluator&&) noexcept = default;
+
+std::size_t Evaluator::stride() const {
+  return impl_->stride;
+}
+std::size_t Evaluator::derived_offset() const {
+  return impl_->derived_offset;
+}
+double Evaluator::derived_scale(std::size_t d) const {
+  return impl_->derived_rows.scale(d);
+}
+
+void Evaluator::add_shared(const PathBuffer& paths, double mu, std::span<float> sums) {
+  // Rows of the same offset are kept from call to call.
+  if (impl_->spectra.fast() || impl_->spectra.mu() != mu) impl_->spectra.begin(mu, false);
+  for (std::size_t p = 0; p < paths.paths.size(); ++p) impl_->add(paths, p, sums);
+}
+
+void Evaluator::add_per_path(const PathBuffer& paths, std::span<const float> mu, std::span<float> sums) {
+  if (mu.size() != paths.paths.size()) throw std::logic_error("add_per_path: one offset per path is needed");
+  for (std::size_t p = 0; p < paths.paths.size(); ++p) {
+    impl_->spectra.begin(mu[p], true);
+    impl_->add(paths, p, sums);
+  }
+}
+
+}  // namespace kiloband

@@ -1,0 +1,97 @@
+// Vertices of gas (KB_KIND_MEDIUM of shared/path_vertex.h) for one vector of channels;
+// compiled once per instruction set.
+//
+// No include guard of the usual kind: see evaluator_optics-inl.hpp.
+#if defined(KILOBAND_EVALUATOR_GAS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_EVALUATOR_GAS_INL
+#undef KILOBAND_EVALUATOR_GAS_INL
+#else
+#define KILOBAND_EVALUATOR_GAS_INL
+#endif
+
+#include "src_cpu/evaluate/evaluator_optics-inl.hpp"
+#include "src_cpu/evaluate/planck_lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace kiloband {
+namespace HWY_NAMESPACE {
+
+/// exp(-x) and 1 - exp(-x), which keeps its relative accuracy for thin gas.
+struct Absorbed {
+  Floats passes, stays;
+};
+HWY_INLINE Absorbed absorbed(Floats x) {
+  const Floats minus = hn::Neg(x);
+  return {hn::Exp(kTag, minus), hn::Neg(hn::Expm1(kTag, minus))};
+}
+
+/// (1 - e^-x (1 + x)) / x, what the far end of a cell contributes. Below 0.5, where the closed form cancels,
+/// its series x / 2 - x^2 / 3 + x^3 / 8 - x^4 / 30 + x^5 / 144 - ..., with coefficients (-1)^n (n - 1) / n!
+/// (the series' next term is 4e-7 of the sum there).
+HWY_INLINE Floats far_share(Floats x, const Absorbed& a) {
+  Floats series = hn::MulAdd(x, constant(1.0f / 5760), constant(-1.0f / 840));
+  series = hn::MulAdd(x, series, constant(1.0f / 144));
+  series = hn::MulAdd(x, series, constant(-1.0f / 30));
+  series = hn::MulAdd(x, series, constant(1.0f / 8));
+  series = hn::MulAdd(x, series, constant(-1.0f / 3));
+  series = hn::Mul(x, hn::MulAdd(x, series, constant(0.5f)));
+  const Floats closed = hn::Div(hn::NegMulAdd(x, a.passes, a.stays), hn::Max(x, constant(0.25f)));
+  return hn::IfThenElse(hn::Lt(x, constant(0.5f)), series, closed);
+}
+
+/// The cells of a plume, from near to far. `scale`: what stands before the sum;
+/// tau is multiplied by the transmittance.
+HWY_INLINE Floats plume_radiance(const GeneralVertex& v, Floats scale, std::size_t k, Floats& tau) {
+  const Floats kappa = hn::LoadU(kTag, v.a.row + k), reference = hn::LoadU(kTag, v.emit.row + k);
+  const PlanckReference planck = planck_reference(hn::LoadU(kTag, v.second_k + k), v.reference_k);
+  Floats near = planck_ratio(planck, v.cells.front().temperature_k), sum = hn::Zero(kTag);
+  Floats passed = constant(1);
+  for (std::size_t i = 1; i < v.cells.size(); ++i) {
+    const Floats far = planck_ratio(planck, v.cells[i].temperature_k);
+    const Floats x = hn::Mul(kappa, constant(v.cells[i].column));
+    const Absorbed a = absorbed(x);
+    const Floats source = hn::MulAdd(far_share(x, a), hn::Sub(far, near), hn::Mul(a.stays, near));
+    sum = hn::MulAdd(passed, source, sum);
+    passed = hn::Mul(passed, a.passes);
+    near = far;
+  }
+  tau = hn::Mul(tau, passed);
+  return hn::Mul(hn::Mul(scale, reference), sum);
+}
+
+/// tau, radiance, aside: a vector each.
+HWY_INLINE void medium_vector(const GeneralVertex& v, std::size_t k, float* tau, float* radiance,
+                              float* aside) {
+  const Floats kappa = hn::LoadU(kTag, v.a.row + k);
+  Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance), q = hn::Load(kTag, aside);
+  if (v.flags & KB_VERTEX_NEE) {
+    q = hn::Mul(q, hn::Exp(kTag, hn::Neg(hn::Mul(kappa, constant(v.nee0)))));
+    if (!(v.flags & KB_VERTEX_DEFER)) {
+      l = hn::Add(l, q);
+      q = constant(1);
+    }
+  } else if (v.flags & KB_VERTEX_DEFER) {
+    q = hn::Exp(kTag, hn::Neg(hn::Mul(kappa, constant(v.scatter0))));
+  } else if (!v.cells.empty()) {
+    const Floats scale = hn::Mul(hn::Mul(t, q), constant(v.emit_weight));
+    l = hn::Add(l, plume_radiance(v, scale, k, t));
+    q = constant(1);
+  } else {
+    const Absorbed a = absorbed(hn::Mul(kappa, constant(v.scatter0)));
+    if (v.flags & KB_VERTEX_EMIT) {
+      const Floats emitted = hn::Mul(hn::Mul(q, constant(v.emit_weight)), hn::LoadU(kTag, v.emit.row + k));
+      l = hn::MulAdd(hn::Mul(t, a.stays), emitted, l);
+      q = constant(1);
+    }
+    if (v.flags & KB_VERTEX_SCATTER) t = hn::Mul(t, a.passes);
+  }
+  hn::Store(t, kTag, tau);
+  hn::Store(l, kTag, radiance);
+  hn::Store(q, kTag, aside);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace kiloband
+HWY_AFTER_NAMESPACE();
+
+#endif

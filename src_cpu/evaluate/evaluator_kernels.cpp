@@ -1,0 +1,241 @@
+// The SIMD kernels of deferred evaluation (DPEPT paper, algorithm 1), compiled for SSE4.2, AVX2 and AVX-512.
+//
+// One path, all channels: for each block of channels, tau and L stay in registers over all steps; then one
+// read-modify-write of the film. Every lane is a channel, so a channel's bits do not depend
+// on its neighbours.
+#include "src_cpu/evaluate/evaluator_kernels.hpp"
+
+#include <hwy/cache_control.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "shared/records.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src_cpu/evaluate/evaluator_kernels.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway asks for.
+#include <hwy/highway.h>
+
+#include "src_cpu/evaluate/evaluator_gas-inl.hpp"
+#include "src_cpu/evaluate/evaluator_optics-inl.hpp"
+#include "src_cpu/evaluate/evaluator_tables-inl.hpp"
+#include "src_cpu/evaluate/evaluator_transmission-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace kiloband {
+namespace HWY_NAMESPACE {
+
+/// Vectors of a full block: tau and L take 8 of the 16 (SSE4, AVX2) or 32 registers.
+inline constexpr std::size_t kBlockVectors = 4;
+static_assert(kBlockVectors * kLanes <= kRowPadding && kLanes <= kMaxLanes);
+
+HWY_INLINE Floats source(const SpectralSource& s, const double* lambda, std::size_t k) {
+  return s.texture ? texture_value(*s.texture, lambda, k) : load(s.row, k);
+}
+
+/// B(w0, w1) of path_vertex.h from S_a and the second factor (S_b, or S_b / (1 - S_b fdr_int)).
+HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, float w1,
+                          const FresnelTerms& f, std::size_t k) {
+  const Floats scaled = hn::Mul(constant(w0), a);
+  switch (v.kind) {
+    case KB_KIND_TWO_TERM:
+    case KB_KIND_NONLINEAR:
+      return hn::MulAdd(constant(w1), b, scaled);
+    case KB_KIND_CONDUCTOR:
+    case KB_KIND_DISPERSIVE:
+      return hn::Mul(scaled, fresnel(f, k));
+    case KB_KIND_ROUGH_TRANSMISSION:
+      return hn::Mul(scaled, rough_transmission(v.transmission, k));
+    default:
+      return scaled;
+  }
+}
+
+/// One vertex for the vector of channels at k. aside: the third register of scenes
+/// with gas, see path_vertex.h.
+HWY_INLINE void general_vector(const GeneralVertex& v, const double* lambda, std::size_t k, float* tau,
+                               float* radiance, float* aside) {
+  Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance);
+  if (v.flags & KB_VERTEX_EMIT) {
+    l = hn::MulAdd(hn::Mul(t, constant(v.emit_weight)), source(v.emit, lambda, k), l);
+  }
+  if (v.flags & (KB_VERTEX_NEE | KB_VERTEX_SCATTER)) {
+    const Floats a = source(v.a, lambda, k);
+    Floats b = hn::Zero(kTag);
+    if (v.kind == KB_KIND_TWO_TERM || v.kind == KB_KIND_NONLINEAR) b = source(v.b, lambda, k);
+    if (v.kind == KB_KIND_NONLINEAR) b = hn::Div(b, hn::NegMulAdd(b, constant(v.fdr_int), constant(1)));
+    if (v.flags & KB_VERTEX_NEE) {
+      const Floats f = reflect(v, a, b, v.nee0, v.nee1, v.nee_fresnel, k);
+      const Floats light = source(v.nee, lambda, k);
+      if (v.flags & KB_VERTEX_DEFER)
+        hn::Store(hn::Mul(hn::Mul(t, f), light), kTag, aside);
+      else
+        l = hn::MulAdd(hn::Mul(t, f), light, l);
+    }
+    if (v.flags & KB_VERTEX_SCATTER)
+      t = hn::Mul(t, reflect(v, a, b, v.scatter0, v.scatter1, v.scatter_fresnel, k));
+  }
+  hn::Store(t, kTag, tau);
+  hn::Store(l, kTag, radiance);
+}
+
+/// One vertex for `vectors` vectors of channels from k on. Returns false if no channel of the block goes on.
+HWY_NOINLINE bool general_step(const GeneralVertex& v, const double* lambda, std::size_t k,
+                               std::size_t vectors, float* tau, float* radiance, float* aside) {
+  if (v.kind == KB_KIND_MEDIUM) {
+    for (std::size_t i = 0; i < vectors * kLanes; i += kLanes)
+      medium_vector(v, k + i, tau + i, radiance + i, aside + i);
+    return true;
+  }
+  for (std::size_t i = 0; i < vectors * kLanes; i += kLanes)
+    general_vector(v, lambda, k + i, tau + i, radiance + i, aside + i);
+  if (!(v.flags & KB_VERTEX_DEGRADE)) return true;
+  if (v.survivor < k || v.survivor >= k + vectors * kLanes) return false;
+  const float kept = tau[v.survivor - k];
+  std::fill_n(tau, vectors * kLanes, 0.0f);
+  tau[v.survivor - k] = kept;
+  return true;
+}
+
+/// Calls f with the constants 0 .. N-1: array elements stay in registers.
+template <class F, std::size_t... I>
+HWY_INLINE void unrolled(F&& f, std::index_sequence<I...>) {
+  (f(std::integral_constant<std::size_t, I>{}), ...);
+}
+
+/// State of a block of V vectors of channels.
+template <std::size_t V>
+struct Block {
+  Floats tau[V], radiance[V];
+
+  template <class F>
+  static HWY_INLINE void each(F&& f) {
+    unrolled(f, std::make_index_sequence<V>{});
+  }
+
+  HWY_INLINE void scaled(const PathStep& step, std::size_t k) {
+    const Floats nee0 = constant(step.nee0), scatter0 = constant(step.scatter0);
+    each([&](auto i) HWY_ATTR {
+      const Floats reflected = hn::Mul(tau[i], load(step.a, k + i * kLanes));
+      radiance[i] = hn::MulAdd(reflected, hn::Mul(nee0, load(step.nee, k + i * kLanes)), radiance[i]);
+      tau[i] = hn::Mul(reflected, scatter0);
+    });
+  }
+
+  HWY_INLINE void emit(const PathStep& step, std::size_t k) {
+    const Floats weight = constant(step.nee0);
+    each([&](auto i) HWY_ATTR {
+      radiance[i] = hn::MulAdd(hn::Mul(tau[i], weight), load(step.nee, k + i * kLanes), radiance[i]);
+    });
+  }
+
+  HWY_INLINE bool general(const PathStep& step, const double* lambda, std::size_t k, float* aside) {
+    alignas(64) float t[V * kLanes], l[V * kLanes];
+    each([&](auto i) HWY_ATTR {
+      hn::Store(tau[i], kTag, t + i * kLanes);
+      hn::Store(radiance[i], kTag, l + i * kLanes);
+    });
+    const bool goes_on = general_step(*step.general, lambda, k, V, t, l, aside);
+    each([&](auto i) HWY_ATTR {
+      tau[i] = hn::Load(kTag, t + i * kLanes);
+      radiance[i] = hn::Load(kTag, l + i * kLanes);
+    });
+    return goes_on;
+  }
+
+  /// Adds the weighted radiances to the accumulators of the derived channels that the block's group has.
+  HWY_INLINE void derive(const DerivedPlan& plan, std::size_t k) const {
+    const std::size_t group = k / kRowPadding, place = k % kRowPadding;
+    for (uint32_t e = plan.group_first[group]; e < plan.group_first[group + 1]; ++e) {
+      const float* weights = plan.entries[e].weights + place;
+      float* accumulator = plan.accumulators + plan.entries[e].derived * kMaxLanes;
+      Floats sum = hn::Mul(radiance[0], load(weights, 0));
+      each([&](auto i) HWY_ATTR {
+        if constexpr (i > 0) sum = hn::MulAdd(radiance[i], load(weights, i * kLanes), sum);
+      });
+      hn::Store(hn::Add(hn::Load(kTag, accumulator), sum), kTag, accumulator);
+    }
+  }
+};
+
+/// Channels [k, k + V * kLanes) of the path.
+template <std::size_t V>
+HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* film) {
+  Block<V> block;
+  alignas(64) float aside[V * kLanes];
+  if (path.gas) std::fill_n(aside, V * kLanes, 1.0f);
+  block.each([&](auto i) HWY_ATTR {
+    block.tau[i] = constant(1);
+    block.radiance[i] = hn::Zero(kTag);
+    if (path.next_film) hwy::Prefetch(path.next_film + k + i * kLanes);
+  });
+  for (const PathStep *step = path.steps, *end = step + path.step_count; step != end; ++step) {
+    if (step->kind == StepKind::kScaled) {
+      block.scaled(*step, k);
+    } else if (step->kind == StepKind::kEmit) {
+      block.emit(*step, k);
+    } else if (!block.general(*step, path.texture_lambda, k, aside)) {
+      break;
+    }
+  }
+  if (path.derived) block.derive(*path.derived, k);
+  block.each([&](auto i) HWY_ATTR {
+    float* place = film + k + i * kLanes;
+    hn::StoreU(hn::Add(hn::LoadU(kTag, place), block.radiance[i]), kTag, place);
+  });
+}
+
+void finish_derived(const DerivedPlan& plan, float* film) {
+  for (std::size_t d = 0; d < plan.count; ++d) {
+    float* accumulator = plan.accumulators + d * kMaxLanes;
+    film[plan.offset + d] += hn::GetLane(hn::SumOfLanes(kTag, hn::Load(kTag, accumulator)));
+    hn::Store(hn::Zero(kTag), kTag, accumulator);
+  }
+}
+
+void evaluate_path(const PathProgram& path, float* film) {
+  std::size_t k = 0;
+  for (; k + kBlockVectors * kLanes <= path.channels; k += kBlockVectors * kLanes) {
+    evaluate_block<kBlockVectors>(path, k, film);
+  }
+  // The rest with as few vectors as do; rows are padded.
+  const std::size_t rest = path.channels - k;
+  if (rest > 2 * kLanes) {
+    evaluate_block<kBlockVectors>(path, k, film);
+  } else if (rest > kLanes) {
+    evaluate_block<2>(path, k, film);
+  } else if (rest > 0) {
+    evaluate_block<1>(path, k, film);
+  }
+  if (path.derived) finish_derived(*path.derived, film);
+}
+
+inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, weighted_sum, mix_bands};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace kiloband
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace kiloband {
+
+// Every target has its own namespace: the choice is the caller's, not Highway's global one.
+const EvaluatorKernels& evaluator_kernels(Isa isa) {
+  switch (isa) {
+    case Isa::kAvx512:
+      return N_AVX3::kKernels;
+    case Isa::kAvx2:
+      return N_AVX2::kKernels;
+    case Isa::kSse4:
+      return N_SSE4::kKernels;
+    default:
+      throw std::logic_error("evaluator_kernels: the instruction set is not resolved");
+  }
+}
+
+}  // namespace kiloband
+#endif

@@ -1,0 +1,140 @@
+// What the SIMD kernels of deferred evaluation work on: a path resolved to pointers into dense rows.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "shared/records.h"
+#include "src_cpu/evaluate/isa.hpp"
+
+namespace kiloband {
+
+/// Rows are padded to this many channels: the most that one pass holds in registers (4 AVX-512 vectors).
+inline constexpr std::size_t kRowPadding = 64;
+/// Lanes of the widest vector.
+inline constexpr std::size_t kMaxLanes = 16;
+
+/// A bilinear texture lookup:
+///   value(lambda) = (constant + sum_i weight_i S(c_i0 x^2 + c_i1 x + c_i2)) * factor.
+/// Texels that are spectrally flat are summed in `constant`; weights include the texels' scales.
+struct TextureTerms {
+  uint32_t count = 0;
+  double coefficients[4][3];
+  float weights[4];
+  float constant = 0;
+  const float* factor = nullptr;  // dense row, or null for 1
+};
+
+/// A spectral factor of a vertex: a dense row, or a texture if that is not null.
+struct SpectralSource {
+  const float* row = nullptr;
+  const TextureTerms* texture = nullptr;
+};
+
+/// Fresnel reflectance at a fixed angle. Quantities of cancellation are stored as sums of two floats:
+/// conductor (nk != null): T = n^2 - 1 - k^2;  dielectric: E = e^2 - 1, e = transmitted over incident index.
+struct FresnelTerms {
+  const float* high = nullptr;
+  const float* low = nullptr;
+  const float* nk = nullptr;
+  float cosine = 1;  // absolute
+  float cosine2_high = 1, cosine2_low = 0;
+  float sine2 = 0;
+};
+
+/// A pair of directions on two sides of a rough boundary (shared/rough_transmission.h): wi in the upper half
+/// of the local frame, wo in the lower one. E = e^2 - 1 as for a dielectric.
+struct TransmissionTerms {
+  const float* high = nullptr;
+  const float* low = nullptr;
+  float sx = 0, sy = 0, sz = 0;  // wi + wo: the half vector is this + (e - 1) wo, without cancellation
+  float ox = 0, oy = 0, oz = -1;
+  float cosine = -1, one_plus_cosine = 0;  // of wi and wo
+  float inverse_alpha_u = 1, inverse_alpha_v = 1;
+  float norm = 1;  // 1 / (pi alpha_u alpha_v)
+  bool ggx = false;
+};
+
+/// A vertex that the fast steps do not cover; see KbPathVertex.
+/// Emission from named rows is a step of its own.
+struct GeneralVertex {
+  uint32_t kind = 0;   // KbVertexKind
+  uint32_t flags = 0;  // KB_VERTEX_EMIT (textured, or gas), _NEE, _SCATTER, _DEGRADE, _DEFER
+  SpectralSource a, b, emit, nee;
+  float emit_weight = 0, nee0 = 0, nee1 = 0, scatter0 = 0, scatter1 = 0;
+  float fdr_int = 0;
+  FresnelTerms nee_fresnel, scatter_fresnel;
+  TransmissionTerms transmission;  // KB_KIND_ROUGH_TRANSMISSION
+  uint32_t survivor = 0;           // channel that goes on if KB_VERTEX_DEGRADE
+  // Gas, KB_KIND_MEDIUM. A plume's first cell has no column and the temperature of the near end.
+  std::span<const KbPlumeCell> cells;
+  float reference_k = 0;            // plume: where emit.row is Planck's law
+  const float* second_k = nullptr;  // plume: row of hc / (k lambda), K
+};
+
+enum class StepKind : uint32_t {
+  kScaled,  // L += tau a nee0 I; tau *= a scatter0
+  kEmit,    // L += tau nee0 I
+  kGeneral
+};
+
+struct PathStep {
+  StepKind kind;
+  float nee0, scatter0;
+  const float* a;
+  const float* nee;
+  const GeneralVertex* general;
+};
+
+/// Weights of derived channels by group of kRowPadding channels, and the accumulators of one path.
+struct DerivedPlan {
+  struct Entry {
+    uint32_t derived;
+    const float* weights;  // of the group's channels, kRowPadding floats
+  };
+  std::size_t count = 0;                  // derived channels
+  const uint32_t* group_first = nullptr;  // entries of group g: group_first[g] .. group_first[g + 1]
+  const Entry* entries = nullptr;
+  float* accumulators = nullptr;  // count * kMaxLanes floats, aligned
+  std::size_t offset = 0;         // of derived channels in the film row
+};
+
+struct PathProgram {
+  const PathStep* steps = nullptr;
+  std::size_t step_count = 0;
+  std::size_t channels = 0;
+  const double* texture_lambda = nullptr;  // padded, nm
+  const DerivedPlan* derived = nullptr;    // null: none
+  bool gas = false;                        // has vertices of gas
+  const float* next_film = nullptr;        // row of the following path, to be fetched ahead; never read
+};
+
+/// A table with regular step, as RegularTable but float.
+struct FloatTable {
+  const float* values;
+  std::size_t size;  // at least 2
+  double min_nm, step_nm;
+  bool extrapolate;
+};
+
+/// The kernels of one instruction set.
+struct EvaluatorKernels {
+  /// Adds the path's channel values to film[0 .. channels) and its derived ones to film[offset ..).
+  void (*evaluate_path)(const PathProgram& path, float* film);
+  /// out[i] = table(lambda_nm[i]) for i < count rounded up to kMaxLanes; positions in double.
+  void (*sample_table)(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out);
+  /// out[i] = sum over r < rows of weights[r] * row[r][i], i < count.
+  /// Nothing is read or written beyond count.
+  void (*weighted_sum)(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
+                       float* out);
+  /// out[i] = first[i] * values[index[i]] + second[i] * values[index[i] + 1],
+  /// i < count rounded up to kMaxLanes.
+  void (*mix_bands)(const float* values, const int32_t* index, const float* first, const float* second,
+                    std::size_t count, float* out);
+};
+
+/// isa: resolved, not kAuto.
+const EvaluatorKernels& evaluator_kernels(Isa isa);
+
+}  // namespace kiloband

@@ -1,0 +1,126 @@
+// Fresnel reflectances and texture values of one vector of channels; compiled once per instruction set.
+//
+// No include guard of the usual kind: evaluator_kernels.cpp includes itself, and this file, once per target.
+#if defined(KILOBAND_EVALUATOR_OPTICS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_EVALUATOR_OPTICS_INL
+#undef KILOBAND_EVALUATOR_OPTICS_INL
+#else
+#define KILOBAND_EVALUATOR_OPTICS_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include "src_cpu/evaluate/evaluator_kernels.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace kiloband {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::ScalableTag<float>;
+using DoubleTag = hn::ScalableTag<double>;
+using HalfTag = hn::Rebind<float, DoubleTag>;
+using Floats = hn::Vec<Tag>;
+using Doubles = hn::Vec<DoubleTag>;
+inline constexpr Tag kTag;
+inline constexpr DoubleTag kDoubleTag;
+
+HWY_INLINE Floats square(Floats x) {
+  return hn::Mul(x, x);
+}
+HWY_INLINE Floats constant(float x) {
+  return hn::Set(kTag, x);
+}
+
+/// Smallest divisor that is used: 0 / 0 at grazing incidence on a matched boundary comes to 0.
+inline constexpr float kTiny = 1e-18f;
+
+/// Unpolarised reflectance of a conductor with index n + ik for the cosine c.
+/// With (a + ib)^2 = (n + ik)^2 - s^2, s^2 = 1 - c^2 and T = n^2 - 1 - k^2
+/// (so a^2 - b^2 = T + c^2 =: t, ab = nk):
+///   R_s = ((a - c)^2 + b^2) / ((a + c)^2 + b^2),
+///   R_p = R_s ((ac - s^2)^2 + b^2 c^2) / ((ac + s^2)^2 + b^2 c^2).
+/// Without cancellation: of a and b the larger comes from sqrt((|a+ib|^2 + |t|) / 2), the other from ab = nk.
+/// Where a >= b, a - c = (T + b^2) / (a + c), which is accurate for n near 1; elsewhere b^2 outweighs the
+/// rounding of a - c.
+HWY_INLINE Floats conductor_fresnel(const FresnelTerms& f, std::size_t k) {
+  const Floats c = constant(f.cosine), s2 = constant(f.sine2);
+  const Floats big_t = hn::LoadU(kTag, f.high + k);
+  const Floats nk = hn::LoadU(kTag, f.nk + k);
+  const Floats t = hn::Add(hn::Add(big_t, constant(f.cosine2_high)),
+                           hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
+  const Floats modulus = hn::Sqrt(hn::MulAdd(t, t, hn::Mul(constant(4), square(nk))));
+  const Floats larger = hn::Sqrt(hn::Mul(constant(0.5f), hn::Add(modulus, hn::Abs(t))));
+  const Floats smaller = hn::Div(nk, hn::Max(larger, constant(kTiny)));
+  const auto a_is_larger = hn::Ge(t, hn::Zero(kTag));
+  const Floats a = hn::IfThenElse(a_is_larger, larger, smaller);
+  const Floats b2 = square(hn::IfThenElse(a_is_larger, smaller, larger));
+  const Floats sum = hn::Add(a, c);
+  const Floats quotient = hn::Div(hn::Add(big_t, b2), hn::Max(sum, constant(kTiny)));
+  const Floats difference = hn::IfThenElse(a_is_larger, quotient, hn::Sub(a, c));
+  const Floats rs =
+      hn::Div(hn::MulAdd(difference, difference, b2), hn::Max(hn::MulAdd(sum, sum, b2), constant(kTiny)));
+  const Floats b2c2 = hn::Mul(b2, constant(f.cosine2_high));
+  const Floats minus = hn::Sub(hn::Mul(a, c), s2), plus = hn::MulAdd(a, c, s2);
+  const Floats ratio =
+      hn::Div(hn::MulAdd(minus, minus, b2c2), hn::Max(hn::MulAdd(plus, plus, b2c2), constant(kTiny)));
+  return hn::Mul(hn::Mul(constant(0.5f), rs), hn::Add(constant(1), ratio));
+}
+
+/// Unpolarised reflectance of a dielectric boundary of relative index e (transmitted over incident) for the
+/// cosine c below total reflection. With E = e^2 - 1 and g = e cos_t = sqrt(E + c^2), numerators expanded so
+/// that E stands in front:
+///   r_s = -E / (c + g)^2,   r_p = E ((e^2 + 1) c^2 - 1) / (e^2 c + g)^2,   F = (r_s^2 + r_p^2) / 2.
+HWY_INLINE Floats partial_reflectance(Floats big_e, Floats g, Floats c, Floats c2) {
+  const Floats e2 = hn::Add(big_e, constant(1));
+  const Floats rs = hn::Div(big_e, hn::Max(square(hn::Add(c, g)), constant(kTiny)));
+  const Floats brewster = hn::MulSub(hn::Add(e2, constant(1)), c2, constant(1));
+  const Floats rp = hn::Div(hn::Mul(big_e, brewster), hn::Max(square(hn::MulAdd(e2, c, g)), constant(kTiny)));
+  return hn::Mul(constant(0.5f), hn::MulAdd(rs, rs, square(rp)));
+}
+
+/// 1 where g^2 <= 0: total reflection.
+HWY_INLINE Floats dielectric_fresnel(const FresnelTerms& f, std::size_t k) {
+  const Floats c = constant(f.cosine), c2 = constant(f.cosine2_high);
+  const Floats big_e = hn::LoadU(kTag, f.high + k);
+  const Floats g2 = hn::Add(hn::Add(big_e, c2), hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
+  const Floats g = hn::Sqrt(hn::Max(g2, hn::Zero(kTag)));
+  return hn::IfThenElse(hn::Le(g2, hn::Zero(kTag)), constant(1), partial_reflectance(big_e, g, c, c2));
+}
+
+HWY_INLINE Floats fresnel(const FresnelTerms& f, std::size_t k) {
+  return f.nk ? conductor_fresnel(f, k) : dielectric_fresnel(f, k);
+}
+
+/// S(v) = 1/2 + v / (2 sqrt(1 + v^2)). For v < 0 the difference is expanded: S(-|v|) = 1 / (2 r (r + |v|)),
+/// r^2 = 1 + v^2, which keeps relative precision where S is small; S(|v|) = 1 - S(-|v|).
+/// An infinite r gives 0 or 1.
+HWY_INLINE Floats sigmoid(Floats v) {
+  const Floats r = hn::Sqrt(hn::MulAdd(v, v, constant(1)));
+  const Floats tail = hn::Div(constant(0.5f), hn::Mul(r, hn::Add(r, hn::Abs(v))));
+  return hn::IfThenElse(hn::Lt(v, hn::Zero(kTag)), tail, hn::Sub(constant(1), tail));
+}
+
+/// c0 x^2 + c1 x + c2 in double: the terms of saturated colours are a thousand times their sum.
+HWY_INLINE hn::Vec<HalfTag> parabola(const double (&c)[3], Doubles x) {
+  const Doubles inner = hn::MulAdd(hn::Set(kDoubleTag, c[0]), x, hn::Set(kDoubleTag, c[1]));
+  return hn::DemoteTo(HalfTag(), hn::MulAdd(inner, x, hn::Set(kDoubleTag, c[2])));
+}
+
+HWY_INLINE Floats texture_value(const TextureTerms& terms, const double* lambda, std::size_t k) {
+  Floats sum = constant(terms.constant);
+  for (uint32_t i = 0; i < terms.count; ++i) {
+    const Doubles lower = hn::LoadU(kDoubleTag, lambda + k);
+    const Doubles upper = hn::LoadU(kDoubleTag, lambda + k + hn::Lanes(kDoubleTag));
+    const Floats v =
+        hn::Combine(kTag, parabola(terms.coefficients[i], upper), parabola(terms.coefficients[i], lower));
+    sum = hn::MulAdd(constant(terms.weights[i]), sigmoid(v), sum);
+  }
+  return terms.factor ? hn::Mul(sum, hn::LoadU(kTag, terms.factor + k)) : sum;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace kiloband
+HWY_AFTER_NAMESPACE();
+
+#endif

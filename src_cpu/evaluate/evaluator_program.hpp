@@ -1,0 +1,57 @@
+// Turns a saved path into steps with pointers into dense rows, once per path,
+// for the kernels to run per channel block.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "src_cpu/evaluate/dense_spectra.hpp"
+#include "src_cpu/evaluate/spectral_textures.hpp"
+#include "src_cpu/geometry/texel_corners.hpp"
+#include "src_cpu/path/path_buffer.hpp"
+
+namespace kiloband {
+
+class ProgramBuilder {
+ public:
+  ProgramBuilder(const FlatScene& scene, const EvaluatorKernels& kernels)
+      : scene_(scene), spectral_(scene, kernels) {}
+
+  /// The program of the path in `slots` at the offset of `spectra`; valid until the next call.
+  /// throws std::logic_error if the path refers to what the scene does not have
+  PathProgram build(std::span<const KbPathVertex> slots, DenseSpectra& spectra);
+
+ private:
+  /// The spectral factors that a vertex uses.
+  struct Sources {
+    SpectralSource a, b, emit, nee;
+
+    /// Colours of bitmaps are evaluated channel by channel; all else are rows.
+    bool any_colour() const { return a.texture || b.texture || emit.texture || nee.texture; }
+  };
+
+  void reserve(std::size_t slots);
+  Sources sources(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
+  void add_vertex(const KbPathVertex& vertex, const Sources& from, bool last, DenseSpectra& spectra);
+  void add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra);
+  void add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions, DenseSpectra& spectra);
+  void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
+  void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) const;
+  SpectralSource texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
+  SpectralSource thermal(const KbThermalSample& sample, DenseSpectra& spectra);
+  void add_texels(TextureTerms& terms, uint32_t texture, const TexelCorners& corners) const;
+  float* scratch_row(const DenseSpectra& spectra);
+
+  const FlatScene& scene_;
+  std::vector<PathStep> steps_;
+  std::vector<GeneralVertex> generals_;  // reserved: steps point into it
+  std::vector<TextureTerms> textures_;   // reserved: generals point into it
+  SpectralTextures spectral_;
+  std::vector<hwy::AlignedFreeUniquePtr<float[]>>
+      scratch_;  // rows of this path; the first scratch_used_ are taken
+  std::size_t scratch_used_ = 0;
+  std::vector<KbPlumeCell> cells_;  // reserved: generals point into it
+  bool textured_ = false, gas_ = false;
+};
+
+}  // namespace kiloband

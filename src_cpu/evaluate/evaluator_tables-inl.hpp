@@ -1,0 +1,91 @@
+// Dense rows from tables, mixtures and bands, a vector of channels at a time;
+// compiled once per instruction set.
+//
+// No include guard of the usual kind: evaluator_kernels.cpp includes itself, and this file, once per target.
+#if defined(KILOBAND_EVALUATOR_TABLES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_EVALUATOR_TABLES_INL
+#undef KILOBAND_EVALUATOR_TABLES_INL
+#else
+#define KILOBAND_EVALUATOR_TABLES_INL
+#endif
+
+#include "src_cpu/evaluate/evaluator_optics-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace kiloband {
+namespace HWY_NAMESPACE {
+
+inline constexpr std::size_t kLanes = hn::MaxLanes(Tag());
+
+HWY_INLINE Floats load(const float* row, std::size_t k) {
+  return hn::LoadU(kTag, row + k);
+}
+
+/// Positions in a table, as half vectors: entry, and the weights of it and the next.
+/// Both weights are 0 outside.
+struct Position {
+  hn::Vec<hn::Rebind<int32_t, DoubleTag>> index;
+  hn::Vec<HalfTag> first, second;
+};
+
+HWY_INLINE Position locate(const FloatTable& table, const double* lambda_nm) {
+  const double last = static_cast<double>(table.size - 1);
+  const Doubles raw = hn::Mul(hn::Sub(hn::LoadU(kDoubleTag, lambda_nm), hn::Set(kDoubleTag, table.min_nm)),
+                              hn::Set(kDoubleTag, 1 / table.step_nm));
+  const Doubles zero = hn::Zero(kDoubleTag);
+  // The last entry's wavelength may round to a hair beyond it.
+  const auto within = hn::And(hn::Ge(raw, zero), hn::Le(raw, hn::Set(kDoubleTag, last * (1 + 1e-12))));
+  const Doubles position = hn::Min(hn::Max(raw, zero), hn::Set(kDoubleTag, last));
+  const Doubles index = hn::Min(hn::Floor(position), hn::Set(kDoubleTag, last - 1));
+  const Doubles one = hn::Set(kDoubleTag, 1.0);
+  const Doubles inside = table.extrapolate ? one : hn::IfThenElseZero(within, one);
+  // Both weights are rounded from double: a steep spectrum keeps its relative precision near zero.
+  const Doubles second = hn::Mul(hn::Sub(position, index), inside);
+  return {hn::DemoteTo(hn::Rebind<int32_t, DoubleTag>(), index),
+          hn::DemoteTo(HalfTag(), hn::Sub(inside, second)), hn::DemoteTo(HalfTag(), second)};
+}
+
+inline void sample_table(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out) {
+  const hn::RebindToSigned<Tag> index_tag;
+  for (std::size_t k = 0; k < count; k += kLanes) {
+    const Position low = locate(table, lambda_nm + k);
+    const Position high = locate(table, lambda_nm + k + kLanes / 2);
+    const auto index = hn::Combine(index_tag, high.index, low.index);
+    const Floats a = hn::GatherIndex(kTag, table.values, index);
+    const Floats b = hn::GatherIndex(kTag, table.values + 1, index);
+    const Floats value = hn::MulAdd(hn::Combine(kTag, high.second, low.second), b,
+                                    hn::Mul(hn::Combine(kTag, high.first, low.first), a));
+    hn::StoreU(value, kTag, out + k);
+  }
+}
+
+inline void weighted_sum(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
+                         float* out) {
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    Floats sum = hn::Zero(kTag);
+    for (std::size_t r = 0; r < rows; ++r) sum = hn::MulAdd(constant(weights[r]), load(row[r], i), sum);
+    hn::StoreU(sum, kTag, out + i);
+  }
+  for (; i < count; ++i) {
+    float sum = 0;
+    for (std::size_t r = 0; r < rows; ++r) sum += weights[r] * row[r][i];
+    out[i] = sum;
+  }
+}
+
+inline void mix_bands(const float* values, const int32_t* index, const float* first, const float* second,
+                      std::size_t count, float* out) {
+  const hn::RebindToSigned<Tag> index_tag;
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const auto at = hn::LoadU(index_tag, index + i);
+    const Floats a = hn::GatherIndex(kTag, values, at), b = hn::GatherIndex(kTag, values + 1, at);
+    hn::StoreU(hn::MulAdd(load(second, i), b, hn::Mul(load(first, i), a)), kTag, out + i);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace kiloband
+HWY_AFTER_NAMESPACE();
+
+#endif

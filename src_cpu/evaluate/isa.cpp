@@ -1,0 +1,57 @@
+#include "src_cpu/evaluate/isa.hpp"
+
+#include <hwy/targets.h>
+
+#include <cstdint>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace kiloband {
+namespace {
+
+/// Highway's bit of an instruction set. Its SSE4 includes AES and PCLMUL, AVX2 includes FMA, BMI2 and F16C,
+/// and AVX3 is AVX-512 F, BW, CD, DQ and VL.
+int64_t target_of(Isa isa) {
+  switch (isa) {
+    case Isa::kAvx512:
+      return HWY_AVX3;
+    case Isa::kAvx2:
+      return HWY_AVX2;
+    default:
+      return HWY_SSE4;
+  }
+}
+
+}  // namespace
+
+const char* to_string(Isa isa) {
+  switch (isa) {
+    case Isa::kSse4:
+      return "sse4";
+    case Isa::kAvx2:
+      return "avx2";
+    case Isa::kAvx512:
+      return "avx512";
+    default:
+      return "auto";
+  }
+}
+
+bool is_available(Isa isa) {
+  return isa == Isa::kAuto || (hwy::SupportedTargets() & target_of(isa)) != 0;
+}
+
+Isa resolve_isa(Isa wanted) {
+  if (wanted == Isa::kAuto) {
+    for (Isa isa : {Isa::kAvx512, Isa::kAvx2, Isa::kSse4})
+      if (is_available(isa)) return isa;
+    throw DeviceError("this processor has no SSE4.2, which is the least that kiloband needs");
+  }
+  if (!is_available(wanted))
+    throw DeviceError(std::string("instruction set '") + to_string(wanted) +
+                      "': this processor does not have it");
+  return wanted;
+}
+
+}  // namespace kiloband

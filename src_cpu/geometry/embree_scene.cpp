@@ -1,0 +1,259 @@
+#include "src_cpu/geometry/embree_scene.hpp"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <tuple>
+
+#include "base/error.hpp"
+#include "scene/compile/shape_bounds.hpp"
+#include "src_cpu/geometry/shape_geometry.hpp"
+
+namespace kiloband {
+namespace {
+
+#if RTC_VERSION_MAJOR >= 4
+struct Query {
+  RTCIntersectArguments intersect;
+  RTCOccludedArguments occlude;
+  explicit Query(RTCRayQueryFlags flags) {
+    rtcInitIntersectArguments(&intersect);
+    rtcInitOccludedArguments(&occlude);
+    intersect.flags = occlude.flags = flags;
+  }
+};
+constexpr auto kCoherent = RTC_RAY_QUERY_FLAG_COHERENT;
+constexpr auto kIncoherent = RTC_RAY_QUERY_FLAG_INCOHERENT;
+#else
+struct Query {
+  RTCIntersectContext context;
+  explicit Query(RTCIntersectContextFlags flags) {
+    rtcInitIntersectContext(&context);
+    context.flags = flags;
+  }
+};
+constexpr auto kCoherent = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+constexpr auto kIncoherent = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+#endif
+
+void intersect1(RTCScene scene, Query& query, RTCRayHit& ray) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(scene, &ray, &query.intersect);
+#else
+  rtcIntersect1(scene, &query.context, &ray);
+#endif
+}
+
+void occluded1(RTCScene scene, Query& query, RTCRay& ray) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded1(scene, &ray, &query.occlude);
+#else
+  rtcOccluded1(scene, &query.context, &ray);
+#endif
+}
+
+void intersect16(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect16(valid, scene, &rays, &query.intersect);
+#else
+  rtcIntersect16(valid, scene, &query.context, &rays);
+#endif
+}
+
+void analytic_bounds(const RTCBoundsFunctionArguments* args) {
+  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  std::tie(args->bounds_o->lower_x, args->bounds_o->upper_x) = analytic_interval(shape, 0);
+  std::tie(args->bounds_o->lower_y, args->bounds_o->upper_y) = analytic_interval(shape, 1);
+  std::tie(args->bounds_o->lower_z, args->bounds_o->upper_z) = analytic_interval(shape, 2);
+}
+
+bool hit_shape(const KbShape& shape, RTCRayN* rays, unsigned count, unsigned lane, double& t) {
+  const glm::dvec3 origin(RTCRayN_org_x(rays, count, lane), RTCRayN_org_y(rays, count, lane),
+                          RTCRayN_org_z(rays, count, lane));
+  const glm::dvec3 direction(RTCRayN_dir_x(rays, count, lane), RTCRayN_dir_y(rays, count, lane),
+                             RTCRayN_dir_z(rays, count, lane));
+  return intersect_analytic(shape, origin, direction, RTCRayN_tnear(rays, count, lane),
+                            RTCRayN_tfar(rays, count, lane), t);
+}
+
+void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
+  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    double t = 0;
+    if (args->valid[lane] != -1 || !hit_shape(shape, rays, args->N, lane, t)) continue;
+    RTCRayN_tfar(rays, args->N, lane) = static_cast<float>(t);
+    RTCHitN_geomID(hits, args->N, lane) = args->geomID;
+    RTCHitN_primID(hits, args->N, lane) = 0;
+    RTCHitN_instID(hits, args->N, lane, 0) = RTC_INVALID_GEOMETRY_ID;
+    RTCHitN_u(hits, args->N, lane) = 0;
+    RTCHitN_v(hits, args->N, lane) = 0;
+  }
+}
+
+void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
+  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    double t = 0;
+    if (args->valid[lane] != -1 || !hit_shape(shape, args->ray, args->N, lane, t)) continue;
+    RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
+  }
+}
+
+[[noreturn]] void fail(RTCDevice device, const char* what) {
+  const RTCError code = rtcGetDeviceError(device);
+  throw DeviceError(fmt::format("Embree: {} failed (error {})", what, static_cast<int>(code)));
+}
+
+}  // namespace
+
+struct EmbreeScene::Impl {
+  const FlatScene* flat = nullptr;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+  void add_mesh(const KbShape& shape, unsigned id);
+  void add_analytic(const KbShape& shape, unsigned id);
+  /// Large meshes do not fit the caches: asks for the hit triangle's indices while the next ray is traced.
+  void prefetch_triangle(const TraceRay& ray) const {
+    if (ray.shape == KB_NONE) return;
+    const KbShape& shape = flat->shapes[ray.shape];
+    if (shape.type == KB_SHAPE_MESH) {
+      __builtin_prefetch(&flat->triangles[3 * (std::size_t{shape.first_triangle} + ray.primitive)]);
+    }
+  }
+};
+
+void EmbreeScene::Impl::add_mesh(const KbShape& shape, unsigned id) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  if (!geometry) fail(device, "rtcNewGeometry");
+  // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare
+  // vertex at their end.
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat->positions.data(),
+                             0, sizeof(KbFloat3), flat->positions.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat->triangles.data(),
+                             std::size_t{shape.first_triangle} * 3 * sizeof(uint32_t), 3 * sizeof(uint32_t),
+                             shape.triangle_count);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+void EmbreeScene::Impl::add_analytic(const KbShape& shape, unsigned id) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  if (!geometry) fail(device, "rtcNewGeometry");
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryUserData(geometry, const_cast<KbShape*>(&shape));
+  rtcSetGeometryBoundsFunction(geometry, analytic_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, analytic_intersect);
+  rtcSetGeometryOccludedFunction(geometry, analytic_occluded);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int threads)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->flat = &scene;
+  const std::string config = fmt::format("isa={},threads={}", isa, threads);
+  impl_->device = rtcNewDevice(config.c_str());
+  if (!impl_->device) throw DeviceError("Embree: cannot create a device with " + config);
+  impl_->scene = rtcNewScene(impl_->device);
+  if (!impl_->scene) fail(impl_->device, "rtcNewScene");
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+  for (unsigned id = 0; id < scene.shapes.size(); ++id) {
+    const KbShape& shape = scene.shapes[id];
+    shape.type == KB_SHAPE_MESH ? impl_->add_mesh(shape, id) : impl_->add_analytic(shape, id);
+  }
+  rtcCommitScene(impl_->scene);
+  if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
+    throw DeviceError("Embree: building the scene failed");
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+static_assert(sizeof(TraceRay) == sizeof(RTCRayHit) && sizeof(ShadowRay) == sizeof(RTCRay));
+static_assert(offsetof(TraceRay, t_max) == offsetof(RTCRay, tfar) &&
+              offsetof(TraceRay, flags) == offsetof(RTCRay, flags));
+static_assert(offsetof(TraceRay, u) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, u));
+static_assert(offsetof(TraceRay, shape) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, geomID));
+static_assert(offsetof(TraceRay, instance) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, instID));
+
+namespace {
+
+/// Copies up to 16 rays into a packet; lanes past the end are invalid.
+void load_packet(std::span<const TraceRay> rays, RTCRay16& packet, int (&valid)[kPacketSize]) {
+  for (std::size_t lane = 0; lane < kPacketSize; ++lane) {
+    const TraceRay& ray = rays[std::min(lane, rays.size() - 1)];
+    valid[lane] = lane < rays.size() ? -1 : 0;
+    packet.org_x[lane] = ray.ox;
+    packet.org_y[lane] = ray.oy;
+    packet.org_z[lane] = ray.oz;
+    packet.dir_x[lane] = ray.dx;
+    packet.dir_y[lane] = ray.dy;
+    packet.dir_z[lane] = ray.dz;
+    packet.tnear[lane] = ray.t_min;
+    packet.tfar[lane] = ray.t_max;
+    packet.time[lane] = 0;
+    packet.mask[lane] = ~0u;
+    packet.id[lane] = packet.flags[lane] = 0;
+  }
+}
+
+void store_packet(const RTCRayHit16& packet, std::span<TraceRay> rays) {
+  for (std::size_t lane = 0; lane < rays.size(); ++lane) {
+    TraceRay& ray = rays[lane];
+    ray.t_max = packet.ray.tfar[lane];
+    ray.u = packet.hit.u[lane];
+    ray.v = packet.hit.v[lane];
+    ray.primitive = packet.hit.primID[lane];
+    ray.shape = packet.hit.geomID[lane];
+  }
+}
+
+}  // namespace
+
+void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
+  if (!coherent) {
+    Query query(kIncoherent);
+    for (TraceRay& ray : rays) {
+      intersect1(impl_->scene, query, reinterpret_cast<RTCRayHit&>(ray));
+      impl_->prefetch_triangle(ray);
+    }
+    return;
+  }
+  Query query(kCoherent);
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) int valid[kPacketSize];
+  for (std::size_t first = 0; first < rays.size(); first += kPacketSize) {
+    const auto some = rays.subspan(first, std::min(kPacketSize, rays.size() - first));
+    load_packet(some, packet.ray, valid);
+    std::fill_n(packet.hit.geomID, kPacketSize, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(packet.hit.instID[0], kPacketSize, RTC_INVALID_GEOMETRY_ID);
+    intersect16(valid, impl_->scene, query, packet);
+    store_packet(packet, some);
+    for (const TraceRay& ray : some) impl_->prefetch_triangle(ray);
+  }
+}
+
+void EmbreeScene::occlusions(std::span<ShadowRay> rays) const {
+  Query query(kIncoherent);
+  for (ShadowRay& ray : rays) occluded1(impl_->scene, query, reinterpret_cast<RTCRay&>(ray));
+}
+
+}  // namespace kiloband

@@ -1,0 +1,79 @@
+// The one place that knows Embree (3.13; 4 behind compile guards, untested).
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/compile/flat_scene.hpp"
+
+namespace kiloband {
+
+inline constexpr std::size_t kPacketSize = 16;
+
+/// A closest-hit query and its answer, laid out as Embree's RTCRayHit so that nothing is copied. direction
+/// need not be a unit vector; hits lie in (t_min, t_max).
+struct alignas(16) TraceRay {
+  float ox, oy, oz, t_min;
+  float dx, dy, dz, time = 0;
+  float t_max;  // in: far end; out: the hit's distance
+  uint32_t mask = ~0u, id = 0, flags = 0;
+  float ng_x, ng_y, ng_z;                        // not used
+  float u, v;                                    // barycentric coordinates of a mesh hit
+  uint32_t primitive;                            // triangle within the shape
+  uint32_t shape = KB_NONE, instance = KB_NONE;  // KB_NONE: a miss
+
+  TraceRay(glm::vec3 origin, glm::vec3 direction, float near_t, float far_t)
+      : ox(origin.x),
+        oy(origin.y),
+        oz(origin.z),
+        t_min(near_t),
+        dx(direction.x),
+        dy(direction.y),
+        dz(direction.z),
+        t_max(far_t) {}
+  glm::vec3 origin() const { return {ox, oy, oz}; }
+  glm::vec3 direction() const { return {dx, dy, dz}; }
+};
+
+/// An occlusion query, laid out as Embree's RTCRay; t_max < 0 afterwards: something is in between.
+struct alignas(16) ShadowRay {
+  float ox, oy, oz, t_min;
+  float dx, dy, dz, time = 0;
+  float t_max;
+  uint32_t mask = ~0u, id = 0, flags = 0;
+
+  ShadowRay(glm::vec3 origin, glm::vec3 direction, float far_t)
+      : ox(origin.x),
+        oy(origin.y),
+        oz(origin.z),
+        t_min(0),
+        dx(direction.x),
+        dy(direction.y),
+        dz(direction.z),
+        t_max(far_t) {}
+  bool occluded() const { return t_max < 0; }
+};
+
+class EmbreeScene {
+ public:
+  /// The scene must outlive this object.
+  /// isa: "sse4.2", "avx2" or "avx512": Embree's own code path, whose hits differ in their last bits.
+  /// throws DeviceError naming Embree's error
+  EmbreeScene(const FlatScene& scene, const std::string& isa, int threads);
+  ~EmbreeScene();
+
+  /// Answers in place. coherent: neighbouring rays go together, in packets of 16 (camera rays; packets lose
+  /// for others, see validation/README.md).
+  void closest_hits(std::span<TraceRay> rays, bool coherent) const;
+  void occlusions(std::span<ShadowRay> rays) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kiloband

@@ -1,0 +1,218 @@
+#include "src_cpu/geometry/shape_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src_cpu/geometry/shape_geometry_affine.hpp"
+#include "src_cpu/geometry/shape_geometry_warp.hpp"
+
+namespace kiloband {
+namespace {
+
+constexpr double kTwoPi = 6.283185307179586476925;
+constexpr double kPi = 3.141592653589793238463;
+
+/// The linear part of to_world by columns, and what inverts it:
+/// rows of the cofactor matrix over the determinant.
+struct Placement {
+  glm::dvec3 x, y, z, origin;
+
+  explicit Placement(const KbShape& shape)
+      : x(affine_column<double>(shape.to_world, 0)),
+        y(affine_column<double>(shape.to_world, 1)),
+        z(affine_column<double>(shape.to_world, 2)),
+        origin(affine_column<double>(shape.to_world, 3)) {}
+
+  double determinant() const { return glm::dot(x, glm::cross(y, z)); }
+  glm::dvec3 to_world(const glm::dvec3& v) const { return v.x * x + v.y * y + v.z * z; }
+  glm::dvec3 to_local(const glm::dvec3& v) const {
+    return glm::dvec3(glm::dot(glm::cross(y, z), v), glm::dot(glm::cross(z, x), v),
+                      glm::dot(glm::cross(x, y), v)) /
+           determinant();
+  }
+  /// Normals go with the inverse transpose; not normalised.
+  glm::dvec3 normal_to_world(const glm::dvec3& n) const {
+    const glm::dvec3 v = n.x * glm::cross(y, z) + n.y * glm::cross(z, x) + n.z * glm::cross(x, y);
+    return determinant() < 0 ? -v : v;
+  }
+};
+
+/// Both crossings of |o + t d|^2 = radius2, t0 <= t1. The discriminant comes from the point nearest to the
+/// centre (b^2 - 4ac loses all digits for far origins), the smaller root from the product of both.
+bool solve_quadric(double dd, double od, double oo, double nearest2, double radius2, double& t0, double& t1) {
+  const double discriminant = radius2 - nearest2;
+  if (!(discriminant >= 0) || !(dd > 0)) return false;
+  const double middle = -od / dd;
+  const double half = std::sqrt(discriminant / dd);
+  const double far_root = middle + std::copysign(half, middle);
+  const double near_root = far_root != 0 ? (oo - radius2) / dd / far_root : 0;
+  t0 = std::min(far_root, near_root);
+  t1 = std::max(far_root, near_root);
+  return true;
+}
+
+bool inside_open(double t, double t_min, double t_max) {
+  return t > t_min && t < t_max;
+}
+
+bool intersect_sphere(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
+                      double t_min, double t_max, double& t) {
+  const SphereGeometry sphere = sphere_geometry(shape);
+  const glm::dvec3 o = origin - sphere.centre;
+  const double dd = glm::dot(direction, direction), od = glm::dot(o, direction);
+  const glm::dvec3 nearest = o - (od / dd) * direction;
+  double t0, t1;
+  if (!solve_quadric(dd, od, glm::dot(o, o), glm::dot(nearest, nearest), sphere.radius * sphere.radius, t0,
+                     t1)) {
+    return false;
+  }
+  const double hit = inside_open(t0, t_min, t_max) ? t0 : t1;
+  if (!inside_open(hit, t_min, t_max)) return false;
+  t = hit;
+  return true;
+}
+
+bool intersect_disk(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction, double t_min,
+                    double t_max, double& t) {
+  const Placement placement(shape);
+  const glm::dvec3 n = glm::cross(placement.x, placement.y);
+  const glm::dvec3 o = origin - placement.origin;
+  const double hit = -glm::dot(n, o) / glm::dot(n, direction);  // parallel: infinite or NaN, a miss
+  if (!inside_open(hit, t_min, t_max) || std::isinf(hit)) return false;
+  // p lies in the plane spanned by x and y: its coordinates there are ratios of areas.
+  const glm::dvec3 p = o + hit * direction;
+  const double nn = glm::dot(n, n);
+  const double a = glm::dot(glm::cross(p, placement.y), n) / nn,
+               b = glm::dot(glm::cross(placement.x, p), n) / nn;
+  if (!(a * a + b * b <= 1)) return false;
+  t = hit;
+  return true;
+}
+
+bool intersect_cylinder(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
+                        double t_min, double t_max, double& t) {
+  const Placement placement(shape);
+  const glm::dvec3 o = placement.to_local(origin - placement.origin);
+  const glm::dvec3 d = placement.to_local(direction);
+  const glm::dvec2 o2(o.x, o.y), d2(d.x, d.y);
+  const double dd = glm::dot(d2, d2), od = glm::dot(o2, d2);
+  const glm::dvec2 nearest = o2 - (od / dd) * d2;
+  double roots[2];
+  if (!solve_quadric(dd, od, glm::dot(o2, o2), glm::dot(nearest, nearest), 1, roots[0], roots[1]))
+    return false;
+  for (const double hit : roots) {
+    const double z = o.z + hit * d.z;
+    if (inside_open(hit, t_min, t_max) && z >= 0 && z <= 1) {
+      t = hit;
+      return true;
+    }
+  }
+  return false;
+}
+
+/// The nearest point of the canonical shape, sideways: radially for sphere and cylinder,
+/// vertically for the disk.
+glm::dvec3 project_to_canonical(uint32_t type, const glm::dvec3& p) {
+  if (type == KB_SHAPE_DISK) return {p.x, p.y, 0};
+  if (type == KB_SHAPE_SPHERE) {
+    const double length = glm::length(p);
+    return length > 0 ? p / length : glm::dvec3(0, 0, 1);
+  }
+  const double radius = std::hypot(p.x, p.y);
+  if (!(radius > 0)) return {1, 0, std::clamp(p.z, 0.0, 1.0)};
+  return {p.x / radius, p.y / radius, std::clamp(p.z, 0.0, 1.0)};
+}
+
+glm::dvec3 canonical_normal(uint32_t type, const glm::dvec3& p) {
+  if (type == KB_SHAPE_DISK) return {0, 0, 1};
+  return type == KB_SHAPE_SPHERE ? p : glm::dvec3(p.x, p.y, 0);
+}
+
+/// Direction of dp/du; +X or +Y where it vanishes (poles, the disk's centre).
+glm::dvec3 canonical_tangent(uint32_t type, const glm::dvec3& p) {
+  const double radius = std::hypot(p.x, p.y);
+  if (type == KB_SHAPE_DISK)
+    return radius > 0 ? glm::dvec3(p.x / radius, p.y / radius, 0) : glm::dvec3(1, 0, 0);
+  return radius > 0 ? glm::dvec3(-p.y / radius, p.x / radius, 0) : glm::dvec3(0, 1, 0);
+}
+
+glm::vec3 canonical_area_point(uint32_t type, glm::vec2 u) {
+  if (type == KB_SHAPE_SPHERE) return warp_uniform_sphere(u);
+  if (type == KB_SHAPE_DISK) return {warp_concentric_disk(u), 0};
+  const float phi = 2 * KB_PI * u.x;
+  return {std::cos(phi), std::sin(phi), u.y};
+}
+
+}  // namespace
+
+SphereGeometry sphere_geometry(const KbShape& shape) {
+  return {affine_column<double>(shape.to_world, 3), glm::length(affine_column<double>(shape.to_world, 0))};
+}
+
+bool intersect_analytic(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
+                        double t_min, double t_max, double& t) {
+  switch (shape.type) {
+    case KB_SHAPE_SPHERE:
+      return intersect_sphere(shape, origin, direction, t_min, t_max, t);
+    case KB_SHAPE_DISK:
+      return intersect_disk(shape, origin, direction, t_min, t_max, t);
+    case KB_SHAPE_CYLINDER:
+      return intersect_cylinder(shape, origin, direction, t_min, t_max, t);
+    default:
+      return false;  // meshes are not analytic
+  }
+}
+
+glm::vec2 analytic_uv(uint32_t shape_type, const glm::dvec3& local) {
+  const double turn = std::atan2(local.y, local.x) / kTwoPi;
+  const float wrapped = static_cast<float>(turn < 0 ? turn + 1 : turn);
+  const float phi = wrapped < 1 ? wrapped : 0;
+  const double radius = std::hypot(local.x, local.y);
+  if (shape_type == KB_SHAPE_SPHERE) return {phi, static_cast<float>(std::atan2(radius, local.z) / kPi)};
+  if (shape_type == KB_SHAPE_DISK) return {static_cast<float>(radius), phi};
+  return {phi, static_cast<float>(local.z)};
+}
+
+SurfacePoint analytic_surface(const KbShape& shape, const glm::dvec3& hit_point) {
+  const Placement placement(shape);
+  const glm::dvec3 local = project_to_canonical(shape.type, placement.to_local(hit_point - placement.origin));
+  SurfacePoint point;
+  point.position = glm::vec3(placement.origin + placement.to_world(local));
+  point.normal = glm::vec3(glm::normalize(placement.normal_to_world(canonical_normal(shape.type, local))));
+  if (shape.flags & KB_SHAPE_FLIP_NORMALS) point.normal = -point.normal;
+  point.tangent = glm::vec3(glm::normalize(placement.to_world(canonical_tangent(shape.type, local))));
+  point.uv = analytic_uv(shape.type, local);
+  return point;
+}
+
+double analytic_area(const KbShape& shape) {
+  const Placement placement(shape);
+  if (shape.type == KB_SHAPE_SPHERE) return 4 * kPi * glm::dot(placement.x, placement.x);
+  if (shape.type == KB_SHAPE_DISK) return kPi * glm::length(glm::cross(placement.x, placement.y));
+  return kTwoPi * glm::length(placement.x) * glm::length(placement.z);
+}
+
+AreaPoint sample_analytic_area(const KbShape& shape, glm::vec2 u) {
+  AreaPoint point;
+  point.local = canonical_area_point(shape.type, u);
+  point.position = transform_point(shape.to_world, point.local);
+  const glm::vec3 x = affine_column<float>(shape.to_world, 0), y = affine_column<float>(shape.to_world, 1),
+                  z = affine_column<float>(shape.to_world, 2);
+  glm::vec3 normal;
+  if (shape.type == KB_SHAPE_DISK) {
+    normal = glm::cross(x, y);
+    if (glm::dot(normal, z) < 0) normal = -normal;
+  } else {
+    // Sphere and cylinder with equal radii: the linear map of the outward direction stays
+    // normal to the surface.
+    normal = point.local.x * x + point.local.y * y;
+    if (shape.type == KB_SHAPE_SPHERE) normal += point.local.z * z;
+  }
+  // Scaled before normalising, so that the squares of tiny or huge lengths stay in range.
+  const float largest = std::max({std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)});
+  normal = glm::normalize(normal / largest);
+  point.normal = shape.flags & KB_SHAPE_FLIP_NORMALS ? -normal : normal;
+  return point;
+}
+
+}  // namespace kiloband

@@ -1,0 +1,24 @@
+// Environment emitters: constant radiance and lat-long maps.
+// Densities are without the probability of selection.
+//
+// The map (emitter's local frame, +Y up): u = atan2(x, -z) / 2 pi mod 1, v = acos(y) / pi, as in Mitsuba 3.
+// The emitter's to_world is a rotation or reflection (uniform scale does not matter).
+// How maps are sampled: scene/compile/envmap_sampling.hpp.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/compile/flat_scene.hpp"
+
+namespace kiloband {
+
+/// Map coordinates of a world direction: u in [0, 1), v in [0, 1].
+glm::vec2 envmap_coordinates(const KbEmitter& emitter, glm::vec3 direction);
+
+/// Unit world direction; u uniform in [0,1)^2.
+glm::vec3 sample_envmap_direction(const EnvmapSampling& sampling, const KbEmitter& emitter, glm::vec2 u);
+
+/// Density at map coordinates [1/sr].
+float envmap_density(const EnvmapSampling& sampling, glm::vec2 uv);
+
+}  // namespace kiloband

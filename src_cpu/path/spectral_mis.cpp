@@ -1,0 +1,50 @@
+#include "src_cpu/path/spectral_mis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/planted_faults.h"
+#include "src_cpu/bsdf/lobes.hpp"
+
+namespace kiloband {
+namespace {
+
+MaterialContext seen_by(const KbMaterial& material, float eta) {
+  return {&material, nullptr, {eta}};
+}
+
+}  // namespace
+
+uint32_t hero_channel(uint32_t c, uint32_t heroes, uint32_t channels, float offset) {
+  const float position = (static_cast<float>(c) + offset) / static_cast<float>(heroes);
+  return std::min(static_cast<uint32_t>(position * static_cast<float>(channels)), channels - 1);
+}
+
+HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec3 wo) {
+  HeroDensity density;
+  const float even = KB_PLANTED(HERO_DEFENSIVE) ? 0 : kNoHero * std::abs(wo.z) * (0.5f * KB_INV_PI);
+  const bool transmission = wi.z * wo.z < 0;
+  for (uint32_t c = 0; c < heroes.count; ++c) {
+    const BsdfValue value = eval_bsdf(seen_by(material, heroes.eta[c]), wi, wo);
+    const float eta = wi.z < 0 ? 1 / heroes.eta[c] : heroes.eta[c];
+    density.hero[c] = (1 - kNoHero) * value.pdf + even;
+    density.pdf += heroes.q[c] * density.hero[c];
+    density.value = std::max(density.value, value.w0);
+    density.bound = std::max(density.bound, transmission ? value.w0 * eta * eta : value.w0);
+  }
+  return density;
+}
+
+glm::vec3 sample_heroes(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec2 u_hero,
+                        float u_lobe, glm::vec2 u) {
+  if (u_hero.y < kNoHero) {
+    const glm::vec3 wo = lobes::cosine_direction(u);
+    return u_lobe < 0.5f ? wo : glm::vec3(wo.x, wo.y, -wo.z);
+  }
+  uint32_t c = 0;
+  for (float sum = heroes.q[0]; c + 1 < heroes.count && u_hero.x >= sum;) sum += heroes.q[++c];
+  const BsdfSample sample = sample_bsdf(seen_by(material, heroes.eta[c]), wi, u_lobe, u);
+  return sample.pdf > 0 ? sample.wo : glm::vec3(0);
+}
+
+}  // namespace kiloband

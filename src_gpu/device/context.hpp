@@ -1,0 +1,99 @@
+// One device in use: context, in-order queue and the programs built for it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "src_gpu/device/device.hpp"
+#include "src_gpu/device/errors.hpp"
+
+namespace kiloband::gpu {
+
+struct ContextOptions {
+  bool profiling = false;  // events of the queue carry times: Kernel::launch_timed
+};
+
+/// What the time of a kernel's launches grows with: slots of the pool, paths of a round, or neither.
+enum class LaunchScale { kOther, kSlots, kPaths };
+
+/// Not copied: buffers, programs and kernels refer to it. One thread at a time uses it.
+class DeviceContext {
+ public:
+  /// throws DeviceError
+  explicit DeviceContext(DeviceInfo device, ContextOptions options = {});
+  /// Waits for what is enqueued: drivers that still work when the process ends may crash it (PoCL compiles
+  /// kernels in threads of its own).
+  ~DeviceContext() { settle(); }
+  DeviceContext(const DeviceContext&) = delete;
+  DeviceContext& operator=(const DeviceContext&) = delete;
+
+  /// After DeviceLost: a new context and queue, without programs. Buffers, programs and kernels of the old
+  /// one are useless from now on; destroying them remains valid, before or after.
+  void rebuild();
+
+  /// Waits until everything enqueued is done.
+  /// throws DeviceLost, DeviceOutOfMemory, DeviceError
+  void finish();
+  /// Hands what is enqueued to the device, without waiting.
+  void flush();
+
+  const DeviceInfo& device() const { return device_; }
+  const ContextOptions& options() const { return options_; }
+  const cl::Context& context() const { return context_; }
+  cl::CommandQueue& queue() { return queue_; }
+  cl::Device cl_device() const { return cl::Device(device_.id, true); }
+  /// How often it was rebuilt.
+  uint32_t generation() const { return generation_; }
+
+  /// A site for errors of this device.
+  CallSite site(Phase phase, std::string subject = {}) const {
+    return {phase, device_.name, std::move(subject)};
+  }
+
+  /// Notes a launch for take_longest(); only with profiling.
+  void record(LaunchScale scale, const std::string& kernel, cl::Event event) {
+    launches_.push_back({scale, kernel, std::move(event)});
+  }
+  /// Longest of the launches of this scale since the last look, seconds on the device; 0 without any. The
+  /// queue must have been waited for.
+  /// throws DeviceLost, DeviceError
+  double take_longest(LaunchScale scale);
+  /// Seconds on the device by kernel, of all launches that take_longest() has seen.
+  const std::map<std::string, double>& kernel_seconds() const { return kernel_seconds_; }
+
+  /// Built programs by the hash of source and options; build_program looks here first.
+  std::map<std::string, cl::Program>& programs() { return programs_; }
+
+  /// Why built programs could not be kept on disk, the first time; empty: no reason, or not tried.
+  const std::string& cache_problem() const { return cache_problem_; }
+  void note_cache_problem(const std::string& problem) {
+    if (cache_problem_.empty()) cache_problem_ = problem;
+  }
+
+ private:
+  void create();
+  void settle() noexcept;
+
+  DeviceInfo device_;
+  ContextOptions options_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+  std::map<std::string, cl::Program> programs_;
+  std::string cache_problem_;
+  struct Launch {
+    LaunchScale scale;
+    std::string kernel;
+    cl::Event event;
+  };
+  std::vector<Launch> launches_;
+  std::map<std::string, double> kernel_seconds_;
+  uint32_t generation_ = 0;
+};
+
+/// Seconds on the device, of a launch that is done; 0 for one that had no items.
+/// throws DeviceLost, DeviceError
+double seconds_of(const DeviceContext& context, const cl::Event& event);
+
+}  // namespace kiloband::gpu

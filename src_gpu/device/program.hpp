@@ -1,0 +1,53 @@
+// Programs: kernels of one .cl file, compiled for a device with the macros that specialise them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "src_gpu/device/context.hpp"
+#include "src_gpu/device/kernel.hpp"
+#include "src_gpu/device/kernel_sources.hpp"
+
+namespace kiloband::gpu {
+
+/// Where a program came from.
+enum class ProgramOrigin { kSource, kDisk, kProcess };
+
+class Program {
+ public:
+  Program(DeviceContext& context, cl::Program program, ProgramOrigin origin)
+      : context_(&context), program_(std::move(program)), origin_(origin) {}
+
+  /// A new kernel object, with arguments of its own.
+  /// throws std::logic_error  the program has no such kernel
+  ///        DeviceError
+  Kernel kernel(const std::string& name) const;
+
+  ProgramOrigin origin() const { return origin_; }
+  const cl::Program& cl_program() const { return program_; }
+
+ private:
+  DeviceContext* context_;
+  cl::Program program_;
+  ProgramOrigin origin_;
+};
+
+struct ProgramOptions {
+  std::vector<std::string> defines;  // "KB_CHANNELS=64", "KB_SPECIALISED"
+  bool disk_cache = true;
+};
+
+/// Builds kernels/`main` ("path/paths.cl") with -cl-std=CL1.2, without fast-math. Looked for first among the
+/// programs of the context, then on disk (program_cache.hpp).
+/// throws ProgramBuildError  with the log
+///        DeviceError, DeviceLost, DeviceOutOfMemory
+Program build_program(DeviceContext& context, const std::string& main,
+                      const std::vector<std::string>& defines = {});
+Program build_program(DeviceContext& context, const std::string& main, const ProgramOptions& options);
+
+/// The same from sources that are not embedded: `main` is a path in `sources`.
+Program build_program(DeviceContext& context, const SourceMap& sources, const std::string& main,
+                      const ProgramOptions& options);
+
+}  // namespace kiloband::gpu

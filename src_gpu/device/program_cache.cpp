@@ -1,0 +1,119 @@
+#include "src_gpu/device/program_cache.hpp"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "files/atomic_file.hpp"
+
+namespace kiloband::gpu {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// File: magic, key, hash of the binary, its size (8 bytes, least significant first), the binary.
+constexpr std::string_view kMagic = "kbprog1\n";
+constexpr std::size_t kHashLength = 32;
+constexpr std::size_t kHeaderLength = kMagic.size() + 2 * kHashLength + 8;
+constexpr uint64_t kLargest = uint64_t{256} << 20;  // no program is that large: the file is not ours
+
+std::string hash_of(const void* data, std::size_t size) {
+  // FNV-1a, 128 bits. Source: Fowler, Noll, Vo, Eastlake, The FNV Non-Cryptographic Hash
+  // Algorithm (RFC 9923).
+  using Word = unsigned __int128;
+  const Word prime = (Word{1} << 88) + 0x13b;
+  Word hash = (Word{0x6c62272e07bb0142u} << 64) + 0x62b821756295c58du;
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * prime;
+  std::string text(kHashLength, '0');
+  for (std::size_t i = kHashLength; i-- > 0; hash >>= 4)
+    text[i] = "0123456789abcdef"[static_cast<int>(hash & 15)];
+  return text;
+}
+
+std::string header_of(const std::string& key, const std::vector<unsigned char>& binary) {
+  std::string header = std::string(kMagic) + key + hash_of(binary.data(), binary.size());
+  for (int byte = 0; byte < 8; ++byte)
+    header += static_cast<char>(uint64_t{binary.size()} >> (8 * byte) & 255);
+  return header;
+}
+
+/// Made with all its parents, for this user alone. false: errno says why.
+bool make_folder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_directory(folder, error)) return true;
+  if (folder.has_parent_path() && folder.parent_path() != folder && !make_folder(folder.parent_path()))
+    return false;
+  if (mkdir(folder.c_str(), 0700) == 0) return true;
+  const int reason = errno == EEXIST ? ENOTDIR : errno;
+  if (fs::is_directory(folder, error)) return true;  // made by another process meanwhile
+  errno = reason;
+  return false;
+}
+
+/// What an environment variable says, if it is an absolute path.
+fs::path absolute_path_of(const char* variable) {
+  const char* value = std::getenv(variable);
+  const fs::path path = value ? value : "";
+  return path.is_absolute() ? path : fs::path();
+}
+
+}  // namespace
+
+std::string text_hash(const std::string& text) {
+  return hash_of(text.data(), text.size());
+}
+
+ProgramCache ProgramCache::of_user() {
+  const fs::path below = fs::path("kiloband") / "programs";
+  if (const fs::path cache = absolute_path_of("XDG_CACHE_HOME"); !cache.empty())
+    return ProgramCache(cache / below);
+  if (const fs::path home = absolute_path_of("HOME"); !home.empty())
+    return ProgramCache(home / ".cache" / below);
+  return ProgramCache({});
+}
+
+std::string ProgramCache::key(const std::string& source, const std::string& options,
+                              const DeviceInfo& device) {
+  std::string all;
+  for (const std::string* part : {&source, &options, &device.name, &device.driver_version, &device.platform,
+                                  &device.platform_version}) {
+    all.append(std::to_string(part->size())).append(1, ':').append(*part);
+  }
+  const char* method = std::getenv("POCL_WORK_GROUP_METHOD");  // part of what PoCL compiles
+  if (device.is_pocl() && method) all += method;
+  return text_hash(all);
+}
+
+std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& key) const {
+  if (folder_.empty()) return std::nullopt;
+  std::error_code error;
+  const uint64_t size = fs::is_regular_file(file(key), error) ? fs::file_size(file(key), error) : 0;
+  if (error || size <= kHeaderLength || size > kLargest) return std::nullopt;
+  std::ifstream stream(file(key), std::ios::binary);
+  std::string header(kHeaderLength, '\0');
+  std::vector<unsigned char> binary(size - kHeaderLength);
+  stream.read(header.data(), static_cast<std::streamsize>(header.size()));
+  stream.read(reinterpret_cast<char*>(binary.data()), static_cast<std::streamsize>(binary.size()));
+  if (!stream || header != header_of(key, binary)) return std::nullopt;
+  return binary;
+}
+
+std::string ProgramCache::save(const std::string& key, const std::vector<unsigned char>& binary) const {
+  if (folder_.empty() || binary.empty()) return {};
+  if (!make_folder(folder_)) return "cannot write '" + folder_.string() + "': " + std::strerror(errno);
+  std::string text = header_of(key, binary);
+  text.append(reinterpret_cast<const char*>(binary.data()), binary.size());
+  try {
+    write_file_atomically(file(key), text, 0600);  // is executed: for this user alone
+  } catch (const DeviceError& refusal) {
+    return refusal.what();
+  }
+  return {};
+}
+
+}  // namespace kiloband::gpu

@@ -1,0 +1,296 @@
+#include "src_gpu/evaluate/evaluation.hpp"
+
+#include <algorithm>
+
+namespace kiloband::gpu {
+namespace {
+
+constexpr uint64_t kLocalSize = 64;
+/// Film values that a launch clears: 8 MiB.
+constexpr uint64_t kClearItems = 1u << 20;
+constexpr uint32_t kEvaluationArguments = 14, kFilmArguments = 5;
+/// Means are downloaded in pieces of at most this many bytes and at most this part of the film,
+/// unless that is little.
+constexpr uint64_t kMeansBytes = 16u << 20, kMeansPart = 16, kLittle = 16u << 10;
+
+uint64_t ceil_div(uint64_t n, uint64_t d) {
+  return (n + d - 1) / d;
+}
+
+uint64_t columns(const KbSpectraLayout& layout) {
+  return uint64_t{layout.channels} + layout.derived;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+const char* main_file(Method method) {
+  return method == Method::kPt ? "evaluate/pt.cl" : "evaluate/evaluate.cl";
+}
+const char* main_kernel(Method method) {
+  if (method == Method::kPt) return "pt_update";
+  return method == Method::kDpeptPath ? "dpept_path" : "dpept_batch";
+}
+
+Program build(DeviceContext& context, const char* file, std::vector<std::string> defines, bool cache) {
+  return build_program(context, file, ProgramOptions{std::move(defines), cache});
+}
+
+/// Floats of the parts of derived channels that work-items leave behind.
+uint64_t partial_floats(const KbSpectraLayout& layout, const EvaluationShape& shape, const PoolSize& pool) {
+  if (shape.method == Method::kDpeptPath) return 0;
+  const uint64_t units = shape.method == Method::kPt ? pool.slots : pool.pixels;
+  return units * shape.local_size * layout.derived;
+}
+
+uint64_t pixels_of_means(const KbSpectraLayout& layout, uint64_t film_pixels) {
+  const uint64_t bytes = sizeof(float) * columns(layout);
+  const uint64_t pixels = std::clamp(film_pixels / kMeansPart, kLittle / bytes, kMeansBytes / bytes);
+  return std::clamp<uint64_t>(pixels, 1, film_pixels);
+}
+
+}  // namespace
+
+std::vector<std::string> EvaluationShape::defines(uint32_t derived) const {
+  std::vector<std::string> d{
+      "KB_WIDTH=" + std::to_string(width), "KB_VECTORS=" + std::to_string(vectors),
+      "KB_DERIVED=" + std::to_string(derived),
+      "KB_PIXELS=" + std::to_string(method == Method::kDpeptBatch ? units_per_group : 1),
+      std::string("KB_PER_PATH=") + (shared_wavelengths ? "0" : "1")};
+  if (film_transposed) d.push_back("KB_FILM_TRANSPOSED=1");
+  return d;
+}
+
+EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool shared_wavelengths,
+                                 uint32_t channels) {
+  EvaluationShape shape;
+  shape.method = method;
+  shape.shared_wavelengths = shared_wavelengths;
+  if (device.type == DeviceType::kCpu) {
+    // SIMD comes from the vectors, not from the group: one work-item takes up to 128 channels at a time, and
+    // walks a tile of pixels sample by sample while their dense spectra are
+    // in the first cache (measured: validation/README.md).
+    shape.width = 16;
+    shape.vectors = static_cast<uint32_t>(std::min<uint64_t>(8, ceil_div(channels, 16)));
+    shape.units_per_group = 16;
+    return shape;
+  }
+  shape.film_transposed = method == Method::kDpeptPath;
+  shape.width = channels >= 512 ? 4 : channels >= 128 ? 2 : 1;
+  shape.vectors = 1;
+  const uint64_t most = std::min<uint64_t>(device.max_work_group_size, 256);
+  const uint64_t items = ceil_div(ceil_div(channels, shape.width), 32) * 32;
+  shape.local_size = method == Method::kDpeptPath ? 64 : static_cast<uint32_t>(std::min(items, most));
+  return shape;
+}
+
+uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open) {
+  const uint64_t partial =
+      shape.method == Method::kDpeptBatch ? uint64_t{shape.local_size} * layout.derived * sizeof(float) : 0;
+  return (open ? 3 : 2) * sizeof(float) * uint64_t{layout.film_columns} + sizeof(uint32_t) + partial;
+}
+
+uint64_t table_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape) {
+  return shape.shared_wavelengths ? sizeof(float) * uint64_t{layout.rows} * layout.stride : 0;
+}
+
+uint64_t slot_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape) {
+  if (shape.method != Method::kPt) return 0;
+  return sizeof(float) * (2 * uint64_t{layout.stride} + uint64_t{shape.local_size} * layout.derived);
+}
+
+Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpectraLayout& layout,
+                       const EvaluationShape& shape, const std::vector<std::string>& defines,
+                       bool program_cache, const PoolSize& pool, uint64_t film_pixels, bool open)
+    : context_(context),
+      layout_(layout),
+      shape_(shape),
+      film_pixels_(film_pixels),
+      means_pixels_(pixels_of_means(layout, film_pixels)),
+      sum_(memory.allocate<float>("film", film_pixels * layout.film_columns)),
+      compensation_(memory.allocate<float>("film's rounding errors", film_pixels * layout.film_columns)),
+      open_(memory.allocate<float>("sums of chunks", open ? sum_.size() : 0)),
+      dense_(
+          memory.allocate<float>("dense spectra", pool.tables * table_bytes(layout, shape) / sizeof(float))),
+      partial_(memory.allocate<float>("derived channels", partial_floats(layout, shape, pool))),
+      tau_(memory.allocate<float>("throughputs",
+                                  shape.method == Method::kPt ? uint64_t{pool.slots} * layout.stride : 0)),
+      radiance_(memory.allocate<float>("radiances", tau_.size())),
+      means_(memory.allocate<float>("means", means_pixels_ * columns(layout))),
+      counts_(memory.allocate<uint32_t>("sample counts", film_pixels)),
+      film_program_(build(context, "film/film.cl",
+                          shape.film_transposed ? std::vector<std::string>{"KB_FILM_TRANSPOSED=1"}
+                                                : std::vector<std::string>{},
+                          program_cache)),
+      program_(build(context, main_file(shape.method), joined(defines, shape.defines(layout.derived)),
+                     program_cache)),
+      clear_(film_program_.kernel("film_clear")),
+      finish_(film_program_.kernel("film_finish")),
+      close_(film_program_.kernel("film_close")),
+      pack_(film_program_.kernel("film_pack")),
+      unpack_(film_program_.kernel("film_unpack")),
+      main_(program_.kernel(main_kernel(shape.method))) {
+  if (layout.derived > 0 && shape.method != Method::kDpeptPath)
+    derived_ = program_.kernel(shape.method == Method::kPt ? "pt_derived" : "derived_add");
+  if (!shape.shared_wavelengths) return;
+  resample_program_ =
+      build(context, "evaluate/resample.cl", joined(defines, shape.defines(layout.derived)), program_cache);
+  resample_ = resample_program_->kernel("resample_rows");
+}
+
+uint32_t Evaluation::bind_evaluation(Kernel& kernel, const DeviceScene& scene, const DeviceSpectra& spectra,
+                                     const PathPool& pool) const {
+  kernel.set_from(0, spectra.layout, shape_.shared_wavelengths ? dense_ : spectra.nodes, spectra.tables,
+                  spectra.materials, spectra.cover, spectra.cover_breaks, scene.materials(), scene.textures(),
+                  scene.texels(), scene.texel_values(), pool.round(), pool.pixels(), pool.arena(),
+                  pool.chunk_next());
+  return kEvaluationArguments;
+}
+
+/// open: rounds that go on with a chunk find its sums in place of the film's.
+uint32_t Evaluation::bind_film(Kernel& kernel, uint32_t first, uint64_t film_pixel, bool open) const {
+  kernel.set_from(first, open ? open_ : sum_, compensation_, counts_, static_cast<uint32_t>(film_pixels_),
+                  static_cast<uint32_t>(film_pixel));
+  return first + kFilmArguments;
+}
+
+void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, const PathPool& pool) {
+  uint32_t next = bind_evaluation(main_, scene, spectra, pool);
+  if (shape_.method == Method::kPt) {
+    film_argument_ = next;
+    next = bind_film(main_, next, 0);
+    main_.set_from(next, pool.states());
+    main_.set_from(next + 3, tau_, radiance_, partial_);  // queue and count stand between
+    if (derived_) derived_->set_from(0, spectra.layout, pool.round());
+    if (derived_) derived_->set_from(2 + kFilmArguments, pool.states(), partial_);
+  } else {
+    main_.set_from(next, pool.saved());
+    film_argument_ = next + 1;
+    next = bind_film(main_, film_argument_, 0);
+    if (shape_.method == Method::kDpeptBatch) main_.set_from(next, partial_);
+    if (derived_) derived_->set_from(0, spectra.layout);
+    if (derived_) derived_->set_from(1 + kFilmArguments, partial_);
+  }
+  for (Kernel* kernel : {&finish_, &pack_, &unpack_}) kernel->set_from(0, spectra.layout);
+  const LaunchScale scale = shape_.method == Method::kPt ? LaunchScale::kSlots : LaunchScale::kPaths;
+  main_.set_scale(scale);
+  if (derived_) derived_->set_scale(scale);
+  if (resample_) {
+    resample_->set_scale(LaunchScale::kPaths);
+    resample_->set_from(0, spectra.layout, spectra.nodes, spectra.tables, spectra.cover, spectra.cover_breaks,
+                        pool.mu());
+    resample_->set_from(7, dense_);
+  }
+}
+
+/// Film pixels whose values stand among those of the first `pixels`.
+uint64_t Evaluation::touched_pixels(uint64_t pixels) const {
+  return shape_.film_transposed ? film_pixels_ : pixels;
+}
+
+void Evaluation::clear(uint64_t pixels) {
+  const uint64_t touched = touched_pixels(pixels), items = touched * layout_.film_columns;
+  clear_.set(sum_, compensation_, counts_, static_cast<uint32_t>(touched), layout_.film_columns);
+  for (uint64_t first = 0; first < items; first += kClearItems)
+    clear_.launch(std::min(kClearItems, items - first), kLocalSize, first);
+  if (!open_.empty()) open_.fill(0.0f, 0, items);
+}
+
+void Evaluation::close_chunk(uint64_t pixels) {
+  const uint64_t touched = touched_pixels(pixels), items = touched * layout_.film_columns;
+  close_.set(sum_, compensation_, open_, static_cast<uint32_t>(touched), layout_.film_columns);
+  for (uint64_t first = 0; first < items; first += kClearItems)
+    close_.launch(std::min(kClearItems, items - first), kLocalSize, first);
+}
+
+void Evaluation::unpack(const std::vector<float>& packed, DeviceBuffer<float>& values) {
+  const uint64_t pixels = packed.size() / columns(layout_);
+  for (uint64_t first = 0; first < pixels; first += means_pixels_) {
+    const uint64_t some = std::min(means_pixels_, pixels - first);
+    means_.upload(std::span(packed).subspan(first * columns(layout_), some * columns(layout_)));
+    unpack_.set_from(1, values, static_cast<uint32_t>(film_pixels_), static_cast<uint32_t>(first),
+                     static_cast<uint32_t>(some), means_);
+    unpack_.launch(some * columns(layout_), kLocalSize);
+  }
+}
+
+void Evaluation::pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed) {
+  packed.resize(pixels * columns(layout_));
+  for (uint64_t first = 0; first < pixels; first += means_pixels_) {
+    const uint64_t some = std::min(means_pixels_, pixels - first);
+    pack_.set_from(1, values, static_cast<uint32_t>(film_pixels_), static_cast<uint32_t>(first),
+                   static_cast<uint32_t>(some), means_);
+    pack_.launch(some * columns(layout_), kLocalSize);
+    const DeviceBuffer<float>& device_means = means_;
+    device_means.download(
+        std::span<float>(packed).subspan(first * columns(layout_), some * columns(layout_)));
+  }
+}
+
+void Evaluation::load(const FilmSums& sums) {
+  unpack(sums.open, open_);
+  unpack(sums.sum, sum_);
+  unpack(sums.lost, compensation_);
+  counts_.upload(std::span(sums.counts));
+}
+
+void Evaluation::save(uint64_t pixels, FilmSums& sums) {
+  pack(pixels, open_, sums.open);
+  pack(pixels, sum_, sums.sum);
+  pack(pixels, compensation_, sums.lost);
+  sums.counts.resize(pixels);
+  const DeviceBuffer<uint32_t>& device_counts = counts_;
+  device_counts.download(std::span<uint32_t>(sums.counts));
+}
+
+void Evaluation::resample(const KbRound& round) {
+  if (!resample_) return;
+  const uint32_t tables = round.blocks * round.samples;
+  resample_->set_from(6, tables);
+  resample_->launch(uint64_t{tables} * layout_.rows * layout_.stride / shape_.width, kLocalSize);
+}
+
+void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
+  bind_film(main_, film_argument_, film_pixel, round.open != 0);
+  if (shape_.method == Method::kDpeptPath) {
+    main_.launch(round.pixels, shape_.local_size);
+    return;
+  }
+  const uint64_t groups = ceil_div(round.pixels, shape_.units_per_group);
+  main_.launch(groups * shape_.local_size, shape_.local_size);
+  if (!derived_) return;
+  bind_film(*derived_, 1, film_pixel, round.open != 0);
+  derived_->set_from(2 + kFilmArguments, round.pixels, shape_.local_size);
+  derived_->launch(uint64_t{round.pixels} * layout_.derived, kLocalSize);
+}
+
+void Evaluation::update(const DeviceBuffer<uint32_t>& queue, uint32_t count, uint64_t film_pixel) {
+  if (count == 0) return;
+  bind_film(main_, film_argument_, film_pixel);
+  main_.set_from(film_argument_ + kFilmArguments + 1, queue, count);
+  const uint64_t groups = ceil_div(count, shape_.units_per_group);
+  main_.launch(groups * shape_.local_size, shape_.local_size);
+  if (!derived_) return;
+  bind_film(*derived_, 2, film_pixel);
+  derived_->set_from(2 + kFilmArguments + 2, queue, count, shape_.local_size);
+  derived_->launch(uint64_t{count} * layout_.derived, kLocalSize);
+}
+
+void Evaluation::finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {
+  means.resize(pixels * columns(layout_));
+  counts.resize(pixels);
+  const DeviceBuffer<uint32_t>& device_counts = counts_;
+  device_counts.download(std::span<uint32_t>(counts));
+  for (uint64_t first = 0; first < pixels; first += means_pixels_) {
+    const uint64_t some = std::min(means_pixels_, pixels - first);
+    finish_.set_from(1, sum_, compensation_, counts_, static_cast<uint32_t>(film_pixels_),
+                     static_cast<uint32_t>(first), static_cast<uint32_t>(some), means_);
+    finish_.launch(some * columns(layout_), kLocalSize);
+    const DeviceBuffer<float>& device_means = means_;
+    device_means.download(std::span<float>(means).subspan(first * columns(layout_), some * columns(layout_)));
+  }
+}
+
+}  // namespace kiloband::gpu

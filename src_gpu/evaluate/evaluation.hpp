@@ -1,0 +1,91 @@
+// Evaluation of paths into the film on the device: the kernels of evaluate.cl, pt.cl,
+// resample.cl and film.cl.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src_gpu/device/program.hpp"
+#include "src_gpu/path/path_pool.hpp"
+#include "src_gpu/path/round_plan.hpp"
+#include "src_gpu/scene/device_scene.hpp"
+
+namespace kiloband::gpu {
+
+/// How evaluation is compiled and launched; what follows from device, method and number of channels.
+struct EvaluationShape {
+  Method method = Method::kDpeptBatch;
+  bool shared_wavelengths = true;
+  uint32_t width = 1;            // channels of a vector
+  uint32_t vectors = 1;          // of a work-item at a time
+  uint32_t local_size = 1;       // work-items that share a path
+  uint32_t units_per_group = 1;  // pixels (dpept_batch) or slots (pt) that a work-group takes
+  bool film_transposed = false;
+
+  std::vector<std::string> defines(uint32_t derived) const;
+};
+
+EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool shared_wavelengths,
+                                 uint32_t channels);
+
+/// Sums of pixels as the host keeps them, [pixel][channels + derived] (film/replicate_sums.hpp).
+struct FilmSums {
+  std::vector<float> open, sum, lost;
+  std::vector<uint32_t> counts;  // valid samples
+};
+
+/// Bytes, from the layout alone: per film pixel, per dense table of spectra, per slot (pt).
+/// open  the film has sums of chunks that go on
+uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open);
+uint64_t table_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape);
+uint64_t slot_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape);
+
+class Evaluation {
+ public:
+  /// defines  of the scene (scene_defines); film_pixels: resident at once; open: as film_bytes_per_pixel()
+  Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpectraLayout& layout,
+             const EvaluationShape& shape, const std::vector<std::string>& defines, bool program_cache,
+             const PoolSize& pool, uint64_t film_pixels, bool open);
+
+  /// Sets what does not change from launch to launch; the arguments must outlive this object.
+  void bind(const DeviceScene& scene, const DeviceSpectra& spectra, const PathPool& pool);
+
+  void clear(uint64_t pixels);
+  /// Dense spectra of the round (shared wavelengths): before its paths are evaluated.
+  void resample(const KbRound& round);
+  /// Films with sums of chunks: puts the host's sums into the film, or takes them from it.
+  void load(const FilmSums& sums);
+  void save(uint64_t pixels, FilmSums& sums);
+  /// The chunk that rounds went on with is complete: its sums become part of the film.
+  void close_chunk(uint64_t pixels);
+  /// dpept: the round's saved paths. Enqueued, not waited for.
+  void evaluate(const KbRound& round, uint64_t film_pixel);
+  /// pt: one bounce of the slots in the queue.
+  void update(const DeviceBuffer<uint32_t>& queue, uint32_t count, uint64_t film_pixel);
+  /// Means [pixel][K + D] and valid samples.
+  void finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
+
+ private:
+  uint32_t bind_evaluation(Kernel& kernel, const DeviceScene& scene, const DeviceSpectra& spectra,
+                           const PathPool& pool) const;
+  uint32_t bind_film(Kernel& kernel, uint32_t first, uint64_t film_pixel, bool open = false) const;
+  void unpack(const std::vector<float>& packed, DeviceBuffer<float>& values);
+  void pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
+  uint64_t touched_pixels(uint64_t pixels) const;
+
+  DeviceContext& context_;
+  KbSpectraLayout layout_;
+  EvaluationShape shape_;
+  uint64_t film_pixels_, means_pixels_;
+  DeviceBuffer<float> sum_, compensation_, open_, dense_, partial_, tau_, radiance_, means_;
+  DeviceBuffer<uint32_t> counts_;
+  Program film_program_, program_;
+  std::optional<Program> resample_program_;
+  Kernel clear_, finish_, close_, pack_, unpack_, main_;
+  std::optional<Kernel> resample_, derived_;
+  uint32_t film_argument_ = 0;  // where FILM begins in main_
+};
+
+}  // namespace kiloband::gpu

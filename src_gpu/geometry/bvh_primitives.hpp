@@ -1,0 +1,24 @@
+// What goes into the acceleration structure: the scene's triangles and analytic shapes with their boxes.
+#pragma once
+
+#include <vector>
+
+#include "scene/compile/flat_scene.hpp"
+#include "shared/pipeline.h"
+
+namespace kiloband::gpu {
+
+/// An axis-aligned box, m. Empty if low > high.
+struct Box {
+  float low[3], high[3];
+};
+
+/// Box of a primitive: a triangle's is exact, an analytic shape's is grown by its rounding errors.
+Box primitive_box(const KbPrimitive& primitive, const FlatScene& scene);
+
+/// The primitives in the scene's order, without those that no ray can hit: triangles with two equal corners
+/// (their edge functions are exactly +x, -x and 0) and, as on the CPU, boxes that are not finite or
+/// beyond 1.8e18 m.
+std::vector<KbPrimitive> collect_primitives(const FlatScene& scene);
+
+}  // namespace kiloband::gpu

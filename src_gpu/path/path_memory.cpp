@@ -1,0 +1,22 @@
+#include "src_gpu/path/path_memory.hpp"
+
+namespace kiloband::gpu {
+
+uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uint64_t slots_each,
+                        const SceneFeatures& features) {
+  PoolSize one;
+  one.dispersion = features.dispersion;
+  one.chunk_slots = chunk_slots(method, features);
+  one.slots = 1;
+  one.gas = features.gas;
+  if (method == Method::kPt) {
+    one.arena_chunks = 1;
+    const uint64_t padded = (channels + 15) / 16 * 16;
+    return path_pool_bytes(one) + 2 * sizeof(float) * padded;  // throughput and radiance
+  }
+  one.jobs = 1;
+  one.arena_chunks = static_cast<uint32_t>((vertices * slots_each + KB_CHUNK_SLOTS - 1) / KB_CHUNK_SLOTS);
+  return path_pool_bytes(one);
+}
+
+}  // namespace kiloband::gpu

@@ -1,0 +1,76 @@
+// How an image is cut so that it fits the device: groups of pixels whose film is resident, rounds of paths
+// that are generated and then evaluated, and the sizes of pool and arena. Pure arithmetic.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "film/replicate_sums.hpp"
+#include "src_gpu/path/path_pool.hpp"
+
+namespace kiloband::gpu {
+
+/// The three evaluations of one pipeline (DPEPT paper, sections 4 and 5).
+enum class Method { kDpeptBatch, kDpeptPath, kPt };
+/// "dpept-batch", "dpept-path", "pt"
+const char* to_string(Method method);
+/// The method of that name; nothing: there is none.
+std::optional<Method> find_method(std::string_view name);
+
+/// Vertices of a chunk: with the method pt, which empties chunks at every bounce, what a bounce may append.
+uint32_t chunk_slots(Method method, const SceneFeatures& features);
+
+struct PlanRequest {
+  uint64_t budget = 0;   // bytes that may be used
+  uint64_t largest = 0;  // bytes of the largest buffer
+  uint64_t pixels = 0;   // of the image part
+  uint32_t samples = 1;  // per pixel and round
+  Method method = Method::kDpeptBatch;
+  uint64_t film_bytes = 0;     // per pixel: sums, compensation, counts, what finishing needs
+  uint64_t table_bytes = 0;    // per block and sample: dense spectra; 0 with per-path wavelengths
+  uint64_t slot_bytes = 0;     // per slot beside the pool's own: pt's state of every channel
+  uint32_t most_slots = 1;     // paths in flight that the device gains from
+  uint64_t most_jobs = 1;      // paths per round that it gains from
+  double chunks_per_path = 3;  // expected
+  bool dispersion = false;     // PoolSize::dispersion
+  uint32_t chunk_slots = KB_CHUNK_SLOTS;
+  bool gas = false;  // the scene has gas
+};
+
+struct RoundPlan {
+  uint64_t group_pixels = 0;  // film on the device
+  uint32_t round_pixels = 0;  // of them in a round, at most
+  uint64_t round_jobs = 0;    // pixels * samples of a round, at most
+  PoolSize pool;
+};
+
+/// Samples of a pixel that a round renders, as far as there are that many. Evaluation sums them before it
+/// adds them to the film, so this number must not follow from memory or time: it depends on the scene and the
+/// kind of device alone, and images are the same bit by bit whatever the budget.
+/// table_bytes  of a block and sample: dense spectra
+uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes);
+
+/// Samples that kernels sum in registers before they add them to the film (kernels/evaluate/evaluate_tile.clh).
+inline constexpr uint32_t kSamplesInRegisters = 32;
+
+/// How the film is summed where rounds have at most `round_samples`: in chunks of a round, and of what
+/// registers take of it; pt adds every sample to the film at once.
+/// derived  there are derived channels, whose sums are kept for whole rounds alone
+SumRule sum_rule_of(Method method, uint32_t round_samples, bool derived);
+
+/// A round of a replicate that may be gone on with.
+struct SampleCut {
+  uint32_t samples = 0;
+  bool open = false;  // its sums are those of a chunk that goes on, KbRound::open
+};
+/// The next round of the samples [first, end) of a replicate. Chunks that are rendered as a whole go to the
+/// film; the one at the end stays open, so that the samples after it find its sums.
+SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule);
+/// Whether sample `first` begins a chunk: that before it is complete.
+bool begins_chunk(uint32_t first, const SumRule& rule);
+
+/// throws DeviceOutOfMemory  not even a pixel fits: says what would be needed
+RoundPlan plan_rounds(const PlanRequest& request);
+
+}  // namespace kiloband::gpu

@@ -1,0 +1,144 @@
+#include "src_gpu/scene/device_scene.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "film/filter_table.hpp"
+
+namespace kiloband::gpu {
+namespace {
+
+/// The gaussian filter's table; other filters read none.
+std::vector<KbFloat2> filter_nodes(const KbCamera& camera) {
+  if (camera.filter != KB_FILTER_GAUSSIAN) return {};
+  return make_gaussian_filter_table(static_cast<double>(camera.filter_radius) / camera.filter_stddev);
+}
+
+std::vector<float> bounds_of_rows(const FlatScene& scene) {
+  std::vector<float> bounds;
+  for (const SpectrumRow& row : scene.spectra) bounds.push_back(row.bound);
+  return bounds;
+}
+
+/// The spectral texels of all textures, each at its first_value.
+DeviceBuffer<float> upload_texel_values(DeviceMemory& memory, const FlatScene& scene) {
+  uint64_t floats = 0;
+  for (std::size_t t = 0; t < scene.spectral_texels.size(); ++t) {
+    if (!scene.spectral_texels[t]) continue;
+    const uint64_t first = uint64_t{scene.textures[t].first_value} * KB_VALUE_UNIT;
+    floats = std::max(floats, first + scene.spectral_texels[t]->size());
+  }
+  DeviceBuffer<float> buffer = memory.allocate<float>("spectral texels", floats);
+  for (std::size_t t = 0; t < scene.spectral_texels.size(); ++t) {
+    if (!scene.spectral_texels[t]) continue;
+    buffer.upload(std::span<const float>(*scene.spectral_texels[t]),
+                  uint64_t{scene.textures[t].first_value} * KB_VALUE_UNIT);
+  }
+  return buffer;
+}
+
+}  // namespace
+
+std::vector<std::string> scene_defines(const SceneFeatures& f, bool specialised) {
+  if (!specialised) return {};
+  const std::pair<const char*, bool> features[] = {
+      {"DIFFUSE", f.diffuse},
+      {"CONDUCTOR", f.conductor},
+      {"ROUGH_CONDUCTOR", f.rough_conductor},
+      {"DIELECTRIC", f.dielectric},
+      {"ROUGH_DIELECTRIC", f.rough_dielectric},
+      {"PLASTIC", f.plastic},
+      {"ROUGH_PLASTIC", f.rough_plastic},
+      {"TWO_SIDED", f.two_sided},
+      {"MASK", f.mask},
+      {"DISPERSION", f.dispersion},
+      {"BITMAP", f.bitmap},
+      {"CHECKERBOARD", f.checkerboard},
+      {"SPECTRAL_TEXTURE", f.spectral_texture},
+      {"AREA_LIGHT", f.area_light},
+      {"CONSTANT_LIGHT", f.constant_light},
+      {"ENVMAP_LIGHT", f.envmap_light},
+      {"DELTA_LIGHT", f.delta_light},
+      {"ANALYTIC_SHAPES", f.analytic_shapes},
+      {"THERMAL", f.thermal},
+      {"COMPENSATION", f.compensation},
+      {"TEMPERATURE_FIELD", f.temperature_field},
+      {"GAS", f.gas},
+      {"PLUME", f.plume},
+  };
+  std::vector<std::string> defines{"KB_SPECIALISED"};
+  for (const auto& [name, present] : features) {
+    defines.push_back(std::string("KB_HAS_") + name + (present ? "=1" : "=0"));
+  }
+  return defines;
+}
+
+KbSceneConstants scene_constants(const FlatScene& scene) {
+  KbSceneConstants c{};
+  c.camera = scene.camera;
+  c.channels = static_cast<uint32_t>(scene.channels.size());
+  c.emitter_count = static_cast<uint32_t>(scene.emitters.size());
+  c.environment = scene.environment;
+  c.max_depth = scene.integrator.max_depth < 0 ? KB_NONE : static_cast<uint32_t>(scene.integrator.max_depth);
+  c.rr_depth = static_cast<uint32_t>(scene.integrator.rr_depth);
+  c.hide_emitters = scene.integrator.hide_emitters ? 1 : 0;
+  c.unit_row = scene.unit_row;
+  c.envmap_width = scene.envmap.width;
+  c.envmap_height = scene.envmap.height;
+  c.atmosphere = scene.atmosphere;
+  std::ranges::copy(scene.camera_media, c.camera_media);
+  c.gas = scene.features.gas ? 1 : 0;
+  if (scene.camera.filter == KB_FILTER_GAUSSIAN)
+    c.filter_ratio = scene.camera.filter_radius / scene.camera.filter_stddev;
+  return c;
+}
+
+DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
+                         const std::vector<float>& material_tables)
+    : constants_(memory.upload("scene constants", std::vector{scene_constants(scene)})),
+      materials_(memory.upload("materials", scene.materials)),
+      material_tables_(memory.upload("material tables", material_tables)),
+      surfaces_(memory.upload("surfaces", scene.surfaces)),
+      shapes_(memory.upload("shapes", scene.shapes)),
+      textures_(memory.upload("textures", scene.textures)),
+      checkerboards_(memory.upload("checkerboards", scene.checkerboards)),
+      texels_(memory.upload("texels", scene.texels)),
+      texel_values_(upload_texel_values(memory, scene)),
+      texel_bounds_(memory.upload("texel bounds", scene.texel_bounds)),
+      spectrum_bounds_(memory.upload("spectrum bounds", bounds_of_rows(scene))),
+      normals_(memory.upload("normals", scene.normals)),
+      uvs_(memory.upload("texture coordinates", scene.uvs)),
+      positions_(memory.upload("positions", scene.positions)),
+      triangles_(memory.upload("triangles", scene.triangles)),
+      area_cdf_(memory.upload("area distribution", scene.area_cdf)),
+      emitters_(memory.upload("emitters", scene.emitters)),
+      emitter_cdf_(memory.upload("emitter distribution", scene.emitter_cdf)),
+      envmap_marginal_(memory.upload("environment rows", scene.envmap.marginal_cdf)),
+      envmap_rows_(memory.upload("environment distribution", scene.envmap.row_cdf)),
+      media_(memory.upload("media", scene.media)),
+      plume_nodes_(memory.upload("plumes", scene.plume_nodes)),
+      interiors_(memory.upload("interiors", scene.interiors)),
+      filter_table_(memory.upload("filter table", filter_nodes(scene.camera))),
+      channel_bins_(memory.upload("reflectances by channel bins", scene.channel_bins)),
+      thermals_(memory.upload("thermal emission", scene.thermals)) {}
+
+void DeviceScene::bind(Kernel& kernel, uint32_t first) const {
+  kernel.set_from(first, constants_, materials_, material_tables_, surfaces_, shapes_, textures_,
+                  checkerboards_, texels_, texel_bounds_, spectrum_bounds_, normals_, uvs_, positions_,
+                  triangles_, area_cdf_, emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_, media_,
+                  plume_nodes_, interiors_, filter_table_, thermals_);
+}
+
+DeviceBvh::DeviceBvh(DeviceMemory& memory, const Bvh& bvh)
+    : nodes(memory.upload("acceleration structure", bvh.nodes)),
+      primitives(memory.upload("primitives", bvh.primitives)) {}
+
+DeviceSpectra::DeviceSpectra(DeviceMemory& memory, const ChannelTables& spectra)
+    : layout(memory.upload("spectra layout", std::vector{spectra.layout})),
+      nodes(memory.upload("spectra", spectra.nodes)),
+      tables(memory.upload("spectra rows", spectra.tables)),
+      materials(memory.upload("rows of materials", spectra.material_rows)),
+      cover(memory.upload("channel cover", spectra.cover)),
+      cover_breaks(memory.upload("breaks of channel cover", spectra.cover_breaks)) {}
+
+}  // namespace kiloband::gpu
