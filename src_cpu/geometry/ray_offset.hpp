@@ -16,7 +16,7 @@ namespace kiloband {
 /// With u = 2^-24, a point on a triangle and the plane through it that an intersection test sees are wrong by
 /// a few u times the corners' coordinates, each in its axis' share of the normal: a level plane is exact,
 /// however wide, where its height is. Tests that turn the triangle into the ray's frame mix the axes: another
-/// u or two of the largest coordinate. With squares from 1e-6 to 1e4 m (tests/unit/cpu_lights,
+/// u or two of the largest coordinate. With squares from 1e-6 to 1e4 m (tests/unit/src_cpu/light,
 /// validation/suite: all_sizes) an eighth of the factor along the normal still sufficed; the factor across
 /// has no measured lower bound. The coordinates of the POINT do not enter: a large triangle is as imprecise
 /// near the origin as elsewhere, and a small one there as precise as its corners.

@@ -1,5 +1,5 @@
 // Broken scenes through the whole program: syntax, values, what a scene needs.
-// tests/unit/reader has more of each kind.
+// tests/unit/scene/read has more of each kind.
 #include <gtest/gtest.h>
 
 #include "tests/end_to_end/support/wrong_input.hpp"

@@ -8,8 +8,8 @@
 #include "post/camera_geometry.hpp"
 #include "tests/fuzz/fuzz_checkpoint.hpp"
 #include "tests/support/scene_zoo.hpp"
-#include "tests/unit/film/cube_support.hpp"
-#include "tests/unit/meshes/binary.hpp"
+#include "tests/unit/cube/cube_support.hpp"
+#include "tests/unit/scene/mesh/binary.hpp"
 
 namespace kiloband::fuzz {
 namespace {

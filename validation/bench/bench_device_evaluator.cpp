@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "src_cpu/evaluate/evaluator.hpp"
-#include "tests/unit/gpu_evaluator/device_evaluator.hpp"
+#include "tests/unit/src_gpu/evaluate/device_evaluator.hpp"
 #include "validation/bench/synthetic_paths.hpp"
 
 namespace kiloband::test {

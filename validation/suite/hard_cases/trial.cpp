@@ -172,7 +172,7 @@ void Trial::at_least(const std::string& name, const std::string& unit, double va
 
 /// Operations round by 6e-8 each; a vertex has about 20 in other order than the oracle's, and the rounding of
 /// a reflectance to float is the same at each vertex of a path:
-/// 1e-5 + 6e-8 per vertex (as tests/unit/cpu_evaluator).
+/// 1e-5 + 6e-8 per vertex (as tests/unit/src_cpu/evaluate).
 void Trial::oracle(const std::string& name, const std::string& xml, const TrialSettings& settings) {
   const FlatScene scene = flatten_text(xml, settings);
   const SamplingSettings sampling = sampling_of(settings, context_.seed, 1);

@@ -1,0 +1,82 @@
+// Places and sizes that single precision cannot take are errors, scenes larger than 10^4 m a warning.
+#include <gtest/gtest.h>
+
+#include "scene/compile/flat_scene.hpp"
+#include "tests/unit/scene/compile/support.hpp"
+
+namespace kiloband::test {
+namespace {
+
+const std::string kCamera = "<sensor type='perspective'/>";
+const std::string kSky = "<emitter type='constant'/>";
+
+/// What flattening says: its warnings, or its error behind the position.
+std::string flattened(const std::string& body) {
+  const ChannelList channels = parse_channels("500-510");
+  std::string said;
+  const DiagnosticSink sink = [&](const Diagnostic& d) { said += d.message; };
+  try {
+    flatten(read_scene_text("<scene version='3.0.0'>" + body + "</scene>", "scene.xml", "."),
+            {channels, channels, sink});
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    return message.substr(message.find("error: "));
+  }
+  return said;
+}
+
+std::string moved(const std::string& shape, const std::string& steps) {
+  return "<shape type='" + shape + "'><transform name='to_world'>" + steps + "</transform></shape>";
+}
+
+TEST(PlaceLimits, HaveTheirMessages) {
+  const std::string ball = "<shape type='sphere'/>", pose = "<transform name='to_world'>";
+  const std::pair<std::string, const char*> cases[] = {
+      {kCamera + kSky + "<shape type='sphere' id='ball'><point name='center' value='0 1e19 0'/></shape>",
+       "error: shape 'ball': y = 1e+19 m: must be within 1e+09 m of the origin"},
+      {kCamera + kSky + moved("cube", "<translate z='-1e19'/>"),
+       "error: shape: z = -1e+19 m: must be within 1e+09 m of the origin"},
+      {kCamera + kSky + moved("rectangle", "<scale value='1e30'/>"),
+       "error: shape: x = -1e+30 m: must be within 1e+09 m of the origin"},
+      {kCamera + kSky + "<shape type='cylinder'><float name='radius' value='1e12'/></shape>",
+       "error: shape: x = -1e+12 m: must be within 1e+09 m of the origin"},
+      {kCamera + kSky + moved("disk", "<scale value='1e-30'/>"),
+       "error: shape: a size of 1e-30 m: must be from 1e-09 to 1e+09 m"},
+      {kSky + ball + "<sensor type='perspective'>" + pose + "<translate x='1e19'/></transform></sensor>",
+       "error: sensor: x = 1e+19 m: must be within 1e+09 m of the origin"},
+      {kSky + ball + "<sensor type='orthographic'>" + pose + "<scale value='1e-30'/></transform></sensor>",
+       "error: sensor: a size of 1e-30 m: must be from 1e-09 to 1e+09 m"},
+      {kCamera + ball + "<emitter type='point' id='lamp'><point name='position' value='0 0 1e19'/></emitter>",
+       "error: emitter 'lamp': z = 1e+19 m: must be within 1e+09 m of the origin"},
+      {kCamera + ball + "<emitter type='spot'>" + pose + "<translate y='1e19'/></transform></emitter>",
+       "error: emitter: y = 1e+19 m: must be within 1e+09 m of the origin"},
+      {kCamera + kSky +
+           "<shape type='cube'><bsdf type='null'/><medium type='plume' id='fire' name='interior'><string "
+           "name='field' "
+           "value='jet'/><spectrum name='absorption' value='1'/><float name='temperature' "
+           "value='900'/><float "
+           "name='ambient' value='300'/><float name='radius' value='1'/><float name='length' value='1'/>" +
+           pose + "<translate x='1e30'/></transform></medium></shape>",
+       "error: medium 'fire': x = 1e+30 m: must be within 1e+09 m of the origin"},
+  };
+  for (const auto& [body, message] : cases) EXPECT_EQ(flattened(body), message) << body;
+}
+
+TEST(PlaceLimits, LargeScenesAreWarnedOf) {
+  const auto apart = [](const std::string& metres) {
+    return kCamera + kSky + "<shape type='sphere'/>" + moved("cube", "<translate x='" + metres + "'/>");
+  };
+  EXPECT_EQ(flattened(apart("9900")), "");
+  EXPECT_EQ(
+      flattened(apart("50000")),
+      "parts of the scene are 5e+04 m apart, more than 10000 m: single precision loses details smaller than "
+      "0.095 m");
+  // Far from the origin, near each other: moved there, no loss.
+  const std::string there = "<translate x='500000'/>";
+  EXPECT_EQ(flattened(kSky + moved("cube", there) + "<sensor type='perspective'><transform name='to_world'>" +
+                      there + "</transform></sensor>"),
+            "");
+}
+
+}  // namespace
+}  // namespace kiloband::test

@@ -1,0 +1,239 @@
+#include "device_evaluator.hpp"
+
+#include <numeric>
+#include <random>
+
+#include "shared/sampler.h"
+
+namespace kiloband::test {
+namespace {
+
+constexpr uint32_t kFilmWidth = 1000;
+constexpr uint64_t kSeed = 77;
+
+/// Paths in chunks: of slots that fill their paths side by side, as the pool does, or in no order.
+struct Arena {
+  static constexpr uint32_t kPool = 8192;
+
+  std::vector<KbPathVertex> slots;
+  std::vector<uint32_t> next, first;
+  std::vector<std::vector<uint32_t>> chunks;  // of a path
+
+  Arena(const PathBuffer& paths, bool scattered) : chunks(paths.paths.size()) {
+    uint32_t count = 0;
+    for (std::size_t begin = 0; begin < paths.paths.size(); begin += kPool) {
+      const std::size_t end = std::min<std::size_t>(begin + kPool, paths.paths.size());
+      bool more = true;
+      for (uint32_t level = 0; more; ++level) {
+        more = false;
+        for (std::size_t p = begin; p < end; ++p) {
+          if (level * KB_CHUNK_SLOTS >= paths.paths[p].count) continue;
+          chunks[p].push_back(count++);
+          more = true;
+        }
+      }
+    }
+    if (scattered) scatter(count);
+    slots.resize(std::size_t{count} * KB_CHUNK_SLOTS);
+    next.assign(count, 0xfffffff0u);
+    for (std::size_t p = 0; p < chunks.size(); ++p) place(paths, paths.paths[p], chunks[p]);
+  }
+
+ private:
+  void scatter(uint32_t count) {
+    std::vector<uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::shuffle(order.begin(), order.end(), std::mt19937(5));
+    for (std::vector<uint32_t>& path : chunks)
+      for (uint32_t& chunk : path) chunk = order[chunk];
+  }
+  void place(const PathBuffer& paths, const SavedPath& path, const std::vector<uint32_t>& own) {
+    first.push_back(own.empty() ? 0xfffffff0u : own.front());
+    for (std::size_t i = 1; i < own.size(); ++i) next[own[i - 1]] = own[i];
+    for (uint32_t i = 0; i < path.count; ++i)
+      slots[own[i / KB_CHUNK_SLOTS] * KB_CHUNK_SLOTS + i % KB_CHUNK_SLOTS] = paths.slots[path.first + i];
+  }
+};
+
+std::vector<float> texel_values(const FlatScene& scene) {
+  std::vector<float> all;
+  for (std::size_t t = 0; t < scene.spectral_texels.size(); ++t) {
+    if (!scene.spectral_texels[t]) continue;
+    all.resize(std::size_t{scene.textures[t].first_value} * KB_VALUE_UNIT);
+    all.insert(all.end(), scene.spectral_texels[t]->begin(), scene.spectral_texels[t]->end());
+  }
+  return all;
+}
+
+}  // namespace
+
+uint32_t slots_of(const KbPathVertex& vertex) {
+  return 1 + kb_vertex_extensions(vertex.head);
+}
+
+std::string EvaluatorBuild::options() const {
+  return "-DKB_WIDTH=" + std::to_string(width) + " -DKB_VECTORS=" + std::to_string(vectors) +
+         " -DKB_PER_PATH=" + std::to_string(per_path) + " -DKB_DERIVED=" + std::to_string(derived) +
+         " -DKB_FILM_TRANSPOSED=" + std::to_string(transposed) + " -DKB_PIXELS=" + std::to_string(tile) +
+         " " + features;
+}
+
+// film.cl sets the width for itself, so it comes last.
+EvaluatorProgram::EvaluatorProgram(const EvaluatorBuild& b)
+    : build(b),
+      probe(
+          "#include \"evaluate/evaluate.cl\"\n#include \"evaluate/pt.cl\"\n#include \"evaluate/resample.cl\"\n"
+          "#include \"film/film.cl\"\n",
+          b.options()) {}
+
+float per_path_mu(const RoundOfPaths& round, uint32_t pixel, uint32_t sample) {
+  const uint32_t index = round.first_index + sample;
+  return kb_path_mu(KB_SAMPLER_INDEPENDENT, kSeed, pixel / 7 * kFilmWidth + pixel % 7, index, 0, index);
+}
+
+DeviceEvaluator::DeviceEvaluator(EvaluatorProgram& program, const FlatScene& scene,
+                                 const gpu::ChannelTables& t, uint32_t film_pixels)
+    : program_(program), layout_(t.layout), film_pixels_(film_pixels) {
+  OpenclProbe& probe = program.probe;
+  layout_.film_width = kFilmWidth;
+  layout_buffer_ = probe.upload(std::vector{layout_});
+  nodes_ = probe.upload(t.nodes);
+  table_buffer_ = probe.upload(t.tables);
+  material_rows_ = probe.upload(t.material_rows);
+  cover_ = probe.upload(t.cover);
+  breaks_ = probe.upload(t.cover_breaks);
+  materials_ = probe.upload(scene.materials);
+  textures_ = probe.upload(scene.textures);
+  texels_ = probe.upload(scene.texels);
+  texel_values_ = probe.upload(texel_values(scene));
+  const std::size_t floats = std::size_t{film_pixels} * layout_.film_columns;
+  sum_ = probe.upload(std::vector<float>(floats, 7.0f));  // clear() must do something
+  compensation_ = probe.upload(std::vector<float>(floats, 7.0f));
+  counts_ = probe.upload(std::vector<uint32_t>(film_pixels, 7u));
+  clear();
+}
+
+void DeviceEvaluator::load(const PathBuffer& paths, const RoundOfPaths& round, bool scattered) {
+  OpenclProbe& probe = program_.probe;
+  round_ = round;
+  record_ = {};
+  record_.seed = kSeed;
+  record_.sampler = KB_SAMPLER_INDEPENDENT;
+  record_.wavelengths = program_.build.per_path ? KB_WAVELENGTHS_PER_PATH : KB_WAVELENGTHS_SHARED;
+  record_.replicates = 1;
+  record_.first_index = round.first_index;
+  record_.samples = round.samples;
+  record_.pixels = round.pixels;
+  record_.padded_pixels = round.pixels;
+  record_.blocks = round.blocks;
+  record_buffer_ = probe.upload(std::vector{record_});
+  std::vector<KbRoundPixel> pixels;
+  for (uint32_t p = 0; p < round.pixels; ++p) pixels.push_back({p % 7, p / 7, round.block[p]});
+  pixels_ = probe.upload(pixels);
+  const Arena arena(paths, scattered);
+  arena_ = probe.upload(arena.slots);
+  chunk_next_ = probe.upload(arena.next);
+  std::vector<KbSavedPath> saved;
+  for (const uint32_t p : round.path) {
+    if (p == RoundOfPaths::kEmpty)
+      saved.push_back({0xfffffff0u, 0});
+    else if (p == RoundOfPaths::kInvalid)
+      saved.push_back({0xfffffff0u, KB_SAVED_INVALID});
+    else
+      saved.push_back({arena.first[p], paths.paths[p].count});
+  }
+  saved_ = probe.upload(saved);
+  mu_ = probe.upload(round.mu);
+  if (!program_.build.per_path) resample();
+}
+
+void DeviceEvaluator::resample() {
+  tables_ = round_.blocks * round_.samples;
+  const std::size_t floats = std::size_t{tables_} * layout_.rows * layout_.stride;
+  dense_ = cl::Buffer(program_.probe.context, CL_MEM_READ_WRITE, floats * sizeof(float));
+  program_.probe.run("resample_rows", floats / program_.build.width, layout_buffer_, nodes_, table_buffer_,
+                     cover_, breaks_, mu_, tables_, dense_);
+}
+
+cl::Kernel DeviceEvaluator::kernel(const char* name) {
+  return cl::Kernel(program_.probe.program, name);
+}
+
+cl_uint DeviceEvaluator::set_evaluation(cl::Kernel& k, cl_uint index) {
+  const cl::Buffer& rows = program_.build.per_path ? nodes_ : dense_;
+  for (const cl::Buffer* b : std::initializer_list<const cl::Buffer*>{
+           &layout_buffer_, &rows, &table_buffer_, &material_rows_, &cover_, &breaks_, &materials_,
+           &textures_, &texels_, &texel_values_, &record_buffer_, &pixels_, &arena_, &chunk_next_})
+    k.setArg(index++, *b);
+  return index;
+}
+
+cl_uint DeviceEvaluator::set_film(cl::Kernel& k, cl_uint index) {
+  for (const cl::Buffer* b : std::initializer_list<const cl::Buffer*>{&sum_, &compensation_, &counts_})
+    k.setArg(index++, *b);
+  k.setArg(index++, film_pixels_);
+  k.setArg(index++, 0u);
+  return index;
+}
+
+void DeviceEvaluator::run(cl::Kernel& k, std::size_t items, std::size_t local) {
+  program_.probe.queue.enqueueNDRangeKernel(
+      k, cl::NullRange, cl::NDRange((items + local - 1) / local * local), cl::NDRange(local));
+  program_.probe.queue.finish();
+}
+
+cl::Kernel DeviceEvaluator::batch_kernel() {
+  cl::Kernel k = kernel("dpept_batch");
+  cl_uint next = set_evaluation(k, 0);
+  k.setArg(next, saved_);
+  next = set_film(k, next + 1);
+  const std::size_t parts = std::max<std::size_t>(1, std::size_t{round_.pixels} * 64 * layout_.derived);
+  partial_ = cl::Buffer(program_.probe.context, CL_MEM_READ_WRITE, parts * sizeof(float));
+  k.setArg(next, partial_);
+  return k;
+}
+
+cl::Kernel DeviceEvaluator::path_kernel() {
+  cl::Kernel k = kernel("dpept_path");
+  const cl_uint next = set_evaluation(k, 0);
+  k.setArg(next, saved_);
+  set_film(k, next + 1);
+  return k;
+}
+
+void DeviceEvaluator::batch(uint32_t local_size, uint32_t groups) {
+  cl::Kernel k = batch_kernel();
+  run(k, std::size_t{groups} * local_size, local_size);
+  if (layout_.derived == 0) return;
+  cl::Kernel add = kernel("derived_add");
+  add.setArg(0, layout_buffer_);
+  const cl_uint next = set_film(add, 1);
+  add.setArg(next, partial_);
+  add.setArg(next + 1, round_.pixels);
+  add.setArg(next + 2, local_size);
+  run(add, round_.pixels * layout_.derived, 1);
+}
+
+void DeviceEvaluator::path(uint32_t local_size) {
+  cl::Kernel k = path_kernel();
+  run(k, round_.pixels, local_size);
+}
+
+void DeviceEvaluator::clear() {
+  program_.probe.run("film_clear", std::size_t{film_pixels_} * layout_.film_columns, sum_, compensation_,
+                     counts_, film_pixels_, layout_.film_columns);
+}
+
+std::vector<float> DeviceEvaluator::means() {
+  const std::size_t values = std::size_t{film_pixels_} * (layout_.channels + layout_.derived);
+  const cl::Buffer out = program_.probe.upload(std::vector<float>(values, 7.0f));
+  program_.probe.run("film_finish", values, layout_buffer_, sum_, compensation_, counts_, film_pixels_, 0u,
+                     film_pixels_, out);
+  return program_.probe.download<float>(out, values);
+}
+
+std::vector<uint32_t> DeviceEvaluator::counts() {
+  return program_.probe.download<uint32_t>(counts_, film_pixels_);
+}
+
+}  // namespace kiloband::test
