@@ -30,14 +30,15 @@ function(kiloband_hot name)
   endif()
 endfunction()
 
-# kiloband_test(name SOURCES ... DEPENDS ...): a GoogleTest program whose tests ctest knows one by one.
+# kiloband_test(name SOURCES ... DEPENDS ...): a GoogleTest program whose tests ctest knows one by one, with the label that
+# KILOBAND_TEST_LABEL has (tests/CMakeLists.txt).
 function(kiloband_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE kiloband_flags ${ARG_DEPENDS} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE KILOBAND_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KILOBAND_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 LABELS "${KILOBAND_TEST_LABEL}")
 endfunction()
 
 # What tests that run kernels need: leaks of PoCL itself are not ours to report, caches stay in the build folder.
@@ -53,7 +54,8 @@ function(kiloband_opencl_test name)
                                         GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE KILOBAND_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KILOBAND_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 ENVIRONMENT "${KILOBAND_OPENCL_ENVIRONMENT}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 900 LABELS "${KILOBAND_TEST_LABEL}"
+                       ENVIRONMENT "${KILOBAND_OPENCL_ENVIRONMENT}")
 endfunction()
 
 # kiloband_test_on(name backend [filter]): the tests of a program once more, on another backend
