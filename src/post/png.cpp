@@ -1,10 +1,8 @@
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <cmath>
 
 #include "cube/cube_layout.hpp"
 #include "files/atomic_file.hpp"
+#include "pictures/picture_library.hpp"
 #include "spectral/colour.hpp"
 
 namespace kiloband {
@@ -28,15 +26,9 @@ void write_png(const std::filesystem::path& file, uint32_t width, uint32_t heigh
   if (linear_rgb.size() != std::size_t{width} * height * 3)
     throw std::logic_error("write_png: the buffer does not fit the image");
   const std::vector<uint8_t> pixels = encode_srgb(linear_rgb);
-  OIIO::Filesystem::IOVecOutput memory;
-  const auto output = OIIO::ImageOutput::create("png", &memory);
-  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  if (!output || !output->open(file.string(), spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close())
-    throw DeviceError("cannot write '" + file.string() +
-                      "': " + (output ? output->geterror() : OIIO::geterror()));
-  const auto& bytes = memory.buffer();
+  std::string error;
+  const std::vector<unsigned char> bytes = picture_library().png(width, height, pixels.data(), error);
+  if (bytes.empty()) throw DeviceError("cannot write '" + file.string() + "': " + error);
   write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -81,5 +81,21 @@ TEST(Messages, FewSamplesLeaveFewerReplicates) {
   EXPECT_EQ(said(false, {"--spp", "8"}).find("note:"), std::string::npos);
 }
 
+/// OpenImageIO brings some 250 libraries: a start without pictures loads none of them.
+TEST(Start, LoadsThePictureLibraryOnlyForPictures) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  Treatment traced;
+  traced.environment = {{"LD_DEBUG", "files"}};
+  const auto loads = [&](const std::vector<std::string>& arguments) {
+    const Outcome outcome = run_program(folder, arguments, traced);
+    EXPECT_EQ(outcome.code, 0) << outcome.err.substr(0, 2000);
+    return outcome.err.find("libOpenImageIO") != std::string::npos;
+  };
+  EXPECT_FALSE(loads({"--version"}));
+  EXPECT_FALSE(loads(quiet_render("scene.xml", {"--spp", "1", "-o", "a.exr"})));
+  EXPECT_TRUE(loads(quiet_render("scene.xml", {"--spp", "1", "-o", "a.exr", "--preview", "a.png"})));
+}
+
 }  // namespace
 }  // namespace kiloband::test

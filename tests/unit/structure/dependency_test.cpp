@@ -22,10 +22,11 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
     {"src/spectral", {"src/base", "src/shared"}},
     {"src/sky", {"src/base", "src/spectral"}},
     {"src/files", {"src/base"}},
+    {"src/pictures", {"src/base"}},
     {"src/cube", {"src/base", "src/files", "src/spectral"}},
     {"src/film", {"src/base", "src/shared", "src/files", "src/spectral"}},
     {"src/scene/mesh", {"src/base"}},
-    {"src/scene/image", {"src/base", "src/spectral", "src/cube"}},
+    {"src/scene/image", {"src/base", "src/spectral", "src/pictures", "src/cube"}},
     {"src/scene/description",
      {"src/base", "src/shared", "src/spectral", "src/scene/mesh", "src/scene/image"}},
     {"src/scene/xml", {"src/base"}},
@@ -36,7 +37,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
     {"src/scene/compile",
      {"src/base", "src/shared", "src/spectral", "src/scene/description", "src/scene/read",
       "src/scene/optics"}},
-    {"src/post", {"src/base", "src/spectral", "src/files", "src/cube", "src/film"}},
+    {"src/post", {"src/base", "src/spectral", "src/files", "src/pictures", "src/cube", "src/film"}},
     {"src/render",
      {"src/base", "src/shared", "src/spectral", "src/files", "src/cube", "src/film", "src/post",
       "src/scene/description", "src/scene/compile"}},
@@ -142,7 +143,7 @@ TEST(Dependencies, LibrariesStayBehindTheirInterfaces) {
     if (!starts_with(file.path, "src_gpu/")) {
       EXPECT_EQ(file.text.find("<CL/"), std::string::npos) << file.path;
     }
-    if (file.path.ends_with(".hpp") || file.path.ends_with(".h")) {
+    if (file.path != "src/pictures/oiio_module.cpp") {
       EXPECT_EQ(file.text.find("<OpenImageIO"), std::string::npos) << file.path;
     }
   }

@@ -1,6 +1,4 @@
-// read_image through OpenImageIO 2.4; no other file includes it.
-#include <OpenImageIO/imageio.h>
-
+// read_image: pixels of picture files, checked, linear.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -9,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "base/threads.hpp"
+#include "pictures/picture_library.hpp"
 #include "scene/image/channels.hpp"
 #include "scene/image/format.hpp"
 #include "scene/image/image.hpp"
@@ -48,70 +47,62 @@ std::string reason(std::string text) {
   return text.empty() ? "the data is damaged or truncated" : text;
 }
 
-/// OpenEXR would fail for want of its threads; it reads as well without.
-void spare_threads(ImageFormat format) {
-  if (format == ImageFormat::kExr && !can_start_threads(std::thread::hardware_concurrency()))
-    OIIO::attribute("exr_threads", -1);
-}
-
 class Reader {
  public:
   explicit Reader(const ImageFile& file) : file_(file) {
-    spare_threads(file.format);
-    input_ = OIIO::ImageInput::create(reader_name(file.format));
-    if (!input_)
+    PictureLibrary& library = picture_library();
+    // OpenEXR would fail for want of its threads; it reads as well without.
+    if (file.format == ImageFormat::kExr && !can_start_threads(std::thread::hardware_concurrency()))
+      library.spare_threads();
+    std::string error;
+    input_ = library.open(reader_name(file.format), file.name, error);
+    if (!input_ && error.empty())
       throw DeviceError(std::string("OpenImageIO was built without its ") + reader_name(file.format) +
                         " reader");
-    OIIO::ImageSpec hints;
-    hints["oiio:UnassociatedAlpha"] = 1;  // alpha is dropped, so colours must not be multiplied by it
-    if (!input_->open(file.name, spec_, hints)) fail_input();
+    if (!input_) fail_input(error);
   }
 
   Image read(bool raw, const DiagnosticSink& sink) {
     check();
     const ChannelChoice choice = choose();
-    Image image{static_cast<uint32_t>(spec_.width),
-                static_cast<uint32_t>(spec_.height),
+    const PictureInput::Spec& spec = input_->spec();
+    Image image{static_cast<uint32_t>(spec.width),
+                static_cast<uint32_t>(spec.height),
                 static_cast<uint32_t>(choice.count),
                 {}};
     // Strip by strip: memory grows with what the file really delivers, not with what its header promises.
-    const int strip = spec_.tile_height > 0 ? spec_.tile_height : 64;
-    for (int row = 0; row < spec_.height; row += strip) {
-      read_strip(image, choice, row, std::min(spec_.height, row + strip));
+    for (int row = 0; row < spec.height; row += spec.rows_at_once) {
+      read_strip(image, choice, row, std::min(spec.height, row + spec.rows_at_once));
     }
-    if (!raw && is_encoded()) decode(image);
+    if (!raw && spec.kind == PictureInput::Kind::kEncoded) decode(image);
     settle_values(image, sink);
     return image;
   }
 
  private:
   void check() const {
-    check_image_size(file_, spec_.width, spec_.height);
-    if (spec_.depth > 1) file_.fail("volume images are not supported");
-    if (spec_.deep) file_.fail("deep images are not supported");
-    const auto base = spec_.format.basetype;
-    const bool integer = base == OIIO::TypeDesc::UINT8 || base == OIIO::TypeDesc::UINT16;
-    const bool real =
-        base == OIIO::TypeDesc::HALF || base == OIIO::TypeDesc::FLOAT || base == OIIO::TypeDesc::DOUBLE;
-    // EXR holds 32-bit integers as object numbers, not as light.
-    if (!integer && !real)
-      file_.fail(std::string("pixels of type ") + spec_.format.c_str() + " are not supported");
+    const PictureInput::Spec& spec = input_->spec();
+    check_image_size(file_, spec.width, spec.height);
+    if (spec.depth > 1) file_.fail("volume images are not supported");
+    if (spec.deep) file_.fail("deep images are not supported");
+    if (spec.kind == PictureInput::Kind::kOther)
+      file_.fail("pixels of type " + spec.type_name + " are not supported");
   }
 
   ChannelChoice choose() const {
-    const ChannelChoice choice = choose_channels(spec_.channelnames, spec_.alpha_channel);
+    const std::vector<std::string>& channels = input_->spec().channels;
+    const ChannelChoice choice = choose_channels(channels, input_->spec().alpha_channel);
     if (choice.count > 0) return choice;
     std::string names;
-    for (size_t i = 0; i < spec_.channelnames.size() && i < 8; ++i)
-      names += (i ? ", " : "") + spec_.channelnames[i];
-    if (spec_.channelnames.size() > 8) names += ", ...";
+    for (size_t i = 0; i < channels.size() && i < 8; ++i) names += (i ? ", " : "") + channels[i];
+    if (channels.size() > 8) names += ", ...";
     file_.fail("channels " + names + ": must be R, G, B, or Y, or a single one");
   }
 
   /// Appends rows [begin, end), counted from the top. Channels that do not lie together are read one by one:
   /// a file may hold hundreds between them.
   void read_strip(Image& image, const ChannelChoice& choice, int begin, int end) {
-    const size_t pixels = static_cast<size_t>(end - begin) * spec_.width;
+    const size_t pixels = static_cast<size_t>(end - begin) * image.width;
     const bool together = choice.count == 1 ||
                           (choice.index[1] == choice.index[0] + 1 && choice.index[2] == choice.index[1] + 1);
     const size_t base = image.pixels.size();
@@ -127,35 +118,8 @@ class Reader {
     }
   }
 
-  /// Channels [first, first + count) of rows [begin, end) into target[row][x][channel].
   void read_channels(int begin, int end, int first, int count, float* target) {
-    const int y0 = spec_.y + begin, y1 = spec_.y + end, last = first + count;
-    bool good = true;
-    if (spec_.tile_width > 0) {
-      good = input_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, y0, y1, spec_.z, spec_.z + 1, first,
-                                last, OIIO::TypeFloat, target);
-    } else if (file_.format == ImageFormat::kTiff) {
-      good = read_tiff_rows(y0, y1, first, count, target);
-    } else {
-      good = input_->read_scanlines(0, 0, y0, y1, spec_.z, first, last, OIIO::TypeFloat, target);
-    }
-    if (!good) fail_input();
-  }
-
-  /// Row by row: read_scanlines() of OpenImageIO 2.4.7 takes damaged and missing TIFF strips for good ones.
-  bool read_tiff_rows(int y0, int y1, int first, int count, float* target) {
-    std::vector<float> row(static_cast<size_t>(spec_.width) * spec_.nchannels);
-    for (int y = y0; y < y1; ++y) {
-      if (!input_->read_scanline(y, spec_.z, OIIO::TypeFloat, row.data())) return false;
-      for (int x = 0; x < spec_.width; ++x) {
-        target = std::copy_n(row.data() + static_cast<size_t>(x) * spec_.nchannels + first, count, target);
-      }
-    }
-    return true;
-  }
-
-  bool is_encoded() const {
-    return spec_.format.basetype == OIIO::TypeDesc::UINT8 || spec_.format.basetype == OIIO::TypeDesc::UINT16;
+    if (!input_->read(begin, end, first, count, target)) fail_input(input_->error());
   }
 
   static void decode(Image& image) {
@@ -199,11 +163,10 @@ class Reader {
     file_.fail(place_in(image, index) + ": " + format_number(image.pixels[index]) + ": " + rule);
   }
 
-  [[noreturn]] void fail_input() { file_.fail("cannot be read: " + reason(input_->geterror())); }
+  [[noreturn]] void fail_input(const std::string& error) { file_.fail("cannot be read: " + reason(error)); }
 
   const ImageFile& file_;
-  std::unique_ptr<OIIO::ImageInput> input_;
-  OIIO::ImageSpec spec_;
+  std::unique_ptr<PictureInput> input_;
 };
 
 }  // namespace
