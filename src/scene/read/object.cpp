@@ -55,6 +55,10 @@ Node* ObjectReader::find(std::string_view name) const {
   return child->second;
 }
 
+bool ObjectReader::is_whole() const {
+  return std::ranges::none_of(object_.children, [](const auto& child) { return child->left_out; });
+}
+
 std::vector<Node*> ObjectReader::nested(std::string_view tag) const {
   std::vector<Node*> found;
   for (const auto& child : object_.children) {

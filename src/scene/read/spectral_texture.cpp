@@ -25,6 +25,7 @@ std::vector<Spectrum> read_endmembers(ReadContext& context, const ObjectReader& 
     const std::string name = endmember_name(endmembers.size());
     endmembers.push_back(read_spectrum(context, object, name, SpectrumUse::kQuantity, Spectrum()));
   }
+  if (!object.is_whole()) endmembers.resize(image.values_per_pixel);
   if (endmembers.size() != image.values_per_pixel) {
     object.fail_at("weights", std::to_string(endmembers.size()) + " endmembers (endmember_0 ...) for " +
                                   std::to_string(image.values_per_pixel) + " weights of '" +
