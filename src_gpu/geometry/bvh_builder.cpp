@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "base/foreign_order.hpp"
 #include "base/threads.hpp"
 #include "src_gpu/geometry/bvh_primitives.hpp"
 
@@ -41,7 +42,11 @@ struct BuildLeaf : BuildNode {
   uint32_t primitives[KB_BVH_LEAF];
 };
 
+/// The callbacks run on threads of TBB's, of which each follows those that made what it reads.
+char build_order;
+
 void* create_node(RTCThreadLocalAllocator allocator, unsigned children, void*) {
+  const ForeignOrder order(build_order);
   auto* node = static_cast<BuildInner*>(rtcThreadLocalAlloc(allocator, sizeof(BuildInner), 16));
   node->count = children;
   node->leaf = false;
@@ -49,11 +54,13 @@ void* create_node(RTCThreadLocalAllocator allocator, unsigned children, void*) {
 }
 
 void set_children(void* node, void** children, unsigned count, void*) {
+  const ForeignOrder order(build_order);
   auto* inner = static_cast<BuildInner*>(node);
   for (unsigned i = 0; i < count; ++i) inner->children[i] = static_cast<BuildNode*>(children[i]);
 }
 
 void set_boxes(void* node, const RTCBounds** bounds, unsigned count, void*) {
+  const ForeignOrder order(build_order);
   auto* inner = static_cast<BuildInner*>(node);
   for (unsigned i = 0; i < count; ++i) {
     const RTCBounds& b = *bounds[i];
@@ -64,6 +71,7 @@ void set_boxes(void* node, const RTCBounds** bounds, unsigned count, void*) {
 /// Ids are sorted: their order in Embree's array depends on its threads.
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count,
                   void*) {
+  const ForeignOrder order(build_order);
   auto* leaf = static_cast<BuildLeaf*>(rtcThreadLocalAlloc(allocator, sizeof(BuildLeaf), 16));
   leaf->count = static_cast<uint32_t>(count);
   leaf->leaf = true;
@@ -120,7 +128,11 @@ const BuildNode* build_tree(RTCBVH bvh, std::vector<RTCBuildPrimitive>& input) {
   arguments.setNodeChildren = set_children;
   arguments.setNodeBounds = set_boxes;
   arguments.createLeaf = create_leaf;
-  return static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
+  const ForeignOrder order(build_order);
+  order.pass();
+  const void* root = rtcBuildBVH(&arguments);
+  order.pass();
+  return static_cast<const BuildNode*>(root);
 }
 
 // ---- flattening -----------------------------------------------------------------------------------------
