@@ -7,62 +7,63 @@
 namespace kiloband {
 namespace {
 
+struct Found {
+  Node* element = nullptr;
+  Node* parent = nullptr;
+};
+
 /// The element whose start tag holds the position: the last that begins there or before, since elements begin in the
 /// order of the text.
-Node* element_at(Node& root, const SourcePosition& position) {
-  Node* found = nullptr;
+Found element_at(Node& root, const SourcePosition& position) {
+  Found found;
   std::pair<int, int> begin{0, 0};
   const std::pair<int, int> end{position.line, position.column};
-  const auto visit = [&](Node& node, const auto& self) -> void {
+  const auto visit = [&](Node& node, Node* parent, const auto& self) -> void {
     const std::pair<int, int> place{node.place.line, node.place.column};
     if (node.place.file && *node.place.file == position.file && begin <= place && place <= end) {
-      found = &node;
+      found = {&node, parent};
       begin = place;
     }
-    for (const auto& child : node.children) self(*child, self);
+    for (const auto* nodes : {&node.children, &node.left_out})
+      for (const auto& child : *nodes) self(*child, &node, self);
   };
-  visit(root, visit);
+  visit(root, nullptr, visit);
   return found;
 }
 
-bool lacks_a_part(const Node& object) {
-  return std::ranges::any_of(object.children, [](const auto& child) { return child->left_out; });
+/// The next attempt goes without the parameter or part. False: it is no such thing but a whole object of the scene, or
+/// is left out already.
+bool leave_out(const Node& root, const Found& found) {
+  if (!found.parent || found.parent == &root) return false;
+  auto& children = found.parent->children;
+  const auto child = std::ranges::find(children, found.element, [](const auto& node) { return node.get(); });
+  if (child == children.end()) return false;
+  found.parent->left_out.push_back(std::move(*child));
+  children.erase(child);
+  return true;
 }
 
 }  // namespace
-
-/// An object that lacks what was left out may fail for that reason alone: this tells nothing new.
-void ReadErrors::add(const InputError& error) {
-  const bool placed = error.position().line > 0;
-  const Node* element = placed ? element_at(root_, error.position()) : nullptr;
-  if (element && lacks_a_part(*element)) return;
-  const bool is_new = places_.insert(placed ? error.position().to_string() : error.what()).second;
-  if (is_new) errors_.push_back(error);
-}
-
-/// The next attempt goes without the parameter or part that failed. False: it was no such thing, but the whole
-/// object, or is left out already.
-bool ReadErrors::leave_out(const InputError& error) {
-  if (error.position().line == 0) return false;
-  Node* element = element_at(root_, error.position());
-  if (!element || element == &root_ || element->left_out) return false;
-  const bool whole =
-      std::ranges::any_of(root_.children, [&](const auto& child) { return child.get() == element; });
-  if (whole) return false;
-  element->left_out = true;
-  return true;
-}
 
 void ReadErrors::attempt(const std::function<void()>& read) {
   for (;;) {
     try {
       return read();
     } catch (const InputError& error) {
-      add(error);
+      const bool placed = error.position().line > 0;
+      const Found found = placed ? element_at(root_, error.position()) : Found{};
+      // An object that lacks what was left out may fail for that reason alone: this tells nothing new.
+      if (!found.element || found.element->left_out.empty()) add(error);
       if (errors_.size() >= kMost) throw_if_any();
-      if (!leave_out(error)) return;
+      if (!leave_out(root_, found)) return;
     }
   }
+}
+
+void ReadErrors::add(const InputError& error) {
+  const bool placed = error.position().line > 0;
+  const bool is_new = places_.insert(placed ? error.position().to_string() : error.what()).second;
+  if (is_new) errors_.push_back(error);
 }
 
 void ReadErrors::throw_if_any() const {

@@ -29,7 +29,6 @@ class ReadErrors {
 
  private:
   void add(const InputError& error);
-  bool leave_out(const InputError& error);
 
   Node& root_;
   std::vector<InputError> errors_;

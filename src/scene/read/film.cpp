@@ -127,7 +127,6 @@ void add_sub_channels(const ObjectReader& object, Film& film) {
 void read_spectra(ReadContext& context, const ObjectReader& object, Film& film) {
   std::size_t count = 0;
   for (const auto& child : object.node().children) {
-    if (child->left_out) continue;
     Node& node = child->resolved();
     if (node.tag != "spectrum" && node.tag != "texture") continue;
     child->used = true;

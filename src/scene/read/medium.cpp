@@ -157,7 +157,7 @@ std::shared_ptr<const Medium> read_interior(ReadContext& context, const ObjectRe
   const std::vector<Node*> media = shape.nested("medium");
   if (media.empty()) return nullptr;
   for (const auto& child : shape.node().children) {
-    if (child->left_out || child->resolved().tag != "medium" || child->name == "interior") continue;
+    if (child->resolved().tag != "medium" || child->name == "interior") continue;
     fail(child->place, shape.label() + ": a medium must be named 'interior'" +
                            (child->name == "exterior"
                                 ? "; what is outside is the medium around the shape, or the atmosphere"

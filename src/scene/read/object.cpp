@@ -36,7 +36,6 @@ std::string describe_kind(const Node& node) {
 
 ObjectReader::ObjectReader(Node& object) : object_(object) {
   for (const auto& child : object.children) {
-    if (child->left_out) continue;
     if (children_.try_emplace(child->name, child.get()).second) continue;
     fail(child->name_place, label() + ": parameter '" + child->name + "' is given twice");
   }
@@ -55,15 +54,11 @@ Node* ObjectReader::find(std::string_view name) const {
   return child->second;
 }
 
-bool ObjectReader::is_whole() const {
-  return std::ranges::none_of(object_.children, [](const auto& child) { return child->left_out; });
-}
-
 std::vector<Node*> ObjectReader::nested(std::string_view tag) const {
   std::vector<Node*> found;
   for (const auto& child : object_.children) {
     Node& node = child->resolved();
-    if (child->left_out || node.kind != TagKind::kObject || node.tag != tag) continue;
+    if (node.kind != TagKind::kObject || node.tag != tag) continue;
     child->used = node.used = node.used_as_part = true;
     found.push_back(&node);
   }
@@ -76,7 +71,7 @@ Node* ObjectReader::nested_one(std::string_view tag) const {
   std::size_t count = 0;
   for (const auto& child : object_.children) {
     const Node& node = child->resolved();
-    if (!child->left_out && node.kind == TagKind::kObject && node.tag == tag && ++count == 2) {
+    if (node.kind == TagKind::kObject && node.tag == tag && ++count == 2) {
       fail(child->place, label() + ": a second " + std::string(tag));
     }
   }
@@ -206,7 +201,7 @@ void ObjectReader::refuse_type(const std::vector<std::string_view>& known) const
 
 void ObjectReader::finish() const {
   for (const auto& child : object_.children) {
-    if (child->used || child->left_out) continue;
+    if (child->used) continue;
     if (!child->is_named())
       fail(child->place, label() + ": " + describe_kind(*child) + " is not allowed here");
     fail(child->name_place,

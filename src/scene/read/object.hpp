@@ -30,7 +30,7 @@ class ObjectReader {
   Node* find(std::string_view name) const;
   bool has(std::string_view name) const { return find(name) != nullptr; }
   /// Nothing of it was left out (ReadErrors); what is counted may be too few otherwise, which is no error of its own.
-  bool is_whole() const;
+  bool is_whole() const { return object_.left_out.empty(); }
   /// Nested objects (references resolved) with this tag, in order; marks them as used.
   std::vector<Node*> nested(std::string_view tag) const;
   /// At most one such object; null if there is none.

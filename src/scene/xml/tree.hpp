@@ -28,11 +28,12 @@ struct Node {
   std::vector<XmlAttribute> attributes;           // all others: value, x, filename ...
   std::vector<XmlElement> steps;
   std::vector<std::unique_ptr<Node>> children;
+  std::vector<std::unique_ptr<Node>>
+      left_out;            // children that were found wrong: readers see them no more (ReadErrors)
   Node* target = nullptr;  // references: the object meant
 
   bool used_as_part = false;  // another object has read this one
   bool used = false;          // somebody asked for this parameter
-  bool left_out = false;      // was found wrong: readers do not see it any more (ReadErrors)
   /// Parameter names that readers of this object know, numbered in the order of asking. The node owns them:
   /// names like "endmember_3" are put together for one call.
   std::map<std::string, std::size_t, std::less<>> asked;
