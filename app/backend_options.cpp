@@ -87,21 +87,21 @@ std::string BackendOptions::resolve() const {
   return !cpu && has_gpu() ? "opencl" : "cpu";
 }
 
-std::unique_ptr<Backend> make_backend(const BackendOptions& options, const FlatScene& scene,
+std::unique_ptr<Backend> make_backend(const BackendOptions& options, std::shared_ptr<const FlatScene> scene,
                                       const DerivedChannels& derived, const SamplingSettings& sampling,
                                       const DiagnosticSink& sink) {
   const std::string backend = options.resolve();
   std::optional<uint64_t> memory;
   if (options.device_memory) memory = parse_bytes("--device-memory", *options.device_memory);
   if (backend == "cpu")
-    return make_cpu_backend(scene, derived, sampling,
+    return make_cpu_backend(std::move(scene), derived, sampling,
                             {parse_isa(options.isa.value_or("auto")), options.threads.value_or(0)});
   OpenclOptions opencl;
   opencl.device = options.device;
   opencl.device_memory = memory;
   if (options.method) opencl.method = gpu::find_method(*options.method);
   opencl.sink = sink;
-  return make_opencl_backend(scene, derived, sampling, opencl);
+  return make_opencl_backend(std::move(scene), derived, sampling, opencl);
 }
 
 }  // namespace kiloband

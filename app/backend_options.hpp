@@ -31,7 +31,7 @@ struct BackendOptions {
 };
 
 /// throws InputError, DeviceError
-std::unique_ptr<Backend> make_backend(const BackendOptions& options, const FlatScene& scene,
+std::unique_ptr<Backend> make_backend(const BackendOptions& options, std::shared_ptr<const FlatScene> scene,
                                       const DerivedChannels& derived, const SamplingSettings& sampling,
                                       const DiagnosticSink& sink);
 

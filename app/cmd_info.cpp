@@ -149,7 +149,8 @@ int info(const SceneOptions& options) {
   const DiagnosticSink sink = print_diagnostics(false);
   check_scene_file(options.scene);
   const LoadedScene loaded = load_scene(options, sink);
-  const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
+  const auto compiled = compile_scene(loaded.description, {loaded.channels, loaded.guide, sink});
+  const FlatScene& scene = *compiled;
   answer("scene        {}\n", options.scene);
   print_contents(scene);
   print_channels(loaded);

@@ -205,14 +205,16 @@ int render(const RenderOptions& options) {
   check_scene_file(options.scene.scene);
   const OutputFiles files = checked_files(options);
   check_replicates(options);
-  const LoadedScene loaded = load_scene(options.scene, sink);
+  LoadedScene loaded = load_scene(options.scene, sink);
   SessionSettings settings = session_settings(options, files, loaded.description);
   settings.sink = sink;
   report_replicates(options, settings, sink);
   const SamplingSettings sampling = options.sampling.settings(session_replicates(settings));
-  const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
+  const auto compiled = compile_scene(loaded.description, {loaded.channels, loaded.guide, sink});
+  const FlatScene& scene = *compiled;
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
-  const auto backend = make_backend(options.backend, scene, derived, sampling, sink);
+  loaded.description = {};  // meshes and images: what is rendered of them is in the compiled scene
+  const auto backend = make_backend(options.backend, compiled, derived, sampling, sink);
   describe_render(settings, options, scene, sampling, *backend);
   prepare_checkpoint(settings, scene, sampling, *backend, derived);
   catch_stop_signals();

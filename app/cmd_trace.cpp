@@ -132,14 +132,15 @@ int trace(const TraceOptions& options) {
   const DiagnosticSink sink = print_diagnostics(false);
   check_scene_file(options.scene.scene);
   const LoadedScene loaded = load_scene(options.scene, sink);
-  const FlatScene scene = flatten(loaded.description, {loaded.channels, loaded.guide, sink});
+  const auto compiled = compile_scene(loaded.description, {loaded.channels, loaded.guide, sink});
+  const FlatScene& scene = *compiled;
   const KbCamera& camera = scene.camera;
   if (pixel.x >= camera.film_width || pixel.y >= camera.film_height) {
     throw InputError(fmt::format("--pixel {}: the film has {} x {} pixels", options.pixel, camera.film_width,
                                  camera.film_height));
   }
   const SamplingSettings sampling = options.sampling.settings(options.replicates);
-  const auto backend = make_backend(options.backend, scene, {}, sampling, sink);
+  const auto backend = make_backend(options.backend, compiled, {}, sampling, sink);
   const SampleRange range{options.sample % options.replicates, options.sample / options.replicates, 1};
   answer("pixel {},{} sample {} (replicate {}, index {}) on {} ({})\n", pixel.x, pixel.y, options.sample,
          range.replicate, range.first, backend->name(), backend->isa());

@@ -46,16 +46,17 @@ void check_threads(int threads) {
 
 class CpuBackend final : public Backend {
  public:
-  CpuBackend(const FlatScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
-             const CpuOptions& options)
-      : scene_(scene),
+  CpuBackend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+             const SamplingSettings& settings, const CpuOptions& options)
+      : kept_(std::move(scene)),
+        scene_(*kept_),
         derived_(derived),
         settings_(settings),
         isa_(resolve_isa(options.isa)),
         threads_(options.threads > 0 ? options.threads : omp_get_num_procs()) {
     check_threads(threads_);
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
-    tracer_scene_ = TracerScene(scene_, *embree_);
+    tracer_scene_ = {&scene_, embree_.get()};
     for (int i = 0; i < threads_; ++i) {
       workers_.push_back(std::make_unique<BlockWorker>(tracer_scene_, derived_, settings_, isa_));
     }
@@ -84,7 +85,8 @@ class CpuBackend final : public Backend {
   void count(BlockWorker& worker, uint64_t rays_before, uint64_t vertices_before);
   float pass_boundaries(TraceRay& ray, float far) const;
 
-  FlatScene scene_;
+  std::shared_ptr<const FlatScene> kept_;
+  const FlatScene& scene_;
   DerivedChannels derived_;
   SamplingSettings settings_;
   Isa isa_;
@@ -188,9 +190,10 @@ std::vector<double> CpuBackend::film_scale() const {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_cpu_backend(const FlatScene& scene, const DerivedChannels& derived,
-                                          const SamplingSettings& settings, const CpuOptions& options) {
-  return std::make_unique<CpuBackend>(scene, derived, settings, options);
+std::unique_ptr<Backend> make_cpu_backend(std::shared_ptr<const FlatScene> scene,
+                                          const DerivedChannels& derived, const SamplingSettings& settings,
+                                          const CpuOptions& options) {
+  return std::make_unique<CpuBackend>(std::move(scene), derived, settings, options);
 }
 
 }  // namespace kiloband

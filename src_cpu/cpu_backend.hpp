@@ -15,9 +15,9 @@ struct CpuOptions {
 };
 
 /// Same seed, settings and instruction set: same bits, for any number of threads.
-/// The scene is copied (the backend completes its rough plastics).
 /// throws DeviceError  no such instruction set here, Embree failed
-std::unique_ptr<Backend> make_cpu_backend(const FlatScene& scene, const DerivedChannels& derived,
-                                          const SamplingSettings& settings, const CpuOptions& options);
+std::unique_ptr<Backend> make_cpu_backend(std::shared_ptr<const FlatScene> scene,
+                                          const DerivedChannels& derived, const SamplingSettings& settings,
+                                          const CpuOptions& options);
 
 }  // namespace kiloband

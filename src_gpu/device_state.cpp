@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "src_gpu/scene/material_tables.hpp"
-
 namespace kiloband::gpu {
 namespace {
 
@@ -34,10 +32,10 @@ std::vector<std::string> path_defines(const HostScene& host, const DeviceSetting
 
 }  // namespace
 
-HostScene::HostScene(const FlatScene& flat, const DerivedChannels& derived_channels)
-    : scene(flat),
+HostScene::HostScene(std::shared_ptr<const FlatScene> flat, const DerivedChannels& derived_channels)
+    : kept(std::move(flat)),
+      scene(*kept),
       derived(derived_channels),
-      material_tables(make_material_tables(scene)),
       spectra(make_channel_tables(scene, derived)),
       bvh(build_bvh(scene)) {}
 
@@ -58,7 +56,7 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
                               host.spectra.layout.channels)),
       paths_(build_program(context, "path/paths.cl",
                            ProgramOptions{path_defines(host, settings_), settings_.program_cache})),
-      scene_(memory, host.scene, host.material_tables),
+      scene_(memory, host.scene),
       bvh_(memory, host.bvh),
       spectra_(memory, host.spectra) {}
 

@@ -1,6 +1,7 @@
 // Everything of a render that lives on one device; made anew after the device was lost.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,14 +18,14 @@ namespace kiloband::gpu {
 
 /// What is prepared on the host, once per render.
 struct HostScene {
-  HostScene(const FlatScene& flat, const DerivedChannels& derived_channels);
+  HostScene(std::shared_ptr<const FlatScene> flat, const DerivedChannels& derived_channels);
 
   /// Film unit in W m^-2 sr^-1, channels then derived ones.
   std::vector<double> film_scale() const;
 
-  FlatScene scene;
+  std::shared_ptr<const FlatScene> kept;
+  const FlatScene& scene;
   DerivedChannels derived;
-  std::vector<float> material_tables;  // completes scene.materials: before the members below
   ChannelTables spectra;
   Bvh bvh;
 };

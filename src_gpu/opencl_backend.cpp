@@ -39,11 +39,11 @@ std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
 
 class Renderer final : public Backend {
  public:
-  Renderer(const FlatScene& scene, const DerivedChannels& derived, const SamplingSettings& settings,
-           const OpenclOptions& options)
+  Renderer(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+           const SamplingSettings& settings, const OpenclOptions& options)
       : options_(options),
         settings_(settings),
-        host_(scene, derived),
+        host_(std::move(scene), derived),
         method_(options.method.value_or(gpu::kDefaultMethod)),
         context_(gpu::select_device(options.device), {.profiling = true}) {
     limit_memory();
@@ -250,9 +250,10 @@ std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_opencl_backend(const FlatScene& scene, const DerivedChannels& derived,
-                                             const SamplingSettings& settings, const OpenclOptions& options) {
-  return std::make_unique<Renderer>(scene, derived, settings, options);
+std::unique_ptr<Backend> make_opencl_backend(std::shared_ptr<const FlatScene> scene,
+                                             const DerivedChannels& derived, const SamplingSettings& settings,
+                                             const OpenclOptions& options) {
+  return std::make_unique<Renderer>(std::move(scene), derived, settings, options);
 }
 
 }  // namespace kiloband

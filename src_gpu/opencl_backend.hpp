@@ -25,7 +25,8 @@ struct OpenclOptions {
 };
 
 /// throws DeviceError (no device, kernels do not build, out of memory), InputError (no such device)
-std::unique_ptr<Backend> make_opencl_backend(const FlatScene& scene, const DerivedChannels& derived,
-                                             const SamplingSettings& settings, const OpenclOptions& options);
+std::unique_ptr<Backend> make_opencl_backend(std::shared_ptr<const FlatScene> scene,
+                                             const DerivedChannels& derived, const SamplingSettings& settings,
+                                             const OpenclOptions& options);
 
 }  // namespace kiloband

@@ -126,7 +126,7 @@ static inline void advance(Bounce* b, __global const KbBvhNode* nodes, __global 
     b->hit = make_surface_hit(b->scene, &primitives[hit.primitive], hit, vload3(0, ray->origin), b->direction);
     goes_on = shade_surface(b, ray);
   }
-  if (goes_on && b->bounce + 1u >= KB_MAX_BOUNCES) {
+  if (goes_on && b->bounce + 1u >= KB_MAX_VERTICES) {
     b->state.flags |= KB_PATH_INVALID;
     goes_on = false;
   }

@@ -14,6 +14,8 @@
 #include "shared/lang.h"
 #include "shared/records.h"
 
+#define KB_MICROFACET_BECKMANN 0u
+#define KB_MICROFACET_GGX 1u
 #define KB_INV_SQRT_PI 0.56418958354775628695f
 
 KB_FN KbFloat3 kb_float3(float x, float y, float z) {

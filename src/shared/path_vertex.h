@@ -18,9 +18,9 @@
      KB_KIND_TWO_TERM       B(w0, w1) = w0 * S_a + w1 * S_b
      KB_KIND_NONLINEAR      B(w0, w1) = w0 * S_a + w1 * S_b / (1 - S_b * fdr_int(material))
      KB_KIND_CONDUCTOR      B(w0, w1) = w0 * S_a * F_conductor(cos = w1; eta_row, k_row of the material)
-     KB_KIND_DISPERSIVE     B(w0, w1) = w0 * S_a * F_dielectric(cos = w1 signed, eta_row / exterior of the material)
+     KB_KIND_DISPERSIVE     B(w0, w1) = w0 * S_a * F_dielectric(cos = w1 signed, eta_row / ext_row or eta_ext of the material)
      KB_KIND_ROUGH_TRANSMISSION
-                            B(w0, -) = w0 * S_a * T(directions; eta_row / exterior of the material), see
+                            B(w0, -) = w0 * S_a * T(directions; eta_row / ext_row or eta_ext of the material), see
                             shared/rough_transmission.h: every channel has its own half vector. Such a vertex has a
                             light sample (w0 = nee0) or a scattering event (w0 = scatter0), not both, and no emission:
                             what these would need holds the directions

@@ -8,6 +8,7 @@
 #ifndef KILOBAND_SHARED_PIPELINE_H
 #define KILOBAND_SHARED_PIPELINE_H
 
+#include "shared/estimator.h"
 #include "shared/lang.h"
 #include "shared/records.h"
 #include "shared/spectra_layout.h"
@@ -111,7 +112,6 @@ KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 #define KB_PATH_FRESH 0x20000000u          /* what was appended last belongs to the path's first bounce */
 
 /* Channels that stand for all at rough dispersive boundaries. */
-#define KB_MAX_HEROES 8u
 
 /* With dispersion, beside the path's state: what each bin of channels still carries (channel_choice.clh), and the
    probabilities of the heroes (spectral_mis.clh). */

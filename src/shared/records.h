@@ -27,26 +27,24 @@ enum KbMaterialType {
   KB_MATERIAL_COUNT = 7
 };
 
-#define KB_MICROFACET_BECKMANN 0u
-#define KB_MICROFACET_GGX 1u
-
 #define KB_MATERIAL_NONLINEAR 1u      /* plastic: colour shifts by internal scattering */
-#define KB_MATERIAL_DISPERSIVE 2u     /* dielectric: eta depends on the wavelength, eta_row / k_row */
+#define KB_MATERIAL_DISPERSIVE 2u     /* dielectric: eta depends on the wavelength: eta_row, ext_row */
 #define KB_MATERIAL_SAMPLE_VISIBLE 4u /* rough: sample visible normals */
 #define KB_MATERIAL_PERFECT_MIRROR 8u /* conductor: eta 0, k 1, reflectance 1 at every wavelength */
 #define KB_MATERIAL_COMPENSATED 16u   /* rough: scaled by 1 / E, its single-scattering albedo (thermal.h) */
+#define KB_MATERIAL_GGX 32u           /* rough: the distribution of normals; else Beckmann */
 
 /* One leaf BSDF. Spectral quantities are references; scalars that steer sampling are averages over the guide bands. */
 typedef struct {
-  kb_u32 type;         /* KbMaterialType */
-  kb_u32 flags;        /* KB_MATERIAL_* */
-  kb_u32 ref_a;        /* diffuse: reflectance; conductor, plastic, dielectric: specular reflectance */
-  kb_u32 ref_b;        /* plastic: diffuse reflectance; dielectric: specular transmittance;
+  kb_u32 type;    /* KbMaterialType */
+  kb_u32 flags;   /* KB_MATERIAL_* */
+  kb_u32 ref_a;   /* diffuse: reflectance; conductor, plastic, dielectric: specular reflectance */
+  kb_u32 ref_b;   /* plastic: diffuse reflectance; dielectric: specular transmittance;
                           compensated conductor: ref_a times the reflectance at normal incidence */
-  kb_u32 eta_row;      /* conductor: n; dispersive dielectric: interior index; else KB_NONE */
-  kb_u32 k_row;        /* conductor: k; dispersive dielectric: exterior index, or KB_NONE: eta_ext */
-  kb_u32 distribution; /* KB_MICROFACET_* */
-  float alpha_u;       /* roughness along the tangent */
+  kb_u32 eta_row; /* index of refraction inside: conductors, dispersive dielectrics; else KB_NONE */
+  kb_u32 k_row;   /* conductor: extinction coefficient; else KB_NONE */
+  kb_u32 ext_row; /* dispersive: index outside where it depends on the wavelength; KB_NONE: eta_ext */
+  float alpha_u;  /* roughness along the tangent */
   float alpha_v;
   float eta;             /* dielectric, plastic: interior over exterior index (guide mean when dispersive) */
   float eta_ext;         /* dispersive: constant exterior index */
@@ -55,9 +53,7 @@ typedef struct {
                             s / (s + d) of the guide means, mixed with uniform */
   float bound_a;         /* upper bound of ref_a over guide and rendered channels */
   float bound_b;         /* the same of ref_b */
-  kb_u32 table;          /* as flattened: where a compensated material's table begins in the thermal tables,
-                            else KB_NONE; OpenCL: where the material's table of scalars begins
-                            (rough plastic, conductors, then the compensation), or KB_NONE */
+  kb_u32 table;          /* where its tables begin in those of the scene (material_tables.h), or KB_NONE */
 } KbMaterial;
 KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 

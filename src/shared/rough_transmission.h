@@ -10,11 +10,9 @@
 #ifndef KILOBAND_SHARED_ROUGH_TRANSMISSION_H
 #define KILOBAND_SHARED_ROUGH_TRANSMISSION_H
 
+#include "shared/estimator.h"
 #include "shared/lang.h"
 #include "shared/records.h"
-
-/* Roughness below this is this. */
-#define KB_MIN_ALPHA 1e-4f
 
 /* Local frame of the side that the path comes from: wi.z > 0, wo.z < 0. Not stored. */
 typedef struct {

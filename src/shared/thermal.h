@@ -32,29 +32,28 @@
                          equilibrium radiance is higher by that. R is Fresnel's reflectance. ref[i] is chosen in
                          proportion to c_i
      KB_THERMAL_ROUGH    the same with R from a table of KB_COMPENSATION_NODES by nodes_s positions as above (dielectrics:
-                         outside, then inside); of plastics q (1 - R) is replaced by KB_THERMAL_COAT_NODES values at
-                         equidistant cosines, which follow it */
+                         outside, then inside); of plastics q (1 - R) is replaced by KB_COAT_NODES values at equidistant
+                         cosines, which follow it */
 enum KbThermalType {
   KB_THERMAL_UNIFORM = 0,
   KB_THERMAL_NODES = 1,
   KB_THERMAL_SMOOTH = 2,
   KB_THERMAL_ROUGH = 3
 };
-#define KB_THERMAL_COAT_NODES 64
 #define KB_THERMAL_TRANSMITS 1u /* a dielectric */
 
 typedef struct {
   kb_u32 type;   /* KbThermalType */
   kb_u32 flags;  /* KB_THERMAL_TRANSMITS */
   kb_u32 ref[3]; /* emission spectra or bitmaps or checkerboards of them, or KB_NONE */
-  kb_u32 table;  /* into the thermal tables (OpenCL: into the tables of materials), or KB_NONE */
+  kb_u32 table;  /* into the tables of the scene, or KB_NONE */
   kb_u32 nodes_cos, nodes_s;
   kb_u32 first_row;
   float eta;              /* interior over exterior index */
   float q;                /* smooth plastic */
   float alpha_u, alpha_v; /* what s is made of; KB_THERMAL_NODES: roots of the roughnesses */
   kb_u32 field; /* where T depends on the place: a bitmap of kelvins, or KB_FIELD_VERTEX; else KB_NONE */
-  kb_u32 field_offset; /* KB_FIELD_VERTEX: T of vertex i is thermal table entry field_offset + i (mod 2^32) */
+  kb_u32 field_offset; /* KB_FIELD_VERTEX: T of vertex i is entry field_offset + i (mod 2^32) of the tables */
   kb_u32 reserved;
 } KbThermal;
 KB_STATIC_ASSERT(sizeof(KbThermal) == 64, thermal_size);

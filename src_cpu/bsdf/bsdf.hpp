@@ -16,7 +16,6 @@
 #include <glm/glm.hpp>
 
 #include "shared/records.h"
-#include "src_cpu/bsdf/rough_transmittance.hpp"
 
 namespace kiloband {
 
@@ -56,8 +55,8 @@ struct DispersionState {
 /// A material with what is kept beside its record.
 struct MaterialContext {
   const KbMaterial* material = nullptr;
-  const RoughTransmittance* rough_transmittance = nullptr;  // for KB_MATERIAL_ROUGH_PLASTIC, else unused
-  DispersionState dispersion;                               // for KB_MATERIAL_DISPERSIVE, else unused
+  const float* table = nullptr;  // its tables (shared/material_tables.h), if it has any
+  DispersionState dispersion;    // for KB_MATERIAL_DISPERSIVE, else unused
   /// For KB_MATERIAL_COMPENSATED: its table (shared/thermal.h), else unused.
   const float* compensation = nullptr;
 };

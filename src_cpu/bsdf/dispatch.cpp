@@ -1,6 +1,7 @@
 // Chooses the material's functions; the diffuse model itself is here.
 #include <stdexcept>
 
+#include "shared/estimator.h"
 #include "shared/planted_faults.h"
 #include "shared/thermal.h"
 #include "src_cpu/bsdf/bsdf.hpp"
@@ -23,9 +24,9 @@ float index_ratio(const MaterialContext& context) {
   return m.flags & KB_MATERIAL_DISPERSIVE && context.dispersion.eta > 0 ? context.dispersion.eta : m.eta;
 }
 
-const RoughTransmittance& table_of(const MaterialContext& context) {
-  if (!context.rough_transmittance) throw std::logic_error("rough plastic without its transmittance table");
-  return *context.rough_transmittance;
+const float* coat_of(const MaterialContext& context) {
+  if (!context.table) throw std::logic_error("rough plastic without its transmittance table");
+  return context.table;
 }
 
 BsdfValue eval_dielectric_side(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) {
@@ -69,8 +70,7 @@ TablePlace table_place(float position, int nodes) {
 
 float lobe_albedo(const MaterialContext& context, glm::vec3 wi) {
   const KbMaterial& m = *context.material;
-  const float alpha_u = std::max(m.alpha_u, Microfacet::kMinAlpha),
-              alpha_v = std::max(m.alpha_v, Microfacet::kMinAlpha);
+  const float alpha_u = std::max(m.alpha_u, KB_MIN_ALPHA), alpha_v = std::max(m.alpha_v, KB_MIN_ALPHA);
   const float root = std::sqrt(alpha_u * alpha_u * wi.x * wi.x + alpha_v * alpha_v * wi.y * wi.y);
   const float cosine = std::abs(wi.z);
   const int nodes_s = static_cast<int>(context.compensation[0]),
@@ -144,7 +144,7 @@ static BsdfValue eval_uncompensated(const MaterialContext& context, glm::vec3 wi
     case KB_MATERIAL_PLASTIC:
       return lobes::eval_plastic(material, wi, wo);
     case KB_MATERIAL_ROUGH_PLASTIC:
-      return lobes::eval_rough_plastic(material, table_of(context), wi, wo);
+      return lobes::eval_rough_plastic(material, coat_of(context), wi, wo);
     default:
       return {};
   }
@@ -166,7 +166,7 @@ static BsdfSample sample_uncompensated(const MaterialContext& context, glm::vec3
     case KB_MATERIAL_PLASTIC:
       return lobes::sample_plastic(material, wi, u_lobe, u);
     case KB_MATERIAL_ROUGH_PLASTIC:
-      return lobes::sample_rough_plastic(material, table_of(context), wi, u_lobe, u);
+      return lobes::sample_rough_plastic(material, coat_of(context), wi, u_lobe, u);
     default:
       return {};
   }

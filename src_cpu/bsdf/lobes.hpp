@@ -40,10 +40,9 @@ BsdfSample sample_rough_dielectric(const KbMaterial& material, glm::vec3 wi, flo
 
 BsdfValue eval_plastic(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo);
 BsdfSample sample_plastic(const KbMaterial& material, glm::vec3 wi, float u_lobe, glm::vec2 u);
-BsdfValue eval_rough_plastic(const KbMaterial& material, const RoughTransmittance& table, glm::vec3 wi,
-                             glm::vec3 wo);
-BsdfSample sample_rough_plastic(const KbMaterial& material, const RoughTransmittance& table, glm::vec3 wi,
-                                float u_lobe, glm::vec2 u);
+BsdfValue eval_rough_plastic(const KbMaterial& material, const float* coat, glm::vec3 wi, glm::vec3 wo);
+BsdfSample sample_rough_plastic(const KbMaterial& material, const float* coat, glm::vec3 wi, float u_lobe,
+                                glm::vec2 u);
 
 /// A reflection by microfacets: half vector and what both conductor and plastic need of it.
 struct FacetReflection {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "shared/estimator.h"
 #include "shared/planted_faults.h"
 #include "shared/records.h"
 
@@ -16,16 +17,14 @@ namespace kiloband {
 
 class Microfacet {
  public:
-  static constexpr float kMinAlpha = 1e-4f;
-
   explicit Microfacet(const KbMaterial& material)
-      : Microfacet(material.distribution == KB_MICROFACET_GGX, material.alpha_u, material.alpha_v,
+      : Microfacet((material.flags & KB_MATERIAL_GGX) != 0, material.alpha_u, material.alpha_v,
                    (material.flags & KB_MATERIAL_SAMPLE_VISIBLE) != 0) {
     if (KB_PLANTED(ROUGHNESS_SQUARED)) alpha_u_ *= alpha_u_, alpha_v_ *= alpha_v_;
   }
   Microfacet(bool ggx, float alpha_u, float alpha_v, bool visible)
-      : alpha_u_(std::max(alpha_u, kMinAlpha)),
-        alpha_v_(std::max(alpha_v, kMinAlpha)),
+      : alpha_u_(std::max(alpha_u, KB_MIN_ALPHA)),
+        alpha_v_(std::max(alpha_v, KB_MIN_ALPHA)),
         ggx_(ggx),
         visible_(visible) {}
 

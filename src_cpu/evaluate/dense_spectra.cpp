@@ -216,12 +216,12 @@ std::array<const float*, 2> DenseSpectra::dispersive(uint32_t material, bool ins
   MaterialRows& rows = material_rows(material);
   if (rows.generation[inside] != generation_) {
     const KbMaterial& record = scene_.materials[material];
-    if (record.k_row != KB_NONE && record.k_row >= rows_.size()) throw_bad_row(record.k_row);
+    if (record.ext_row != KB_NONE && record.ext_row >= rows_.size()) throw_bad_row(record.ext_row);
     rows.data[inside] = {new_row(), new_row(), nullptr};
     for (std::size_t k = 0; k < channels_; ++k) {
       const double interior = value_at(scene_.spectra[record.eta_row], lambda_[k]);
       const double exterior =
-          record.k_row == KB_NONE ? record.eta_ext : value_at(scene_.spectra[record.k_row], lambda_[k]);
+          record.ext_row == KB_NONE ? record.eta_ext : value_at(scene_.spectra[record.ext_row], lambda_[k]);
       const double e = inside ? exterior / interior : interior / exterior;
       split((e - 1) * (e + 1), rows.data[inside][0][k], rows.data[inside][1][k]);
     }

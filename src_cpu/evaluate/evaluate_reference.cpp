@@ -125,7 +125,7 @@ double vertex_fresnel(const Point& at, const KbPathVertex& vertex, double cosine
     return fresnel(cosine, {spectrum(at, m.eta_row), spectrum(at, m.k_row)});
   }
   const double interior = spectrum(at, m.eta_row);
-  const double exterior = m.k_row == KB_NONE ? m.eta_ext : spectrum(at, m.k_row);
+  const double exterior = m.ext_row == KB_NONE ? m.eta_ext : spectrum(at, m.ext_row);
   return fresnel(cosine, cosine < 0 ? exterior / interior : interior / exterior);
 }
 
@@ -133,7 +133,7 @@ double vertex_fresnel(const Point& at, const KbPathVertex& vertex, double cosine
 double rough_transmission(const Point& at, const KbPathVertex& vertex) {
   const KbMaterial& m = at.scene.materials[vertex.head >> KB_VERTEX_MATERIAL_SHIFT];
   const KbTransmissionPair p = kb_transmission_pair(vertex);
-  const double exterior = m.k_row == KB_NONE ? m.eta_ext : spectrum(at, m.k_row);
+  const double exterior = m.ext_row == KB_NONE ? m.eta_ext : spectrum(at, m.ext_row);
   const double ratio = spectrum(at, m.eta_row) / exterior;
   const double e = p.inside ? 1 / ratio : ratio;
   double x = p.ix + e * p.ox, y = p.iy + e * p.oy, z = p.iz + e * p.oz;
@@ -144,8 +144,7 @@ double rough_transmission(const Point& at, const KbPathVertex& vertex) {
   if (!(dot_i > 0) || !(dot_o < 0)) return 0;
   const double au = std::max(m.alpha_u, KB_MIN_ALPHA), av = std::max(m.alpha_v, KB_MIN_ALPHA);
   const double slope2 = (x * x / (au * au) + y * y / (av * av)) / (z * z);
-  const double shape =
-      m.distribution == KB_MICROFACET_GGX ? 1 / ((1 + slope2) * (1 + slope2)) : std::exp(-slope2);
+  const double shape = m.flags & KB_MATERIAL_GGX ? 1 / ((1 + slope2) * (1 + slope2)) : std::exp(-slope2);
   const double density = shape / (KB_PI * au * av * z * z * z * z);
   return (1 - fresnel(dot_i, e)) * density * dot_i * -dot_o / size2;
 }

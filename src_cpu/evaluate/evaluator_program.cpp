@@ -211,7 +211,7 @@ void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& ve
   out.transmission.inverse_alpha_u = 1 / alpha_u;
   out.transmission.inverse_alpha_v = 1 / alpha_v;
   out.transmission.norm = KB_INV_PI / (alpha_u * alpha_v);
-  out.transmission.ggx = m.distribution == KB_MICROFACET_GGX;
+  out.transmission.ggx = (m.flags & KB_MATERIAL_GGX) != 0;
 }
 
 /// corners: of texels of colours.

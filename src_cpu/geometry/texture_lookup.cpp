@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/estimator.h"
 #include "shared/planted_faults.h"
 
 namespace kiloband {
@@ -28,11 +29,8 @@ double wrap_period(double x, double period) {
   return x - period * std::floor(x / period);
 }
 
-// Beyond this many texels (or for NaN) a coordinate has no meaningful fraction; texel 0 is taken.
-constexpr double kLargestCoordinate = 1e12;
-
 double usable(double x) {
-  return std::fabs(x) < kLargestCoordinate ? x : 0;
+  return std::fabs(x) < double{KB_LARGEST_COORDINATE} ? x : 0;
 }
 
 AxisSample wrap_clamp(double x, uint32_t size) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/estimator.h"
 #include "shared/planted_faults.h"
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
@@ -32,11 +33,6 @@ bool lit_on_both_sides(const KbShape& shape) {
   return shape.flags & KB_SHAPE_LIT_BOTH_SIDES;
 }
 
-/// A light that shines on both sides, or by tilted vertex normals, lies edge-on to whatever is in its plane,
-/// itself too; only rounding would say which side is seen. Below this cosine it is not sampled:
-/// BSDF samples find it.
-constexpr float kEdgeOn = 1e-6f;
-
 /// The geometric normal of the side that is seen; 0: it does not emit to there, or is edge-on. Vertex normals
 /// may let a triangle shine to the back of its winding: the density goes with the geometric
 /// cosine all the same.
@@ -44,7 +40,7 @@ glm::vec3 lit_side(const KbShape& shape, glm::vec3 to_light, glm::vec3 geometric
                    glm::vec3 shading_normal) {
   if (!lit_on_both_sides(shape) && !on_front(shading_normal, -to_light)) return glm::vec3(0);
   const float away = glm::dot(to_light, geometric_normal);
-  if (!(std::fabs(away) > kEdgeOn * glm::length(to_light))) return glm::vec3(0);
+  if (!(std::fabs(away) > KB_EDGE_ON * glm::length(to_light))) return glm::vec3(0);
   return away > 0 ? -geometric_normal : geometric_normal;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "shared/material_tables.h"
 #include "shared/thermal.h"
 #include "src_cpu/bsdf/fresnel.hpp"
 #include "src_cpu/geometry/texture_lookup.hpp"
@@ -43,7 +44,7 @@ uint32_t choose_node(float position, uint32_t count, float u) {
 }
 
 uint32_t row_of_nodes(const FlatScene& scene, const KbThermal& thermal, const Aspect& aspect, glm::vec2 u) {
-  const float* cosines = &scene.thermal_tables[thermal.table];
+  const float* cosines = &scene.tables[thermal.table];
   const uint32_t below =
       std::min(find_interval(cosines, thermal.nodes_cos, aspect.cosine), thermal.nodes_cos - 2);
   const float t = (aspect.cosine - cosines[below]) / (cosines[below + 1] - cosines[below]);
@@ -70,7 +71,7 @@ float reflected_part(const KbThermal& thermal, const float* table, const Aspect&
 /// c_0 .. c_2 of KB_THERMAL_SMOOTH and _ROUGH.
 void coefficients(const FlatScene& scene, const KbThermal& thermal, const Aspect& aspect, float (&c)[3]) {
   const bool transmits = thermal.flags & KB_THERMAL_TRANSMITS;
-  const float* table = thermal.table == KB_NONE ? nullptr : &scene.thermal_tables[thermal.table];
+  const float* table = thermal.table == KB_NONE ? nullptr : &scene.tables[thermal.table];
   const float eta = aspect.below && transmits ? 1 / thermal.eta : thermal.eta;
   c[0] = table ? reflected_part(thermal, table, aspect) : fresnel_dielectric(aspect.cosine, eta).reflectance;
   if (transmits) {
@@ -82,8 +83,8 @@ void coefficients(const FlatScene& scene, const KbThermal& thermal, const Aspect
   }
   c[1] = thermal.q * (1 - c[0]);
   if (table) {
-    const float position = aspect.cosine * (KB_THERMAL_COAT_NODES - 1);
-    c[1] = interpolated(table + thermal.nodes_s * KB_COMPENSATION_NODES, KB_THERMAL_COAT_NODES, position);
+    const float position = aspect.cosine * (KB_COAT_NODES - 1);
+    c[1] = interpolated(table + thermal.nodes_s * KB_COMPENSATION_NODES, KB_COAT_NODES, position);
   }
   c[2] = std::max(0.0f, 1 - c[0] - c[1]);
 }
@@ -117,7 +118,7 @@ float temperature_at(const FlatScene& scene, const KbThermal& thermal, const Sur
     return bitmap_value(scene, sample_bitmap(scene.textures[thermal.field], thermal.field, hit.uv));
   const KbShape& shape = scene.shapes[hit.shape];
   const uint32_t* vertex = &scene.triangles[3 * (std::size_t{shape.first_triangle} + hit.triangle)];
-  const auto value = [&](int i) { return scene.thermal_tables[uint32_t(thermal.field_offset + vertex[i])]; };
+  const auto value = [&](int i) { return scene.tables[uint32_t(thermal.field_offset + vertex[i])]; };
   const float w = 1 - hit.barycentric.x - hit.barycentric.y;
   return w * value(0) + hit.barycentric.x * value(1) + hit.barycentric.y * value(2);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "shared/estimator.h"
 #include "shared/planted_faults.h"
 #include "shared/sampler.h"
 #include "src_cpu/geometry/texture_lookup.hpp"
@@ -14,9 +15,6 @@ namespace kiloband {
 namespace {
 
 constexpr uint32_t kWavefront = 16;  // paths that advance together
-/// Tables are finite and of order 1 (emission in film units),
-/// so a path's value is finite if its weights stay below this.
-constexpr float kLargestWeight = 1e34f;
 
 /// Multiplies `magnitude` by the vertex's scatter weight; false where a contribution could leave the range of
 /// floats or is NaN already. scale: of the weights, where the vertex's spectral factor is not of order 1.
@@ -27,10 +25,10 @@ bool stays_finite(const KbPathVertex& v, float scale, float& magnitude) {
   const bool two =
       kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;  // else the second number is no weight
   const float lit = v.head & KB_VERTEX_NEE ? std::fabs(v.nee0) + (two ? std::fabs(v.nee1) : 0.0f) : 0.0f;
-  const bool fits = magnitude * (emitted + scale * lit) < kLargestWeight;
+  const bool fits = magnitude * (emitted + scale * lit) < KB_LARGEST_WEIGHT;
   if (v.head & KB_VERTEX_SCATTER)
     magnitude *= scale * (std::fabs(v.scatter0) + (two ? std::fabs(v.scatter1) : 0.0f));
-  return fits && magnitude < kLargestWeight;
+  return fits && magnitude < KB_LARGEST_WEIGHT;
 }
 
 void set_flag(KbPathVertex& vertex, uint32_t flag) {
@@ -38,18 +36,6 @@ void set_flag(KbPathVertex& vertex, uint32_t flag) {
 }
 
 }  // namespace
-
-TracerScene::TracerScene(FlatScene& scene, const EmbreeScene& embree_scene)
-    : flat(&scene), embree(&embree_scene), rough(scene.materials.size()), conductors(scene.materials.size()) {
-  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    KbMaterial& material = scene.materials[m];
-    if (material.type == KB_MATERIAL_ROUGH_PLASTIC) {
-      rough[m] = make_rough_transmittance(material);
-      material.fdr_int = rough[m].internal_reflectance;
-    }
-    if (eval_kind(material) == KB_KIND_CONDUCTOR) conductors[m] = ConductorBound(scene, material);
-  }
-}
 
 PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& settings)
     : scene_(scene), flat_(*scene.flat), settings_(settings) {
@@ -79,7 +65,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
 
 void PathTracer::run_wavefront(const SampleId& id, std::span<const float> mu) {
   for (uint32_t bounce = 0; !active_.empty(); ++bounce) {
-    if (bounce >= kMaxVertices) {
+    if (bounce >= KB_MAX_VERTICES) {
       for (const uint32_t path : active_) paths_[path].invalid = true;
       return;
     }

@@ -20,7 +20,6 @@
 #include "render/backend.hpp"
 #include "shared/sampler.h"
 #include "src_cpu/bsdf/bsdf.hpp"
-#include "src_cpu/bsdf/conductor_bound.hpp"
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
 #include "src_cpu/light/emitter.hpp"
@@ -35,12 +34,6 @@ namespace kiloband {
 struct TracerScene {
   const FlatScene* flat = nullptr;
   const EmbreeScene* embree = nullptr;
-  std::vector<RoughTransmittance> rough;   // one per material; only rough plastics use theirs
-  std::vector<ConductorBound> conductors;  // one per material; only conductors use theirs
-
-  TracerScene() = default;
-  /// Completes the tables of a scene; rough plastics get their internal reflectance.
-  TracerScene(FlatScene& scene, const EmbreeScene& embree_scene);
 };
 
 /// Which sample of every pixel: number `sample` of the pixel, `index` of its replicate.
@@ -89,9 +82,9 @@ class PathTracer {
   };
   /// What a path carries in scenes with dispersion besides.
   struct DispersedPath {
-    BinnedThroughput carried;                      // in each bin of channels
-    uint32_t heroes = 0;                           // of spectral MIS; 0: none chosen yet
-    std::array<float, kMaxHeroes> hero_weights{};  // q_c
+    BinnedThroughput carried;                         // in each bin of channels
+    uint32_t heroes = 0;                              // of spectral MIS; 0: none chosen yet
+    std::array<float, KB_MAX_HEROES> hero_weights{};  // q_c
   };
   struct Slot {
     KbPathVertex vertex;

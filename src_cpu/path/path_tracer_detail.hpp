@@ -6,7 +6,6 @@
 
 namespace kiloband {
 
-inline constexpr uint32_t kMaxVertices = 100000;  // a longer path counts as invalid and is reported
 inline constexpr float kInfiniteDistance = std::numeric_limits<float>::infinity();
 
 /// Veach's power heuristic with beta = 2: the weight of the technique with density pdf against one with

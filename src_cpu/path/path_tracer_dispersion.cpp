@@ -16,7 +16,7 @@ float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, floa
       flat_.channels[KB_PLANTED(CHANNEL_INDEX) ? (channel + 1) % flat_.channels.size() : channel];
   const double lambda_nm = (1.0 - mu) * c.min_nm + mu * c.max_nm;
   const double exterior =
-      material.k_row == KB_NONE ? material.eta_ext : flat_.spectra[material.k_row].table(lambda_nm);
+      material.ext_row == KB_NONE ? material.eta_ext : flat_.spectra[material.ext_row].table(lambda_nm);
   return static_cast<float>(flat_.spectra[material.eta_row].table(lambda_nm) / exterior);
 }
 
@@ -72,7 +72,7 @@ HeroSet PathTracer::choose_heroes(const Path& path, const KbMaterial& material, 
   if (material.flags & KB_MATERIAL_COMPENSATED) return {};
   const auto channels = static_cast<uint32_t>(flat_.channels.size());
   HeroSet heroes;
-  heroes.count = std::min(kMaxHeroes, channels);
+  heroes.count = std::min(KB_MAX_HEROES, channels);
   DispersedPath& own = dispersed(path);
   if (own.heroes == 0) {
     own.heroes = heroes.count;
@@ -151,7 +151,7 @@ bool PathTracer::scatter_heroes(Path& path, const Boundary& at, const HeroSet& h
   draft.scale = density.value / pair.weight;
   // Channels between the heroes may carry a little more, or all where no hero has anything: never below
   // delta, so that roulette does not stop them all.
-  path.bound *= std::max(density.bound / density.pdf, kNoHero) *
+  path.bound *= std::max(density.bound / density.pdf, KB_NO_HERO) *
                 (pair.transmission ? at.material.bound_b : at.material.bound_a);
   if (!(path.bound > 0)) return false;
   for (uint32_t c = 0; c < heroes.count; ++c)

@@ -110,7 +110,7 @@ void PathTracer::pass_boundary(Path& path, GasPath& gas, TraceRay& ray) {
   gas.far -= ray.t_max;
   ray = TraceRay(leave_surface(hit, direction), direction, 0, gas.far);
   gas.begin = begin_at(hit, ray.origin(), direction);
-  if (++gas.crossings >= kMaxVertices) {
+  if (++gas.crossings >= KB_MAX_VERTICES) {
     path.invalid = true;
     return;  // as if it left the scene
   }
@@ -227,7 +227,7 @@ bool PathTracer::walk_shadow(Path& path, ShadowOwner at, const ShadowRay& shadow
     if (infinite ? !arrives && medium != flat_.atmosphere : true)
       add_column(path, columns, medium, ray, at.begin);
     if (arrives) return true;
-    if (crossings >= kMaxVertices) return path.invalid = true, false;
+    if (crossings >= KB_MAX_VERTICES) return path.invalid = true, false;
     const SurfaceHit hit = surface_of(flat_, ray);
     cross(path, at.media, hit.shape, glm::dot(hit.geometric_normal, direction) >= 0);
     const glm::vec3 from = leave_surface(hit, direction);

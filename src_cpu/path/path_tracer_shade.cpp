@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/estimator.h"
+#include "shared/material_tables.h"
 #include "shared/planted_faults.h"
 #include "shared/sampler.h"
 #include "src_cpu/geometry/boundary.hpp"
@@ -11,10 +13,6 @@
 
 namespace kiloband {
 namespace {
-
-/// Light that a BSDF scales by less is none. Far tails of normal distributions would otherwise be light or
-/// not by whether a device flushes denormals; both backends use this limit. [1/sr]
-constexpr float kLeastBsdfValue = 1e-30f;
 
 bool is_black(const KbMaterial& material) {
   return material.bound_a == 0 && material.bound_b == 0;
@@ -87,9 +85,9 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   }
   wi = frame.to_local(-direction);
 
-  MaterialContext material{&record, &scene_.rough[side], {}};
+  MaterialContext material{&record, record.table == KB_NONE ? nullptr : &flat_.tables[record.table], {}};
   if (record.flags & KB_MATERIAL_COMPENSATED) {
-    material.compensation = &flat_.thermal_tables[record.table];
+    material.compensation = material.table + kb_floats_before_compensation(record.type, record.flags);
     // A metal's compensation has two parts, a and a F0: one of them is taken,
     // for light and BSDF sample alike.
     if (eval_kind(record) == KB_KIND_CONDUCTOR && u.x >= lobe_albedo(material, wi)) {
@@ -161,7 +159,7 @@ bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hi
   const LightSample light = choose_light(path, hit, id, bounce);
   if (!(light.pdf > 0) || !(light.factor > 0)) return false;
   const BsdfValue value = eval_bsdf(material, wi, frame.to_local(light.direction));
-  if (value.w0 < kLeastBsdfValue && value.w1 < kLeastBsdfValue) return false;
+  if (value.w0 < KB_LEAST_BSDF_VALUE && value.w1 < KB_LEAST_BSDF_VALUE) return false;
   const bool conductor = (draft.vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_CONDUCTOR;
   const float mis = light.delta ? 1 : power_heuristic(light.pdf, value.pdf * opacity);
   const float pdf = KB_PLANTED(LIGHT_PDF) ? 1.005f * light.pdf : light.pdf;
@@ -199,9 +197,7 @@ bool PathTracer::scatter(Draft& draft, Path& path, const SurfaceHit& hit, const 
                          const SampleId& id, uint32_t bounce, float mu) {
   const KbMaterial& record = *material.material;
   BsdfSample sample = sample_bsdf(material, wi, u.x, {u.y, u.z});
-  if (sample.kind == KB_KIND_CONDUCTOR) {
-    sample.bound *= scene_.conductors[draft.vertex.head >> KB_VERTEX_MATERIAL_SHIFT].at(sample.w1);
-  }
+  if (sample.kind == KB_KIND_CONDUCTOR) sample.bound *= kb_conductor_bound(material.table, sample.w1);
   const bool has_light = draft.vertex.head & KB_VERTEX_NEE;
   bool use_b = sample.lobe_b;
   if (sample.needs_channel && !refract_one_channel(draft, path, record, wi, sample, id, bounce, mu))

@@ -22,12 +22,12 @@ uint32_t hero_channel(uint32_t c, uint32_t heroes, uint32_t channels, float offs
 
 HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec3 wo) {
   HeroDensity density;
-  const float even = KB_PLANTED(HERO_DEFENSIVE) ? 0 : kNoHero * std::abs(wo.z) * (0.5f * KB_INV_PI);
+  const float even = KB_PLANTED(HERO_DEFENSIVE) ? 0 : KB_NO_HERO * std::abs(wo.z) * (0.5f * KB_INV_PI);
   const bool transmission = wi.z * wo.z < 0;
   for (uint32_t c = 0; c < heroes.count; ++c) {
     const BsdfValue value = eval_bsdf(seen_by(material, heroes.eta[c]), wi, wo);
     const float eta = wi.z < 0 ? 1 / heroes.eta[c] : heroes.eta[c];
-    density.hero[c] = (1 - kNoHero) * value.pdf + even;
+    density.hero[c] = (1 - KB_NO_HERO) * value.pdf + even;
     density.pdf += heroes.q[c] * density.hero[c];
     density.value = std::max(density.value, value.w0);
     density.bound = std::max(density.bound, transmission ? value.w0 * eta * eta : value.w0);
@@ -37,7 +37,7 @@ HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm:
 
 glm::vec3 sample_heroes(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec2 u_hero,
                         float u_lobe, glm::vec2 u) {
-  if (u_hero.y < kNoHero) {
+  if (u_hero.y < KB_NO_HERO) {
     const glm::vec3 wo = lobes::cosine_direction(u);
     return u_lobe < 0.5f ? wo : glm::vec3(wo.x, wo.y, -wo.z);
   }

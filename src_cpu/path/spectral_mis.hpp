@@ -16,21 +16,19 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "shared/estimator.h"
 #include "src_cpu/bsdf/bsdf.hpp"
 
 namespace kiloband {
-
-inline constexpr uint32_t kMaxHeroes = 8;
-inline constexpr float kNoHero = 1.0f / 32;  // delta
 
 /// Hero c of a path: a channel index in [0, channels). offset: xi in [0, 1).
 uint32_t hero_channel(uint32_t c, uint32_t heroes, uint32_t channels, float offset);
 
 /// The heroes at one boundary.
 struct HeroSet {
-  uint32_t count = 0;                   // C = min(K, kMaxHeroes)
-  std::array<float, kMaxHeroes> eta{};  // interior over exterior index of each
-  std::array<float, kMaxHeroes> q{};    // sums to 1
+  uint32_t count = 0;                      // C = min(K, KB_MAX_HEROES)
+  std::array<float, KB_MAX_HEROES> eta{};  // interior over exterior index of each
+  std::array<float, KB_MAX_HEROES> q{};    // sums to 1
 };
 
 /// A direction as the heroes see it.
@@ -38,7 +36,7 @@ struct HeroDensity {
   float pdf = 0;    // p [1/sr]
   float value = 0;  // largest f_c |cos theta_o| over the heroes, without spectral factors [1/sr]
   float bound = 0;  // the same without the radiance scaling of transmission
-  std::array<float, kMaxHeroes> hero{};  // p'_c
+  std::array<float, KB_MAX_HEROES> hero{};  // p'_c
 };
 HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec3 wo);
 

@@ -125,11 +125,11 @@ void TableMaker::add_conductor(const KbMaterial& material) {
 void TableMaker::add_dispersive(const KbMaterial& material) {
   RowFunction relative = spectrum_row(spectrum(material.eta_row));
   const auto interior = relative.value;
-  if (material.k_row == KB_NONE) {
+  if (material.ext_row == KB_NONE) {
     const double exterior = material.eta_ext;
     relative.value = [interior, exterior](double x) { return (interior(x) - exterior) / exterior; };
   } else {
-    const RowFunction outside = spectrum_row(spectrum(material.k_row));
+    const RowFunction outside = spectrum_row(spectrum(material.ext_row));
     relative.merge(outside);
     relative.curved = true;
     relative.value = [interior, exterior = outside.value](double x) {

@@ -93,11 +93,10 @@ KbSceneConstants scene_constants(const FlatScene& scene) {
   return c;
 }
 
-DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
-                         const std::vector<float>& material_tables)
+DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene)
     : constants_(memory.upload("scene constants", std::vector{scene_constants(scene)})),
       materials_(memory.upload("materials", scene.materials)),
-      material_tables_(memory.upload("material tables", material_tables)),
+      tables_(memory.upload("tables", scene.tables)),
       surfaces_(memory.upload("surfaces", scene.surfaces)),
       shapes_(memory.upload("shapes", scene.shapes)),
       textures_(memory.upload("textures", scene.textures)),
@@ -123,10 +122,10 @@ DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene,
       thermals_(memory.upload("thermal emission", scene.thermals)) {}
 
 void DeviceScene::bind(Kernel& kernel, uint32_t first) const {
-  kernel.set_from(first, constants_, materials_, material_tables_, surfaces_, shapes_, textures_,
-                  checkerboards_, texels_, texel_bounds_, spectrum_bounds_, normals_, uvs_, positions_,
-                  triangles_, area_cdf_, emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_, media_,
-                  plume_nodes_, interiors_, filter_table_, thermals_);
+  kernel.set_from(first, constants_, materials_, tables_, surfaces_, shapes_, textures_, checkerboards_,
+                  texels_, texel_bounds_, spectrum_bounds_, normals_, uvs_, positions_, triangles_, area_cdf_,
+                  emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_, media_, plume_nodes_, interiors_,
+                  filter_table_, thermals_);
 }
 
 DeviceBvh::DeviceBvh(DeviceMemory& memory, const Bvh& bvh)

@@ -27,9 +27,8 @@ class DeviceScene {
  public:
   static constexpr uint32_t kArguments = 24;
 
-  /// material_tables  of make_material_tables(), which must have completed scene.materials before
   /// throws DeviceOutOfMemory naming the array that does not fit; DeviceLost, DeviceError
-  DeviceScene(DeviceMemory& memory, const FlatScene& scene, const std::vector<float>& material_tables);
+  DeviceScene(DeviceMemory& memory, const FlatScene& scene);
 
   /// Sets the kernel's arguments first .. first + kArguments - 1. The scene must outlive its launches.
   void bind(Kernel& kernel, uint32_t first) const;
@@ -44,7 +43,7 @@ class DeviceScene {
  private:
   DeviceBuffer<KbSceneConstants> constants_;
   DeviceBuffer<KbMaterial> materials_;
-  DeviceBuffer<float> material_tables_;
+  DeviceBuffer<float> tables_;
   DeviceBuffer<KbSurface> surfaces_;
   DeviceBuffer<KbShape> shapes_;
   DeviceBuffer<KbTexture> textures_;

@@ -59,7 +59,8 @@ FlatScene closed_room(uint32_t size, int rr_depth, const std::string& bands) {
       "value='0.1'/></transform><emitter type='area'><spectrum name='radiance' value='400:1, "
       "700:3'/></emitter></shape></scene>";
   const ChannelList channels = parse_channels(bands);
-  return flatten(read_scene_text(xml, "room.xml", ".", {}), {channels, parse_channels("400:700:4"), {}});
+  return *compile_scene(read_scene_text(xml, "room.xml", ".", {}),
+                        {channels, parse_channels("400:700:4"), {}});
 }
 
 struct Render {
@@ -73,7 +74,7 @@ Render render_with(const FlatScene& scene, OpenclOptions options, uint32_t sampl
   options.sink = [&](const Diagnostic& d) { result.notes.push_back(d.to_string()); };
   SamplingSettings sampling;
   sampling.replicates = 1;
-  const auto backend = make_opencl_backend(scene, {}, sampling, options);
+  const auto backend = make_opencl_backend(std::make_shared<const FlatScene>(scene), {}, sampling, options);
   const Film& f = scene.film;
   SpectralFilm film({0, 0, f.crop_width, f.crop_height}, {scene.channels.size(), 1, false, false});
   std::vector<uint32_t> blocks(film.blocks().size());

@@ -43,7 +43,7 @@ void check_light(const FlatScene& scene) {
 }  // namespace
 
 void flatten_and_check(const SceneDescription& description, const ChannelList& channels) {
-  const FlatScene scene = flatten(description, {channels, {}, {}});
+  const FlatScene scene = *compile_scene(description, {channels, {}, {}});
   promise(scene.channels.size() == channels.size() && scene.channel_scale.size() == channels.size(),
           "channels got lost");
   check_geometry(scene);

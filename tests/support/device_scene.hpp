@@ -35,8 +35,7 @@ inline KbSceneConstants probe_constants(const FlatScene& scene) {
 template <class Probe>
 class DeviceScene {
  public:
-  DeviceScene(Probe& probe, const FlatScene& scene, const std::vector<float>& material_tables = {})
-      : probe_(probe) {
+  DeviceScene(Probe& probe, const FlatScene& scene) : probe_(probe) {
     std::vector<float> bounds;
     for (const SpectrumRow& row : scene.spectra) bounds.push_back(row.bound);
     std::vector<KbFloat2> filter;
@@ -45,7 +44,7 @@ class DeviceScene {
     const auto up = [&](const auto& values) { return probe.upload(values); };
     buffers_ = {up(std::vector{probe_constants(scene)}),
                 up(scene.materials),
-                up(material_tables),
+                up(scene.tables),
                 up(scene.surfaces),
                 up(scene.shapes),
                 up(scene.textures),

@@ -62,7 +62,7 @@ RenderResult render(const RenderSpec& spec) {
   const SceneDescription description = read_scene_text(spec.xml, "test.xml", spec.directory, read);
   const ChannelList channels = parse_channels(spec.bands);
   const ChannelList guide = spec.guide.empty() ? channels : parse_channels(spec.guide);
-  result.scene = flatten(description, {channels, guide, sink});
+  result.scene = *compile_scene(description, {channels, guide, sink});
   const DerivedChannels derived = derived_of(spec, channels);
 
   const ReplicatePlan plan = ReplicatePlan::deal(spec.spp, spec.sampling.replicates);

@@ -123,7 +123,7 @@ ZooFolder::~ZooFolder() {
 
 FlatScene ZooFolder::flatten(const ZooScene& scene, const std::string& bands) const {
   const SceneDescription description = read_scene_text(scene.xml, scene.name + ".xml", path_, {});
-  return kiloband::flatten(description, {parse_channels(bands), parse_channels(kZooBands), {}});
+  return *compile_scene(description, {parse_channels(bands), parse_channels(kZooBands), {}});
 }
 
 DerivedChannels zoo_responses(const ChannelList& channels) {

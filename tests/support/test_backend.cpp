@@ -27,7 +27,9 @@ std::unique_ptr<Backend> make_test_backend(const FlatScene& scene, const Derived
                                            const SamplingSettings& settings, const std::string& isa,
                                            int threads) {
   const std::string name = test_backend_name();
-  if (name == "cpu") return make_cpu_backend(scene, derived, settings, {isa_of(isa), threads});
+  if (name == "cpu")
+    return make_cpu_backend(std::make_shared<const FlatScene>(scene), derived, settings,
+                            {isa_of(isa), threads});
   const std::string prefix = "opencl:";
   OpenclOptions options;
   if (name.starts_with(prefix)) options.method = gpu::find_method(name.substr(prefix.size()));
@@ -35,7 +37,7 @@ std::unique_ptr<Backend> make_test_backend(const FlatScene& scene, const Derived
     throw std::runtime_error("KILOBAND_TEST_BACKEND=" + name + ": no such backend");
   // One program for all tests; tests/statistical/backends compares it with the others.
   options.specialised = false;
-  return make_opencl_backend(scene, derived, settings, options);
+  return make_opencl_backend(std::make_shared<const FlatScene>(scene), derived, settings, options);
 }
 
 }  // namespace kiloband::test

@@ -112,7 +112,7 @@ Timing render_once(Backend& backend, const FlatScene& scene, uint32_t spp) {
   return timing;
 }
 
-Timing measure(const FlatScene& scene, const Settings& settings, gpu::Method method) {
+Timing measure(const std::shared_ptr<const FlatScene>& scene, const Settings& settings, gpu::Method method) {
   OpenclOptions options;
   options.device = settings.device;
   options.method = method;
@@ -120,11 +120,11 @@ Timing measure(const FlatScene& scene, const Settings& settings, gpu::Method met
   SamplingSettings sampling;
   sampling.replicates = 1;
   const auto backend = make_opencl_backend(scene, {}, sampling, options);
-  render_once(*backend, scene, settings.spp);  // compiles the kernels
+  render_once(*backend, *scene, settings.spp);  // compiles the kernels
   std::vector<double> seconds, evaluation, generation;
   Timing timing;
   for (uint32_t i = 0; i < settings.rounds; ++i) {
-    timing = render_once(*backend, scene, settings.spp);
+    timing = render_once(*backend, *scene, settings.spp);
     seconds.push_back(timing.seconds);
     evaluation.push_back(timing.evaluation);
     generation.push_back(timing.generation);
@@ -135,16 +135,16 @@ Timing measure(const FlatScene& scene, const Settings& settings, gpu::Method met
   return timing;
 }
 
-FlatScene load(const Settings& settings, uint32_t channels) {
+std::shared_ptr<const FlatScene> load(const Settings& settings, uint32_t channels) {
   SceneDescription scene = read_scene(settings.scene);
   Film& film = scene.sensor.film;
   film.width = film.height = film.crop_width = film.crop_height = settings.size;
   film.crop_x = film.crop_y = 0;
-  return flatten(scene, {parse_channels(fmt::format("400:700:{}", channels)), {}, {}});
+  return compile_scene(scene, {parse_channels(fmt::format("400:700:{}", channels)), {}, {}});
 }
 
 nlohmann::json row(gpu::DeviceContext& context, const Settings& settings, uint32_t channels, double cache) {
-  const FlatScene scene = load(settings, channels);
+  const auto scene = load(settings, channels);
   const Timing pt = measure(scene, settings, gpu::Method::kPt);
   const Timing path = measure(scene, settings, gpu::Method::kDpeptPath);
   const Timing batch = measure(scene, settings, gpu::Method::kDpeptBatch);

@@ -41,7 +41,7 @@ std::filesystem::path data_directory() {
 
 /// A scene made ready once: "cornell" from the repository, "conference" from the folder of public data.
 struct Bench {
-  FlatScene flat;
+  std::shared_ptr<const FlatScene> compiled;
   std::unique_ptr<EmbreeScene> embree;
   TracerScene tracer;
   std::vector<PixelRect> blocks;
@@ -51,9 +51,10 @@ struct Bench {
         name == "cornell"
             ? read_scene(std::filesystem::path(KILOBAND_SOURCE_DIR) / "scenes/cornell_box/cornell_box.xml")
             : read_scene_text(kConferenceScene, name, data_directory());
-    flat = flatten(scene, {parse_channels("400:700:" + std::to_string(channels)), {}, {}});
+    compiled = compile_scene(scene, {parse_channels("400:700:" + std::to_string(channels)), {}, {}});
+    const FlatScene& flat = *compiled;
     embree = std::make_unique<EmbreeScene>(flat, "avx512", 1);
-    tracer = TracerScene(flat, *embree);
+    tracer = {&flat, embree.get()};
     blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
   }
 };
@@ -66,7 +67,7 @@ Bench& bench_of(const std::string& name, std::size_t channels) {
 }
 
 std::size_t pixels_of(const Bench& bench) {
-  return std::size_t{bench.flat.film.crop_width} * bench.flat.film.crop_height;
+  return std::size_t{bench.compiled->film.crop_width} * bench.compiled->film.crop_height;
 }
 
 void count_paths(benchmark::State& state, std::size_t paths_per_iteration) {
@@ -164,7 +165,8 @@ void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) 
   const std::atomic<bool> stop{false};
   constexpr uint32_t kSpp = 64;
   for (auto _ : state) {
-    SpectralFilm film({0, 0, 64, 64}, {bench.flat.channels.size(), settings.replicates, variance, false});
+    SpectralFilm film({0, 0, 64, 64},
+                      {bench.compiled->channels.size(), settings.replicates, variance, false});
     for (uint32_t r = 0; r < settings.replicates; ++r) {
       for (uint32_t b = 0; b < film.blocks().size(); ++b) {
         film.add(worker.render(film.blocks()[b], b, {r, 0, kSpp / settings.replicates}, stop,

@@ -76,7 +76,7 @@ FlatScene load(const std::string& name) {
       name == "cornell"      ? read_scene(root / "scenes/cornell_box/cornell_box.xml")
       : name == "conference" ? read_scene_text(kConferenceScene, name, data ? data : root / "../shared/data")
                              : read_scene(name);
-  return flatten(scene, {parse_channels("500:600:1"), {}, {}});
+  return *compile_scene(scene, {parse_channels("500:600:1"), {}, {}});
 }
 
 KbRay make_ray(glm::vec3 origin, glm::vec3 direction, float t_min, float t_max) {

@@ -99,8 +99,8 @@ void fit(ConvergenceCurve& curve, const std::vector<Scatter>& scatters) {
   curve.slope_dof = squared_variances > 0 ? variance * variance / squared_variances : 0;
 }
 
-ConvergenceCurve measure(const FlatScene& scene, const Configuration& configuration, uint32_t most,
-                         uint64_t seed, const Watch& watch) {
+ConvergenceCurve measure(const std::shared_ptr<const FlatScene>& scene, const Configuration& configuration,
+                         uint32_t most, uint64_t seed, const Watch& watch) {
   ConvergenceCurve curve{configuration, {}, 0, 0, 0, 0};
   std::vector<Scatter> scatters;
   // Once without a clock: the first render compiles kernels, or reads them from the disk.
@@ -171,7 +171,7 @@ ConvergenceResult run_convergence(const ConvergenceCase& c, const ConvergenceSet
                                   const Watch& watch) {
   ConvergenceResult result{c.name, {}, true, false, {}};
   try {
-    const FlatScene scene = load(c.scene);
+    const auto scene = load(c.scene);
     const std::vector<Configuration> all = configurations(settings.backends, settings.effort);
     const auto known = static_cast<std::size_t>(std::ranges::count_if(all, has_known_slope));
     const double level = kConvergenceRate / static_cast<double>(settings.cases * known);

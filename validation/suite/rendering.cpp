@@ -44,7 +44,7 @@ std::string Configuration::label() const {
   return text;
 }
 
-FlatScene load(const CaseScene& scene) {
+std::shared_ptr<const FlatScene> load(const CaseScene& scene) {
   ReadOptions options;
   options.defines = scene.defines;
   if (scene.width > 0) options.film_size = {scene.width, scene.height};
@@ -53,10 +53,11 @@ FlatScene load(const CaseScene& scene) {
   const ChannelList channels = !scene.bands.empty() || own.empty()
                                    ? parse_channels(scene.bands.empty() ? "400:700:12" : scene.bands)
                                    : own;
-  return flatten(description, {channels, channels, {}});
+  return compile_scene(description, {channels, channels, {}});
 }
 
-std::unique_ptr<Backend> make_backend(const Configuration& configuration, const FlatScene& scene,
+std::unique_ptr<Backend> make_backend(const Configuration& configuration,
+                                      const std::shared_ptr<const FlatScene>& scene,
                                       const SamplingSettings& settings) {
   const std::string& name = configuration.backend;
   if (name == "cpu") return make_cpu_backend(scene, {}, settings, {});
@@ -83,12 +84,12 @@ void render_replicates(Backend& backend, SpectralFilm& film, uint32_t replicates
   }
 }
 
-Rendering render(const FlatScene& scene, const Configuration& configuration, const Sampling& sampling,
-                 const Watch& watch) {
+Rendering render(const std::shared_ptr<const FlatScene>& scene, const Configuration& configuration,
+                 const Sampling& sampling, const Watch& watch) {
   const auto backend = make_backend(configuration, scene,
                                     {configuration.wavelengths, configuration.sampler, sampling.seed,
                                      sampling.replicates, configuration.rough_dispersion});
-  const PixelRect rect = film_rect(scene);
+  const PixelRect rect = film_rect(*scene);
   const std::vector<double> scale = backend->film_scale();
   SpectralFilm film(rect, {scale.size(), sampling.replicates, true, true});
   Rendering result;

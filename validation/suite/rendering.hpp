@@ -35,7 +35,7 @@ struct CaseScene {
 };
 
 /// throws InputError  the scene is wrong
-FlatScene load(const CaseScene& scene);
+std::shared_ptr<const FlatScene> load(const CaseScene& scene);
 
 /// Replicates 0 .. replicates - 1, each of `samples` samples in every pixel.
 struct Sampling {
@@ -65,10 +65,11 @@ void render_replicates(Backend& backend, SpectralFilm& film, uint32_t replicates
                        const Watch& watch);
 
 /// "opencl": the method that the backend chooses. Throws what making the backend throws.
-std::unique_ptr<Backend> make_backend(const Configuration& configuration, const FlatScene& scene,
+std::unique_ptr<Backend> make_backend(const Configuration& configuration,
+                                      const std::shared_ptr<const FlatScene>& scene,
                                       const SamplingSettings& settings);
 
-Rendering render(const FlatScene& scene, const Configuration& configuration, const Sampling& sampling,
-                 const Watch& watch);
+Rendering render(const std::shared_ptr<const FlatScene>& scene, const Configuration& configuration,
+                 const Sampling& sampling, const Watch& watch);
 
 }  // namespace kiloband::validation

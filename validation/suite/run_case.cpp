@@ -29,11 +29,11 @@ class CaseRun {
   CaseRun(const Case& c, const CaseSettings& settings, const Watch& watch)
       : case_(c), settings_(settings), watch_(watch), scene_(load(c.scene)) {
     result_.what = c;
-    result_.channels = scene_.channels;
-    result_.width = scene_.film.crop_width;
-    result_.height = scene_.film.crop_height;
-    result_.triangles = scene_.triangles.size();
-    if (c.closed_form) truth_ = read_closed_form(c.scene.file, scene_.channels.size());
+    result_.channels = scene_->channels;
+    result_.width = scene_->film.crop_width;
+    result_.height = scene_->film.crop_height;
+    result_.triangles = scene_->triangles.size();
+    if (c.closed_form) truth_ = read_closed_form(c.scene.file, scene_->channels.size());
   }
 
   CaseResult run() {
@@ -153,7 +153,7 @@ class CaseRun {
   const Case& case_;
   const CaseSettings& settings_;
   const Watch& watch_;
-  FlatScene scene_;
+  std::shared_ptr<const FlatScene> scene_;
   ClosedForm truth_;
   CaseResult result_;
   std::size_t planned_ = 1, done_ = 0;

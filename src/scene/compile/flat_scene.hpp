@@ -90,8 +90,7 @@ struct FlatScene {
   std::vector<KbMaterial> materials;
   std::vector<KbSurface> surfaces;
   std::vector<KbThermal> thermals;
-  std::vector<float>
-      thermal_tables;  // what KbThermal::table, field_offset and compensated KbMaterial::table refer to
+  std::vector<float> tables;  // what KbMaterial::table, KbThermal::table and field_offset refer to
   std::vector<KbShape> shapes;
   std::vector<std::string> shape_names, material_names;
   std::vector<KbFloat3> positions;  // world, m
@@ -123,13 +122,14 @@ struct FlatScene {
   SceneFeatures features;
 };
 
-struct FlattenOptions {
+struct CompileOptions {
   ChannelList channels;  // rendered channels, not empty
   ChannelList guide;     // empty: the rendered channels
   DiagnosticSink sink;
 };
 
+/// A complete scene: whoever renders it reads it and changes nothing, so that backends share it.
 /// throws InputError for what cannot be rendered in these channels (no data, more than 65535 spectra ...)
-FlatScene flatten(const SceneDescription& scene, const FlattenOptions& options);
+std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, const CompileOptions& options);
 
 }  // namespace kiloband

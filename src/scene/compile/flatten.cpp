@@ -5,7 +5,7 @@
 namespace kiloband {
 namespace {
 
-FlatScene scene_with_channels(const FlattenOptions& options) {
+FlatScene scene_with_channels(const CompileOptions& options) {
   FlatScene scene;
   scene.channels = options.channels;
   scene.guide = options.guide.empty() ? options.channels : options.guide;
@@ -22,7 +22,7 @@ void store_transform(const Transform& transform, float (&out)[12]) {
   }
 }
 
-Flattener::Flattener(const SceneDescription& description, const FlattenOptions& options)
+Flattener::Flattener(const SceneDescription& description, const CompileOptions& options)
     : in_(description), options_(options), out_(scene_with_channels(options)), spectra_(out_, options.sink) {}
 
 FlatScene Flattener::run() {
@@ -42,9 +42,9 @@ FlatScene Flattener::run() {
   return std::move(out_);
 }
 
-FlatScene flatten(const SceneDescription& scene, const FlattenOptions& options) {
+std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, const CompileOptions& options) {
   if (options.channels.empty()) throw InputError("no channel to render");
-  return Flattener(scene, options).run();
+  return std::make_shared<const FlatScene>(Flattener(scene, options).run());
 }
 
 std::vector<std::string> SceneFeatures::names() const {

@@ -3,26 +3,28 @@
 
 #include <map>
 #include <memory>
+#include <tuple>
 
 #include "scene/compile/flat_scene.hpp"
 #include "scene/compile/spectrum_table_builder.hpp"
+#include "scene/optics/coating.hpp"
 
 namespace kiloband {
 
 /// Turns a SceneDescription into the arrays of a FlatScene. Shared BSDFs and textures are flattened once.
 class Flattener {
  public:
-  Flattener(const SceneDescription& description, const FlattenOptions& options);
+  Flattener(const SceneDescription& description, const CompileOptions& options);
   FlatScene run();
 
  private:
-  // flatten_textures.cpp
+  // textures.cpp
   uint32_t reference(const Texture& texture, const SpectrumSource& use);
   /// What a bitmap's values stand for; one image used in two ways is flattened twice.
   enum class BitmapUse { kReflectance, kEmission, kOpacity };
   uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use);
   float texel_bound(const KbFloat4& texel) const;
-  // flatten_spectral.cpp
+  // spectral.cpp
   uint32_t spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
                            const SpectrumSource& use);
   uint32_t add_spectral_texture(const SpectralBitmapTexture& texture, const SpectrumSource& use,
@@ -34,13 +36,13 @@ class Flattener {
   void add_spectral_environment(KbEmitter& record, const SpectralEnvmapEmitter& emitter,
                                 const SpectrumSource& use);
 
-  // flatten_textures.cpp
+  // textures.cpp
   uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use);
   double texture_mean(const Texture& texture);   // over the guide bands; a bitmap's by its texels' values
   double texture_bound(const Texture& texture);  // over guide bands and channels
   uint32_t d65_row();
 
-  // flatten_materials.cpp
+  // materials.cpp
   /// heat: of the shape, or KB_NONE. Materials and surfaces with different heat are different.
   uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
   uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated, const std::string& outer_id);
@@ -50,7 +52,13 @@ class Flattener {
   KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
   void set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumSource& use);
 
-  // flatten_thermal.cpp
+  // material_tables.cpp
+  uint32_t append_table(const std::vector<float>& table);
+  const Coating& coating(const KbMaterial& material);
+  const std::vector<float>& conductor_bound(const KbMaterial& material);
+  void set_tables(KbMaterial& material, const std::vector<float>& compensation);
+
+  // thermal.cpp
   /// A temperature: of shapes that have the same, number or field.
   struct Heat {
     double temperature_k = 0;
@@ -79,24 +87,25 @@ class Flattener {
   uint32_t nonlinear_complement(const KbMaterial& material, uint32_t heat);
   void check_thermal(const Bsdf& bsdf, const KbMaterial& material) const;
   void require_emission_data(const Texture& texture, const SpectrumSource& use) const;
-  void compensate(KbMaterial& material, const Bsdf& bsdf);
+  /// Returns the compensation table.
+  std::vector<float> compensate(KbMaterial& material, const Bsdf& bsdf);
   void add_thermal_emitter(uint32_t shape_index);
   double emissivity_estimate(uint32_t thermal, double lambda_nm) const;
   double reference_estimate(uint32_t ref, double lambda_nm) const;
 
-  // flatten_place.cpp
+  // place.cpp
   /// throws InputError  places and sizes that single precision cannot take
   void check_places() const;
   void set_origin();
   Transform placed(const Transform& to_world) const;
 
-  // flatten_shapes.cpp
+  // shapes.cpp
   void add_shapes();
   void add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh);
   void add_areas(KbShape& record, const Shape& shape);
   void compute_bounds();
 
-  // flatten_media.cpp
+  // media.cpp
   void add_media();
   uint32_t medium(const std::shared_ptr<const Medium>& medium, uint32_t boundary);
   uint32_t gas_emission_row(double temperature_k, uint32_t boundary, const std::string& name);
@@ -106,7 +115,7 @@ class Flattener {
   void set_jet(KbMedium& record, const JetField& jet);
   void set_ladder(KbMedium& record) const;
 
-  // flatten_emitters.cpp
+  // emitters.cpp
   void add_emitters();
   void add_ambient_environment();
   void add_area_emitter(uint32_t shape_index);
@@ -115,18 +124,20 @@ class Flattener {
   void select_emitters();
   void set_channel_scales();
 
-  // flatten_camera.cpp
+  // camera.cpp
   void set_camera();
 
-  // flatten_channel_bins.cpp
+  // channel_bins.cpp
   void set_channel_bins();
 
   const SceneDescription& in_;
-  const FlattenOptions& options_;
+  const CompileOptions& options_;
   FlatScene out_;
   SpectrumTableBuilder spectra_;
-  std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;  // by bsdf and heat
-  std::map<std::pair<const void*, bool>, uint32_t> materials_;     // by bsdf and compensation
+  std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;   // by bsdf and heat
+  std::map<std::pair<const void*, bool>, uint32_t> materials_;      // by bsdf and compensation
+  std::map<std::tuple<uint32_t, float, float>, Coating> coatings_;  // by distribution, roughness, index
+  std::map<std::pair<uint32_t, uint32_t>, std::vector<float>> conductor_bounds_;  // by rows of n and k
   std::map<const void*, uint32_t> checkerboards_;
   std::map<std::pair<const void*, uint32_t>, uint32_t> media_;  // by medium and the boundary's material
   std::vector<Heat> heats_;

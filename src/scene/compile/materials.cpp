@@ -32,8 +32,7 @@ double diffuse_fresnel(double eta) {
 }
 
 void set_roughness(KbMaterial& record, const Roughness& roughness) {
-  record.distribution =
-      roughness.distribution == Microfacet::kGgx ? KB_MICROFACET_GGX : KB_MICROFACET_BECKMANN;
+  if (roughness.distribution == Microfacet::kGgx) record.flags |= KB_MATERIAL_GGX;
   record.alpha_u = static_cast<float>(roughness.alpha_u);
   record.alpha_v = static_cast<float>(roughness.alpha_v);
   if (roughness.sample_visible) record.flags |= KB_MATERIAL_SAMPLE_VISIBLE;
@@ -42,7 +41,7 @@ void set_roughness(KbMaterial& record, const Roughness& roughness) {
 KbMaterial empty_material(uint32_t type) {
   KbMaterial record{};
   record.type = type;
-  record.ref_a = record.ref_b = record.eta_row = record.k_row = KB_NONE;
+  record.ref_a = record.ref_b = record.eta_row = record.k_row = record.ext_row = KB_NONE;
   record.eta = record.eta_ext = 1;
   record.table = KB_NONE;
   return record;
@@ -114,7 +113,7 @@ KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
   if (!model.int_ior.is_constant() || !model.ext_ior.is_constant()) {
     record.flags |= KB_MATERIAL_DISPERSIVE;
     record.eta_row = spectra_.row(model.int_ior, int_use);
-    if (!model.ext_ior.is_constant()) record.k_row = spectra_.row(model.ext_ior, ext_use);
+    if (!model.ext_ior.is_constant()) record.ext_row = spectra_.row(model.ext_ior, ext_use);
     out_.features.dispersion = true;
   }
   if (model.roughness && (record.flags & KB_MATERIAL_DISPERSIVE)) {
@@ -139,7 +138,10 @@ KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name,
   record.specular_weight =
       specular + diffuse > 0 ? static_cast<float>(specular / (specular + diffuse)) : 0.5f;
   if (model.nonlinear) record.flags |= KB_MATERIAL_NONLINEAR;
-  if (model.roughness) set_roughness(record, *model.roughness);
+  if (model.roughness) {
+    set_roughness(record, *model.roughness);
+    record.fdr_int = static_cast<float>(coating(record).internal_reflectance);
+  }
   (model.roughness ? out_.features.rough_plastic : out_.features.plastic) = true;
   return record;
 }
@@ -161,7 +163,7 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
         }
       },
       bsdf->model);
-  if (compensated) compensate(record, *bsdf);
+  set_tables(record, compensated ? compensate(record, *bsdf) : std::vector<float>());
   out_.materials.push_back(record);
   const std::string& id = bsdf->id.empty() ? outer_id : bsdf->id;
   out_.material_names.push_back(id.empty() ? fmt::format("material {}", out_.materials.size() - 1) : id);

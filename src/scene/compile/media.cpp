@@ -86,7 +86,7 @@ uint32_t Flattener::gas_emission_row(double temperature_k, uint32_t boundary, co
     for (std::size_t i = 0; i < row.table.values.size(); ++i) {
       const double lambda_nm = row.table.min_nm + static_cast<double>(i) * row.table.step_nm;
       const double outside =
-          glass.k_row == KB_NONE ? glass.eta_ext : out_.spectra[glass.k_row].table(lambda_nm);
+          glass.ext_row == KB_NONE ? glass.eta_ext : out_.spectra[glass.ext_row].table(lambda_nm);
       row.table.values[i] = std::pow(row.table.values[i] / outside, 2);
     }
   } else if (boundary != KB_NONE) {

@@ -27,10 +27,10 @@ uint32_t Flattener::vertex_heat(const std::vector<float>& temperatures) {
   Heat heat;
   heat.field = KB_FIELD_VERTEX;
   heat.field_offset =
-      static_cast<uint32_t>(out_.thermal_tables.size()) - static_cast<uint32_t>(out_.positions.size());
+      static_cast<uint32_t>(out_.tables.size()) - static_cast<uint32_t>(out_.positions.size());
   for (const float t : temperatures) heat.mean_k += t / static_cast<double>(temperatures.size());
   heat.temperature_k = *std::ranges::max_element(temperatures);
-  out_.thermal_tables.insert(out_.thermal_tables.end(), temperatures.begin(), temperatures.end());
+  out_.tables.insert(out_.tables.end(), temperatures.begin(), temperatures.end());
   heats_.push_back(heat);
   return static_cast<uint32_t>(heats_.size() - 1);
 }
@@ -151,7 +151,7 @@ double Flattener::emissivity_estimate(uint32_t thermal, double lambda_nm) const 
   const KbThermal& record = out_.thermals[thermal];
   if (record.type == KB_THERMAL_UNIFORM) return reference_estimate(record.ref[0], lambda_nm);
   if (record.type == KB_THERMAL_NODES) {
-    const float* cosines = &out_.thermal_tables[record.table];
+    const float* cosines = &out_.tables[record.table];
     const auto node = std::lower_bound(cosines, cosines + record.nodes_cos, 0.7f) - cosines;
     return reference_estimate(record.first_row + static_cast<uint32_t>(node), lambda_nm);
   }

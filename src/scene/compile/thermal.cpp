@@ -7,6 +7,7 @@
 #include "scene/compile/flattener.hpp"
 #include "scene/optics/compensation.hpp"
 #include "scene/optics/metal_emissivity.hpp"
+#include "shared/estimator.h"
 
 namespace kiloband {
 namespace {
@@ -97,7 +98,7 @@ void Flattener::check_thermal(const Bsdf& bsdf, const KbMaterial& material) cons
 }
 
 /// Single scattering scaled up to what would leave with multiple scattering; see shared/thermal.h.
-void Flattener::compensate(KbMaterial& material, const Bsdf& bsdf) {
+std::vector<float> Flattener::compensate(KbMaterial& material, const Bsdf& bsdf) {
   material.flags |= KB_MATERIAL_COMPENSATED;
   out_.features.compensation = true;
   IndexRange index{material.eta, material.eta};
@@ -107,11 +108,9 @@ void Flattener::compensate(KbMaterial& material, const Bsdf& bsdf) {
     index.min = glass.int_ior.min_over(r.min_nm, r.max_nm) / glass.ext_ior.max_over(r.min_nm, r.max_nm);
     index.max = glass.int_ior.max_over(r.min_nm, r.max_nm) / glass.ext_ior.min_over(r.min_nm, r.max_nm);
   }
-  material.table = static_cast<uint32_t>(out_.thermal_tables.size());
-  const std::vector<float> table = make_compensation_table(material, index);
-  out_.thermal_tables.insert(out_.thermal_tables.end(), table.begin(), table.end());
+  std::vector<float> table = make_compensation_table(material, index);
   const bool mirror = material.flags & KB_MATERIAL_PERFECT_MIRROR;
-  if (!is_metal(material) || mirror || (material.ref_a & KB_REF_KIND_MASK) != KB_REF_SPECTRUM) return;
+  if (!is_metal(material) || mirror || (material.ref_a & KB_REF_KIND_MASK) != KB_REF_SPECTRUM) return table;
   const MetalEmissivity metal({out_.spectra[material.eta_row].table, out_.spectra[material.k_row].table,
                                out_.spectra[material.ref_a].table},
                               std::nullopt, spectra_.range());
@@ -121,6 +120,7 @@ void Flattener::compensate(KbMaterial& material, const Bsdf& bsdf) {
   row.bound = static_cast<float>(largest(row.table));
   material.bound_b = row.bound;
   material.ref_b = KB_REF_SPECTRUM | spectra_.add(std::move(row), bsdf.position);
+  return table;
 }
 
 uint32_t Flattener::add_thermal(KbThermal record, uint32_t heat) {
@@ -163,8 +163,8 @@ KbThermal Flattener::thermal_of(const KbMaterial& material, const std::string& n
   const bool rough = material.flags & KB_MATERIAL_COMPENSATED;
   KbThermal record = empty_thermal(rough ? KB_THERMAL_ROUGH : KB_THERMAL_SMOOTH);
   record.eta = material.eta;
-  record.alpha_u = std::max(material.alpha_u, 1e-4f);
-  record.alpha_v = std::max(material.alpha_v, 1e-4f);
+  record.alpha_u = std::max(material.alpha_u, KB_MIN_ALPHA);
+  record.alpha_v = std::max(material.alpha_v, KB_MIN_ALPHA);
   record.nodes_s = nodes_of_s(material);
   record.ref[0] = complement(material.ref_a, heat);
   const bool plastic = material.type == KB_MATERIAL_PLASTIC || material.type == KB_MATERIAL_ROUGH_PLASTIC;
@@ -174,10 +174,8 @@ KbThermal Flattener::thermal_of(const KbMaterial& material, const std::string& n
   record.q = 1;
   if (!rough || (!plastic && record.ref[0] == KB_NONE && record.ref[1] == KB_NONE)) return record;
   if (plastic) record.ref[2] = black_row(heat);
-  record.table = static_cast<uint32_t>(out_.thermal_tables.size());
-  for (const std::vector<float>& table :
-       {make_reflected_part(material), plastic ? make_coat_part(material) : std::vector<float>()})
-    out_.thermal_tables.insert(out_.thermal_tables.end(), table.begin(), table.end());
+  record.table = append_table(make_reflected_part(material));
+  if (plastic) append_table(make_coat_part(coating(material), material.eta));
   return record;
 }
 
@@ -188,12 +186,13 @@ KbThermal Flattener::thermal_of_metal(const KbMaterial& material, const std::str
                                out_.spectra[material.ref_a].table},
                               rough ? std::optional(Facets(material)) : std::nullopt, spectra_.range());
   KbThermal record = empty_thermal(KB_THERMAL_NODES);
-  record.alpha_u = rough ? std::sqrt(std::max(material.alpha_u, 1e-4f)) : 1;
-  record.alpha_v = rough ? std::sqrt(std::max(material.alpha_v, 1e-4f)) : 1;
+  record.alpha_u = rough ? std::sqrt(std::max(material.alpha_u, KB_MIN_ALPHA)) : 1;
+  record.alpha_v = rough ? std::sqrt(std::max(material.alpha_v, KB_MIN_ALPHA)) : 1;
   record.nodes_cos = static_cast<uint32_t>(metal.cosines().size());
   record.nodes_s = metal.nodes_s();
-  record.table = static_cast<uint32_t>(out_.thermal_tables.size());
-  for (const double cosine : metal.cosines()) out_.thermal_tables.push_back(static_cast<float>(cosine));
+  std::vector<float> cosines;
+  for (const double cosine : metal.cosines()) cosines.push_back(static_cast<float>(cosine));
+  record.table = append_table(cosines);
   record.first_row = static_cast<uint32_t>(out_.spectra.size());
   for (const RegularTable& row : metal.rows()) emission_row(heat, row, name + ": emissivity");
   return record;
@@ -202,8 +201,7 @@ KbThermal Flattener::thermal_of_metal(const KbMaterial& material, const std::str
 /// 1 - rho (1 - R) / (1 - rho R), R = fdr_int: what a base of reflectance rho under a nonlinear coating
 /// absorbs of what one of reflectance 1 would return.
 uint32_t Flattener::nonlinear_complement(const KbMaterial& material, uint32_t heat) {
-  double r = material.fdr_int;
-  if (material.type == KB_MATERIAL_ROUGH_PLASTIC) r = make_internal_reflectance(material);
+  const double r = material.fdr_int;
   const RegularTable& rho = out_.spectra[material.ref_b & KB_REF_INDEX_MASK].table;
   constexpr int kParts = 32;  // of a cell: the formula bends between the reflectance's entries
   RegularTable absorbed;

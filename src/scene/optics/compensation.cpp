@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "scene/optics/facet_quadrature.hpp"
+#include "shared/material_tables.h"
 #include "shared/thermal.h"
 
 namespace kiloband {
@@ -38,22 +39,6 @@ Albedo table_albedo(const KbMaterial& material, const Facets& facets, const glm:
 double scattered(const KbMaterial& material, const Facets& facets, const glm::dvec3& v, double eta) {
   const Albedo albedo = table_albedo(material, facets, v, eta);
   return albedo.reflected + albedo.transmitted;
-}
-
-/// What a rough coating lets in at node i of the renderers' table (bsdf_rough_transmittance), from outside.
-double coat_transmittance(const Facets& facets, double eta, int node) {
-  const double cosine = std::max(1e-6, static_cast<double>(node) / (KB_THERMAL_COAT_NODES - 1));
-  return boundary_albedo(facets, {std::sqrt(1 - cosine * cosine), 0, cosine}, eta).transmitted;
-}
-
-/// The renderers' internal reflectance: 2 mean(R mu) over 64 equidistant cosines, both ends included.
-double internal_reflectance(const Facets& facets, double eta) {
-  double sum = 0;
-  for (int i = 0; i < KB_THERMAL_COAT_NODES; ++i) {
-    const double cosine = std::max(1e-6, static_cast<double>(i) / (KB_THERMAL_COAT_NODES - 1));
-    sum += cosine * boundary_albedo(facets, {std::sqrt(1 - cosine * cosine), 0, cosine}, 1 / eta).reflected;
-  }
-  return 2 * sum / KB_THERMAL_COAT_NODES;
 }
 
 }  // namespace
@@ -105,25 +90,19 @@ std::vector<float> make_reflected_part(const KbMaterial& material) {
   return table;
 }
 
-double make_internal_reflectance(const KbMaterial& material) {
-  return internal_reflectance(Facets(material), material.eta);
-}
-
 // The base scatters T(wi) T(wo) cos_o / (pi eta^2 (1 - R_int)); over all wo that is T(wi) q with q = 2 int
 // T(c) c dc / (eta^2 (1 - R_int)), T linear between its nodes.
-std::vector<float> make_coat_part(const KbMaterial& material) {
-  const Facets facets(material);
-  const double eta = material.eta, step = 1.0 / (KB_THERMAL_COAT_NODES - 1);
-  std::vector<double> t;
-  for (int i = 0; i < KB_THERMAL_COAT_NODES; ++i) t.push_back(coat_transmittance(facets, eta, i));
+std::vector<float> make_coat_part(const Coating& coating, double eta) {
+  const std::vector<float>& t = coating.transmittance;
+  const double step = 1.0 / (KB_COAT_NODES - 1);
   double sum = 0;
-  for (int i = 0; i + 1 < KB_THERMAL_COAT_NODES; ++i) {
+  for (int i = 0; i + 1 < KB_COAT_NODES; ++i) {
     const double low = i * step, high = low + step;
     sum += step / 3 * (t[i] * (2 * low + high) / 2 + t[i + 1] * (low + 2 * high) / 2) * 2;
   }
-  const double q = sum / (eta * eta * (1 - internal_reflectance(facets, eta)));
+  const double q = sum / (eta * eta * (1 - coating.internal_reflectance));
   std::vector<float> table;
-  for (const double value : t) table.push_back(static_cast<float>(value * q));
+  for (const float value : t) table.push_back(static_cast<float>(value * q));
   return table;
 }
 

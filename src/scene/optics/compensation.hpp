@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "scene/optics/coating.hpp"
 #include "shared/records.h"
 
 namespace kiloband {
@@ -21,11 +22,10 @@ std::vector<float> make_compensation_table(const KbMaterial& material, const Ind
 /// Reflected part R / E of what a rough boundary scatters in a direction: tables of KB_THERMAL_ROUGH.
 /// plastics: R of F, E of F = 1
 std::vector<float> make_reflected_part(const KbMaterial& material);
-/// The internal reflectance of a rough plastic's coating, as the renderers have it.
-double make_internal_reflectance(const KbMaterial& material);
-/// Rough plastics: the diffuse base's albedo for reflectance 1 at KB_THERMAL_COAT_NODES cosines,
+/// Rough plastics: the diffuse base's albedo for reflectance 1 at KB_COAT_NODES cosines,
 /// linear in between.
-std::vector<float> make_coat_part(const KbMaterial& material);
+/// eta  of the coating: interior over exterior index
+std::vector<float> make_coat_part(const Coating& coating, double eta);
 
 inline bool is_anisotropic(const KbMaterial& material) {
   return material.alpha_u != material.alpha_v;

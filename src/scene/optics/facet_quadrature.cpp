@@ -6,13 +6,13 @@
 #include <numbers>
 
 #include "base/gauss_legendre.hpp"
+#include "shared/estimator.h"
 
 namespace kiloband {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMinAlpha = 1e-4;  // as the renderers'
-constexpr double kSlopes = 5.5;     // Beckmann: exp(-5.5^2) = 7e-14
+constexpr double kSlopes = 5.5;  // Beckmann: exp(-5.5^2) = 7e-14
 
 const GaussLegendre& rule_of(int n) {
   thread_local std::map<int, GaussLegendre> rules;
@@ -168,9 +168,9 @@ class FacetRule {
 }  // namespace
 
 Facets::Facets(const KbMaterial& material)
-    : ggx(material.distribution == KB_MICROFACET_GGX),
-      alpha_u(std::max<double>(material.alpha_u, kMinAlpha)),
-      alpha_v(std::max<double>(material.alpha_v, kMinAlpha)) {}
+    : ggx((material.flags & KB_MATERIAL_GGX) != 0),
+      alpha_u(std::max<double>(material.alpha_u, KB_MIN_ALPHA)),
+      alpha_v(std::max<double>(material.alpha_v, KB_MIN_ALPHA)) {}
 
 double Facets::masking_over_cos(const glm::dvec3& v) const {
   const double root = std::sqrt(alpha_u * alpha_u * v.x * v.x + alpha_v * alpha_v * v.y * v.y);

@@ -175,11 +175,10 @@ TEST(RoughFurnace, DielectricBoundary) {
 /// is not needed: roughness is 0.2 and more). `a`, `b`: specular and diffuse reflectance.
 double plastic_albedo(const FlatScene& flat_scene, double theta, double a, double b) {
   const KbMaterial& material = flat_scene.materials.front();
-  const RoughTransmittance table = make_rough_transmittance(material);
-  const MaterialContext context{&material, &table, {}};
+  const MaterialContext context{&material, &flat_scene.tables[material.table], {}};
   const glm::vec3 wi(std::sin(theta), 0, std::cos(theta));
   constexpr int kRings = 600, kSpokes = 600;
-  const double share = material.flags & KB_MATERIAL_NONLINEAR ? b / (1 - b * table.internal_reflectance) : b;
+  const double share = material.flags & KB_MATERIAL_NONLINEAR ? b / (1 - b * material.fdr_int) : b;
   double sum = 0;
   for (int r = 0; r < kRings; ++r) {
     const double z = (r + 0.5) / kRings, ring = std::sqrt(1 - z * z);

@@ -34,7 +34,7 @@ std::vector<Sample> sorted(const std::vector<InvalidSample>& invalid) {
 
 struct InvalidSamples : testing::Test {
   FlatScene scene =
-      flatten(read_scene_text(kScene, "invalid.xml", ".", {}), {parse_channels("500:600:4"), {}, {}});
+      *compile_scene(read_scene_text(kScene, "invalid.xml", ".", {}), {parse_channels("500:600:4"), {}, {}});
   SamplingSettings settings{WavelengthMode::kShared, SamplerType::kIndependent, 3, 2};
   std::unique_ptr<Backend> backend(const std::string& name) {
     return make_zoo_backend(name, scene, {}, settings);

@@ -30,14 +30,14 @@ TEST(Overflow, IsCounted) {
   SceneDescription description = read_scene_text(xml, "test.xml", ".");
   // Beyond what the reader lets through: 2e37 per nm are 1.2e39 in a band of 60 nm.
   std::get<ConstantEmitter>(description.emitters.at(0).model).radiance = Spectrum::constant(2e37);
-  const FlatScene scene = flatten(description, {parse_channels("400:700:5"), {}, {}});
+  const FlatScene scene = *compile_scene(description, {parse_channels("400:700:5"), {}, {}});
   SessionSettings settings;
   settings.stop.samples_per_pixel = 8;
   settings.variance = settings.keep_replicates = true;
   settings.outputs = {folder.path() / "bright.hdr"};
   SamplingSettings sampling;
   sampling.replicates = session_replicates(settings);
-  const auto backend = make_cpu_backend(scene, {}, sampling, {});
+  const auto backend = make_cpu_backend(std::make_shared<const FlatScene>(scene), {}, sampling, {});
   const RenderReport report = run_session(scene, {}, *backend, settings, false, {});
 
   std::vector<float> mean(kSide * kSide * kBands), variance(mean.size());

@@ -27,7 +27,7 @@ class SessionTest : public ::testing::Test {
         "700:9\"/>"
         "<point name=\"position\" x=\"3\" y=\"2\" z=\"4\"/></emitter>"
         "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0.5\"/></emitter></scene>";
-    scene_ = flatten(read_scene_text(xml, "test.xml", "."), {parse_channels("400:700:5"), {}, {}});
+    scene_ = *compile_scene(read_scene_text(xml, "test.xml", "."), {parse_channels("400:700:5"), {}, {}});
     settings_.stop.samples_per_pixel = 40;
     settings_.variance = true;
   }
@@ -37,7 +37,7 @@ class SessionTest : public ::testing::Test {
     SamplingSettings sampling;
     sampling.seed = seed;
     sampling.replicates = session_replicates(settings_);
-    return make_cpu_backend(scene_, {}, sampling, {});
+    return make_cpu_backend(std::make_shared<const FlatScene>(scene_), {}, sampling, {});
   }
 
   struct Values {

@@ -65,15 +65,17 @@ uint64_t Trial::by_effort(uint64_t quick, uint64_t standard, uint64_t thorough) 
   return ByEffort<uint64_t>{quick, standard, thorough}.at(context_.effort);
 }
 
-FlatScene Trial::flatten_text(const std::string& xml, const TrialSettings& settings) const {
+std::shared_ptr<const FlatScene> Trial::compile_text(const std::string& xml,
+                                                     const TrialSettings& settings) const {
   const SceneDescription description = read_scene_text(xml, "hard_case.xml", settings.directory);
   const ChannelList channels = parse_channels(settings.bands);
-  return flatten(description, {channels, channels, {}});
+  return compile_scene(description, {channels, channels, {}});
 }
 
 TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) {
-  const FlatScene scene = flatten_text(xml, settings);
-  const auto backend = make_backend(general_kernels(context_.backend), scene,
+  const auto compiled = compile_text(xml, settings);
+  const FlatScene& scene = *compiled;
+  const auto backend = make_backend(general_kernels(context_.backend), compiled,
                                     sampling_of(settings, context_.seed, settings.replicates));
   SpectralFilm film(film_rect(scene), {scene.channels.size(), settings.replicates, true});
   render_replicates(*backend, film, settings.replicates, settings.samples, context_.watch);
@@ -149,10 +151,10 @@ namespace {
 
 /// The paths that a backend follows. The method pt evaluates its paths on the way and keeps no vertex; the
 /// other methods follow the same ones.
-std::vector<TracedPath> trace_paths(const std::string& backend, const FlatScene& scene,
+std::vector<TracedPath> trace_paths(const std::string& backend, const std::shared_ptr<const FlatScene>& scene,
                                     const SamplingSettings& sampling) {
   const std::string keeper = backend == "opencl:pt" ? "opencl:dpept-batch" : backend;
-  return make_backend(general_kernels(keeper), scene, sampling)->trace(film_rect(scene), {0, 0, 1});
+  return make_backend(general_kernels(keeper), scene, sampling)->trace(film_rect(*scene), {0, 0, 1});
 }
 
 /// What the oracle sees along a path, per channel; a path without records brings nothing.
@@ -174,16 +176,17 @@ void Trial::at_least(const std::string& name, const std::string& unit, double va
 /// a reflectance to float is the same at each vertex of a path:
 /// 1e-5 + 6e-8 per vertex (as tests/unit/src_cpu/evaluate).
 void Trial::oracle(const std::string& name, const std::string& xml, const TrialSettings& settings) {
-  const FlatScene scene = flatten_text(xml, settings);
+  const auto compiled = compile_text(xml, settings);
+  const FlatScene& scene = *compiled;
   const SamplingSettings sampling = sampling_of(settings, context_.seed, 1);
-  const auto backend = make_backend(general_kernels(context_.backend), scene, sampling);
+  const auto backend = make_backend(general_kernels(context_.backend), compiled, sampling);
   const PixelRect rect = film_rect(scene);
   SpectralFilm film(rect, {scene.channels.size(), 1, true});
   render_replicates(*backend, film, 1, 1, context_.watch);
   TrialImage image{rect.width, rect.height, scene.channels.size()};
   collect_pixels(film, backend->film_scale(), image);
   count_invalid(*backend, image);
-  const std::vector<TracedPath> paths = trace_paths(context_.backend, scene, sampling);
+  const std::vector<TracedPath> paths = trace_paths(context_.backend, compiled, sampling);
   double error = 0, value = 0, reference = 0;
   std::size_t slots = 0;
   for (uint32_t p = 0; p < paths.size(); ++p) {

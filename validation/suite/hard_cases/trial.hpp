@@ -73,7 +73,7 @@ class Trial {
   std::vector<HardFigure> finish();
 
  private:
-  FlatScene flatten_text(const std::string& xml, const TrialSettings& settings) const;
+  std::shared_ptr<const FlatScene> compile_text(const std::string& xml, const TrialSettings& settings) const;
   void count_invalid(const Backend& backend, const TrialImage& image);
 
   const HardCaseContext& context_;

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "scene/optics/coating.hpp"
 #include "scene/optics/compensation.hpp"
 #include "tests/support/opencl_probe.hpp"
 
@@ -54,10 +55,11 @@ __kernel void transmit(__global const KbMaterial* materials, __global const Quer
   samples[i] = record_of(transmit_dispersive(&material, vector_of(queries[i].wi), queries[i].dispersion_eta,
                                              queries[i].probability));
 }
-__kernel void bound(__global const float* table, kb_u32 has_table, __global const float* cosines,
-                    __global float* bounds) {
+__kernel void look_up(__global const float* table, kb_u32 has_table, __global const float* cosines,
+                      __global float* bounds, __global float* transmittances) {
   const size_t i = get_global_id(0);
-  bounds[i] = conductor_bound(has_table ? table : 0, cosines[i]);
+  bounds[i] = kb_conductor_bound(has_table ? table : 0, cosines[i]);
+  transmittances[i] = has_table ? kb_coat_transmittance(table, cosines[i]) : 0.0f;
 }
 )";
 
@@ -76,55 +78,54 @@ glm::vec3 vector_of(const float* v) {
 
 }  // namespace
 
-std::vector<float> conductor_bound_on_device(const std::vector<float>& table,
-                                             const std::vector<float>& cosines) {
+Lookups lookups_on_device(const std::vector<float>& table, const std::vector<float>& cosines) {
   OpenclProbe& probe = program("");
-  const cl::Buffer nodes = probe.upload(table), asked = probe.upload(cosines), bounds = probe.upload(cosines);
-  probe.run("bound", cosines.size(), nodes, cl_uint(!table.empty()), asked, bounds);
-  return probe.download<float>(bounds, cosines.size());
+  const std::size_t n = cosines.size();
+  const cl::Buffer nodes = probe.upload(table), asked = probe.upload(cosines);
+  const cl::Buffer bounds = probe.upload(cosines), transmittances = probe.upload(cosines);
+  probe.run("look_up", n, nodes, cl_uint(!table.empty()), asked, bounds, transmittances);
+  return {probe.download<float>(bounds, n), probe.download<float>(transmittances, n)};
 }
 
 uint32_t Scene::add(const KbMaterial& given) {
   KbMaterial material = given;
-  RoughTransmittance rough;
   material.table = KB_NONE;
   if (material.type == KB_MATERIAL_ROUGH_PLASTIC) {
-    static std::map<std::tuple<uint32_t, float, float>, RoughTransmittance> made;
-    const auto key = std::make_tuple(material.distribution, material.alpha_u, material.eta);
-    if (!made.count(key)) made[key] = make_rough_transmittance(material);
-    rough = made[key];
-    material.fdr_int = rough.internal_reflectance;
+    static std::map<std::tuple<uint32_t, float, float>, Coating> made;
+    const auto key = std::make_tuple(material.flags & KB_MATERIAL_GGX, material.alpha_u, material.eta);
+    if (!made.count(key)) made[key] = make_coating(material);
+    const Coating& coating = made[key];
+    material.fdr_int = static_cast<float>(coating.internal_reflectance);
     material.table = static_cast<uint32_t>(tables_.size());
-    tables_.insert(tables_.end(), rough.external.begin(), rough.external.end());
+    tables_.insert(tables_.end(), coating.transmittance.begin(), coating.transmittance.end());
   }
   if (material.flags & KB_MATERIAL_COMPENSATED) {
-    const bool metal = material.type == KB_MATERIAL_ROUGH_CONDUCTOR;
     if (material.table == KB_NONE) material.table = static_cast<uint32_t>(tables_.size());
-    if (metal && !(material.flags & KB_MATERIAL_PERFECT_MIRROR)) tables_.resize(tables_.size() + 65, 1.0f);
+    const uint32_t before = kb_floats_before_compensation(material.type, material.flags);
+    tables_.resize(material.table + before, 1.0f);
     const bool dispersive = material.flags & KB_MATERIAL_DISPERSIVE;
     const std::vector<float> table =
         make_compensation_table(material, {material.eta, dispersive ? 1.3 * material.eta : material.eta});
     tables_.insert(tables_.end(), table.begin(), table.end());
-    compensations_[static_cast<uint32_t>(materials_.size())] = table;
   }
   materials_.push_back(material);
-  rough_.push_back(rough);
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 
 uint32_t Scene::add_without_table(KbMaterial material) {
   material.table = KB_NONE;
   materials_.push_back(material);
-  rough_.push_back({});
   return static_cast<uint32_t>(materials_.size() - 1);
 }
 
 MaterialContext Scene::context(const Query& query) const {
-  const auto found = compensations_.find(query.material);
-  return {&materials_[query.material],
-          &rough_[query.material],
+  const KbMaterial& material = materials_[query.material];
+  const float* table = material.table == KB_NONE ? nullptr : &tables_[material.table];
+  const bool compensated = material.flags & KB_MATERIAL_COMPENSATED;
+  return {&material,
+          table,
           {query.dispersion_eta},
-          found == compensations_.end() ? nullptr : found->second.data()};
+          compensated ? table + kb_floats_before_compensation(material.type, material.flags) : nullptr};
 }
 
 Sample record_of(const BsdfSample& s) {
@@ -193,17 +194,16 @@ KbMaterial material_of(KbMaterialType type, float eta) {
 KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, float alpha_v, bool visible,
                  float eta) {
   KbMaterial m = material_of(type, eta);
-  m.distribution = distribution;
+  m.flags |= distribution;
   m.alpha_u = alpha_u;
   m.alpha_v = alpha_v;
-  if (!visible) m.flags = 0;
+  if (!visible) m.flags &= ~KB_MATERIAL_SAMPLE_VISIBLE;
   return m;
 }
 
 std::string describe(const KbMaterial& m) {
   return fmt::format("type {} {} alpha {} x {} eta {} flags {}", m.type,
-                     m.distribution == KB_MICROFACET_GGX ? "ggx" : "beckmann", m.alpha_u, m.alpha_v, m.eta,
-                     m.flags);
+                     (m.flags & KB_MATERIAL_GGX) ? "ggx" : "beckmann", m.alpha_u, m.alpha_v, m.eta, m.flags);
 }
 
 std::vector<KbMaterial> every_material() {
@@ -211,7 +211,7 @@ std::vector<KbMaterial> every_material() {
   for (const float eta : {1.5f, 1.0003f, 0.7f, 1.0f})
     for (const KbMaterialType type : {KB_MATERIAL_DIELECTRIC, KB_MATERIAL_PLASTIC})
       all.push_back(material_of(type, eta));
-  for (const uint32_t distribution : {KB_MICROFACET_BECKMANN, KB_MICROFACET_GGX})
+  for (const uint32_t distribution : {0u, KB_MATERIAL_GGX})
     for (const bool visible : {true, false})
       for (const auto& [u, v] : {std::pair{1e-4f, 1e-4f}, {0.05f, 0.05f}, {0.5f, 0.5f}, {0.1f, 0.4f}}) {
         all.push_back(rough(KB_MATERIAL_ROUGH_CONDUCTOR, distribution, u, v, visible));

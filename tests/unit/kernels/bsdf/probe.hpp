@@ -33,7 +33,7 @@ struct Answers {
   std::vector<uint32_t> kinds;  // eval_kind | has_smooth_lobe << 8
 };
 
-/// Materials whose rough plastics have their device tables (and the same numbers as the CPU's tables).
+/// Materials with their tables, as in a compiled scene.
 class Scene {
  public:
   /// Returns the material's index.
@@ -50,14 +50,15 @@ class Scene {
 
  private:
   std::vector<KbMaterial> materials_;
-  std::vector<RoughTransmittance> rough_;  // by material
   std::vector<float> tables_;
-  std::map<uint32_t, std::vector<float>> compensations_;  // by material
 };
 
-/// kernels' conductor_bound at each cosine; an empty table is a null pointer there.
-std::vector<float> conductor_bound_on_device(const std::vector<float>& table,
-                                             const std::vector<float>& cosines);
+/// The lookups of shared/material_tables.h on the device, at each cosine.
+struct Lookups {
+  std::vector<float> bounds;          // kb_conductor_bound; an empty table is a null pointer there
+  std::vector<float> transmittances;  // kb_coat_transmittance; of an empty table 0
+};
+Lookups lookups_on_device(const std::vector<float>& table, const std::vector<float>& cosines);
 
 Sample record_of(const BsdfSample& sample);
 

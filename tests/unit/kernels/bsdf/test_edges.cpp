@@ -70,7 +70,7 @@ TEST(DeviceBsdfEdges, ExtremesAreFiniteAndDecidedAsOnTheCpu) {
 TEST(DeviceBsdfEdges, HostBugsScatterNothing) {
   Scene scene;
   std::vector<Query> queries;
-  KbMaterial dispersive = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MICROFACET_GGX, 0.2f, 0.2f, true);
+  KbMaterial dispersive = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MATERIAL_GGX, 0.2f, 0.2f, true);
   dispersive.flags |= KB_MATERIAL_DISPERSIVE;
   queries.push_back(query_of(scene.add(dispersive), {0, 0, 1}, {0, 0, 1}));
   queries.back().dispersion_eta = 0;  // no channel was chosen
@@ -80,7 +80,7 @@ TEST(DeviceBsdfEdges, HostBugsScatterNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const KbMaterial& material : every_material())
     queries.push_back(query_of(scene.add(material), {nan, nan, nan}, {0, 0, 1}));
-  KbMaterial plastic = rough(KB_MATERIAL_ROUGH_PLASTIC, KB_MICROFACET_GGX, 0.2f, 0.2f, true);
+  KbMaterial plastic = rough(KB_MATERIAL_ROUGH_PLASTIC, KB_MATERIAL_GGX, 0.2f, 0.2f, true);
   queries.push_back(query_of(scene.add_without_table(plastic), {0, 0, 1}, {0, 0, 1}));
   const Answers device = scene.on_device(queries);
   for (std::size_t i = 0; i < queries.size(); ++i) {

@@ -19,7 +19,7 @@ FlatScene flat(const std::string& type, const std::string& content, const std::s
       "'>" + (file.empty() ? "" : "<string name='filename' value='mesh.obj'/>") + content +
       "</shape></scene>";
   const ChannelList channels = parse_channels("500-510");
-  return flatten(read_scene_text(scene, "scene.xml", folder.path()), {channels, channels, {}});
+  return *compile_scene(read_scene_text(scene, "scene.xml", folder.path()), {channels, channels, {}});
 }
 
 uint32_t front_flags(const FlatScene& scene) {

@@ -11,7 +11,7 @@ std::vector<std::string> names_of(const std::string& bsdf) {
   const ChannelList channels = parse_channels("500-510");
   const std::string scene = "<scene version='3.0.0'><shape type='sphere'>" + bsdf +
                             "</shape><emitter type='constant'/><sensor type='perspective'/></scene>";
-  return flatten(read_scene_text(scene, "scene.xml", "."), {channels, channels, {}}).material_names;
+  return compile_scene(read_scene_text(scene, "scene.xml", "."), {channels, channels, {}})->material_names;
 }
 
 using Names = std::vector<std::string>;

@@ -16,8 +16,8 @@ std::string flattened(const std::string& body) {
   std::string said;
   const DiagnosticSink sink = [&](const Diagnostic& d) { said += d.message; };
   try {
-    flatten(read_scene_text("<scene version='3.0.0'>" + body + "</scene>", "scene.xml", "."),
-            {channels, channels, sink});
+    compile_scene(read_scene_text("<scene version='3.0.0'>" + body + "</scene>", "scene.xml", "."),
+                  {channels, channels, sink});
   } catch (const InputError& error) {
     const std::string message = error.what();
     return message.substr(message.find("error: "));

@@ -18,7 +18,7 @@ FlatScene place(const std::string& x) {
       "' y='0' z='3'/></emitter><sensor type='perspective'><transform name='to_world'>" + at +
       "<translate z='5'/></transform></sensor></scene>";
   const ChannelList channels = parse_channels("500-510");
-  return flatten(read_scene_text(scene, "scene.xml", "."), {channels, channels, {}});
+  return *compile_scene(read_scene_text(scene, "scene.xml", "."), {channels, channels, {}});
 }
 
 TEST(Place, SceneInMapCoordinatesIsMoved) {

@@ -20,7 +20,7 @@ FlatScene flat(const std::string& body, const TemporaryFolder& folder, const std
   const DiagnosticSink sink = [&](const Diagnostic& d) {
     if (diagnostics) diagnostics->push_back(d.to_string());
   };
-  return flatten(description, {parse_channels(bands), {}, sink});
+  return *compile_scene(description, {parse_channels(bands), {}, sink});
 }
 
 std::string bitmap(const std::string& file, const std::string& more = "") {

@@ -84,7 +84,7 @@ KbMaterial material(uint32_t type, const Facets& f) {
   KbMaterial m{};
   m.type = type;
   m.flags = KB_MATERIAL_COMPENSATED | KB_MATERIAL_SAMPLE_VISIBLE;
-  m.distribution = f.ggx ? KB_MICROFACET_GGX : KB_MICROFACET_BECKMANN;
+  if (f.ggx) m.flags |= KB_MATERIAL_GGX;
   m.alpha_u = static_cast<float>(f.alpha_u);
   m.alpha_v = static_cast<float>(f.alpha_v);
   m.eta = 1.5f;

@@ -22,7 +22,8 @@ std::string grey(const std::string& reflectance) {
 
 FlatScene flat_scene(const std::string& body, const std::string& bands = "8000-9000, 9000-10000") {
   const std::string text = "<scene version=\"3.0.0\">\n" + body + kSensor + "</scene>";
-  return flatten(read_scene_text(text, "scene.xml", "/nonexistent", {}), {parse_channels(bands), {}, {}});
+  return *compile_scene(read_scene_text(text, "scene.xml", "/nonexistent", {}),
+                        {parse_channels(bands), {}, {}});
 }
 
 std::string error_of(const std::string& body) {

@@ -29,7 +29,7 @@ KbMaterial material_of(KbMaterialType type) {
 KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, float alpha_v, bool visible,
                  float eta) {
   KbMaterial m = material_of(type);
-  m.distribution = distribution;
+  m.flags |= distribution;
   m.alpha_u = alpha_u;
   m.alpha_v = alpha_v;
   m.eta = eta;
@@ -39,9 +39,10 @@ KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, floa
 
 KbMaterial plastic(KbMaterialType type, bool nonlinear, float alpha) {
   static const float fdr_int = static_cast<float>(reference::diffuse_fresnel(1 / 1.49));
-  KbMaterial m = rough(type, KB_MICROFACET_GGX, alpha, alpha, true, 1.49f);
+  KbMaterial m = rough(type, KB_MATERIAL_GGX, alpha, alpha, true, 1.49f);
   m.specular_weight = 0.6f;
   m.fdr_int = fdr_int;
+  if (type == KB_MATERIAL_ROUGH_PLASTIC) m.fdr_int = static_cast<float>(coating_of(m).internal_reflectance);
   if (nonlinear) m.flags |= KB_MATERIAL_NONLINEAR;
   return m;
 }
@@ -53,20 +54,24 @@ glm::vec3 direction(double degrees, double phi) {
 }
 
 MaterialContext context_of(const Case& c) {
-  static std::map<std::tuple<uint32_t, float, float>, RoughTransmittance> tables;
   MaterialContext context{&c.material, nullptr, c.dispersion};
-  if (c.material.type != KB_MATERIAL_ROUGH_PLASTIC) return context;
-  const auto key = std::make_tuple(c.material.distribution, c.material.alpha_u, c.material.eta);
-  auto found = tables.find(key);
-  if (found == tables.end()) found = tables.emplace(key, make_rough_transmittance(c.material)).first;
-  context.rough_transmittance = &found->second;
+  if (c.material.type == KB_MATERIAL_ROUGH_PLASTIC)
+    context.table = coating_of(c.material).transmittance.data();
   return context;
+}
+
+const Coating& coating_of(const KbMaterial& material) {
+  static std::map<std::tuple<uint32_t, float, float>, Coating> tables;
+  const auto key = std::make_tuple(material.flags & KB_MATERIAL_GGX, material.alpha_u, material.eta);
+  auto found = tables.find(key);
+  if (found == tables.end()) found = tables.emplace(key, make_coating(material)).first;
+  return found->second;
 }
 
 namespace {
 
 std::string describe(const char* model, const KbMaterial& m, double degrees) {
-  return std::string(model) + (m.distribution == KB_MICROFACET_GGX ? " ggx " : " beckmann ") +
+  return std::string(model) + ((m.flags & KB_MATERIAL_GGX) ? " ggx " : " beckmann ") +
          std::to_string(m.alpha_u) + " x " + std::to_string(m.alpha_v) +
          (m.flags & KB_MATERIAL_SAMPLE_VISIBLE ? " visible" : " all normals") + " eta " +
          std::to_string(m.eta) + ", " + std::to_string(degrees) + " degrees";
@@ -92,7 +97,7 @@ void add_rough(std::vector<Case>& cases, uint32_t distribution, bool visible) {
 std::vector<Case> make_cases() {
   std::vector<Case> cases;
   add(cases, "diffuse", material_of(KB_MATERIAL_DIFFUSE), {0, 60});
-  for (uint32_t distribution : {KB_MICROFACET_BECKMANN, KB_MICROFACET_GGX})
+  for (uint32_t distribution : {0u, KB_MATERIAL_GGX})
     for (bool visible : {true, false}) add_rough(cases, distribution, visible);
   for (bool nonlinear : {false, true}) {
     add(cases, "plastic", plastic(KB_MATERIAL_PLASTIC, nonlinear), {5, 70});
@@ -101,7 +106,7 @@ std::vector<Case> make_cases() {
   KbMaterial all_normals = plastic(KB_MATERIAL_ROUGH_PLASTIC, false, 0.4f);
   all_normals.flags &= ~KB_MATERIAL_SAMPLE_VISIBLE;
   add(cases, "rough plastic", all_normals, {45});
-  KbMaterial dispersive = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MICROFACET_GGX, 0.2f, 0.2f, true);
+  KbMaterial dispersive = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MATERIAL_GGX, 0.2f, 0.2f, true);
   dispersive.flags |= KB_MATERIAL_DISPERSIVE;
   cases.push_back({"rough dispersive, degraded", dispersive, direction(35), DispersionState{1.62f}});
   return cases;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/optics/coating.hpp"
 #include "src_cpu/bsdf/bsdf.hpp"
 
 namespace kiloband::test {
@@ -11,7 +12,7 @@ namespace kiloband::test {
 KbMaterial material_of(KbMaterialType type);
 KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, float alpha_v, bool visible,
                  float eta = 1.5f);
-/// Plastic with 1.49 / 1 and specular weight 0.6; fdr_int from the independent quadrature.
+/// Plastic with 1.49 / 1 and specular weight 0.6; fdr_int from the independent quadrature, or of its coating.
 KbMaterial plastic(KbMaterialType type, bool nonlinear, float alpha = 0.1f);
 
 /// Unit vector at `degrees` from the normal (above 90: from below) and azimuth phi [rad].
@@ -24,7 +25,8 @@ struct Case {
   DispersionState dispersion;
 };
 
-/// Rough plastics share one cached table per roughness.
+/// Of a rough plastic; computed once per roughness.
+const Coating& coating_of(const KbMaterial& material);
 MaterialContext context_of(const Case& c);
 /// Every BSDF with a non-delta lobe, over roughness, distribution, sampling and incident angle.
 const std::vector<Case>& scattering_cases();

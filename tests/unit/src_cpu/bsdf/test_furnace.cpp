@@ -77,7 +77,7 @@ TEST(Furnace, RoughModelsLoseExactlyWhatScattersAgain) {
     SCOPED_TRACE(c.name);
     const double index = c.dispersion.eta > 0 ? c.dispersion.eta : m.eta;
     const double eta = m.type == KB_MATERIAL_ROUGH_CONDUCTOR ? 0 : c.wi.z > 0 ? index : 1 / index;
-    const reference::Roughness r{m.distribution == KB_MICROFACET_GGX, m.alpha_u, m.alpha_v};
+    const reference::Roughness r{(m.flags & KB_MATERIAL_GGX) != 0, m.alpha_u, m.alpha_v};
     const reference::Albedo expected =
         reference::rough_albedo(r, {c.wi.x, c.wi.y, std::abs(c.wi.z)}, eta, 400);
     const Mean mean = mean_weight(c, kCount, seed++);
@@ -119,7 +119,7 @@ TEST(Furnace, RoughPlasticMatchesQuadrature) {
     for (double degrees : {10.0, 70.0}) {
       const Case c{"", plastic(KB_MATERIAL_ROUGH_PLASTIC, false, alpha), direction(degrees), {}};
       const auto at = reference::rough_albedo(r, glm::dvec3(c.wi), 1.49, 250);
-      const double inside = context_of(c).rough_transmittance->internal_reflectance;
+      const double inside = coating_of(c.material).internal_reflectance;
       const double expected = at.reflected + at.transmitted * outside / (1.49 * 1.49 * (1 - inside));
       const Mean mean = mean_weight(c, kCount, 10);
       EXPECT_NEAR(mean.reflected, expected, kSigmas * mean.error + 3e-3) << alpha << " " << degrees;

@@ -9,7 +9,6 @@
 #include "reference.hpp"
 #include "src_cpu/bsdf/fresnel.hpp"
 #include "src_cpu/bsdf/microfacet.hpp"
-#include "src_cpu/bsdf/rough_transmittance.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -78,15 +77,15 @@ TEST(Microfacet, ReferenceIsNormalised) {
 // Table nodes against the integral over slopes, the internal reflectance against the same 64-node mean.
 // Tolerances: Gauss-Legendre with 32 points against a midpoint rule,
 // both good to about 1e-3 at grazing angles.
-TEST(RoughTransmittance, MatchesTheIntegralOverSlopes) {
-  for (uint32_t distribution : {KB_MICROFACET_BECKMANN, KB_MICROFACET_GGX})
+TEST(Coating, MatchesTheIntegralOverSlopes) {
+  for (uint32_t distribution : {0u, KB_MATERIAL_GGX})
     for (float alpha : {0.05f, 0.3f, 0.7f}) {
       const KbMaterial m = rough(KB_MATERIAL_ROUGH_PLASTIC, distribution, alpha, alpha, true, 1.49f);
-      const RoughTransmittance table = make_rough_transmittance(m);
-      const reference::Roughness r{distribution == KB_MICROFACET_GGX, alpha, alpha};
+      const Coating table = make_coating(m);
+      const reference::Roughness r{distribution == KB_MATERIAL_GGX, alpha, alpha};
       for (int i : {3, 20, 45, 63}) {
         const glm::dvec3 wi(std::sqrt(1 - i * i / 3969.0), 0, i / 63.0);
-        EXPECT_NEAR(table.external[i], reference::rough_albedo(r, wi, 1.49, 200).transmitted, 2e-3)
+        EXPECT_NEAR(table.transmittance[i], reference::rough_albedo(r, wi, 1.49, 200).transmitted, 2e-3)
             << "alpha " << alpha << " node " << i;
       }
       double internal = 0;
@@ -99,17 +98,19 @@ TEST(RoughTransmittance, MatchesTheIntegralOverSlopes) {
     }
 }
 
-TEST(RoughTransmittance, SmoothLimitAndInterpolation) {
-  const KbMaterial m = rough(KB_MATERIAL_ROUGH_PLASTIC, KB_MICROFACET_GGX, 1e-4f, 1e-4f, true, 1.49f);
-  const RoughTransmittance table = make_rough_transmittance(m);
+TEST(Coating, SmoothLimitAndInterpolation) {
+  const KbMaterial m = rough(KB_MATERIAL_ROUGH_PLASTIC, KB_MATERIAL_GGX, 1e-4f, 1e-4f, true, 1.49f);
+  const Coating table = make_coating(m);
+  const float* nodes = table.transmittance.data();
   for (int i = 2; i < 64; ++i) {
     const float mu = float(i) / 63;
-    EXPECT_NEAR(table.transmittance(mu), 1 - double(reference::fresnel(mu, 1.49)), 1e-3);
+    EXPECT_NEAR(kb_coat_transmittance(nodes, mu), 1 - double(reference::fresnel(mu, 1.49)), 1e-3);
   }
-  EXPECT_FLOAT_EQ(table.transmittance(10.5f / 63), 0.5f * (table.external[10] + table.external[11]));
-  EXPECT_EQ(table.transmittance(1), table.external[63]);
-  EXPECT_EQ(table.transmittance(-0.1f), table.external[0]);
-  EXPECT_EQ(table.transmittance(1.1f), table.external[63]);
+  EXPECT_FLOAT_EQ(kb_coat_transmittance(nodes, 10.5f / 63),
+                  0.5f * (table.transmittance[10] + table.transmittance[11]));
+  EXPECT_EQ(kb_coat_transmittance(nodes, 1), table.transmittance[63]);
+  EXPECT_EQ(kb_coat_transmittance(nodes, -0.1f), table.transmittance[0]);
+  EXPECT_EQ(kb_coat_transmittance(nodes, 1.1f), table.transmittance[63]);
 }
 
 }  // namespace

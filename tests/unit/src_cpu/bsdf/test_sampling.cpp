@@ -79,7 +79,7 @@ TEST(BsdfSampling, DensityIntegratesToWhatIsNotLost) {
     const double index = c.dispersion.eta > 0 ? c.dispersion.eta : m.eta;
     const double eta = metal ? 0 : c.wi.z > 0 ? index : 1 / index;
     const glm::dvec3 wi(c.wi.x, c.wi.y, std::abs(c.wi.z));
-    const bool ggx = m.distribution == KB_MICROFACET_GGX;
+    const bool ggx = m.flags & KB_MATERIAL_GGX;
     const auto lost = reference::rough_albedo({ggx, m.alpha_u, m.alpha_v}, wi, eta, 400).below_horizon;
     EXPECT_NEAR(chi_square(draw, pdf, 0, 1).pdf_integral, 1 - lost, 1e-3);
   }
@@ -142,8 +142,10 @@ TEST(BsdfSampling, RoughValuesMatchTheTextbook) {
   for (bool ggx : {false, true}) {
     const reference::Roughness r{ggx, 0.3, 0.15};
     for (float eta : {1.5f, 0.7f}) {
-      const KbMaterial m = rough(KB_MATERIAL_ROUGH_DIELECTRIC, ggx ? 1u : 0u, 0.3f, 0.15f, true, eta);
-      const KbMaterial metal = rough(KB_MATERIAL_ROUGH_CONDUCTOR, ggx ? 1u : 0u, 0.3f, 0.15f, true);
+      const KbMaterial m =
+          rough(KB_MATERIAL_ROUGH_DIELECTRIC, ggx ? KB_MATERIAL_GGX : 0u, 0.3f, 0.15f, true, eta);
+      const KbMaterial metal =
+          rough(KB_MATERIAL_ROUGH_CONDUCTOR, ggx ? KB_MATERIAL_GGX : 0u, 0.3f, 0.15f, true);
       for (int i = 0; i < 2000; ++i) {
         const glm::vec3 wi = direction(85 * uniform(), 6 * uniform());
         const BsdfSample s = sample_bsdf({&m, nullptr, {}}, wi, uniform(), uniform.pair());

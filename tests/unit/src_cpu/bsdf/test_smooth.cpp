@@ -136,7 +136,7 @@ TEST(Dispersion, AfterDegradationItIsAnOrdinaryDielectric) {
 }
 
 TEST(Dispersion, MissingContextIsAnError) {
-  KbMaterial m = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MICROFACET_GGX, 0.1f, 0.1f, true);
+  KbMaterial m = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MATERIAL_GGX, 0.1f, 0.1f, true);
   m.flags |= KB_MATERIAL_DISPERSIVE;
   EXPECT_THROW(sample(m, direction(30), 0.5f), std::logic_error);
   EXPECT_THROW(eval_bsdf({&m, nullptr, {}}, direction(30), direction(20)), std::logic_error);

@@ -33,7 +33,7 @@ HeroSet some_heroes(uint32_t count) {
 
 std::vector<HeroCase> hero_cases() {
   std::vector<HeroCase> cases;
-  for (const uint32_t distribution : {KB_MICROFACET_GGX, KB_MICROFACET_BECKMANN}) {
+  for (const uint32_t distribution : {KB_MATERIAL_GGX, 0u}) {
     for (const float alpha : {0.05f, 0.3f}) {
       for (const double angle : {10.0, 65.0, 115.0, 160.0}) {
         KbMaterial m = rough(KB_MATERIAL_ROUGH_DIELECTRIC, distribution, alpha, 0.6f * alpha, angle < 100);

@@ -65,9 +65,12 @@ void add_materials(FlatScene& scene) {
   for (const auto& [first, second] : pairs) {
     KbMaterial material{};
     material.eta_row = kFirstIndex + first;
-    material.k_row = second == KB_NONE ? KB_NONE : kFirstIndex + second;
+    const bool metal = scene.materials.size() < 3;
+    const uint32_t second_row = second == KB_NONE ? KB_NONE : kFirstIndex + second;
+    material.k_row = metal ? second_row : KB_NONE;
+    material.ext_row = metal ? KB_NONE : second_row;
     material.eta_ext = 1.000277f;
-    material.distribution = scene.materials.size() % 2 ? KB_MICROFACET_GGX : KB_MICROFACET_BECKMANN;
+    if (scene.materials.size() % 2) material.flags |= KB_MATERIAL_GGX;
     // Rounding of a facet's slope s counts (s / alpha)^2 times in exp(-(s / alpha)^2): rough enough for 1e-5.
     material.alpha_u = 0.6f;
     material.alpha_v = 0.4f;

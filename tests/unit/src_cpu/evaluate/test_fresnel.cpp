@@ -21,6 +21,7 @@ struct FresnelCase {
     KbMaterial material{};
     material.eta_row = 0;
     material.k_row = kind == KB_KIND_CONDUCTOR ? 1 : KB_NONE;
+    material.ext_row = KB_NONE;
     material.eta_ext = 1;
     scene.materials = {material};
     for (float cosine : cosines) {

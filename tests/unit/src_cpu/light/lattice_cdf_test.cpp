@@ -76,7 +76,7 @@ TEST(EmitterSelection, DimEmittersAmongManyAreSelected) {
   SceneDescription scene;
   scene.emitters.assign(1'000'000, point_light(1e-20));
   scene.emitters[7] = point_light(1);
-  const FlatScene flat = flatten(scene, {parse_channels("400:700:1"), {}, {}});
+  const FlatScene flat = *compile_scene(scene, {parse_channels("400:700:1"), {}, {}});
   double sum = 0;
   for (std::size_t i = 0; i < flat.emitters.size(); ++i) {
     ASSERT_GT(flat.emitters[i].select_pdf, 0) << i;

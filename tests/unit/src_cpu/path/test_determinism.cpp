@@ -70,7 +70,7 @@ TEST(Determinism, CropsRenderThePixelsOfTheFullFilm) {
 /// one pass after the other.
 std::vector<float> render_in_passes(const std::vector<uint32_t>& passes, SamplingSettings sampling) {
   const SceneDescription description = read_scene_text(room_spec({40, 40}).xml, "test.xml", ".", {});
-  const FlatScene scene = flatten(description, {parse_channels("500:600:4"), {}, {}});
+  const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
   sampling.replicates = 4;
   const auto backend = make_cpu_backend(scene, {}, sampling, {Isa::kAuto, 1});
   FilmOptions options{4, 4, true, true};

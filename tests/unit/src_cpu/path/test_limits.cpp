@@ -134,7 +134,7 @@ TEST_F(InvalidSamples, AreCountedAndLeaveTheMean) {
 
 TEST_F(InvalidSamples, LeaveTheSampleCountAndAreListed) {
   const SceneDescription description = read_scene_text(spec_.xml, "test.xml", ".", {});
-  const FlatScene scene = flatten(description, {parse_channels("500:600:4"), {}, {}});
+  const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
   SamplingSettings sampling = spec_.sampling;
   sampling.replicates = 2;
   const auto backend = make_cpu_backend(scene, {}, sampling, {Isa::kAuto, 1});
@@ -151,7 +151,7 @@ TEST_F(InvalidSamples, LeaveTheSampleCountAndAreListed) {
 
 TEST(Stopping, DeliversWhatIsDone) {
   const SceneDescription description = read_scene_text(room_spec({40, 40}).xml, "test.xml", ".", {});
-  const FlatScene scene = flatten(description, {parse_channels("500:600:4"), {}, {}});
+  const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
   SamplingSettings sampling;
   sampling.replicates = 1;
   const auto backend = make_cpu_backend(scene, {}, sampling, {Isa::kAuto, 1});
@@ -182,7 +182,7 @@ TEST(AuxiliaryImages, ShowTheNearestSurface) {
       "<bsdf type=\"twosided\"><bsdf type=\"diffuse\"/><bsdf type=\"plastic\"/></bsdf></shape>"
       "<emitter type=\"constant\"/>";
   const SceneDescription description = read_scene_text(scene_text(-1, parts), "test.xml", ".", {});
-  const FlatScene scene = flatten(description, {parse_channels("500:600:4"), {}, {}});
+  const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
   const auto backend = make_cpu_backend(scene, {}, {}, {Isa::kAuto, 1});
   const std::vector<AuxiliaryPixel> pixels = backend->auxiliary({0, 0, 4, 4});
   ASSERT_EQ(pixels.size(), 16u);
@@ -195,7 +195,7 @@ TEST(AuxiliaryImages, ShowTheNearestSurface) {
   EXPECT_NEAR(wall.depth, 5, 1e-4);
   EXPECT_NEAR(wall.normal.z, 1, 1e-6);
   EXPECT_EQ(wall.object, 1);
-  EXPECT_EQ(wall.material, scene.surfaces[scene.shapes[1].surface].front);
+  EXPECT_EQ(wall.material, scene->surfaces[scene->shapes[1].surface].front);
   const AuxiliaryPixel& nothing = pixels[3];
   EXPECT_EQ(nothing.depth, 0);
   EXPECT_EQ(nothing.object, -1);

@@ -18,7 +18,7 @@ constexpr uint32_t kSize = 20;
 /// The render of `spec` again, without SIMD, film or floats: every sample traced, its paths evaluated in
 /// double and summed.
 std::vector<double> reference_means(const RenderSpec& spec, const RenderResult& result) {
-  const FlatScene& scene = result.scene;  // has no rough plastics
+  const FlatScene& scene = result.scene;
   DerivedChannels derived;
   for (const auto& [name, response] : spec.responses) {
     const Channel range = hull(scene.channels);
@@ -26,8 +26,7 @@ std::vector<double> reference_means(const RenderSpec& spec, const RenderResult& 
     derived.responses.push_back(resample(response, range.min_nm, range.max_nm));
   }
   const EmbreeScene embree(scene, "sse4.2", 1);
-  FlatScene own = scene;
-  const TracerScene tracer_scene(own, embree);
+  const TracerScene tracer_scene{&scene, &embree};
   SamplingSettings settings = spec.sampling;
   settings.replicates = result.replicates;
   PathTracer tracer(tracer_scene, settings);

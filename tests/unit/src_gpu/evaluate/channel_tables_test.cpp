@@ -129,7 +129,8 @@ TEST(ChannelTables, RowsOfMaterials) {
   EXPECT_NEAR(interpolated(t, t.material_rows[1], 3, 0), value(metal.eta_row) - 1, 1e-5);
   EXPECT_NEAR(interpolated(t, t.material_rows[1] + 1, 3, 0), value(metal.k_row), 1e-5);
   const KbMaterial& glass = scene.materials[3];
-  EXPECT_NEAR(interpolated(t, t.material_rows[3], 3, 0), value(glass.eta_row) / value(glass.k_row) - 1, 1e-6);
+  EXPECT_NEAR(interpolated(t, t.material_rows[3], 3, 0), value(glass.eta_row) / value(glass.ext_row) - 1,
+              1e-6);
   EXPECT_NEAR(interpolated(t, t.layout.wavelength_row, 3, 0), lambda - 595, 1e-4);
 }
 

@@ -39,7 +39,7 @@ void set_material_types(FlatScene& scene) {
   for (uint32_t m = 0; m < 3; ++m) scene.materials[m].type = KB_MATERIAL_CONDUCTOR;
   for (uint32_t m = 3; m < 5; ++m) {
     scene.materials[m].type = KB_MATERIAL_DIELECTRIC;
-    scene.materials[m].flags = KB_MATERIAL_DISPERSIVE;
+    scene.materials[m].flags |= KB_MATERIAL_DISPERSIVE;
   }
   scene.materials[5].type = KB_MATERIAL_CONDUCTOR;
   scene.materials[6].type = KB_MATERIAL_PLASTIC;
