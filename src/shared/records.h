@@ -33,6 +33,7 @@ enum KbMaterialType {
 #define KB_MATERIAL_PERFECT_MIRROR 8u /* conductor: eta 0, k 1, reflectance 1 at every wavelength */
 #define KB_MATERIAL_COMPENSATED 16u   /* rough: scaled by 1 / E, its single-scattering albedo (thermal.h) */
 #define KB_MATERIAL_GGX 32u           /* rough: the distribution of normals; else Beckmann */
+#define KB_MATERIAL_THIN 64u          /* smooth dielectric: a pane, two boundaries and no inside */
 
 /* One leaf BSDF. Spectral quantities are references; scalars that steer sampling are averages over the guide bands. */
 typedef struct {

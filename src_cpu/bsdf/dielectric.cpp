@@ -46,8 +46,34 @@ HalfVector half_vector(glm::vec3 wi, glm::vec3 wo, float eta) {
 
 }  // namespace
 
+/// Through a pane light goes straight on.
+BsdfSample passed_pane(const KbMaterial& material, glm::vec3 wi, float weight, float pdf) {
+  BsdfSample sample;
+  sample.wo = -wi;
+  sample.w0 = weight;
+  sample.pdf = pdf;
+  sample.bound = weight * material.bound_b;
+  sample.delta = sample.transmission = sample.lobe_b = true;
+  return sample;
+}
+
+/// A pane reflects F + (1 - F)^2 F (1 + F^2 + F^4 + ...) = 2 F / (1 + F) and transmits the rest, (1 - F) / (1 + F).
+BsdfSample sample_pane(const KbMaterial& material, glm::vec3 wi, float eta, float u_lobe) {
+  const float f = fresnel_dielectric(std::min(wi.z, 1.0f), eta).reflectance;
+  const float reflected = 2 * f / (1 + f);
+  if (u_lobe >= reflected) return passed_pane(material, wi, 1, 1 - reflected);
+  BsdfSample sample;
+  sample.wo = mirror(wi);
+  sample.w0 = 1;
+  sample.pdf = reflected;
+  sample.bound = material.bound_a;
+  sample.delta = true;
+  return sample;
+}
+
 /// Reflection with probability F: both weights are then 1 (times the radiance scaling).
 BsdfSample sample_dielectric(const KbMaterial& material, glm::vec3 wi, float eta, float u_lobe) {
+  if (material.flags & KB_MATERIAL_THIN) return sample_pane(material, wi, eta, u_lobe);
   const DielectricFresnel f = fresnel_dielectric(std::min(wi.z, 1.0f), eta);
   const bool total = KB_PLANTED(TOTAL_REFLECTION) && f.cos_t == 0;
   if (u_lobe >= f.reflectance || total) return refracted(material, wi, eta, f.cos_t, 1, 1 - f.reflectance);
@@ -64,8 +90,16 @@ BsdfSample sample_dielectric(const KbMaterial& material, glm::vec3 wi, float eta
 /// [0.1, 0.9] since single channels may reflect where the mean does not (and the other way round); evaluation
 /// applies F per channel.
 BsdfSample sample_dispersive(const KbMaterial& material, glm::vec3 wi, float eta, bool below, float u_lobe) {
-  const float p = std::clamp(fresnel_dielectric(std::min(wi.z, 1.0f), eta).reflectance, 0.1f, 0.9f);
+  const bool thin = material.flags & KB_MATERIAL_THIN;
+  const float f = fresnel_dielectric(std::min(wi.z, 1.0f), eta).reflectance;
+  const float p = std::clamp(thin ? 2 * f / (1 + f) : f, 0.1f, 0.9f);
   BsdfSample sample;
+  if (thin && u_lobe >= p) {  // all channels go straight on: none need be chosen
+    sample = passed_pane(material, wi, 1 / (1 - p), 1 - p);
+    sample.kind = KB_KIND_DISPERSIVE;
+    sample.w1 = -wi.z;
+    return sample;
+  }
   sample.delta = true;
   if (u_lobe >= p) {
     sample.pdf = 1 - p;
@@ -75,7 +109,7 @@ BsdfSample sample_dispersive(const KbMaterial& material, glm::vec3 wi, float eta
   sample.wo = mirror(wi);
   sample.kind = KB_KIND_DISPERSIVE;
   sample.w0 = 1 / p;
-  sample.w1 = below ? -wi.z : wi.z;
+  sample.w1 = below && !thin ? -wi.z : wi.z;
   sample.pdf = p;
   sample.bound = sample.w0 * material.bound_a;  // F <= 1
   return sample;

@@ -42,7 +42,8 @@ BsdfSample sample_dielectric_side(const MaterialContext& context, glm::vec3 wi, 
   if (rough && not_degraded(context))
     throw std::logic_error("rough dispersive dielectric that is not degraded");
   const bool below = wi.z < 0;
-  const float eta = below ? 1 / index_ratio(context) : index_ratio(context);
+  const bool inside = below && !(material.flags & KB_MATERIAL_THIN);
+  const float eta = inside ? 1 / index_ratio(context) : index_ratio(context);
   if (below) wi = flip(wi);
   BsdfSample sample = rough                   ? lobes::sample_rough_dielectric(material, wi, eta, u_lobe, u)
                       : not_degraded(context) ? lobes::sample_dispersive(material, wi, eta, below, u_lobe)

@@ -158,6 +158,17 @@ Text lenses() {
          ball("-0.2 0.5 -0.4", "0.4", glass);
 }
 
+/// Panes one behind the other, coloured, dispersive, masked.
+Text panes() {
+  const Text window = scale("0.5"), coloured = spectrum("specular_transmittance", "450:0.9, 650:0.5");
+  return rectangle(window + turn("y", "25") + move("-0.4 0.3 0.4"), bsdf("thindielectric", coloured)) +
+         rectangle(window + turn("y", "-155") + move("-0.3 0.2 0"),
+                   bsdf("thindielectric", real("int_ior", "1.9"))) +
+         rectangle(window + turn("y", "-35") + move("0.5 0.1 0.4"), dispersive("thindielectric", coloured)) +
+         ball("0.5 -0.5 0", "0.35", dispersive("thindielectric")) +
+         ball("-0.5 -0.6 0.2", "0.3", bsdf("mask", real("opacity", "0.6") + bsdf("thindielectric")));
+}
+
 /// Walls of mirrors, a mirroring ball between them.
 Text mirrors() {
   const Text mirror = bsdf("conductor", spectrum("specular_reflectance", "450:0.95, 650:0.9"));
@@ -177,7 +188,9 @@ Text hot(const Text& kelvin) {
 /// Hot and warm things of all materials, in a warm room.
 Text hot_things() {
   const Text base = spectrum("diffuse_reflectance", "450:0.3, 650:0.6");
-  return ball("-0.6 0.4 -0.2", "0.3", metal("roughconductor", roughness("ggx", "0.3")) + hot("2400")) +
+  return rectangle(scale("0.2") + move("0.4 0 0.4"),
+                   bsdf("thindielectric", spectrum("specular_transmittance", "0.7")) + hot("2250")) +
+         ball("-0.6 0.4 -0.2", "0.3", metal("roughconductor", roughness("ggx", "0.3")) + hot("2400")) +
          ball("0 0.4 -0.2", "0.3", metal("roughconductor", roughness("beckmann", "0.1", "0.4"))) +
          ball("0.6 0.4 -0.2", "0.3", metal("conductor") + hot("2200")) +
          ball("-0.6 -0.5 0.1", "0.3", bsdf("roughplastic", base + roughness("ggx", "0.2"))) +
@@ -241,6 +254,7 @@ std::vector<ZooScene> make_scenes() {
        scene(10, perspective(film("gaussian")),
              lit_room + ball("0 -0.2 0", "0.6", dispersive("roughdielectric", roughness("ggx", "0.2")))),
        kCurved},
+      {"panes", scene(10, perspective(film("gaussian")), lit_room + panes()), kCurved},
       {"named_materials", scene(8, perspective(film("gaussian")), lit_room + named_materials()), kCurved},
       {"gases", scene(8, thinlens(film("tent")), lit_room + gases() + delta_lights() + sky("0.5")), kCurved},
       {"plumes", scene(4, perspective(film("box")), lit_room + plumes() + sky("0.3")), Chains::kPlume},

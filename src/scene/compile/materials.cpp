@@ -103,6 +103,7 @@ KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
       reference(model.specular_transmittance, {name + ": specular_transmittance", position, false});
   record.bound_a = static_cast<float>(texture_bound(model.specular_reflectance));
   record.bound_b = static_cast<float>(texture_bound(model.specular_transmittance));
+  if (model.thin) record.flags |= KB_MATERIAL_THIN;
   const SpectrumSource int_use{name + ": int_ior", position, false};
   const SpectrumSource ext_use{name + ": ext_ior", position, false};
   require_data(model.int_ior, out_, int_use);

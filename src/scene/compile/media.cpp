@@ -119,7 +119,8 @@ uint32_t Flattener::medium(const std::shared_ptr<const Medium>& medium, uint32_t
 uint32_t Flattener::interior(uint32_t shape_index) {
   const Shape& shape = in_.shapes[shape_index];
   const KbSurface& surface = out_.surfaces[out_.shapes[shape_index].surface];
-  const bool refracts = surface.flags & KB_SURFACE_TRANSMISSIVE;
+  const bool refracts = (surface.flags & KB_SURFACE_TRANSMISSIVE) &&
+                        !(out_.materials[surface.front].flags & KB_MATERIAL_THIN);
   if (shape.interior) return medium(shape.interior, refracts ? surface.front : KB_NONE);
   if (!refracts) return KB_NONE;
   return add_medium(empty_medium(KB_MEDIUM_EMPTY), "inside of " + out_.shape_names[shape_index],

@@ -84,13 +84,15 @@ struct ConductorBsdf {
   Texture specular_reflectance = Spectrum::constant(1);
   std::optional<Roughness> roughness;
 };
-/// Indices are spectra; both constant: no dispersion.
+/// Indices are spectra; both constant: no dispersion. thin: a pane without thickness, seen from outside on both
+/// sides, smooth; what it reflects and transmits has been reflected in it any number of times.
 struct DielectricBsdf {
   Spectrum int_ior = Spectrum::constant(1.5046);
   Spectrum ext_ior = Spectrum::constant(1.000277);
   Texture specular_reflectance = Spectrum::constant(1);
   Texture specular_transmittance = Spectrum::constant(1);
   std::optional<Roughness> roughness;
+  bool thin = false;
 };
 struct PlasticBsdf {
   Texture diffuse_reflectance = Spectrum::constant(0.5);

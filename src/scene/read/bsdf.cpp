@@ -89,7 +89,7 @@ Spectrum read_index(ReadContext& context, const ObjectReader& object, std::strin
   return constants->n;
 }
 
-Model read_dielectric(ReadContext& context, const ObjectReader& object, bool rough) {
+DielectricBsdf read_dielectric(ReadContext& context, const ObjectReader& object, bool rough) {
   DielectricBsdf bsdf;
   bsdf.int_ior = read_index(context, object, "int_ior", "int_material", 1.5046);
   bsdf.ext_ior = read_index(context, object, "ext_ior", "ext_material", 1.000277);
@@ -167,6 +167,11 @@ Model read_dielectric_smooth(ReadContext& c, const ObjectReader& o) {
 Model read_dielectric_rough(ReadContext& c, const ObjectReader& o) {
   return read_dielectric(c, o, true);
 }
+Model read_dielectric_thin(ReadContext& c, const ObjectReader& o) {
+  DielectricBsdf bsdf = read_dielectric(c, o, false);
+  bsdf.thin = true;
+  return bsdf;
+}
 Model read_plastic_smooth(ReadContext& c, const ObjectReader& o) {
   return read_plastic(c, o, false);
 }
@@ -189,6 +194,7 @@ constexpr BsdfType kTypes[] = {
     {"roughconductor", read_conductor_rough},
     {"dielectric", read_dielectric_smooth},
     {"roughdielectric", read_dielectric_rough},
+    {"thindielectric", read_dielectric_thin},
     {"plastic", read_plastic_smooth},
     {"roughplastic", read_plastic_rough},
     {"twosided", read_two_sided},

@@ -30,7 +30,7 @@ double fresnel_noise(double cos_i, double eta) {
 double allowance(const KbMaterial& m, const Query& query, glm::dvec3 wo) {
   const glm::dvec3 wi = vector_of(query.wi);
   double eta = m.flags & KB_MATERIAL_DISPERSIVE && query.dispersion_eta > 0 ? query.dispersion_eta : m.eta;
-  if (wi.z < 0) eta = 1 / eta;
+  if (wi.z < 0 && !(m.flags & KB_MATERIAL_THIN)) eta = 1 / eta;  // panes: outside on both sides
   const glm::dvec3 sum = wi.z * wo.z > 0 ? wi + wo : wi + eta * wo;
   const double dot = std::min(std::abs(glm::dot(wi, sum)) / std::max(glm::length(sum), 1e-20), 1.0);
   switch (m.type) {

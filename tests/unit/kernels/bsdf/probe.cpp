@@ -211,6 +211,10 @@ std::vector<KbMaterial> every_material() {
   for (const float eta : {1.5f, 1.0003f, 0.7f, 1.0f})
     for (const KbMaterialType type : {KB_MATERIAL_DIELECTRIC, KB_MATERIAL_PLASTIC})
       all.push_back(material_of(type, eta));
+  for (const float eta : {1.5f, 1.0003f, 0.7f, 1.0f}) {
+    all.push_back(material_of(KB_MATERIAL_DIELECTRIC, eta));
+    all.back().flags |= KB_MATERIAL_THIN;
+  }
   for (const uint32_t distribution : {0u, KB_MATERIAL_GGX})
     for (const bool visible : {true, false})
       for (const auto& [u, v] : {std::pair{1e-4f, 1e-4f}, {0.05f, 0.05f}, {0.5f, 0.5f}, {0.1f, 0.4f}}) {

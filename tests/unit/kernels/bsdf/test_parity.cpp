@@ -46,11 +46,14 @@ TEST(DeviceBsdf, AgreesWithTheCpuForDispersiveDielectrics) {
   smooth.flags |= KB_MATERIAL_DISPERSIVE;
   KbMaterial facets = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MATERIAL_GGX, 0.2f, 0.2f, true);
   facets.flags |= KB_MATERIAL_DISPERSIVE;
-  const uint32_t first = scene.add(smooth), second = scene.add(facets);
+  KbMaterial pane = smooth;
+  pane.flags |= KB_MATERIAL_THIN;
+  const uint32_t first = scene.add(smooth), second = scene.add(facets), third = scene.add(pane);
   // 0: no channel is chosen yet; transmit_dispersive refuses that index
   for (const float eta : {0.0f, 1.0f, 1.4f, 1.7f, 0.6f}) {
     add_queries(scene, first, eta, 10000, uniform, queries);
     if (eta > 0) add_queries(scene, second, eta, 10000, uniform, queries);
+    add_queries(scene, third, eta, 10000, uniform, queries);
   }
   const Answers cpu = scene.on_cpu(queries), device = scene.on_device(queries);
   Comparison(scene).check(queries, cpu, device);

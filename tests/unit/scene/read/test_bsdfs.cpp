@@ -61,6 +61,17 @@ TEST(SceneBsdf, DielectricIndices) {
   EXPECT_TRUE(other.roughness);
 }
 
+TEST(SceneBsdf, PanesAreDielectrics) {
+  const auto pane = model_of<DielectricBsdf>(R"(<bsdf type="thindielectric"/>)");
+  EXPECT_TRUE(pane.thin);
+  EXPECT_EQ(pane.int_ior(550), 1.5046);
+  EXPECT_EQ(pane.ext_ior(550), 1.000277);
+  EXPECT_EQ(value(pane.specular_reflectance), 1);
+  EXPECT_EQ(value(pane.specular_transmittance), 1);
+  EXPECT_FALSE(pane.roughness);
+  EXPECT_FALSE(model_of<DielectricBsdf>(R"(<bsdf type="dielectric"/>)").thin);
+}
+
 TEST(SceneBsdf, OpticalConstantsFromFiles) {
   const TemporaryFolder folder;
   folder.write("glass.txt", "400 1.6\n800 1.5\n");

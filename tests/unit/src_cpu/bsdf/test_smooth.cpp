@@ -50,6 +50,72 @@ TEST(SmoothBsdf, WhichMaterialsTakeLightSamples) {
     EXPECT_TRUE(has_smooth_lobe(material_of(type)));
 }
 
+/// What leaves a pane after any number of reflections inside, summed one by one.
+double pane_series(double f) {
+  double inside = 1 - f, reflected = f;
+  for (int i = 0; i < 2000; ++i) {
+    inside *= f;  // at the back
+    reflected += inside * (1 - f);
+    inside *= f;  // at the front
+  }
+  return reflected;
+}
+
+// Both sides are the outside; light that passes goes straight on, without radiance scaling.
+TEST(SmoothBsdf, PanesSumTheReflectionsInside) {
+  KbMaterial m = material_of(KB_MATERIAL_DIELECTRIC);
+  m.flags |= KB_MATERIAL_THIN;
+  m.bound_a = 0.7f;
+  m.bound_b = 0.6f;
+  for (const float eta : {1.5f, 0.8f}) {
+    m.eta = eta;
+    for (double degrees : {0.0, 10.0, 45.0, 70.0, 89.0, 91.0, 120.0, 179.0}) {
+      SCOPED_TRACE(degrees);
+      const glm::vec3 wi = direction(degrees);
+      const double expected = pane_series(double(reference::fresnel(std::abs(wi.z), eta)));
+      const BsdfSample r = sample(m, wi, 0);
+      EXPECT_EQ(r.wo, glm::vec3(-wi.x, -wi.y, wi.z));
+      EXPECT_NEAR(r.pdf * r.w0, expected, 2e-6);
+      EXPECT_FALSE(r.lobe_b);
+      EXPECT_EQ(r.bound, 0.7f);
+      const BsdfSample t = sample(m, wi, 0.9999999f);
+      if (expected > 0.999) continue;
+      EXPECT_NEAR(t.pdf * t.w0, 1 - expected, 2e-6);
+      EXPECT_TRUE(t.lobe_b && t.transmission && t.delta);
+      EXPECT_EQ(t.wo, -wi);
+      EXPECT_EQ(t.eta, 1);
+      EXPECT_EQ(t.bound, 0.6f);
+    }
+  }
+}
+
+// With an index that depends on the wavelength both ways are for all channels: evaluation applies the channel's
+// share, told which by the sign of w1. Once a channel is chosen it is a pane of its index.
+TEST(SmoothBsdf, DispersivePanesKeepAllChannels) {
+  KbMaterial m = material_of(KB_MATERIAL_DIELECTRIC);
+  m.flags |= KB_MATERIAL_THIN | KB_MATERIAL_DISPERSIVE;
+  for (double degrees : {0.0, 60.0, 85.0, 100.0, 180.0}) {
+    SCOPED_TRACE(degrees);
+    const glm::vec3 wi = direction(degrees);
+    const BsdfSample r = sample(m, wi, 0), t = sample(m, wi, 0.9999999f);
+    for (const BsdfSample* s : {&r, &t}) {
+      EXPECT_EQ(s->kind, KB_KIND_DISPERSIVE);
+      EXPECT_FALSE(s->needs_channel);
+      EXPECT_TRUE(s->delta);
+      EXPECT_FLOAT_EQ(s->w0 * s->pdf, 1);
+    }
+    EXPECT_FLOAT_EQ(r.pdf + t.pdf, 1);
+    EXPECT_GE(std::min(r.pdf, t.pdf), 0.0999f);
+    EXPECT_EQ(r.w1, std::abs(wi.z));
+    EXPECT_EQ(t.w1, -std::abs(wi.z));
+    EXPECT_TRUE(t.lobe_b && t.transmission);
+    EXPECT_EQ(t.wo, -wi);
+    const BsdfSample one = sample(m, wi, 0, {1.7f});
+    EXPECT_EQ(one.kind, KB_KIND_SCALED);
+    EXPECT_NEAR(one.pdf, pane_series(double(reference::fresnel(std::abs(wi.z), 1.7))), 2e-6);
+  }
+}
+
 // Reflected share F, transmitted share 1 - F, Snell's law, both sides, total internal reflection included.
 TEST(SmoothBsdf, DielectricFollowsFresnelAndSnell) {
   KbMaterial m = material_of(KB_MATERIAL_DIELECTRIC);
