@@ -126,6 +126,10 @@ double vertex_fresnel(const Point& at, const KbPathVertex& vertex, double cosine
   }
   const double interior = spectrum(at, m.eta_row);
   const double exterior = m.ext_row == KB_NONE ? m.eta_ext : spectrum(at, m.ext_row);
+  if (m.flags & KB_MATERIAL_THIN) {
+    const double f = fresnel(cosine, interior / exterior);
+    return (cosine < 0 ? 1 - f : 2 * f) / (1 + f);
+  }
   return fresnel(cosine, cosine < 0 ? exterior / interior : interior / exterior);
 }
 

@@ -38,7 +38,9 @@ struct FresnelTerms {
   const float* high = nullptr;
   const float* low = nullptr;
   const float* nk = nullptr;
-  float cosine = 1;  // absolute
+  enum class Of : uint8_t { kBoundary, kPaneReflectance, kPaneTransmittance };
+  Of of = Of::kBoundary;  // panes: KB_MATERIAL_THIN
+  float cosine = 1;       // absolute
   float cosine2_high = 1, cosine2_low = 0;
   float sine2 = 0;
 };

@@ -88,8 +88,31 @@ HWY_INLINE Floats dielectric_fresnel(const FresnelTerms& f, std::size_t k) {
   return hn::IfThenElse(hn::Le(g2, hn::Zero(kTag)), constant(1), partial_reflectance(big_e, g, c, c2));
 }
 
-HWY_INLINE Floats fresnel(const FresnelTerms& f, std::size_t k) {
-  return f.nk ? conductor_fresnel(f, k) : dielectric_fresnel(f, k);
+/// T = 1 - F without cancellation, c and g as in partial_reflectance:
+///   T = 2 c g (1 / (c + g)^2 + e^2 / (e^2 c + g)^2).
+HWY_INLINE Floats dielectric_transmittance(const FresnelTerms& f, std::size_t k) {
+  const Floats c = constant(f.cosine), c2 = constant(f.cosine2_high);
+  const Floats big_e = hn::LoadU(kTag, f.high + k), e2 = hn::Add(big_e, constant(1));
+  const Floats g2 = hn::Add(hn::Add(big_e, c2), hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
+  const Floats g = hn::Sqrt(hn::Max(g2, hn::Zero(kTag)));
+  const Floats s = hn::Div(constant(1), hn::Max(square(hn::Add(c, g)), constant(kTiny)));
+  const Floats p = hn::Div(e2, hn::Max(square(hn::MulAdd(e2, c, g)), constant(kTiny)));
+  return hn::Mul(hn::Mul(hn::Add(c, c), g), hn::Add(s, p));
+}
+
+/// What a pane of two boundaries reflects, 2 F / (1 + F), or lets through, (1 - F) / (1 + F) = T / (2 - T).
+HWY_INLINE Floats pane(const FresnelTerms& terms, std::size_t k) {
+  if (terms.of == FresnelTerms::Of::kPaneTransmittance) {
+    const Floats t = dielectric_transmittance(terms, k);
+    return hn::Div(t, hn::Sub(constant(2), t));
+  }
+  const Floats f = dielectric_fresnel(terms, k);
+  return hn::Div(hn::Add(f, f), hn::Add(constant(1), f));
+}
+
+HWY_INLINE Floats fresnel(const FresnelTerms& terms, std::size_t k) {
+  if (terms.nk) return conductor_fresnel(terms, k);
+  return terms.of == FresnelTerms::Of::kBoundary ? dielectric_fresnel(terms, k) : pane(terms, k);
 }
 
 /// S(v) = 1/2 + v / (2 sqrt(1 + v^2)). For v < 0 the difference is expanded: S(-|v|) = 1 / (2 r (r + |v|)),

@@ -186,7 +186,10 @@ void ProgramBuilder::add_fresnel(GeneralVertex& out, uint32_t material, DenseSpe
       const auto rows = spectra.conductor(material);
       terms.high = rows[0], terms.low = rows[1], terms.nk = rows[2];
     } else {
-      const auto rows = spectra.dispersive(material, cosine < 0);
+      const bool thin = scene_.materials[material].flags & KB_MATERIAL_THIN;
+      const auto rows = spectra.dispersive(material, cosine < 0 && !thin);
+      using Of = FresnelTerms::Of;
+      if (thin) terms.of = cosine < 0 ? Of::kPaneTransmittance : Of::kPaneReflectance;
       terms.high = rows[0], terms.low = rows[1];
     }
     return terms;

@@ -27,7 +27,7 @@ uint32_t below(std::mt19937& random, std::size_t n) {
 
 // Rows of make_scene.
 constexpr uint32_t kReflectances = 8, kFirstEmission = 8, kEmissions = 5, kFirstIndex = 13, kIndices = 6;
-constexpr uint32_t kMaterials = 7;
+constexpr uint32_t kMaterials = 8;
 constexpr uint32_t kKinds[] = {KB_KIND_SCALED,    KB_KIND_TWO_TERM,   KB_KIND_NONLINEAR,
                                KB_KIND_CONDUCTOR, KB_KIND_DISPERSIVE, KB_KIND_ROUGH_TRANSMISSION};
 
@@ -61,7 +61,7 @@ void add_spectra(FlatScene& scene, const Channel& range, std::mt19937& random) {
 }
 
 void add_materials(FlatScene& scene) {
-  const uint32_t pairs[kMaterials - 2][2] = {{0, 1}, {2, 3}, {5, 0}, {4, 5}, {4, KB_NONE}};
+  const uint32_t pairs[kMaterials - 3][2] = {{0, 1}, {2, 3}, {5, 0}, {4, 5}, {4, KB_NONE}};
   for (const auto& [first, second] : pairs) {
     KbMaterial material{};
     material.eta_row = kFirstIndex + first;
@@ -81,8 +81,9 @@ void add_materials(FlatScene& scene) {
   mirror.eta_row = mirror.k_row = KB_NONE;
   KbMaterial plastic{};
   plastic.fdr_int = 0.596f;
-  scene.materials.push_back(mirror);
-  scene.materials.push_back(plastic);
+  KbMaterial pane = scene.materials[3];
+  pane.flags |= KB_MATERIAL_THIN;
+  for (const KbMaterial& material : {mirror, plastic, pane}) scene.materials.push_back(material);
 }
 
 /// The parabola a ((x - x0) / 100)^2 + b, with terms far larger than their sum.
@@ -143,7 +144,7 @@ KbPathVertex random_vertex(const FlatScene& scene, std::mt19937& random) {
   const uint32_t kind = kKinds[below(random, std::size(kKinds))];
   uint32_t material = 6;
   if (kind == KB_KIND_CONDUCTOR) material = std::array<uint32_t, 4>{0, 1, 2, 5}[below(random, 4)];
-  if (kind == KB_KIND_DISPERSIVE) material = 3 + below(random, 2);
+  if (kind == KB_KIND_DISPERSIVE) material = std::array<uint32_t, 3>{3, 4, 7}[below(random, 3)];
   // Far from an index of 1, where wi + e wo cancels.
   if (kind == KB_KIND_ROUGH_TRANSMISSION) material = 4;
   v.head = kind | material << KB_VERTEX_MATERIAL_SHIFT;

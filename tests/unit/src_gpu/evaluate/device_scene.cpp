@@ -41,6 +41,8 @@ void set_material_types(FlatScene& scene) {
     scene.materials[m].type = KB_MATERIAL_DIELECTRIC;
     scene.materials[m].flags |= KB_MATERIAL_DISPERSIVE;
   }
+  scene.materials[7].type = KB_MATERIAL_DIELECTRIC;
+  scene.materials[7].flags |= KB_MATERIAL_DISPERSIVE;
   scene.materials[5].type = KB_MATERIAL_CONDUCTOR;
   scene.materials[6].type = KB_MATERIAL_PLASTIC;
 }
