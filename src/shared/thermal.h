@@ -29,8 +29,8 @@
                          chosen with the weights of linear interpolation
      KB_THERMAL_SMOOTH   the sum of c_i ref[i] (absent: 0) with c_0 = R, and of plastics c_1 = q (1 - R),
                          c_2 = 1 - c_0 - c_1, of dielectrics c_1 = 1 - R and all times index^2 seen from inside, where
-                         equilibrium radiance is higher by that. R is Fresnel's reflectance. ref[i] is chosen in
-                         proportion to c_i
+                         equilibrium radiance is higher by that. R is Fresnel's reflectance F, of panes 2 F / (1 + F)
+                         with c_1 = 1 - R. ref[i] is chosen in proportion to c_i
      KB_THERMAL_ROUGH    the same with R from a table of KB_COMPENSATION_NODES by nodes_s positions as above (dielectrics:
                          outside, then inside); of plastics q (1 - R) is replaced by KB_COAT_NODES values at equidistant
                          cosines, which follow it */
@@ -40,11 +40,12 @@ enum KbThermalType {
   KB_THERMAL_SMOOTH = 2,
   KB_THERMAL_ROUGH = 3
 };
-#define KB_THERMAL_TRANSMITS 1u /* a dielectric */
+#define KB_THERMAL_TRANSMITS 1u /* a dielectric with an inside */
+#define KB_THERMAL_THIN 2u      /* a pane */
 
 typedef struct {
   kb_u32 type;   /* KbThermalType */
-  kb_u32 flags;  /* KB_THERMAL_TRANSMITS */
+  kb_u32 flags;  /* KB_THERMAL_TRANSMITS, KB_THERMAL_THIN */
   kb_u32 ref[3]; /* emission spectra or bitmaps or checkerboards of them, or KB_NONE */
   kb_u32 table;  /* into the tables of the scene, or KB_NONE */
   kb_u32 nodes_cos, nodes_s;

@@ -74,6 +74,7 @@ void coefficients(const FlatScene& scene, const KbThermal& thermal, const Aspect
   const float* table = thermal.table == KB_NONE ? nullptr : &scene.tables[thermal.table];
   const float eta = aspect.below && transmits ? 1 / thermal.eta : thermal.eta;
   c[0] = table ? reflected_part(thermal, table, aspect) : fresnel_dielectric(aspect.cosine, eta).reflectance;
+  if (thermal.flags & KB_THERMAL_THIN) c[0] = 2 * c[0] / (1 + c[0]);
   if (transmits) {
     const float scale = aspect.below ? thermal.eta * thermal.eta : 1;
     c[1] = scale * (1 - c[0]);

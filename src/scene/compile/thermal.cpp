@@ -168,7 +168,7 @@ KbThermal Flattener::thermal_of(const KbMaterial& material, const std::string& n
   record.nodes_s = nodes_of_s(material);
   record.ref[0] = complement(material.ref_a, heat);
   const bool plastic = material.type == KB_MATERIAL_PLASTIC || material.type == KB_MATERIAL_ROUGH_PLASTIC;
-  if (!plastic) record.flags |= KB_THERMAL_TRANSMITS;
+  if (!plastic) record.flags |= material.flags & KB_MATERIAL_THIN ? KB_THERMAL_THIN : KB_THERMAL_TRANSMITS;
   const bool nonlinear = plastic && (material.flags & KB_MATERIAL_NONLINEAR);
   record.ref[1] = nonlinear ? nonlinear_complement(material, heat) : complement(material.ref_b, heat);
   record.q = 1;
