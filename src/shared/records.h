@@ -62,8 +62,10 @@ KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 #define KB_SURFACE_TWO_SIDED 2u    /* back != KB_NONE: the frame is flipped for directions from below */
 #define KB_SURFACE_THERMAL 4u      /* emits by Kirchhoff's law: front_thermal, back_thermal */
 #define KB_SURFACE_NULL 8u         /* nothing but the boundary of a medium: rays go on; no materials */
+#define KB_SURFACE_BLEND 16u       /* one of two others, chosen by a random number where a ray hits */
 
-/* What a shape's bsdf comes to: the materials of its two sides and its opacity. */
+/* What a shape's bsdf comes to: the materials of its two sides and its opacity. Of a blend front and back are those of
+   its first surface, for images of materials; it has KB_SURFACE_THERMAL if one of the two has, and no opacity. */
 typedef struct {
   kb_u32 front;                       /* material index; null surfaces: KB_NONE */
   kb_u32 back;                        /* material index, or KB_NONE: black from behind */
@@ -71,9 +73,12 @@ typedef struct {
   kb_u32 opacity_ref;                 /* bitmap reference, or KB_NONE for the constant */
   float opacity;                      /* 1: no mask */
   kb_u32 front_thermal, back_thermal; /* KB_SURFACE_THERMAL: KbThermal (thermal.h), or KB_NONE */
+  kb_u32 first, second;               /* KB_SURFACE_BLEND: surfaces, which may be blends themselves */
+  kb_u32 weight_ref;                  /* of the second: bitmap reference, or KB_NONE for the constant */
+  float weight;
   kb_u32 reserved;
 } KbSurface;
-KB_STATIC_ASSERT(sizeof(KbSurface) == 32, surface_size);
+KB_STATIC_ASSERT(sizeof(KbSurface) == 48, surface_size);
 
 /* ---- textures --------------------------------------------------------------------------------------------------
    A texel is (c0, c1, c2, scale): value(lambda) = scale * S(c0 x^2 + c1 x + c2), S(v) = 1/2 + v / (2 sqrt(1 + v^2)),

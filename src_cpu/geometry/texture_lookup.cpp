@@ -149,10 +149,26 @@ float bitmap_value(const FlatScene& scene, const KbTextureSample& sample) {
   return (1 - sample.fy) * top + sample.fy * bottom;
 }
 
-float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv) {
-  if (surface.opacity_ref == KB_NONE) return surface.opacity;
-  const ResolvedSpectrum value = resolve_spectrum(scene, surface.opacity_ref, uv);
+/// A number, or the value of a bitmap.
+static float share_at(const FlatScene& scene, uint32_t ref, float constant, glm::vec2 uv) {
+  if (ref == KB_NONE) return constant;
+  const ResolvedSpectrum value = resolve_spectrum(scene, ref, uv);
   return std::clamp(bitmap_value(scene, value.texture), 0.0f, 1.0f);
+}
+
+float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv) {
+  return share_at(scene, surface.opacity_ref, surface.opacity, uv);
+}
+
+const KbSurface& chosen_surface(const FlatScene& scene, uint32_t index, glm::vec2 uv, float& u) {
+  const KbSurface* surface = &scene.surfaces[index];
+  while (surface->flags & KB_SURFACE_BLEND) {
+    const float weight = share_at(scene, surface->weight_ref, surface->weight, uv);
+    const bool second = u < weight;
+    u = std::min(second ? u / weight : (u - weight) / (1 - weight), KB_ONE_MINUS_EPSILON);
+    surface = &scene.surfaces[second ? surface->second : surface->first];
+  }
+  return *surface;
 }
 
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum) {

@@ -25,6 +25,10 @@ ResolvedSpectrum resolve_spectrum(const FlatScene& scene, uint32_t ref, glm::vec
 /// The bilinear value of a flat (raw) bitmap, for opacities: sum of weights times texel scale.
 float bitmap_value(const FlatScene& scene, const KbTextureSample& sample);
 
+/// The surface that a ray finds where it hits surface `index`: of a blend one of those blended, by the uniform number
+/// u, which is uniform again afterwards.
+const KbSurface& chosen_surface(const FlatScene& scene, uint32_t index, glm::vec2 uv, float& u);
+
 /// A mask's opacity; 1 for other surfaces.
 float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv);
 

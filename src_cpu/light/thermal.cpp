@@ -146,7 +146,7 @@ EmittedRadiance with_temperature(const EmittedRadiance& emissivity, float temper
 
 ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 towards,
                                  glm::vec2 u) {
-  const KbSurface& surface = scene.surfaces[scene.shapes[hit.shape].surface];
+  const KbSurface& surface = chosen_surface(scene, scene.shapes[hit.shape].surface, hit.uv, u.x);
   const uint32_t index = on_front(hit.shading_normal, towards) ? surface.front_thermal : surface.back_thermal;
   if (index == KB_NONE) return {};
   const KbThermal& thermal = scene.thermals[index];

@@ -45,8 +45,8 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   const SurfaceHit hit =
       make_surface_hit(flat_, ray.shape, ray.primitive, ray.u, ray.v, ray.origin(), direction, ray.t_max);
   Draft draft;
-  const KbSurface& surface = flat_.surfaces[flat_.shapes[hit.shape].surface];
-  if (surface.flags & KB_SURFACE_THERMAL) {
+  const uint32_t outermost = flat_.shapes[hit.shape].surface;
+  if (flat_.surfaces[outermost].flags & KB_SURFACE_THERMAL) {
     add_thermal_emission(draft, path, hit, direction, id, bounce);
   } else {
     add_emission(draft, path, hit, direction, bounce);
@@ -58,6 +58,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   if (!wants_bounce(bounce)) return finish(false);
 
   KbFloat4 u = kb_sampler_block(path.key, kb_block_bsdf(KB_PLANTED(NUMBERS_REUSED) ? 0 : bounce));
+  const KbSurface& surface = chosen_surface(flat_, outermost, hit.uv, u.x);
   const float opacity = opacity_at(flat_, surface, hit.uv);
   const bool passes = opacity < 1 && u.x >= opacity;
   if (opacity < 1)

@@ -51,6 +51,7 @@ std::vector<std::string> scene_defines(const SceneFeatures& f, bool specialised)
       {"ROUGH_PLASTIC", f.rough_plastic},
       {"TWO_SIDED", f.two_sided},
       {"MASK", f.mask},
+      {"BLEND", f.blend},
       {"DISPERSION", f.dispersion},
       {"BITMAP", f.bitmap},
       {"CHECKERBOARD", f.checkerboard},

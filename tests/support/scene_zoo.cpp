@@ -169,6 +169,24 @@ Text panes() {
          ball("-0.5 -0.6 0.2", "0.3", bsdf("mask", real("opacity", "0.6") + bsdf("thindielectric")));
 }
 
+/// Blends of every kind, in each other, in masks, on two sides.
+Text blends() {
+  const auto blend = [](const Text& weight, const Text& parts) { return bsdf("blendbsdf", weight + parts); };
+  const Text half = real("weight", "0.5"), quarter = real("weight", "0.25");
+  const Text picture = bitmap("weight", "grey.pgm", "repeat", "bilinear", scale("2"));
+  const Text red = diffuse("450:0.2, 650:0.8"), gold = metal("roughconductor", roughness("ggx", "0.2"));
+  const Text coat = bsdf("roughplastic", roughness("ggx", "0.2"));
+  return ball("-0.6 0.4 -0.2", "0.35", blend(picture, red + gold)) +
+         ball("0.1 0.4 -0.2", "0.35", blend(quarter, bsdf("dielectric") + red)) +
+         ball("0.7 0.4 -0.2", "0.3", blend(half, coat + blend(picture, metal("conductor") + red))) +
+         rectangle(scale("0.35") + turn("y", "150") + move("-0.5 -0.5 0.2"),
+                   bsdf("twosided", blend(picture, red + gold) + blend(quarter, coat + red))) +
+         ball("0.3 -0.5 0.2", "0.3", bsdf("mask", real("opacity", "0.7") + blend(half, red + gold))) +
+         ball("0.8 -0.6 0", "0.25",
+              blend(half, dispersive("roughdielectric", roughness("ggx", "0.2")) +
+                              bsdf("mask", real("opacity", "0.5") + red)));
+}
+
 /// Walls of mirrors, a mirroring ball between them.
 Text mirrors() {
   const Text mirror = bsdf("conductor", spectrum("specular_reflectance", "450:0.95, 650:0.9"));
@@ -188,7 +206,9 @@ Text hot(const Text& kelvin) {
 /// Hot and warm things of all materials, in a warm room.
 Text hot_things() {
   const Text base = spectrum("diffuse_reflectance", "450:0.3, 650:0.6");
-  return rectangle(scale("0.2") + move("0.4 0 0.4"),
+  return ball("-0.1 0 0.3", "0.15",
+              bsdf("blendbsdf", real("weight", "0.3") + diffuse("0.3") + metal("conductor")) + hot("2350")) +
+         rectangle(scale("0.2") + move("0.4 0 0.4"),
                    bsdf("thindielectric", spectrum("specular_transmittance", "0.7")) + hot("2250")) +
          ball("-0.6 0.4 -0.2", "0.3", metal("roughconductor", roughness("ggx", "0.3")) + hot("2400")) +
          ball("0 0.4 -0.2", "0.3", metal("roughconductor", roughness("beckmann", "0.1", "0.4"))) +
@@ -255,6 +275,7 @@ std::vector<ZooScene> make_scenes() {
              lit_room + ball("0 -0.2 0", "0.6", dispersive("roughdielectric", roughness("ggx", "0.2")))),
        kCurved},
       {"panes", scene(10, perspective(film("gaussian")), lit_room + panes()), kCurved},
+      {"blends", scene(8, perspective(film("gaussian")), lit_room + blends() + sky("0.3")), kCurved},
       {"named_materials", scene(8, perspective(film("gaussian")), lit_room + named_materials()), kCurved},
       {"gases", scene(8, thinlens(film("tent")), lit_room + gases() + delta_lights() + sky("0.5")), kCurved},
       {"plumes", scene(4, perspective(film("box")), lit_room + plumes() + sky("0.3")), Chains::kPlume},

@@ -48,6 +48,7 @@ SCENES = [
     ("metals_and_sky", HERE / "scenes/metals_and_sky.xml", 192, 768, "conductors under a grey environment map"),
     ("glass", HERE / "scenes/glass.xml", 192, 768, "smooth, rough and coloured dielectrics, caustics"),
     ("plastics", HERE / "scenes/plastics.xml", 192, 768, "smooth and rough plastics"),
+    ("panes_and_blends", HERE / "scenes/panes_and_blends.xml", 192, 768, "thin dielectrics, blends of every kind"),
     ("lamps", HERE / "scenes/lamps.xml", 192, 1536, "seven kinds of lamp, mask, two sides, orthographic camera"),
     ("lens_and_textures", HERE / "scenes/lens_and_textures.xml", 192, 768, "thin lens, textures, black body"),
 ]

@@ -21,7 +21,8 @@ namespace kiloband {
 struct SceneFeatures {
   bool diffuse = false, conductor = false, rough_conductor = false, dielectric = false,
        rough_dielectric = false;
-  bool plastic = false, rough_plastic = false, two_sided = false, mask = false, dispersion = false;
+  bool plastic = false, rough_plastic = false, two_sided = false, mask = false, blend = false;
+  bool dispersion = false;
   bool bitmap = false, checkerboard = false, spectral_texture = false;
   bool area_light = false, constant_light = false, envmap_light = false, delta_light = false;
   bool analytic_shapes = false;

@@ -57,6 +57,7 @@ std::vector<std::string> SceneFeatures::names() const {
                                               {"roughplastic", rough_plastic},
                                               {"twosided", two_sided},
                                               {"mask", mask},
+                                              {"blend", blend},
                                               {"dispersion", dispersion},
                                               {"bitmap", bitmap},
                                               {"checkerboard", checkerboard},

@@ -50,7 +50,13 @@ class Flattener {
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
-  void set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumSource& use);
+
+  // surfaces.cpp
+  /// A number, or a reference to a bitmap: a share from 0 to 1.
+  void set_share(const Texture& texture, const SpectrumSource& use, uint32_t& ref, float& constant);
+  uint32_t new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
+  uint32_t blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t heat);
+  double mean_weight(const KbSurface& blend) const;
 
   // material_tables.cpp
   uint32_t append_table(const std::vector<float>& table);
@@ -91,6 +97,8 @@ class Flattener {
   std::vector<float> compensate(KbMaterial& material, const Bsdf& bsdf);
   void add_thermal_emitter(uint32_t shape_index);
   double emissivity_estimate(uint32_t thermal, double lambda_nm) const;
+  double side_estimate(const KbSurface& surface, bool front, double lambda_nm) const;
+  bool emits(const KbSurface& surface) const;
   double reference_estimate(uint32_t ref, double lambda_nm) const;
 
   // place.cpp
@@ -110,6 +118,7 @@ class Flattener {
   uint32_t medium(const std::shared_ptr<const Medium>& medium, uint32_t boundary);
   uint32_t gas_emission_row(double temperature_k, uint32_t boundary, const std::string& name);
   uint32_t add_medium(const KbMedium& record, const std::string& name, const SourcePosition& position);
+  void refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const;
   uint32_t interior(uint32_t shape_index);
   void set_grid(KbMedium& record, const GridField& grid);
   void set_jet(KbMedium& record, const JetField& jet);
@@ -134,8 +143,9 @@ class Flattener {
   const CompileOptions& options_;
   FlatScene out_;
   SpectrumTableBuilder spectra_;
-  std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;   // by bsdf and heat
-  std::map<std::pair<const void*, bool>, uint32_t> materials_;      // by bsdf and compensation
+  std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;  // by bsdf and heat
+  std::vector<std::shared_ptr<const Bsdf>> distributed_;           // blends moved outwards: keys of the above
+  std::map<std::pair<const void*, bool>, uint32_t> materials_;     // by bsdf and compensation
   std::map<std::tuple<uint32_t, float, float>, Coating> coatings_;  // by distribution, roughness, index
   std::map<std::pair<uint32_t, uint32_t>, std::vector<float>> conductor_bounds_;  // by rows of n and k
   std::map<const void*, uint32_t> checkerboards_;

@@ -157,8 +157,9 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
       [&](const auto& model) -> KbMaterial {
         using Model = std::decay_t<decltype(model)>;
         if constexpr (std::is_same_v<Model, TwoSidedBsdf> || std::is_same_v<Model, MaskBsdf> ||
-                      std::is_same_v<Model, NullBsdf>) {
-          throw InputError(bsdf->position, name + ": a twosided, mask or null bsdf cannot be nested here");
+                      std::is_same_v<Model, BlendBsdf> || std::is_same_v<Model, NullBsdf>) {
+          throw InputError(bsdf->position,
+                           name + ": a twosided, mask, blend or null bsdf cannot be nested here");
         } else {
           return make(model, name, bsdf->position);
         }

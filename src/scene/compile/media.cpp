@@ -115,14 +115,31 @@ uint32_t Flattener::medium(const std::shared_ptr<const Medium>& medium, uint32_t
   return place->second = add_medium(record, label, medium->position);
 }
 
+/// The dielectrics by which light gets inside; panes have no inside.
+void Flattener::refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const {
+  if (surface.flags & KB_SURFACE_BLEND) {
+    refracting_materials(out_.surfaces[surface.first], found);
+    refracting_materials(out_.surfaces[surface.second], found);
+  } else if ((surface.flags & KB_SURFACE_TRANSMISSIVE) &&
+             !(out_.materials[surface.front].flags & KB_MATERIAL_THIN) &&
+             std::ranges::find(found, surface.front) == found.end()) {
+    found.push_back(surface.front);
+  }
+}
+
 /// What is inside a shape: its medium; nothing, where light enters a body without one.
 uint32_t Flattener::interior(uint32_t shape_index) {
   const Shape& shape = in_.shapes[shape_index];
-  const KbSurface& surface = out_.surfaces[out_.shapes[shape_index].surface];
-  const bool refracts = (surface.flags & KB_SURFACE_TRANSMISSIVE) &&
-                        !(out_.materials[surface.front].flags & KB_MATERIAL_THIN);
-  if (shape.interior) return medium(shape.interior, refracts ? surface.front : KB_NONE);
-  if (!refracts) return KB_NONE;
+  std::vector<uint32_t> boundaries;
+  refracting_materials(out_.surfaces[out_.shapes[shape_index].surface], boundaries);
+  if (boundaries.size() > 1 && shape.interior) {
+    throw InputError(shape.position,
+                     fmt::format("shape '{}': blended dielectrics cannot bound a medium: what it "
+                                 "emits inside depends on the index that light enters by",
+                                 out_.shape_names[shape_index]));
+  }
+  if (shape.interior) return medium(shape.interior, boundaries.empty() ? KB_NONE : boundaries.front());
+  if (boundaries.empty()) return KB_NONE;
   return add_medium(empty_medium(KB_MEDIUM_EMPTY), "inside of " + out_.shape_names[shape_index],
                     shape.position);
 }

@@ -1,20 +1,14 @@
-// What the bsdf of a shape comes to: the materials of its two sides and its opacity.
+// What the bsdf of a shape comes to: the materials of its two sides, its opacity, what is blended.
+#include <algorithm>
+
 #include "scene/compile/flattener.hpp"
 
 namespace kiloband {
+namespace {
 
-void Flattener::set_opacity(KbSurface& record, const MaskBsdf& mask, const SpectrumSource& use) {
-  out_.features.mask = true;
-  if (const auto* spectrum = std::get_if<Spectrum>(&mask.opacity)) {
-    record.opacity = static_cast<float>(spectra_.guide_mean(*spectrum));
-  } else if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&mask.opacity)) {
-    record.opacity_ref = KB_REF_BITMAP | bitmap(*image, BitmapUse::kOpacity);
-  } else {
-    throw InputError(use.position, use.name + ": only a number or a bitmap is supported here");
-  }
-}
+using BsdfPointer = std::shared_ptr<const Bsdf>;
 
-static bool is_rough(const Bsdf& bsdf) {
+bool is_rough(const Bsdf& bsdf) {
   if (const auto* conductor = std::get_if<ConductorBsdf>(&bsdf.model))
     return conductor->roughness.has_value();
   if (const auto* dielectric = std::get_if<DielectricBsdf>(&bsdf.model))
@@ -23,21 +17,101 @@ static bool is_rough(const Bsdf& bsdf) {
   return plastic && plastic->roughness;
 }
 
+/// The same with another model.
+template <class Model>
+BsdfPointer with(const Bsdf& bsdf, Model model) {
+  return std::make_shared<const Bsdf>(Bsdf{bsdf.id, bsdf.position, std::move(model)});
+}
+
+/// A blend of `bsdf` with the one or the other part of a blend in it.
+template <class Rebuild>
+BsdfPointer moved_out(const Bsdf& bsdf, const BlendBsdf& inner, const Rebuild& rebuild) {
+  return with(bsdf,
+              BlendBsdf{inner.weight, with(bsdf, rebuild(inner.first)), with(bsdf, rebuild(inner.second))});
+}
+
+/// A mask or twosided bsdf with a blend in it, as a blend of such bsdfs; others as they are. One level: the parts may
+/// have blends in them. Null: there is none.
+BsdfPointer distributed(const Bsdf& bsdf) {
+  if (const auto* mask = std::get_if<MaskBsdf>(&bsdf.model)) {
+    const auto* inner = std::get_if<BlendBsdf>(&mask->nested->model);
+    if (!inner) return nullptr;
+    return moved_out(bsdf, *inner, [&](const BsdfPointer& part) { return MaskBsdf{mask->opacity, part}; });
+  }
+  const auto* sides = std::get_if<TwoSidedBsdf>(&bsdf.model);
+  if (!sides) return nullptr;
+  if (const auto* front = std::get_if<BlendBsdf>(&sides->front->model))
+    return moved_out(bsdf, *front, [&](const BsdfPointer& part) { return TwoSidedBsdf{part, sides->back}; });
+  const auto* back = sides->back ? std::get_if<BlendBsdf>(&sides->back->model) : nullptr;
+  if (!back) return nullptr;
+  return moved_out(bsdf, *back, [&](const BsdfPointer& part) { return TwoSidedBsdf{sides->front, part}; });
+}
+
+KbSurface empty_surface() {
+  KbSurface record{};
+  record.front = record.back = record.opacity_ref = record.front_thermal = record.back_thermal = KB_NONE;
+  record.first = record.second = record.weight_ref = KB_NONE;
+  record.opacity = 1;
+  return record;
+}
+
+}  // namespace
+
+void Flattener::set_share(const Texture& texture, const SpectrumSource& use, uint32_t& ref, float& constant) {
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture)) {
+    constant = static_cast<float>(spectra_.guide_mean(*spectrum));
+  } else if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
+    ref = KB_REF_BITMAP | bitmap(*image, BitmapUse::kOpacity);
+  } else {
+    throw InputError(use.position, use.name + ": only a number or a bitmap is supported here");
+  }
+}
+
+/// Of a texture the mean of its values, as of all that only noise depends on.
+double Flattener::mean_weight(const KbSurface& blend) const {
+  if (blend.weight_ref == KB_NONE) return std::clamp<double>(blend.weight, 0, 1);
+  return std::clamp(texture_means_[blend.weight_ref & KB_REF_INDEX_MASK], 0.0, 1.0);
+}
+
+/// Blends are outermost: what is in a mask or a twosided bsdf was moved out.
+uint32_t Flattener::blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t heat) {
+  out_.features.blend = true;
+  KbSurface record = empty_surface();
+  record.flags = KB_SURFACE_BLEND;
+  set_share(model.weight, {describe(bsdf) + ": weight", bsdf.position, false}, record.weight_ref,
+            record.weight);
+  record.first = surface(model.first, heat);
+  record.second = surface(model.second, heat);
+  const KbSurface& first = out_.surfaces[record.first];
+  record.front = first.front;
+  record.back = first.back;
+  record.flags |= (first.flags | out_.surfaces[record.second].flags) & KB_SURFACE_THERMAL;
+  out_.surfaces.push_back(record);
+  return static_cast<uint32_t>(out_.surfaces.size() - 1);
+}
+
 uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
   if (const auto found = surfaces_.find({bsdf.get(), heat}); found != surfaces_.end()) return found->second;
-  KbSurface record{};
-  record.back = record.opacity_ref = record.front_thermal = record.back_thermal = KB_NONE;
-  record.opacity = 1;
+  const BsdfPointer outermost = distributed(*bsdf);
+  if (outermost) distributed_.push_back(outermost);  // keeps its parts, too
+  const Bsdf& used = outermost ? *outermost : *bsdf;
+  const auto* parts = std::get_if<BlendBsdf>(&used.model);
+  return surfaces_[{bsdf.get(), heat}] = parts ? blend(*parts, used, heat) : new_surface(bsdf, heat);
+}
+
+uint32_t Flattener::new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
+  KbSurface record = empty_surface();
   std::shared_ptr<const Bsdf> inner = bsdf;
   if (const auto* mask = std::get_if<MaskBsdf>(&inner->model)) {
-    set_opacity(record, *mask, {describe(*bsdf) + ": opacity", bsdf->position, false});
+    out_.features.mask = true;
+    set_share(mask->opacity, {describe(*bsdf) + ": opacity", bsdf->position, false}, record.opacity_ref,
+              record.opacity);
     inner = mask->nested;
   }
   if (std::holds_alternative<NullBsdf>(inner->model)) {  // nothing is there that could emit
-    record.front = KB_NONE;
     record.flags |= KB_SURFACE_NULL;
     out_.surfaces.push_back(record);
-    return surfaces_[{bsdf.get(), heat}] = static_cast<uint32_t>(out_.surfaces.size() - 1);
+    return static_cast<uint32_t>(out_.surfaces.size() - 1);
   }
   const std::string& outer_id = inner->id.empty() ? bsdf->id : inner->id;
   std::shared_ptr<const Bsdf> front = inner, back;
@@ -61,7 +135,7 @@ uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t he
     out_.features.thermal |= record.front_thermal != KB_NONE || record.back_thermal != KB_NONE;
   }
   out_.surfaces.push_back(record);
-  return surfaces_[{bsdf.get(), heat}] = static_cast<uint32_t>(out_.surfaces.size() - 1);
+  return static_cast<uint32_t>(out_.surfaces.size() - 1);
 }
 
 }  // namespace kiloband

@@ -160,12 +160,26 @@ double Flattener::emissivity_estimate(uint32_t thermal, double lambda_nm) const 
          (1 - r) * reference_estimate(record.ref[1], lambda_nm);
 }
 
+/// Of one side; of blends by their mean weight.
+double Flattener::side_estimate(const KbSurface& surface, bool front, double lambda_nm) const {
+  if (!(surface.flags & KB_SURFACE_BLEND))
+    return emissivity_estimate(front ? surface.front_thermal : surface.back_thermal, lambda_nm);
+  const double weight = mean_weight(surface);
+  return (1 - weight) * side_estimate(out_.surfaces[surface.first], front, lambda_nm) +
+         weight * side_estimate(out_.surfaces[surface.second], front, lambda_nm);
+}
+
+bool Flattener::emits(const KbSurface& surface) const {
+  if (!(surface.flags & KB_SURFACE_BLEND))
+    return surface.front_thermal != KB_NONE || surface.back_thermal != KB_NONE;
+  return emits(out_.surfaces[surface.first]) || emits(out_.surfaces[surface.second]);
+}
+
 /// A shape with a temperature of its own is a light for next-event estimation, on both sides.
 void Flattener::add_thermal_emitter(uint32_t shape_index) {
   KbShape& shape = out_.shapes[shape_index];
   const KbSurface& surface = out_.surfaces[shape.surface];
-  const uint32_t sides[] = {surface.front_thermal, surface.back_thermal};
-  if (sides[0] == KB_NONE && sides[1] == KB_NONE) return;
+  if (!emits(surface)) return;
   KbEmitter record{};
   record.type = KB_EMITTER_THERMAL;
   record.ref = KB_NONE;
@@ -182,7 +196,7 @@ void Flattener::add_thermal_emitter(uint32_t shape_index) {
   EmitterPower power{Spectrum(), 0};
   for (const Channel& band : out_.guide) {
     const double emissivity =
-        emissivity_estimate(sides[0], band.centre_nm()) + emissivity_estimate(sides[1], band.centre_nm());
+        side_estimate(surface, true, band.centre_nm()) + side_estimate(surface, false, band.centre_nm());
     power.by_band.push_back(emissivity * std::numbers::pi * shape.area *
                             planck_integral(band.min_nm, band.max_nm, temperature_k));
   }

@@ -118,10 +118,17 @@ struct MaskBsdf {
   std::shared_ptr<const Bsdf> nested;
 };
 
+/// (1 - weight) first + weight second. weight: as a mask's opacity.
+struct BlendBsdf {
+  Texture weight = Spectrum::constant(0.5);
+  std::shared_ptr<const Bsdf> first, second;
+};
+
 struct Bsdf {
   std::string id;  // for messages; empty if unnamed
   SourcePosition position;
-  std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf, NullBsdf>
+  std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf, BlendBsdf,
+               NullBsdf>
       model;
 };
 

@@ -115,9 +115,16 @@ Model read_plastic(ReadContext& context, const ObjectReader& object, bool rough)
   return bsdf;
 }
 
+/// Is the model, or one that is blended in it, of this kind?
+template <class Kind>
+bool contains(const Bsdf& bsdf) {
+  const auto* blend = std::get_if<BlendBsdf>(&bsdf.model);
+  return blend ? contains<Kind>(*blend->first) || contains<Kind>(*blend->second)
+               : std::holds_alternative<Kind>(bsdf.model);
+}
+
 bool transmits(const Bsdf& bsdf) {
-  return std::holds_alternative<DielectricBsdf>(bsdf.model) || std::holds_alternative<MaskBsdf>(bsdf.model) ||
-         std::holds_alternative<NullBsdf>(bsdf.model);
+  return contains<DielectricBsdf>(bsdf) || contains<MaskBsdf>(bsdf) || contains<NullBsdf>(bsdf);
 }
 
 Model read_two_sided(ReadContext& context, const ObjectReader& object) {
@@ -130,28 +137,46 @@ Model read_two_sided(ReadContext& context, const ObjectReader& object) {
     auto side = read_bsdf(context, *nested[i]);
     if (transmits(*side))
       object.fail_here("the nested " + ObjectReader(*nested[i]).label() + " transmits light");
-    if (std::holds_alternative<TwoSidedBsdf>(side->model))
-      object.fail_here("a nested bsdf is twosided itself");
+    if (contains<TwoSidedBsdf>(*side)) object.fail_here("a nested bsdf is twosided itself");
     (i == 0 ? bsdf.front : bsdf.back) = std::move(side);
   }
   return bsdf;
 }
 
+/// A share from 0 to 1: a number or a bitmap.
+Texture read_share(ReadContext& context, const ObjectReader& object, const std::string& name,
+                   const Texture& fallback) {
+  Texture share = reflectance(context, object, name, fallback);
+  if (std::holds_alternative<std::shared_ptr<const CheckerboardTexture>>(share))
+    object.fail_at(name, name + ": a checkerboard is not supported here");
+  if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(share))
+    object.fail_at(name, name + ": a spectral_bitmap is not supported here");
+  return share;
+}
+
 Model read_mask(ReadContext& context, const ObjectReader& object) {
   MaskBsdf bsdf;
-  bsdf.opacity = reflectance(context, object, "opacity", bsdf.opacity);
-  if (std::holds_alternative<std::shared_ptr<const CheckerboardTexture>>(bsdf.opacity)) {
-    object.fail_at("opacity", "opacity: a checkerboard is not supported here");
-  }
-  if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(bsdf.opacity)) {
-    object.fail_at("opacity", "opacity: a spectral_bitmap is not supported here");
-  }
+  bsdf.opacity = read_share(context, object, "opacity", bsdf.opacity);
   Node* nested = object.nested_one("bsdf");
   if (!nested) object.fail_here("needs a nested bsdf");
   bsdf.nested = read_bsdf(context, *nested);
-  if (std::holds_alternative<MaskBsdf>(bsdf.nested->model))
-    object.fail_here("the nested bsdf is a mask itself");
-  if (std::holds_alternative<NullBsdf>(bsdf.nested->model)) object.fail_here("the nested bsdf is null");
+  if (contains<MaskBsdf>(*bsdf.nested)) object.fail_here("the nested bsdf is a mask itself");
+  if (contains<NullBsdf>(*bsdf.nested)) object.fail_here("the nested bsdf is null");
+  return bsdf;
+}
+
+Model read_blend(ReadContext& context, const ObjectReader& object) {
+  BlendBsdf bsdf;
+  if (!object.has("weight")) object.fail_here("needs a weight");
+  bsdf.weight = read_share(context, object, "weight", bsdf.weight);
+  const std::vector<Node*> nested = object.nested("bsdf");
+  if (nested.size() != 2) object.fail_here("needs 2 nested bsdfs, found " + std::to_string(nested.size()));
+  bsdf.first = read_bsdf(context, *nested[0]);
+  bsdf.second = read_bsdf(context, *nested[1]);
+  for (const auto& part : {bsdf.first, bsdf.second}) {
+    if (contains<NullBsdf>(*part))
+      object.fail_here("a nested bsdf is null: a mask with the weight of the other as opacity is the same");
+  }
   return bsdf;
 }
 
@@ -199,6 +224,7 @@ constexpr BsdfType kTypes[] = {
     {"roughplastic", read_plastic_rough},
     {"twosided", read_two_sided},
     {"mask", read_mask},
+    {"blendbsdf", read_blend},
     {"null", read_null},
 };
 

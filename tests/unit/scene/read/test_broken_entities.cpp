@@ -187,6 +187,30 @@ std::vector<BrokenScene> table() {
        complete_scene(
            R"xml(<bsdf type="mask"><float name="opacity" value="2"/><bsdf type="diffuse"/></bsdf>)xml"),
        "scene.xml:2:48: error: mask bsdf: opacity 2: must be in [0, 1]"},
+      {"blend without weight",
+       complete_scene(R"xml(<bsdf type="blendbsdf"><bsdf type="diffuse"/><bsdf type="plastic"/></bsdf>)xml"),
+       "scene.xml:2:2: error: blendbsdf bsdf: needs a weight"},
+      {"blend of one",
+       complete_scene(
+           R"xml(<bsdf type="blendbsdf"><float name="weight" value="0.5"/><bsdf type="diffuse"/></bsdf>)xml"),
+       "scene.xml:2:2: error: blendbsdf bsdf: needs 2 nested bsdfs, found 1"},
+      {"blend with null",
+       complete_scene(
+           R"xml(<bsdf type="blendbsdf"><float name="weight" value="0.5"/><bsdf type="diffuse"/><bsdf type="null"/></bsdf>)xml"),
+       "scene.xml:2:2: error: blendbsdf bsdf: a nested bsdf is null: a mask with the weight of the other as opacity "
+       "is the same"},
+      {"weight above 1",
+       complete_scene(
+           R"xml(<bsdf type="blendbsdf"><float name="weight" value="2"/><bsdf type="diffuse"/><bsdf type="plastic"/></bsdf>)xml"),
+       "scene.xml:2:52: error: blendbsdf bsdf: weight 2: must be in [0, 1]"},
+      {"twosided blend with glass",
+       complete_scene(
+           R"xml(<bsdf type="twosided"><bsdf type="blendbsdf"><float name="weight" value="0.5"/><bsdf type="diffuse"/><bsdf type="dielectric"/></bsdf></bsdf>)xml"),
+       "scene.xml:2:2: error: twosided bsdf: the nested blendbsdf bsdf transmits light"},
+      {"mask of a blend with a mask",
+       complete_scene(
+           R"xml(<bsdf type="mask"><bsdf type="blendbsdf"><float name="weight" value="0.5"/><bsdf type="diffuse"/><bsdf type="mask"><bsdf type="diffuse"/></bsdf></bsdf></bsdf>)xml"),
+       "scene.xml:2:2: error: mask bsdf: the nested bsdf is a mask itself"},
       {"unknown shape", complete_scene(R"xml(<shape type="spere"/>)xml"),
        "scene.xml:2:14: error: shape type 'spere' is not supported; did you mean 'sphere'?"},
       {"mesh without a file", complete_scene(R"xml(<shape type="obj"/>)xml"),

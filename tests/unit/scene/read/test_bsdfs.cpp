@@ -72,6 +72,14 @@ TEST(SceneBsdf, PanesAreDielectrics) {
   EXPECT_FALSE(model_of<DielectricBsdf>(R"(<bsdf type="dielectric"/>)").thin);
 }
 
+TEST(SceneBsdf, BlendsKeepTheOrder) {
+  const auto blend = model_of<BlendBsdf>(
+      R"(<bsdf type="blendbsdf"><float name="weight" value="0.3"/><bsdf type="plastic"/><bsdf type="diffuse"/></bsdf>)");
+  EXPECT_EQ(value(blend.weight), 0.3);
+  EXPECT_TRUE(std::holds_alternative<PlasticBsdf>(blend.first->model));
+  EXPECT_TRUE(std::holds_alternative<DiffuseBsdf>(blend.second->model));
+}
+
 TEST(SceneBsdf, OpticalConstantsFromFiles) {
   const TemporaryFolder folder;
   folder.write("glass.txt", "400 1.6\n800 1.5\n");
