@@ -3,6 +3,9 @@
 add_library(kiloband_flags INTERFACE)
 target_compile_options(kiloband_flags INTERFACE -Wall -Wextra -Wshadow -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off -msse4.2 -mpclmul -maes)
 target_include_directories(kiloband_flags INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR})
+if(KILOBAND_WERROR)
+  target_compile_options(kiloband_flags INTERFACE -Werror)
+endif()
 if(KILOBAND_SANITIZE)
   target_compile_options(kiloband_flags INTERFACE -fsanitize=${KILOBAND_SANITIZE} -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, checks how the sources are formatted, builds everything and runs all tests; with the preset
-# release also a minute of fuzzing.
+# Installs what is missing, checks how the sources are formatted, builds everything and runs all tests. The preset release takes
+# warnings for errors, and has clang-tidy on the last commit and a minute of fuzzing besides.
 # Usage: scripts/test.sh [preset]   (release by default; dev, asan, tsan: see CMakePresets.json)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -9,8 +9,10 @@ preset="${1:-release}"
 scripts/install_dependencies.sh test
 scripts/format.sh --check
 bench=ON
-case "$preset" in asan | tsan) bench=OFF ;; esac
-cmake --preset "$preset" -DKILOBAND_TESTS=ON -DKILOBAND_BENCH="$bench"
+werror=OFF
+case "$preset" in asan | tsan) bench=OFF ;; release) werror=ON ;; esac
+cmake --preset "$preset" -DKILOBAND_TESTS=ON -DKILOBAND_BENCH="$bench" -DKILOBAND_WERROR="$werror"
 cmake --build --preset "$preset"
+if [ "$preset" = release ]; then scripts/tidy.sh; fi
 ctest --preset "$preset" --parallel "$(nproc)"
 if [ "$preset" = release ]; then scripts/fuzz.sh 60; fi

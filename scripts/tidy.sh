@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Runs clang-tidy (.clang-tidy) on the C++ files that differ from a commit: what a change may have broken.
+# Usage: scripts/tidy.sh [COMMIT]    (the last one's parent by default; --all: every file). Needs build/release/compile_commands.json.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+base="${1:-HEAD~1}"
+if [ "$base" = --all ]; then
+  list=(git ls-files)
+elif git rev-parse -q --verify "$base^{commit}" >/dev/null; then
+  list=(git diff --name-only --diff-filter=d "$base")
+else
+  echo "tidy: no commit $base to compare with (a shallow clone?): nothing was looked at"
+  exit 0
+fi
+# Highway's files include themselves once per instruction set, which clang-tidy cannot follow; what is not built is not looked at.
+mapfile -t files < <("${list[@]}" -- '*.cpp' | grep -v '^src_cpu/evaluate/evaluator_kernels.cpp$' |
+  while read -r file; do grep -q "/$file\"" build/release/compile_commands.json && echo "$file"; done || true)
+if [ ${#files[@]} -eq 0 ]; then exit 0; fi
+printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy -p build/release --quiet \
+  --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument 2>&1 |
+  { grep -v '^[0-9]* warnings\? generated\|^Suppressed\|^Use -header-filter' || true; }
+exit "${PIPESTATUS[1]}"
