@@ -178,7 +178,7 @@ std::optional<MitsubaDriver> mitsuba_of(const ValidateOptions& options) {
   const fs::path script = fs::absolute(options.scenes) / "validation/mitsuba/compare_with_mitsuba.py";
   auto driver = find_mitsuba({.script = script}, options.names, effort_of(options));
   if (!driver && wants_mitsuba(options.names, effort_of(options)))
-    tell("note: Mitsuba 3 is not there (pip install mitsuba): no case mitsuba/...\n");
+    tell("note: Mitsuba 3 is not there (pip install mitsuba scipy): no case mitsuba/...\n");
   return driver;
 }
 

@@ -11,7 +11,8 @@ build=(g++ cmake ninja-build pkg-config git ca-certificates
   opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev)
 # libclang-rt-dev: libFuzzer and the sanitizers of clang; libomp-dev: OpenMP that ThreadSanitizer can follow (GCC's looks like
 # data races to it); llvm: names of functions in their reports.
-tests=(libgtest-dev libbenchmark-dev clang clang-format clang-tidy libclang-rt-dev libomp-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib)
+tests=(libgtest-dev libbenchmark-dev clang clang-format clang-tidy libclang-rt-dev libomp-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib
+  python3-scipy)
 
 packages=("${build[@]}")
 case "${1:-test}" in

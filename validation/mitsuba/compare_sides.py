@@ -9,7 +9,7 @@ to_world, BSDF of the emitter. Of each cell are compared what is seen of the lig
 (sampled), both at max_depth 2 and 3 and from both sides; and the surface under a sky as one-sided diffuse and as glass.
 
 A value differs if it is lit for one and dark for the other, or by Welch's test over replicates: one or more of all values
-of a call do so by chance with probability R at most. Writes DIR/sides.json. Needs numpy and Mitsuba 3. Exit code: 0 if
+of a call do so by chance with probability R at most. Writes DIR/sides.json. Needs numpy, SciPy and Mitsuba 3. Exit code: 0 if
 nothing differs, 1 if something does, 2 if it could not be done.
 
 Mitsuba's light samples (3.9.1) are not those of its surfaces in two cases, which makes its images wrong there: their density

@@ -5,7 +5,7 @@ Usage: compare_with_mitsuba.py KILOBAND [-o DIR] [--scenes NAME ...] [--effort X
        compare_with_mitsuba.py --probe | --list
 
 KILOBAND is the program; `kiloband validate` calls this script with itself. Writes DIR/mitsuba.json, which
-validation/report/report.py shows. Needs numpy and Mitsuba 3 (`pip install mitsuba`). Both renderers make independent
+validation/report/report.py shows. Needs numpy, SciPy and Mitsuba 3 (`pip install mitsuba scipy`). Both renderers make independent
 replicates of the same scene file, Mitsuba's are held against those of every backend; the test is Welch's over replicates,
 Šidák's over channels, scenes and backends: all of a call together raise a false alarm with probability R at most. Exit code:
 0 if all agree, 1 if one does not, 2 if it could not be done.

@@ -1,54 +1,19 @@
-"""Welch's test of two means over replicates, and what it would have seen. Needs numpy alone."""
+"""Welch's test of two means over replicates, and what it would have seen. Needs numpy and SciPy."""
 
 import math
 
 import numpy
-
-
-def _fraction(a, b, x):
-    """Continued fraction of the incomplete beta function, by Lentz's method (NIST DLMF 8.17.22)."""
-    tiny = 1e-300
-    c, d = 1.0, 1 / max(1 - (a + b) * x / (a + 1), tiny)
-    value = d
-    for m in range(1, 400):
-        for term in (
-            m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m)),
-            -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1)),
-        ):
-            d = 1 + term * d
-            c = 1 + term / c
-            d = 1 / (d if abs(d) > tiny else tiny)
-            c = c if abs(c) > tiny else tiny
-            value *= c * d
-        if abs(c * d - 1) < 1e-15:
-            break
-    return value
-
-
-def _incomplete_beta(a, b, x):
-    """I_x(a, b), regularised."""
-    if x <= 0 or x >= 1:
-        return float(x >= 1)
-    front = math.exp(math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) + b * math.log1p(-x))
-    if x < (a + 1) / (a + b + 2):
-        return front * _fraction(a, b, x) / a
-    return 1 - front * _fraction(b, a, 1 - x) / b
+import scipy.special
 
 
 def student_p(t, dof):
     """Two-sided p-value of Student's t."""
-    return _incomplete_beta(dof / 2, 0.5, dof / (dof + t * t))
+    return float(2 * scipy.special.stdtr(dof, -abs(t)))
 
 
 def student_quantile(p, dof):
-    """The t whose two-sided p-value is p, by bisection."""
-    low, high = 0.0, 1.0
-    while student_p(high, dof) > p:
-        high *= 2
-    for _ in range(48):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if student_p(middle, dof) > p else (low, middle)
-    return 0.5 * (low + high)
+    """The t whose two-sided p-value is p."""
+    return float(-scipy.special.stdtrit(dof, p / 2))
 
 
 def sidak(level, tests):

@@ -145,7 +145,7 @@ std::optional<MitsubaDriver> find_mitsuba(const MitsubaSearch& search, const std
     if (auto driver = probe(interpreter, search.script)) return driver;
   }
   if (named != names.end())
-    throw InputError(*named + ": Mitsuba 3 is not there (pip install mitsuba), looked for by " +
+    throw InputError(*named + ": Mitsuba 3 is not there (pip install mitsuba scipy), looked for by " +
                      fmt::format("{}", fmt::join(search.interpreters, " and ")));
   return std::nullopt;
 }

@@ -19,7 +19,7 @@ struct MitsubaSearch {
   std::filesystem::path script;  // compare_with_mitsuba.py
 };
 
-/// An interpreter in which the script finds numpy and Mitsuba.
+/// An interpreter in which the script finds numpy, SciPy and Mitsuba.
 struct MitsubaDriver {
   std::string interpreter, version;
   std::filesystem::path script;

@@ -99,7 +99,7 @@ TEST(FindMitsuba, ANameThatAsksForItIsAnErrorWithoutIt) {
       message([&] {
         find_mitsuba({{without, "./python"}, "compare.py"}, {"hard/", "mitsuba/box"}, Effort::kStandard);
       }),
-      "mitsuba/box: Mitsuba 3 is not there (pip install mitsuba), looked for by " + without +
+      "mitsuba/box: Mitsuba 3 is not there (pip install mitsuba scipy), looked for by " + without +
           " and ./python");
   EXPECT_EQ(message([&] {
               find_mitsuba({{with_mitsuba(folder)}, "c.py"}, {"mitsuba/box"}, Effort::kQuick);
