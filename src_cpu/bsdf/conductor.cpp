@@ -18,14 +18,14 @@ BsdfSample sample_conductor(const KbMaterial& material, glm::vec3 wi) {
 
 /// f cos_o = F(wi.h) D(h) G1(wi) G1(wo) / (4 cos_i)   (Torrance-Sparrow)
 BsdfValue eval_rough_conductor(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo) {
-  const FacetReflection r = facet_reflection(Microfacet(material), wi, wo);
+  const FacetReflection r = facet_reflection(FacetDistribution(material), wi, wo);
   const bool mirror = material.flags & KB_MATERIAL_PERFECT_MIRROR;
   return {r.value, mirror ? 0 : r.dot_ih, r.pdf, false};
 }
 
 BsdfSample sample_rough_conductor(const KbMaterial& material, glm::vec3 wi, glm::vec2 u) {
   BsdfSample sample;
-  sample.wo = glm::normalize(reflect_at(wi, Microfacet(material).sample_normal(wi, u)));
+  sample.wo = glm::normalize(reflect_at(wi, FacetDistribution(material).sample_normal(wi, u)));
   if (!(sample.wo.z > 0)) return sample;  // single scattering: light below the horizon is lost
   const BsdfValue value = eval_rough_conductor(material, wi, sample.wo);
   if (!(value.pdf > 0)) return sample;

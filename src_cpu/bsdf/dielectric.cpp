@@ -23,7 +23,7 @@ BsdfSample refracted(const KbMaterial& material, glm::vec3 wi, float eta, float 
 
 /// Roughness that normals are sampled with: without visible normals slightly larger, which bounds the weights
 /// better (Walter et al. 2007, section 5.3).
-Microfacet sampled_facets(const Microfacet& facets, float cos_i) {
+FacetDistribution sampled_facets(const FacetDistribution& facets, float cos_i) {
   return facets.sample_visible() ? facets : facets.scaled(1.2f - 0.2f * std::sqrt(cos_i));
 }
 
@@ -121,7 +121,7 @@ BsdfSample sample_dispersive(const KbMaterial& material, glm::vec3 wi, float eta
 /// the latter with the 1 / eta^2 of radiance included. pdf = {F, 1 - F} p(m) J, J = 1 / (4 |wo.m|) for
 /// reflection and eta^2 |wo.m| / (wi.m + eta wo.m)^2 for transmission.
 BsdfValue eval_rough_dielectric(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo, float eta) {
-  const Microfacet facets(material);
+  const FacetDistribution facets(material);
   if (acts_smooth(facets, eta)) return {};
   const HalfVector half = half_vector(wi, wo, eta);
   if (!(half.dot_i > 0) || !(half.dot_o * wo.z > 0)) return {};
@@ -139,7 +139,7 @@ BsdfValue eval_rough_dielectric(const KbMaterial& material, glm::vec3 wi, glm::v
 
 BsdfSample sample_rough_dielectric(const KbMaterial& material, glm::vec3 wi, float eta, float u_lobe,
                                    glm::vec2 u) {
-  const Microfacet facets(material);
+  const FacetDistribution facets(material);
   if (acts_smooth(facets, eta)) return sample_dielectric(material, wi, eta, u_lobe);
   BsdfSample sample;
   const glm::vec3 m = sampled_facets(facets, wi.z).sample_normal(wi, u);
@@ -164,7 +164,7 @@ BsdfSample sample_rough_dielectric(const KbMaterial& material, glm::vec3 wi, flo
 namespace kiloband {
 
 bool acts_smooth(const KbMaterial& material, float eta) {
-  return lobes::acts_smooth(Microfacet(material), eta);
+  return lobes::acts_smooth(FacetDistribution(material), eta);
 }
 
 BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo) {
@@ -172,7 +172,7 @@ BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::
   if (wi.z == 0 || wo.z == 0) return pair;
   const bool below = wi.z < 0;
   if (below) wi.z = -wi.z, wo.z = -wo.z;
-  const Microfacet facets(material);
+  const FacetDistribution facets(material);
   const float masking = facets.masking_over_cos(wi) * facets.masking({wo.x, wo.y, std::abs(wo.z)});
   pair.transmission = wo.z < 0;
   if (pair.transmission) {

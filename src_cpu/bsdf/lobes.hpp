@@ -31,7 +31,7 @@ BsdfSample sample_dielectric(const KbMaterial& material, glm::vec3 wi, float eta
 /// Before degradation; `below` says that wi was mirrored.
 BsdfSample sample_dispersive(const KbMaterial& material, glm::vec3 wi, float eta, bool below, float u_lobe);
 /// Is the boundary's lobe too narrow for float directions, so that it is treated as smooth?
-inline bool acts_smooth(const Microfacet& facets, float eta) {
+inline bool acts_smooth(const FacetDistribution& facets, float eta) {
   return facets.min_alpha() * std::abs(eta - 1) < 3e-6f;
 }
 BsdfValue eval_rough_dielectric(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo, float eta);
@@ -52,7 +52,7 @@ struct FacetReflection {
   float pdf = 0;     // of sampling wo through a normal [1/sr]
 };
 
-inline FacetReflection facet_reflection(const Microfacet& facets, glm::vec3 wi, glm::vec3 wo) {
+inline FacetReflection facet_reflection(const FacetDistribution& facets, glm::vec3 wi, glm::vec3 wo) {
   FacetReflection r;
   const glm::vec3 sum = wi + wo;
   const float length = glm::length(sum);

@@ -13,7 +13,7 @@ constexpr float kLargestBelowOne = KB_ONE_MINUS_EPSILON;
 /// at least half whenever a step leaves it.
 float visible_beckmann_slope(float cos_theta, float sin_theta, float u) {
   const float cot = cos_theta / sin_theta;  // infinite at normal incidence, which is fine
-  const float k = sin_theta * Microfacet::kInvSqrtPi;
+  const float k = sin_theta * FacetDistribution::kInvSqrtPi;
   const float last = std::erf(cot);
   const float target = u * (cos_theta * (1 + last) + k * std::exp(-cot * cot));
   float low = -1, high = last;
@@ -76,7 +76,7 @@ float inverse_erf(float x) {
   return p * x;
 }
 
-glm::vec3 Microfacet::sample_normal(glm::vec3 wi, glm::vec2 u) const {
+glm::vec3 FacetDistribution::sample_normal(glm::vec3 wi, glm::vec2 u) const {
   const glm::vec2 alpha(alpha_u_, alpha_v_);
   if (visible_) return ggx_ ? sample_visible_ggx(wi, alpha, u) : sample_visible_beckmann(wi, alpha, u);
   // Slopes (alpha_u r cos phi, alpha_v r sin phi); r^2 has distribution 1 - exp(-r^2),

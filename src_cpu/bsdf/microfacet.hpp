@@ -15,14 +15,14 @@
 
 namespace kiloband {
 
-class Microfacet {
+class FacetDistribution {
  public:
-  explicit Microfacet(const KbMaterial& material)
-      : Microfacet((material.flags & KB_MATERIAL_GGX) != 0, material.alpha_u, material.alpha_v,
-                   (material.flags & KB_MATERIAL_SAMPLE_VISIBLE) != 0) {
+  explicit FacetDistribution(const KbMaterial& material)
+      : FacetDistribution((material.flags & KB_MATERIAL_GGX) != 0, material.alpha_u, material.alpha_v,
+                          (material.flags & KB_MATERIAL_SAMPLE_VISIBLE) != 0) {
     if (KB_PLANTED(ROUGHNESS_SQUARED)) alpha_u_ *= alpha_u_, alpha_v_ *= alpha_v_;
   }
-  Microfacet(bool ggx, float alpha_u, float alpha_v, bool visible)
+  FacetDistribution(bool ggx, float alpha_u, float alpha_v, bool visible)
       : alpha_u_(std::max(alpha_u, KB_MIN_ALPHA)),
         alpha_v_(std::max(alpha_v, KB_MIN_ALPHA)),
         ggx_(ggx),
@@ -30,7 +30,9 @@ class Microfacet {
 
   bool sample_visible() const { return visible_; }
   float min_alpha() const { return std::min(alpha_u_, alpha_v_); }
-  Microfacet scaled(float factor) const { return {ggx_, alpha_u_ * factor, alpha_v_ * factor, visible_}; }
+  FacetDistribution scaled(float factor) const {
+    return {ggx_, alpha_u_ * factor, alpha_v_ * factor, visible_};
+  }
 
   /// Density of normals per solid angle and projected area:
   /// the integral of D(m) m.z over the hemisphere is 1.

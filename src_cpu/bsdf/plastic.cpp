@@ -79,7 +79,7 @@ BsdfSample sample_plastic(const KbMaterial& material, glm::vec3 wi, float u_lobe
 BsdfValue eval_rough_plastic(const KbMaterial& material, const float* coat, glm::vec3 wi, glm::vec3 wo) {
   const float t_i = kb_coat_transmittance(coat, wi.z), t_o = kb_coat_transmittance(coat, wo.z);
   const float p = specular_probability(material, 1 - t_i);
-  const FacetReflection r = facet_reflection(Microfacet(material), wi, wo);
+  const FacetReflection r = facet_reflection(FacetDistribution(material), wi, wo);
   const float lambert = wo.z * KB_INV_PI;
   const float w1 = t_i * t_o * diffuse_scale(material) * lambert;
   return {coating_reflectance(material, r.dot_ih) * r.value, w1,
@@ -90,8 +90,9 @@ BsdfValue eval_rough_plastic(const KbMaterial& material, const float* coat, glm:
 BsdfSample sample_rough_plastic(const KbMaterial& material, const float* coat, glm::vec3 wi, float u_lobe,
                                 glm::vec2 u) {
   const float p = specular_probability(material, 1 - kb_coat_transmittance(coat, wi.z));
-  const glm::vec3 wo = u_lobe < p ? glm::normalize(reflect_at(wi, Microfacet(material).sample_normal(wi, u)))
-                                  : cosine_direction(u);
+  const glm::vec3 wo = u_lobe < p
+                           ? glm::normalize(reflect_at(wi, FacetDistribution(material).sample_normal(wi, u)))
+                           : cosine_direction(u);
   if (!(wo.z > 0)) return {};
   const BsdfValue value = eval_rough_plastic(material, coat, wi, wo);
   if (!(value.pdf > 0)) return {};

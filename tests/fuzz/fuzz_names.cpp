@@ -30,7 +30,7 @@ void name_channels(std::string_view bytes) {
   const auto unique = make_unique_names(words);
   promise(std::set<std::string>(unique.begin(), unique.end()).size() == words.size(),
           "names that are not unique");
-  const ChannelChoice choice = choose_channels(words, words.size() > 3 ? 3 : -1);
+  const ImageChannels choice = choose_channels(words, words.size() > 3 ? 3 : -1);
   for (int i = 0; i < choice.count; ++i)
     promise(choice.index[i] >= 0 && choice.index[i] < static_cast<int>(words.size()),
             "a channel that is not there");

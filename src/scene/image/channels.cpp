@@ -12,20 +12,20 @@ int find(const std::vector<std::string>& names, const std::string& name) {
 }
 
 /// The channels prefix + R, G, B, or none.
-ChannelChoice find_rgb(const std::vector<std::string>& names, const std::string& prefix) {
+ImageChannels find_rgb(const std::vector<std::string>& names, const std::string& prefix) {
   const int r = find(names, prefix + "R"), g = find(names, prefix + "G"), b = find(names, prefix + "B");
-  return r >= 0 && g >= 0 && b >= 0 ? ChannelChoice{{r, g, b}, 3} : ChannelChoice{};
+  return r >= 0 && g >= 0 && b >= 0 ? ImageChannels{{r, g, b}, 3} : ImageChannels{};
 }
 
 }  // namespace
 
-ChannelChoice choose_channels(const std::vector<std::string>& names, int alpha) {
-  if (const ChannelChoice rgb = find_rgb(names, ""); rgb.count > 0) return rgb;
+ImageChannels choose_channels(const std::vector<std::string>& names, int alpha) {
+  if (const ImageChannels rgb = find_rgb(names, ""); rgb.count > 0) return rgb;
   const bool is_xyz = find(names, "X") >= 0 || find(names, "Z") >= 0;
   if (const int y = find(names, "Y"); y >= 0 && !is_xyz) return {{y}, 1};
   for (const std::string& name : names) {
     if (!name.ends_with(".R")) continue;
-    if (const ChannelChoice layer = find_rgb(names, name.substr(0, name.size() - 1)); layer.count > 0)
+    if (const ImageChannels layer = find_rgb(names, name.substr(0, name.size() - 1)); layer.count > 0)
       return layer;
   }
   const int colours = static_cast<int>(names.size()) - (alpha >= 0 ? 1 : 0);

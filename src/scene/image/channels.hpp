@@ -8,14 +8,14 @@
 namespace kiloband {
 
 /// Places of the chosen channels in the file: one or three.
-struct ChannelChoice {
+struct ImageChannels {
   std::array<int, 3> index{};
   int count = 0;  // 0: no rule of image.hpp applies
 };
 
 /// Chooses by the rules in image.hpp.
 /// alpha  place of the alpha channel, -1 if there is none
-ChannelChoice choose_channels(const std::vector<std::string>& names, int alpha);
+ImageChannels choose_channels(const std::vector<std::string>& names, int alpha);
 
 /// The sRGB decoding of IEC 61966-2-1, for an encoded value in [0, 1].
 float decode_srgb(float encoded);

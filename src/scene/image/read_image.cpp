@@ -64,7 +64,7 @@ class Reader {
 
   Image read(bool raw, const DiagnosticSink& sink) {
     check();
-    const ChannelChoice choice = choose();
+    const ImageChannels choice = choose();
     const PictureInput::Spec& spec = input_->spec();
     Image image{static_cast<uint32_t>(spec.width),
                 static_cast<uint32_t>(spec.height),
@@ -89,9 +89,9 @@ class Reader {
       file_.fail("pixels of type " + spec.type_name + " are not supported");
   }
 
-  ChannelChoice choose() const {
+  ImageChannels choose() const {
     const std::vector<std::string>& channels = input_->spec().channels;
-    const ChannelChoice choice = choose_channels(channels, input_->spec().alpha_channel);
+    const ImageChannels choice = choose_channels(channels, input_->spec().alpha_channel);
     if (choice.count > 0) return choice;
     std::string names;
     for (size_t i = 0; i < channels.size() && i < 8; ++i) names += (i ? ", " : "") + channels[i];
@@ -101,7 +101,7 @@ class Reader {
 
   /// Appends rows [begin, end), counted from the top. Channels that do not lie together are read one by one:
   /// a file may hold hundreds between them.
-  void read_strip(Image& image, const ChannelChoice& choice, int begin, int end) {
+  void read_strip(Image& image, const ImageChannels& choice, int begin, int end) {
     const size_t pixels = static_cast<size_t>(end - begin) * image.width;
     const bool together = choice.count == 1 ||
                           (choice.index[1] == choice.index[0] + 1 && choice.index[2] == choice.index[1] + 1);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <regex>
+#include <sstream>
 
 #include "tests/unit/structure/source_tree.hpp"
 
@@ -52,6 +55,41 @@ TEST(Tree, NoPathsOfOneMachine) {
       EXPECT_EQ(file.text.find(path), std::string::npos) << file.path << " has " << path;
     }
   }
+}
+
+/// Namespaces and names of the types that a file defines outside functions, classes and unnamed namespaces.
+std::vector<std::string> types_of(const SourceFile& file) {
+  static const std::regex kNamespace(R"(^namespace ([\w:]*) ?\{.*)");
+  static const std::regex kType(
+      R"(^(?:enum class|enum|class|struct) (?:alignas\(\d+\) )?(\w+)(?: final)?(?: :[^:].*)? \{.*)");
+  std::vector<std::string> spaces, types;
+  std::istringstream lines(file.text);
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, match, kNamespace)) {
+      spaces.push_back(match[1]);
+    } else if (starts_with(line, "}  // namespace") && !spaces.empty()) {
+      spaces.pop_back();
+    } else if (std::regex_match(line, match, kType) && std::ranges::find(spaces, "") == spaces.end()) {
+      std::string name;
+      for (const std::string& space : spaces) name += space + "::";
+      types.push_back(name + match[1].str());
+    }
+  }
+  return types;
+}
+
+/// Two types of one name in one namespace are one to the linker, whichever of their functions it takes.
+TEST(Tree, ATypeIsDefinedOnce) {
+  std::map<std::string, std::string> places;
+  for (const SourceFile& file : read_files({"src", "src_cpu", "src_gpu", "app", "validation"})) {
+    if (!file.path.ends_with(".hpp") && !file.path.ends_with(".cpp")) continue;
+    for (const std::string& type : types_of(file)) {
+      const auto [place, is_new] = places.emplace(type, file.path);
+      EXPECT_TRUE(is_new) << type << " is defined in " << place->second << " and in " << file.path;
+    }
+  }
+  EXPECT_GT(places.size(), 300u) << "the scan of types has lost its way";
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace kiloband::test {
 namespace {
 
 std::vector<int> chosen(const std::vector<std::string>& names, int alpha = -1) {
-  const ChannelChoice choice = choose_channels(names, alpha);
+  const ImageChannels choice = choose_channels(names, alpha);
   return {choice.index.begin(), choice.index.begin() + choice.count};
 }
 

@@ -49,7 +49,7 @@ TEST(Microfacet, DensityAndMaskingMatchDouble) {
   Uniform uniform(3);
   for (bool ggx : {false, true})
     for (float alpha : {0.001f, 0.05f, 0.3f, 1.0f}) {
-      const Microfacet facets(ggx, alpha, 0.5f * alpha, true);
+      const FacetDistribution facets(ggx, alpha, 0.5f * alpha, true);
       const reference::Roughness r{ggx, alpha, 0.5 * alpha};
       for (int i = 0; i < 2000; ++i) {
         const glm::vec3 v = direction(89.9 * uniform(), 6 * uniform());
