@@ -68,7 +68,7 @@ void check_replicates(const RenderOptions& options) {
 /// What becomes of the replicates where the samples do not suffice.
 void report_replicates(const RenderOptions& options, const SessionSettings& settings,
                        const DiagnosticSink& sink) {
-  const uint32_t replicates = session_replicates(settings);
+  const uint32_t replicates = session_replicates(settings.stop, settings.replicates);
   if (replicates >= settings.replicates) return;
   const uint64_t samples = *settings.stop.samples_per_pixel;  // without it nothing is lowered
   if (options.target_error && replicates < 2)
@@ -86,17 +86,29 @@ void report_replicates(const RenderOptions& options, const SessionSettings& sett
   }
 }
 
+StopRule stop_rule(const RenderOptions& options, const SceneDescription& scene) {
+  StopRule stop;
+  if (options.time) stop.seconds = parse_duration("--time", *options.time);
+  if (options.target_error) stop.relative_error = parse_error("--target-error", *options.target_error);
+  stop.samples_per_pixel = options.spp;
+  if (!options.spp && stop.is_fixed()) stop.samples_per_pixel = scene.sensor.sample_count;
+  return stop;
+}
+
+/// Those of the checkpoint that is gone on with: more samples than before might be dealt to more replicates.
+uint32_t wanted_replicates(const RenderOptions& options) {
+  if (options.replicates) return *options.replicates;
+  if (!options.resume) return kReplicates;
+  return checkpoint_replicates(*options.checkpoint).value_or(kReplicates);
+}
+
+/// What the options say; what is stated of the render comes with `stating`.
 SessionSettings session_settings(const RenderOptions& options, const OutputFiles& files,
-                                 const SceneDescription& scene) {
+                                 const SceneDescription& scene, const DiagnosticSink& sink) {
   SessionSettings settings;
-  if (options.time) settings.stop.seconds = parse_duration("--time", *options.time);
-  if (options.target_error)
-    settings.stop.relative_error = parse_error("--target-error", *options.target_error);
-  settings.stop.samples_per_pixel = options.spp;
-  if (!options.spp && settings.stop.is_fixed()) settings.stop.samples_per_pixel = scene.sensor.sample_count;
-  settings.replicates = options.replicates.value_or(kReplicates);
-  if (options.resume && !options.replicates)  // more samples than before might be dealt to more replicates
-    settings.replicates = checkpoint_replicates(*options.checkpoint).value_or(settings.replicates);
+  settings.stop = stop_rule(options, scene);
+  settings.replicates = wanted_replicates(options);
+  settings.sink = sink;
   settings.variance = options.variance;
   settings.keep_replicates = options.keep_replicates;
   settings.outputs = files.cubes;
@@ -113,29 +125,34 @@ SessionSettings session_settings(const RenderOptions& options, const OutputFiles
   return settings;
 }
 
-/// A checkpoint belongs to one render; without one to go on from, the render starts afresh and says so.
-void prepare_checkpoint(SessionSettings& settings, const FlatScene& scene, const SamplingSettings& sampling,
-                        const Backend& backend, const DerivedChannels& derived) {
-  if (!settings.checkpoint) return;
-  settings.fingerprint = render_fingerprint(scene, sampling, arithmetic_of(backend), derived);
-  if (settings.resume && !checkpoint_exists(*settings.checkpoint)) {
-    tell("note: no checkpoint {}: starting afresh\n", settings.checkpoint->string());
-  }
+/// The same with what files and checkpoints state of the render.
+SessionSettings stating(SessionSettings settings, std::map<std::string, std::string> metadata,
+                        uint64_t fingerprint) {
+  settings.metadata = std::move(metadata);
+  settings.fingerprint = fingerprint;
+  return settings;
 }
 
-void describe_render(SessionSettings& settings, const RenderOptions& options, const FlatScene& scene,
-                     const SamplingSettings& sampling, const Backend& backend) {
-  settings.metadata["software"] = fmt::format("kiloband {}", KILOBAND_VERSION);
-  settings.metadata["scene"] = std::filesystem::path(options.scene.scene).filename().string();
-  settings.metadata["backend"] = backend.name();
-  settings.metadata["isa"] = backend.isa();
-  settings.metadata["seed"] = std::to_string(sampling.seed);
-  settings.metadata["sampler"] = to_string(sampling.sampler);
-  settings.metadata["wavelengths"] = to_string(sampling.wavelengths);
-  settings.metadata[kCameraKey] = camera_geometry(scene).to_text();
+/// Without a checkpoint to go on from, the render starts afresh and says so.
+void report_checkpoint(const RenderOptions& options) {
+  if (options.resume && !checkpoint_exists(*options.checkpoint))
+    tell("note: no checkpoint {}: starting afresh\n", *options.checkpoint);
+}
+
+std::map<std::string, std::string> metadata_of(const RenderOptions& options, const FlatScene& scene,
+                                               const SamplingSettings& sampling, const Backend& backend) {
+  std::map<std::string, std::string> metadata;
+  metadata["software"] = fmt::format("kiloband {}", KILOBAND_VERSION);
+  metadata["scene"] = std::filesystem::path(options.scene.scene).filename().string();
+  metadata["backend"] = backend.name();
+  metadata["isa"] = backend.isa();
+  metadata["seed"] = std::to_string(sampling.seed);
+  metadata["sampler"] = to_string(sampling.sampler);
+  metadata["wavelengths"] = to_string(sampling.wavelengths);
+  metadata[kCameraKey] = camera_geometry(scene).to_text();
   const bool objects = std::ranges::find(options.aux, "object") != options.aux.end();
-  if (const std::string names = object_names(scene); objects && !names.empty())
-    settings.metadata["objects"] = names;
+  if (const std::string names = object_names(scene); objects && !names.empty()) metadata["objects"] = names;
+  return metadata;
 }
 
 void print_summary(const RenderReport& report, const Backend& backend, double setup_seconds) {
@@ -206,17 +223,20 @@ int render(const RenderOptions& options) {
   const OutputFiles files = checked_files(options);
   check_replicates(options);
   LoadedScene loaded = load_scene(options.scene, sink);
-  SessionSettings settings = session_settings(options, files, loaded.description);
-  settings.sink = sink;
-  report_replicates(options, settings, sink);
-  const SamplingSettings sampling = options.sampling.settings(session_replicates(settings));
+  const SessionSettings wanted = session_settings(options, files, loaded.description, sink);
+  report_replicates(options, wanted, sink);
+  const SamplingSettings sampling =
+      options.sampling.settings(session_replicates(wanted.stop, wanted.replicates));
   const auto compiled = compile_scene(loaded.description, {loaded.channels, loaded.guide, sink});
   const FlatScene& scene = *compiled;
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);
   loaded.description = {};  // meshes and images: what is rendered of them is in the compiled scene
   const auto backend = make_backend(options.backend, compiled, derived, sampling, sink);
-  describe_render(settings, options, scene, sampling, *backend);
-  prepare_checkpoint(settings, scene, sampling, *backend, derived);
+  report_checkpoint(options);
+  const uint64_t fingerprint =
+      options.checkpoint ? render_fingerprint(scene, sampling, arithmetic_of(*backend), derived) : 0;
+  const SessionSettings settings =
+      stating(wanted, metadata_of(options, scene, sampling, *backend), fingerprint);
   catch_stop_signals();
   if (options.backend.backend == "auto" && !options.quiet) {
     tell("backend {} ({}, {})\n", backend->name(), backend->device(), backend->isa());

@@ -52,6 +52,8 @@ struct CubeRows {
 class CubeWriter {
  public:
   virtual ~CubeWriter() = default;
+  /// Instead of CubeInfo::samples_per_pixel, for who opens a file before knowing; before the first write_rows().
+  virtual void set_samples_per_pixel(uint64_t samples) = 0;
   virtual void write_rows(const CubeRows& rows) = 0;
   /// All rows have come: completes the data and adds the cube's files to the set, which several cubes may
   /// share. The writer must outlive the set's commit().

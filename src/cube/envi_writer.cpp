@@ -29,6 +29,9 @@ class EnviPart {
         data_(envi_file(stem, content, ".img")),
         header_(envi_file(stem, content, ".hdr")) {
     data_.preallocate(uint64_t{width_} * height_ * bands_ * sizeof(float));
+  }
+
+  void write_header(const CubeInfo& info, EnviContent content) {
     header_.write_at(0, envi_header_text(info, content));
   }
 
@@ -88,6 +91,7 @@ class EnviWriter : public CubeWriter {
  public:
   EnviWriter(const std::filesystem::path& file, const CubeInfo& info, uint32_t rows_per_strip, Quantity given)
       : stem_(envi_stem(file)),
+        info_(info),
         order_(info, rows_per_strip),
         conversion_(info.bands, given, info.quantity),
         values_(std::make_unique<EnviPart>(stem_, info, EnviContent::kValues)) {
@@ -95,8 +99,11 @@ class EnviWriter : public CubeWriter {
     if (!info.aux.empty()) aux_ = std::make_unique<EnviPart>(stem_, info, EnviContent::kAux);
   }
 
+  void set_samples_per_pixel(uint64_t samples) override { info_.samples_per_pixel = samples; }
+
   void write_rows(const CubeRows& strip) override {
     order_.accept(strip);
+    if (strip.y0 == 0) write_headers();
     std::future<void> variances;  // of another file: both at once
     if (variance_)
       variances = std::async(std::launch::async | std::launch::deferred, [&] {
@@ -131,7 +138,14 @@ class EnviWriter : public CubeWriter {
   }
 
  private:
+  void write_headers() {
+    values_->write_header(info_, EnviContent::kValues);
+    if (variance_) variance_->write_header(info_, EnviContent::kVariance);
+    if (aux_) aux_->write_header(info_, EnviContent::kAux);
+  }
+
   std::filesystem::path stem_;
+  CubeInfo info_;
   StripOrder order_;
   QuantityConversion conversion_;
   std::unique_ptr<EnviPart> values_, variance_, aux_;

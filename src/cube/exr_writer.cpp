@@ -61,11 +61,13 @@ class ExrWriter : public CubeWriter {
         stream_(file_) {
     const uint64_t tiles = uint64_t{(info.width + edge_ - 1) / edge_} * ((info.height + edge_ - 1) / edge_);
     file_.preallocate(uint64_t{info.width} * info.height * slots_ * sizeof(float) + tiles * kChunkOverhead);
-    guarded([&] { open(); });
   }
+
+  void set_samples_per_pixel(uint64_t samples) override { layout_.info.samples_per_pixel = samples; }
 
   void write_rows(const CubeRows& strip) override {
     order_.accept(strip);
+    if (!output_) guarded([&] { write_header(); });
     for (uint32_t y = 0; y < strip.rows; y += edge_)
       for (uint32_t x = 0; x < layout_.info.width; x += edge_) {
         stage_tile(strip, x, y);
@@ -100,7 +102,7 @@ class ExrWriter : public CubeWriter {
     stream_.rethrow_failure();
   }
 
-  void open() {
+  void write_header() {
     Imf::Header header(static_cast<int>(layout_.info.width), static_cast<int>(layout_.info.height));
     header.compression() = Imf::NO_COMPRESSION;
     header.lineOrder() = Imf::RANDOM_Y;

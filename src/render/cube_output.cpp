@@ -17,7 +17,7 @@ constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 /// Rows that are scaled and written together: whole blocks, few enough to be in a cache still when the
 /// writers come to them.
-uint32_t rows_at_once(uint32_t at_most, std::size_t row_bytes) {
+uint32_t rows_per_write(uint32_t at_most, std::size_t row_bytes) {
   constexpr std::size_t kBytes = 8u << 20;
   const std::size_t blocks = std::max<std::size_t>(kBytes / (row_bytes * kBlockSize), 1);
   return static_cast<uint32_t>(std::min<std::size_t>(at_most, blocks * kBlockSize));
@@ -43,13 +43,13 @@ std::vector<std::string> auxiliary_planes(const std::vector<std::string>& images
 
 CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
                        const std::vector<double>& film_scale, const SessionSettings& settings,
-                       uint32_t replicates, uint64_t samples_per_pixel, uint32_t rows_per_strip)
+                       uint32_t replicates, uint32_t rows_per_strip)
     : bands_(bands),
       scale_(film_scale),
       settings_(settings),
       width_(scene.film.crop_width),
       height_(scene.film.crop_height),
-      strip_(rows_at_once(rows_per_strip, std::size_t{width_} * bands.bands.size() * sizeof(float))),
+      strip_(rows_per_write(rows_per_strip, std::size_t{width_} * bands.bands.size() * sizeof(float))),
       aux_names_(auxiliary_planes(settings.aux)),
       band_scale_(bands.film_channels, film_scale),
       exact_mean_(bands.bands.size()),
@@ -60,7 +60,6 @@ CubeOutput::CubeOutput(const FlatScene& scene, const BandSelection& bands,
   info.height = height_;
   info.bands = bands.bands;
   info.variance = settings.variance;
-  info.samples_per_pixel = samples_per_pixel;
   info.replicates = replicates;
   info.aux = aux_names_;
   info.metadata = settings.metadata;
@@ -125,9 +124,14 @@ void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
   ++rows_;
 }
 
-void CubeOutput::add_aux(Backend& backend, const PixelRect& rect) {
-  if (aux_names_.empty()) return;
-  for (const AuxiliaryPixel& pixel : backend.auxiliary(rect)) {
+void CubeOutput::set_samples_per_pixel(uint64_t samples) {
+  for (auto& writer : writers_) writer->set_samples_per_pixel(samples);
+  for (auto& replicate : replicate_writers_)
+    for (auto& writer : replicate) writer->set_samples_per_pixel(samples);
+}
+
+void CubeOutput::add_aux(std::span<const AuxiliaryPixel> pixels) {
+  for (const AuxiliaryPixel& pixel : pixels) {
     for (const std::string& image : settings_.aux) {
       if (image == "depth") rows_in_work_.aux.push_back(pixel.depth);
       if (image == "normal")
@@ -138,18 +142,14 @@ void CubeOutput::add_aux(Backend& backend, const PixelRect& rect) {
   }
 }
 
-void CubeOutput::write(const SpectralFilm& film, Backend& backend) {
-  const PixelRect& rect = film.rect();
-  for (uint32_t y = 0; y < rect.height; y += strip_) {
-    const uint32_t rows = std::min(strip_, rect.height - y);
-    const std::size_t values = std::size_t{rows} * width_ * bands_.bands.size();
-    rows_in_work_.mean.resize(values);
-    rows_in_work_.variance.resize(settings_.variance ? values : 0);
-    for (uint32_t i = 0; i < rows; ++i) add_row(film, y + i);
-    add_aux(backend, {rect.x0, rect.y0 + y, rect.width, rows});
-    flush_strip();
-  }
-  if (settings_.keep_replicates) write_replicates(film);
+void CubeOutput::write(const SpectralFilm& film, uint32_t y, uint32_t rows,
+                       std::span<const AuxiliaryPixel> auxiliary) {
+  const std::size_t values = std::size_t{rows} * width_ * bands_.bands.size();
+  rows_in_work_.mean.resize(values);
+  rows_in_work_.variance.resize(settings_.variance ? values : 0);
+  for (uint32_t i = 0; i < rows; ++i) add_row(film, y + i);
+  add_aux(auxiliary);
+  flush_strip();
 }
 
 void CubeOutput::write_missing(const PixelRect& rect) {

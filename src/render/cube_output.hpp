@@ -14,14 +14,20 @@ namespace kiloband {
 
 class CubeOutput {
  public:
-  /// rows_per_strip as create_cube_writer(); film_scale per film channel;
-  /// samples_per_pixel is stated in the files
+  /// Opens all files, so that hours of rendering do not end at a name or a full disk.
+  /// rows_per_strip as create_cube_writer(); film_scale per film channel
   CubeOutput(const FlatScene& scene, const BandSelection& bands, const std::vector<double>& film_scale,
-             const SessionSettings& settings, uint32_t replicates, uint64_t samples_per_pixel,
-             uint32_t rows_per_strip);
+             const SessionSettings& settings, uint32_t replicates, uint32_t rows_per_strip);
 
-  /// Appends all rows of a film that covers the next rows of the image.
-  void write(const SpectralFilm& film, Backend& backend);
+  /// What the files state; before the first rows.
+  void set_samples_per_pixel(uint64_t samples);
+  /// Rows that are best written at once (the last may be fewer).
+  uint32_t rows_at_once() const { return strip_; }
+  /// Appends rows y .. y + rows - 1 of a film that covers the next rows of the image, at most rows_at_once().
+  /// auxiliary  their pixels, where settings.aux asks for images
+  void write(const SpectralFilm& film, uint32_t y, uint32_t rows, std::span<const AuxiliaryPixel> auxiliary);
+  /// The replicates of a film whose rows were the last to be written.
+  void write_replicates(const SpectralFilm& film);
   /// Appends rows of NaN: pixels that an interrupted session never reached.
   void write_missing(const PixelRect& rect);
   /// Completes the files and the report's figures.
@@ -31,10 +37,9 @@ class CubeOutput {
   void add_row(const SpectralFilm& film, uint32_t y);
   /// pixel: its place in the rows since the last flush
   void add_pixel(uint64_t samples, const float* film_mean, const float* film_variance, std::size_t pixel);
-  void add_aux(Backend& backend, const PixelRect& rect);
+  void add_aux(std::span<const AuxiliaryPixel> pixels);
   void flush_strip();
   void wait_for_writing();
-  void write_replicates(const SpectralFilm& film);
 
   struct Rows {
     std::vector<float> mean, variance, aux;  // [row][x][band or plane]

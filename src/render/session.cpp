@@ -29,7 +29,7 @@ class Session {
         stop_(stop),
         bands_(select_bands(scene, derived)),
         channels_(scene.channels.size() + derived.size()),
-        replicates_(session_replicates(settings)),
+        replicates_(session_replicates(settings.stop, settings.replicates)),
         passes_(backend, settings, replicates_, bands_.film_channels, stop, progress) {}
 
   RenderReport run() {
@@ -94,8 +94,7 @@ class Session {
   /// The whole image is one film (in memory, or held in a scratch file): replicate after replicate over all
   /// blocks, so that an interrupted render is even.
   void run_whole(const PixelRect& image, const FilmOptions& options) {
-    make_output(
-        settings_.stop.samples_per_pixel.value_or(0));  // hours of rendering must not end at a file name
+    CubeOutput output = make_output();
     SpectralFilm film(image, options);
     if (resumes()) {
       report_.resumed_samples = read_checkpoint(*settings_.checkpoint, film, settings_.fingerprint);
@@ -105,14 +104,13 @@ class Session {
     passes_.render(film);
     if (settings_.checkpoint) passes_.keeper()->save_last(film);
     film.add_image_sums(image_sums_, image_counts_);
-    const auto output = make_output(least_samples(film));
-    write(film, *output);
-    finish(*output);
+    output.set_samples_per_pixel(least_samples(film));
+    write(film, output);
+    finish(output);
   }
 
-  std::unique_ptr<CubeOutput> make_output(uint64_t samples_per_pixel) const {
-    return std::make_unique<CubeOutput>(scene_, bands_, backend_.film_scale(), settings_, replicates_,
-                                        samples_per_pixel, strip_);
+  CubeOutput make_output() const {
+    return {scene_, bands_, backend_.film_scale(), settings_, replicates_, strip_};
   }
 
   static uint64_t least_samples(const SpectralFilm& film) {
@@ -133,24 +131,32 @@ class Session {
   void run_strips(const PixelRect& image, const FilmOptions& options) {
     report_.streamed = true;
     passes_.expect(image.pixels() * *settings_.stop.samples_per_pixel, 0);
-    const auto output = make_output(*settings_.stop.samples_per_pixel);
+    CubeOutput output = make_output();
+    output.set_samples_per_pixel(*settings_.stop.samples_per_pixel);
     for (uint32_t y = 0; y < image.height; y += strip_) {
       const PixelRect rect{image.x0, image.y0 + y, image.width, std::min(strip_, image.height - y)};
       if (stop_) {
-        output->write_missing(rect);
+        output.write_missing(rect);
         continue;
       }
       SpectralFilm film(rect, options);
       passes_.render(film);
       film.add_image_sums(image_sums_, image_counts_);
-      write(film, *output);
+      write(film, output);
     }
-    finish(*output);
+    finish(output);
   }
 
   void write(const SpectralFilm& film, CubeOutput& output) {
     const auto writing = Clock::now();
-    output.write(film, backend_);
+    const PixelRect& rect = film.rect();
+    for (uint32_t y = 0; y < rect.height; y += output.rows_at_once()) {
+      const uint32_t rows = std::min(output.rows_at_once(), rect.height - y);
+      std::vector<AuxiliaryPixel> auxiliary;
+      if (!settings_.aux.empty()) auxiliary = backend_.auxiliary({rect.x0, rect.y0 + y, rect.width, rows});
+      output.write(film, y, rows, auxiliary);
+    }
+    if (settings_.keep_replicates) output.write_replicates(film);
     report_.output_seconds += seconds_since(writing);
   }
 
@@ -180,9 +186,9 @@ class Session {
 
 }  // namespace
 
-uint32_t session_replicates(const SessionSettings& settings) {
-  if (!settings.stop.samples_per_pixel) return settings.replicates;
-  return ReplicatePlan::deal(*settings.stop.samples_per_pixel, settings.replicates).replicates;
+uint32_t session_replicates(const StopRule& stop, uint32_t wanted) {
+  if (!stop.samples_per_pixel) return wanted;
+  return ReplicatePlan::deal(*stop.samples_per_pixel, wanted).replicates;
 }
 
 BandSelection select_bands(const FlatScene& scene, const ChannelList& derived) {

@@ -104,7 +104,8 @@ RenderReport run_session(const FlatScene& scene, const ChannelList& derived, Bac
                          const std::function<void(const Progress&)>& progress);
 
 /// The replicates that a session will use, to be given to the backend's SamplingSettings.
-uint32_t session_replicates(const SessionSettings& settings);
+/// wanted  SessionSettings::replicates
+uint32_t session_replicates(const StopRule& stop, uint32_t wanted);
 
 /// Long replicates are rendered a few samples at a time over the image (or strip), so that an interrupted
 /// render is even: FilmOptions::sums.

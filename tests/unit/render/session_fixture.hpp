@@ -36,7 +36,7 @@ class SessionTest : public ::testing::Test {
   std::unique_ptr<Backend> backend(uint64_t seed = 3) const {
     SamplingSettings sampling;
     sampling.seed = seed;
-    sampling.replicates = session_replicates(settings_);
+    sampling.replicates = session_replicates(settings_.stop, settings_.replicates);
     return make_cpu_backend(std::make_shared<const FlatScene>(scene_), {}, sampling, {});
   }
 
