@@ -31,7 +31,8 @@ TEST(GaussLegendre, IntegratesPolynomialsUpToItsDegree) {
     }
     double beyond = 0;  // of degree 2 n it is too small
     for (int i = 0; i < n; ++i) beyond += rule.weights[i] * std::pow(rule.nodes[i], 2 * n);
-    if (n <= 7) EXPECT_LT(beyond, 2.0 / (2 * n + 1) - 1e-9);
+    if (n > 7) continue;
+    EXPECT_LT(beyond, 2.0 / (2 * n + 1) - 1e-9);
   }
 }
 
