@@ -46,7 +46,7 @@ endfunction()
 
 # What tests that run kernels need: leaks of PoCL itself are not ours to report, caches stay in the build folder.
 set(KILOBAND_OPENCL_ENVIRONMENT
-    "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/unit/shared/lsan_suppressions.txt"
+    "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/unit/shared/lsan_suppressions.txt:print_suppressions=0"
     "XDG_CACHE_HOME=${PROJECT_BINARY_DIR}/cache" "POCL_CACHE_DIR=${PROJECT_BINARY_DIR}/cache/pocl")
 
 # kiloband_opencl_test(name SOURCES ... DEPENDS ...): the same for tests that run kernels.

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "tests/end_to_end/support/program.hpp"
+#include "tests/support/sanitizer.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -80,6 +81,7 @@ uint64_t least_process_limit(const TemporaryFolder& folder) {
 }
 
 TEST(MachineFailure, NoThreads) {
+  if (kAddressSanitizer || kThreadSanitizer) GTEST_SKIP() << "sanitizers start threads of their own";
   const TemporaryFolder folder;
   std::filesystem::permissions(folder.path(), std::filesystem::perms(0777));
   const uint64_t least = least_process_limit(folder);
