@@ -18,6 +18,6 @@ mapfile -t files < <("${list[@]}" -- '*.cpp' | grep -v '^src_cpu/evaluate/evalua
   while read -r file; do grep -q "/$file\"" build/release/compile_commands.json && echo "$file"; done || true)
 if [ ${#files[@]} -eq 0 ]; then exit 0; fi
 printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy -p build/release --quiet \
-  --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument 2>&1 |
+  --extra-arg=-Wno-error --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument 2>&1 |
   { grep -v '^[0-9]* warnings\? generated\|^Suppressed\|^Use -header-filter' || true; }
 exit "${PIPESTATUS[1]}"
