@@ -54,7 +54,7 @@ TEST(Checkpoint, WhatIsNoRegularFileIsRefusedAtOnce) {
 /// A limit of the file size stands for a full disk: the image, 49 kB, fits; the smallest checkpoint, 66 kB of one
 /// replicate, does not.
 TEST(Checkpoint, OneThatDoesNotFitTheDiskIsAWarning) {
-  if (kThreadSanitizer) GTEST_SKIP() << "clang's OpenMP ends in SIGBUS at such a limit";
+  if (kThreadSanitizer) GTEST_SKIP() << "ThreadSanitizer maps a file that such a limit cuts";
   const TemporaryFolder folder;
   const Outcome outcome = run_program(folder, box({"--spp", "64", "--checkpoint-interval", "0.01s"}),
                                       {.file_size_limit = 60'000});
@@ -67,7 +67,7 @@ TEST(Checkpoint, OneThatDoesNotFitTheDiskIsAWarning) {
 }
 
 TEST(Checkpoint, TheOldOneStaysWhereANewOneDoesNotFit) {
-  if (kThreadSanitizer) GTEST_SKIP() << "clang's OpenMP ends in SIGBUS at such a limit";
+  if (kThreadSanitizer) GTEST_SKIP() << "ThreadSanitizer maps a file that such a limit cuts";
   const TemporaryFolder folder;
   ASSERT_EQ(run_program(folder, box({"--spp", "4"})).code, 0);
   const std::string before = folder.read("c");
