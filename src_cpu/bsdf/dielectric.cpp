@@ -44,7 +44,21 @@ HalfVector half_vector(glm::vec3 wi, glm::vec3 wo, float eta) {
   return half;
 }
 
-}  // namespace
+/// Delta reflection; evaluation applies a reflectance that is left out, F <= 1.
+BsdfSample reflected(const KbMaterial& material, glm::vec3 wi, float weight, float pdf) {
+  BsdfSample sample;
+  sample.wo = mirror(wi);
+  sample.w0 = weight;
+  sample.pdf = pdf;
+  sample.bound = weight * material.bound_a;
+  sample.delta = true;
+  return sample;
+}
+
+/// Of a pane whose faces reflect F: F + (1 - F)^2 F (1 + F^2 + F^4 + ...) = 2 F / (1 + F). The rest passes.
+float pane_reflectance(float f) {
+  return 2 * f / (1 + f);
+}
 
 /// Through a pane light goes straight on.
 BsdfSample passed_pane(const KbMaterial& material, glm::vec3 wi, float weight, float pdf) {
@@ -57,33 +71,18 @@ BsdfSample passed_pane(const KbMaterial& material, glm::vec3 wi, float weight, f
   return sample;
 }
 
-/// A pane reflects F + (1 - F)^2 F (1 + F^2 + F^4 + ...) = 2 F / (1 + F) and transmits the rest, (1 - F) / (1 + F).
-BsdfSample sample_pane(const KbMaterial& material, glm::vec3 wi, float eta, float u_lobe) {
-  const float f = fresnel_dielectric(std::min(wi.z, 1.0f), eta).reflectance;
-  const float reflected = 2 * f / (1 + f);
-  if (u_lobe >= reflected) return passed_pane(material, wi, 1, 1 - reflected);
-  BsdfSample sample;
-  sample.wo = mirror(wi);
-  sample.w0 = 1;
-  sample.pdf = reflected;
-  sample.bound = material.bound_a;
-  sample.delta = true;
-  return sample;
-}
+}  // namespace
 
 /// Reflection with probability F: both weights are then 1 (times the radiance scaling).
 BsdfSample sample_dielectric(const KbMaterial& material, glm::vec3 wi, float eta, float u_lobe) {
-  if (material.flags & KB_MATERIAL_THIN) return sample_pane(material, wi, eta, u_lobe);
   const DielectricFresnel f = fresnel_dielectric(std::min(wi.z, 1.0f), eta);
+  if (material.flags & KB_MATERIAL_THIN) {
+    const float p = pane_reflectance(f.reflectance);
+    return u_lobe < p ? reflected(material, wi, 1, p) : passed_pane(material, wi, 1, 1 - p);
+  }
   const bool total = KB_PLANTED(TOTAL_REFLECTION) && f.cos_t == 0;
   if (u_lobe >= f.reflectance || total) return refracted(material, wi, eta, f.cos_t, 1, 1 - f.reflectance);
-  BsdfSample sample;
-  sample.wo = mirror(wi);
-  sample.w0 = 1;
-  sample.pdf = f.reflectance;
-  sample.bound = material.bound_a;
-  sample.delta = true;
-  return sample;
+  return reflected(material, wi, 1, f.reflectance);
 }
 
 /// All channels are reflected into one direction, so reflection is chosen by the guide mean's F, kept within
@@ -92,26 +91,20 @@ BsdfSample sample_dielectric(const KbMaterial& material, glm::vec3 wi, float eta
 BsdfSample sample_dispersive(const KbMaterial& material, glm::vec3 wi, float eta, bool below, float u_lobe) {
   const bool thin = material.flags & KB_MATERIAL_THIN;
   const float f = fresnel_dielectric(std::min(wi.z, 1.0f), eta).reflectance;
-  const float p = std::clamp(thin ? 2 * f / (1 + f) : f, 0.1f, 0.9f);
+  const float p = std::clamp(thin ? pane_reflectance(f) : f, 0.1f, 0.9f);
   BsdfSample sample;
-  if (thin && u_lobe >= p) {  // all channels go straight on: none need be chosen
+  if (u_lobe < p) {
+    sample = reflected(material, wi, 1 / p, p);
+    sample.kind = KB_KIND_DISPERSIVE;
+    sample.w1 = below && !thin ? -wi.z : wi.z;
+  } else if (thin) {  // all channels go straight on: none need be chosen
     sample = passed_pane(material, wi, 1 / (1 - p), 1 - p);
     sample.kind = KB_KIND_DISPERSIVE;
     sample.w1 = -wi.z;
-    return sample;
-  }
-  sample.delta = true;
-  if (u_lobe >= p) {
+  } else {
     sample.pdf = 1 - p;
-    sample.transmission = sample.needs_channel = true;
-    return sample;
+    sample.delta = sample.transmission = sample.needs_channel = true;
   }
-  sample.wo = mirror(wi);
-  sample.kind = KB_KIND_DISPERSIVE;
-  sample.w0 = 1 / p;
-  sample.w1 = below && !thin ? -wi.z : wi.z;
-  sample.pdf = p;
-  sample.bound = sample.w0 * material.bound_a;  // F <= 1
   return sample;
 }
 

@@ -43,8 +43,6 @@ class Flattener {
   uint32_t d65_row();
 
   // materials.cpp
-  /// heat: of the shape, or KB_NONE. Materials and surfaces with different heat are different.
-  uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
   uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated, const std::string& outer_id);
   KbMaterial make(const DiffuseBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
@@ -52,6 +50,8 @@ class Flattener {
   KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
 
   // surfaces.cpp
+  /// heat: of the shape, or KB_NONE. Materials and surfaces with different heat are different.
+  uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
   /// A number, or a reference to a bitmap: a share from 0 to 1.
   void set_share(const Texture& texture, const SpectrumSource& use, uint32_t& ref, float& constant);
   uint32_t new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
