@@ -1,6 +1,7 @@
 #include "spectral/channel_knots.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -150,7 +151,7 @@ double ChannelKnots::operator()(std::size_t channel, double at_mu) const {
   if (above == end) return value[first[channel + 1] - 1];
   const auto i = static_cast<std::size_t>(above - mu.begin());
   const double t = (at_mu - mu[i - 1]) / (mu[i] - mu[i - 1]);
-  return (1 - t) * value[i - 1] + t * value[i];
+  return std::lerp(value[i - 1], value[i], t);  // never descends between ascending knots
 }
 
 ChannelKnots sampled_knots(const Spectrum& spectrum, const ChannelList& channels, const std::string& name) {
