@@ -56,9 +56,9 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
                               host.spectra.layout.channels)),
       paths_(build_program(context, "path/paths.cl",
                            ProgramOptions{path_defines(host, settings_), settings_.program_cache})),
-      scene_(memory, host.scene),
-      bvh_(memory, host.bvh),
-      spectra_(memory, host.spectra) {}
+      scene_(upload_scene(memory, host.scene)),
+      bvh_(upload_bvh(memory, host.bvh)),
+      spectra_(upload_spectra(memory, host.spectra)) {}
 
 uint64_t DeviceState::film_bytes_per_pixel(bool open) const {
   return gpu::film_bytes_per_pixel(host_.spectra.layout, shape_, open);
@@ -93,9 +93,7 @@ RoundOutcome DeviceState::generate(const KbRound& round, std::span<const KbRound
   pool_->begin(round, pixels, mu);
   evaluation_->resample(round);
   if (method != Method::kPt) return pool_->run(round);
-  return pool_->run(round, [&](const DeviceBuffer<uint32_t>& queue, uint32_t count) {
-    evaluation_->update(queue, count, film_pixel);
-  });
+  return pool_->run(round, [&](const PoolQueue& queue) { evaluation_->update(queue, film_pixel); });
 }
 
 double DeviceState::evaluate(const KbRound& round, uint64_t film_pixel) {
@@ -110,8 +108,8 @@ void DeviceState::finish_film(uint64_t pixels, std::vector<float>& means, std::v
 
 std::vector<AuxiliaryPixel> DeviceState::auxiliary(const PixelRect& rect) {
   release_pool();  // its memory may be all there is
-  Kernel kernel = paths_.kernel("auxiliary");
-  scene_.bind(kernel, 0);
+  AuxiliaryKernel kernel(paths_.kernel("auxiliary"));
+  kernel.set(scene_, bvh_);
   DeviceBuffer<KbFaults> faults = memory.upload("faults", std::vector<KbFaults>(1));
   const uint32_t rows_at_once = std::max(kAuxiliaryPixels / rect.width, 1u);
   DeviceBuffer<KbAuxiliary> out = memory.allocate<KbAuxiliary>(
@@ -119,9 +117,9 @@ std::vector<AuxiliaryPixel> DeviceState::auxiliary(const PixelRect& rect) {
   std::vector<AuxiliaryPixel> pixels;
   for (uint32_t y = 0; y < rect.height; y += rows_at_once) {
     const uint32_t count = std::min(rows_at_once, rect.height - y) * rect.width;
-    kernel.set_from(DeviceScene::kArguments, bvh_.nodes, bvh_.primitives, out, faults, rect.x0, rect.y0 + y,
-                    rect.width, count);
-    kernel.launch(count, 64);
+    kernel.set(AuxiliaryArguments::Of<BufferRef>{
+        .out = out, .faults = faults, .x0 = rect.x0, .y0 = rect.y0 + y, .width = rect.width, .count = count});
+    kernel->launch(count, 64);
     std::vector<KbAuxiliary> values(count);
     const DeviceBuffer<KbAuxiliary>& device_values = out;
     device_values.download(std::span<KbAuxiliary>(values));

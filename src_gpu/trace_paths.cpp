@@ -13,11 +13,11 @@ class HitObserver {
   HitObserver(const PathPool& pool, const Bvh& bvh, std::vector<TracedPath>& traced)
       : pool_(pool), bvh_(bvh), traced_(traced) {}
 
-  void operator()(const DeviceBuffer<uint32_t>& queue, uint32_t count) const {
-    const std::vector<KbPathState> states = pool_.states().download();
-    const std::vector<KbHit> hits = pool_.hits().download();
-    std::vector<uint32_t> slots(count);
-    queue.download(std::span<uint32_t>(slots));
+  void operator()(const PoolQueue& queue) const {
+    const std::vector<KbPathState> states = pool_.buffers().states.download();
+    const std::vector<KbHit> hits = pool_.buffers().hits.download();
+    std::vector<uint32_t> slots(queue.count);
+    queue.slots.buffer().download(std::span<uint32_t>(slots));
     for (const uint32_t slot : slots) {
       if (states[slot].flags & KB_PATH_LIVE) traced_.at(states[slot].job).hits.push_back(to_hit(hits[slot]));
     }
@@ -58,9 +58,9 @@ std::vector<TracedPath> DeviceState::trace(const KbRound& round, std::span<const
   const RoundOutcome outcome = pool_->run(round);
   pool_->observe_hits({});
   if (outcome.arena_full) throw DeviceOutOfMemory("trace: the vertices of these paths do not fit the arena");
-  const std::vector<KbSavedPath> saved = pool_->saved().download();
-  const std::vector<KbPathVertex> arena = pool_->arena().download();
-  const std::vector<uint32_t> chunk_next = pool_->chunk_next().download();
+  const std::vector<KbSavedPath> saved = pool_->buffers().saved.download();
+  const std::vector<KbPathVertex> arena = pool_->buffers().arena.download();
+  const std::vector<uint32_t> chunk_next = pool_->buffers().chunk_next.download();
   for (std::size_t job = 0; job < traced.size(); ++job) {
     traced[job].invalid = saved[job].count == KB_SAVED_INVALID;
     if (!traced[job].invalid) traced[job].slots = saved_slots(saved[job], arena, chunk_next);

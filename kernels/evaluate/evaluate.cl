@@ -1,19 +1,13 @@
 // Deferred evaluation of a round's saved paths (DPEPT paper, section 5); build macros: path_spectra.clh,
 // film.clh, and KB_PIXELS (evaluate_tile.clh; 1 for dpept_path).
 //
-//   kernel       arguments                             work-items
-//   dpept_batch  EVALUATION, saved, FILM, partial      groups * local size; groups: ceil(round pixels / KB_PIXELS), or
-//                                                      fewer; local size: any, worth while up to
-//                                                      ceil(K / (KB_WIDTH KB_VECTORS)); on CPU devices 1
-//   dpept_path   EVALUATION, saved, FILM               round pixels; a work-item evaluates the paths of one pixel
-//   derived_add  layout, FILM, partial, pixels, parts  pixels * D, after dpept_batch; only if there are derived channels
+//   kernel       work-items
+//   dpept_batch  groups * local size; groups: ceil(round pixels / KB_PIXELS), or fewer; local size: any, worth while up
+//                to ceil(K / (KB_WIDTH KB_VECTORS)); on CPU devices 1
+//   dpept_path   round pixels; a work-item evaluates the paths of one pixel
+//   derived_add  round pixels * D, after dpept_batch; only if there are derived channels
 //
-//   EVALUATION (14): layout, rows, tables, material_rows, cover, cover_breaks, materials, textures, texels,
-//                    texel_values, round, round_pixels, arena, chunk_next. `rows` is `dense` of resample_rows, with KB_PER_PATH=1 `nodes`.
-//   FILM (5):        sum, compensation, counts, film_pixels, film_first (the film pixel of the round's pixel 0)
-//   saved:           KbSavedPath by job
-//   partial:         [round pixel][work-item of the group][D] floats, parts = local size of dpept_batch; not touched if
-//                    D = 0
+// evaluation_partial is not touched if D = 0; evaluation_parts: the local size of dpept_batch.
 //
 // Both methods add the paths of a pixel in the order of their samples, without atomic operations: the same bits each
 // time. A sample counts for its pixel unless it is KB_SAVED_INVALID.
@@ -36,50 +30,49 @@ static inline void keep_derived(__global float* partial, const TileSums* sums, k
 #endif
 }
 
-__kernel void dpept_batch(KB_EVALUATION_PARAMS, __global const KbSavedPath* restrict saved, KB_FILM_PARAMS,
-                          __global float* restrict partial) {
+__kernel void dpept_batch(KB_EVALUATION_PARAMS) {
   KB_EVALUATION_INIT(evaluation);
-  KB_FILM_INIT(film, arg_layout->film_columns);
-  const kb_u32 items = (kb_u32)get_local_size(0), item = (kb_u32)get_local_id(0), pixels = arg_round->pixels;
+  KB_FILM_INIT(film, spectra_layout->film_columns);
+  const kb_u32 items = (kb_u32)get_local_size(0), item = (kb_u32)get_local_id(0), pixels = pool_round->pixels;
   const kb_u32 vectors = vector_count(&evaluation);
   TileSums sums;
   for (kb_u32 d = 0u; d < KB_PIXELS * KB_DERIVED; ++d) sums.derived[d] = 0.0f;
   for (kb_u32 pixel = (kb_u32)get_group_id(0) * KB_PIXELS; pixel < pixels;
        pixel += (kb_u32)get_num_groups(0) * KB_PIXELS) {
     const kb_u32 end = min(pixel + KB_PIXELS, pixels);
-    if (item >= vectors) keep_derived(partial, &sums, pixel, end, false); /* a work-item without channels */
+    if (item >= vectors) keep_derived(evaluation_partial, &sums, pixel, end, false); /* a work-item without channels */
     for (kb_u32 first = item; first < vectors; first += items * KB_VECTORS) {
-      evaluate_tile(&evaluation, saved, &film, pixel, end, first, items, &sums);
-      keep_derived(partial, &sums, pixel, end, first != item);
+      evaluate_tile(&evaluation, pool_saved, &film, pixel, end, first, items, &sums);
+      keep_derived(evaluation_partial, &sums, pixel, end, first != item);
     }
     for (kb_u32 p = pixel; p < end && item == 0u; ++p)
-      arg_film_counts[film_first + p] += valid_samples(&evaluation, saved, p);
+      film_counts[film_first + p] += valid_samples(&evaluation, pool_saved, p);
   }
 }
 
-__kernel void dpept_path(KB_EVALUATION_PARAMS, __global const KbSavedPath* restrict saved, KB_FILM_PARAMS) {
+__kernel void dpept_path(KB_EVALUATION_PARAMS) {
   KB_EVALUATION_INIT(evaluation);
-  KB_FILM_INIT(film, arg_layout->film_columns);
+  KB_FILM_INIT(film, spectra_layout->film_columns);
   const kb_u32 pixel = (kb_u32)get_global_id(0);
-  if (pixel >= arg_round->pixels) return;
+  if (pixel >= pool_round->pixels) return;
   TileSums sums;
   for (kb_u32 first = 0u; first < vector_count(&evaluation); first += KB_VECTORS) {
-    evaluate_tile(&evaluation, saved, &film, pixel, pixel + 1u, first, 1u, &sums);
+    evaluate_tile(&evaluation, pool_saved, &film, pixel, pixel + 1u, first, 1u, &sums);
 #if KB_DERIVED
-    for (kb_u32 d = 0u; d < KB_DERIVED; ++d) add_to_column(&film, pixel, arg_layout->stride + d, sums.derived[d]);
+    for (kb_u32 d = 0u; d < KB_DERIVED; ++d) add_to_column(&film, pixel, spectra_layout->stride + d, sums.derived[d]);
 #endif
   }
-  arg_film_counts[film_first + pixel] += valid_samples(&evaluation, saved, pixel);
+  film_counts[film_first + pixel] += valid_samples(&evaluation, pool_saved, pixel);
 }
 
 /* The work-items' parts of derived channels, in order. */
-__kernel void derived_add(__global const KbSpectraLayout* restrict layout, KB_FILM_PARAMS,
-                          __global const float* restrict partial, kb_u32 pixels, kb_u32 parts) {
+__kernel void derived_add(KB_EVALUATION_PARAMS) {
+  const kb_u32 derived = spectra_layout->derived, parts = evaluation_parts;
   const size_t i = get_global_id(0);
-  if (i >= (size_t)pixels * layout->derived) return;
-  KB_FILM_INIT(film, layout->film_columns);
-  const kb_u32 pixel = (kb_u32)(i / layout->derived), d = (kb_u32)(i % layout->derived);
+  if (i >= (size_t)pool_round->pixels * derived) return;
+  KB_FILM_INIT(film, spectra_layout->film_columns);
+  const kb_u32 pixel = (kb_u32)(i / derived), d = (kb_u32)(i % derived);
   float sum = 0.0f;
-  for (kb_u32 part = 0u; part < parts; ++part) sum += partial[((size_t)pixel * parts + part) * layout->derived + d];
-  add_to_column(&film, pixel, layout->stride + d, sum);
+  for (kb_u32 part = 0u; part < parts; ++part) sum += evaluation_partial[((size_t)pixel * parts + part) * derived + d];
+  add_to_column(&film, pixel, spectra_layout->stride + d, sum);
 }

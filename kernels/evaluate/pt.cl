@@ -1,14 +1,11 @@
 // The straightforward method (DPEPT paper, section 4): throughput tau and radiance L of every channel of every
 // path in flight live in global memory and are updated at each bounce. Build macros: path_spectra.clh.
 //
-//   kernel      arguments                                                       work-items
-//   pt_update   EVALUATION, FILM, states, queue, count, tau, radiance, partial  groups * local size, any number of groups, which share
-//                                                                               the queue evenly; count > 0
-//   pt_derived  layout, round, FILM, states, partial, queue, count, parts       count * D, after pt_update; only if there
-//                                                                               are derived channels
+//   kernel      work-items
+//   pt_update   groups * local size, any number of groups, which share the queue evenly; count > 0
+//   pt_derived  count * D, after pt_update; only if there are derived channels
 //
-// EVALUATION and FILM as in evaluate.cl (padded pixels of the round have no film). tau, radiance: [slot][stride].
-// partial: [slot][work-item][D], parts = local size of pt_update. Runs once per bounce after shadow rays, over the
+// Padded pixels of the round have no film. evaluation_parts: local size of pt_update. Runs once per bounce after shadow rays, over the
 // slots of the queue: the vertices of the bounce are states[slot].length slots of the arena from chunk `slot` on;
 // KB_PATH_FRESH: tau = 1, L = 0 before them; KB_PATH_ENDED: L goes to the film of the path's pixel (not if
 // KB_PATH_INVALID, then the sample does not count).
@@ -63,42 +60,37 @@ static inline void update_slot(const Evaluation* e, const Film* film, const KbPa
   }
 }
 
-__kernel void pt_update(KB_EVALUATION_PARAMS, KB_FILM_PARAMS, __global const KbPathState* restrict states,
-                        __global const kb_u32* restrict queue, kb_u32 count, __global float* restrict tau,
-                        __global float* restrict radiance, __global float* restrict partial) {
+__kernel void pt_update(KB_EVALUATION_PARAMS) {
   KB_EVALUATION_INIT(evaluation);
-  KB_FILM_INIT(film, arg_layout->film_columns);
+  KB_FILM_INIT(film, spectra_layout->film_columns);
   const kb_u32 items = (kb_u32)get_local_size(0), item = (kb_u32)get_local_id(0);
-  const kb_u32 share = (count - 1u) / (kb_u32)get_num_groups(0) + 1u, begin = share * (kb_u32)get_group_id(0);
-  for (kb_u32 place = begin; place < min(begin + share, count); ++place) {
-    const kb_u32 slot = queue[place];
-    const KbPathState state = states[slot];
+  const kb_u32 share = (queue_count - 1u) / (kb_u32)get_num_groups(0) + 1u, begin = share * (kb_u32)get_group_id(0);
+  for (kb_u32 place = begin; place < min(begin + share, queue_count); ++place) {
+    const kb_u32 slot = queue_slots[place];
+    const KbPathState state = pool_states[slot];
     if (state.flags & KB_PATH_FINISHED) continue;
     if (state.length == 0u && !(state.flags & (KB_PATH_FRESH | KB_PATH_ENDED))) continue;
     float derived[KB_DERIVED + 1];
-    update_slot(&evaluation, &film, &state, slot, tau, radiance, item, items, derived);
+    update_slot(&evaluation, &film, &state, slot, evaluation_tau, evaluation_radiance, item, items, derived);
 #if KB_DERIVED
-    for (kb_u32 d = 0u; d < KB_DERIVED; ++d) partial[((size_t)slot * items + item) * KB_DERIVED + d] = derived[d];
-#else
-    (void)partial;
+    __global float* part = evaluation_partial + ((size_t)slot * items + item) * KB_DERIVED;
+    for (kb_u32 d = 0u; d < KB_DERIVED; ++d) part[d] = derived[d];
 #endif
     if (item == 0u && (state.flags & (KB_PATH_ENDED | KB_PATH_INVALID)) == KB_PATH_ENDED)
-      ++arg_film_counts[film_first + state.job % arg_round->padded_pixels];
+      ++film_counts[film_first + state.job % pool_round->padded_pixels];
   }
 }
 
 /* The work-items' parts of derived channels of paths that ended, in order. */
-__kernel void pt_derived(__global const KbSpectraLayout* restrict layout, __global const KbRound* restrict round,
-                         KB_FILM_PARAMS, __global const KbPathState* restrict states,
-                         __global const float* restrict partial, __global const kb_u32* restrict queue, kb_u32 count,
-                         kb_u32 parts) {
+__kernel void pt_derived(KB_EVALUATION_PARAMS) {
+  const kb_u32 derived = spectra_layout->derived, parts = evaluation_parts;
   const size_t i = get_global_id(0);
-  if (i >= (size_t)count * layout->derived) return;
-  const kb_u32 slot = queue[i / layout->derived], d = (kb_u32)(i % layout->derived);
-  const KbPathState state = states[slot];
+  if (i >= (size_t)queue_count * derived) return;
+  const kb_u32 slot = queue_slots[i / derived], d = (kb_u32)(i % derived);
+  const KbPathState state = pool_states[slot];
   if ((state.flags & (KB_PATH_FINISHED | KB_PATH_ENDED | KB_PATH_INVALID)) != KB_PATH_ENDED) return;
-  KB_FILM_INIT(film, layout->film_columns);
+  KB_FILM_INIT(film, spectra_layout->film_columns);
   float sum = 0.0f;
-  for (kb_u32 part = 0u; part < parts; ++part) sum += partial[((size_t)slot * parts + part) * layout->derived + d];
-  add_to_column(&film, state.job % round->padded_pixels, layout->stride + d, sum);
+  for (kb_u32 part = 0u; part < parts; ++part) sum += evaluation_partial[((size_t)slot * parts + part) * derived + d];
+  add_to_column(&film, state.job % pool_round->padded_pixels, spectra_layout->stride + d, sum);
 }

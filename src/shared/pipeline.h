@@ -111,8 +111,6 @@ KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 #define KB_PATH_HEROES 0x40000000u         /* its hero weights are set */
 #define KB_PATH_FRESH 0x20000000u          /* what was appended last belongs to the path's first bounce */
 
-/* Channels that stand for all at rough dispersive boundaries. */
-
 /* With dispersion, beside the path's state: what each bin of channels still carries (channel_choice.clh), and the
    probabilities of the heroes (spectral_mis.clh). */
 typedef struct {
@@ -191,6 +189,12 @@ typedef struct {
   float object, material; /* indices, -1: nothing */
 } KbAuxiliary;
 KB_STATIC_ASSERT(sizeof(KbAuxiliary) == 24, auxiliary_size);
+
+/* What a slot has done in a round. */
+typedef struct {
+  kb_u32 rays, vertices;
+} KbTally;
+KB_STATIC_ASSERT(sizeof(KbTally) == 8, tally_size);
 
 /* ---- faults: kernels write, the host reads ------------------------------------------------------------ */
 #define KB_FAULT_ARENA_FULL 1u     /* the round is repeated with fewer paths */

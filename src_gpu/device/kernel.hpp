@@ -36,6 +36,9 @@ class Kernel {
     return *this;
   }
 
+  /// throws std::logic_error  the kernel has not `count` parameters
+  void check_count(uint64_t count) const;
+
   /// Enqueues work-items first .. first + items - 1, in groups of `local` (0: the driver chooses). With a
   /// local size the number of work-items is rounded up to whole groups: the kernel compares its global id
   /// with its number of items. No items: no launch.
@@ -73,7 +76,6 @@ class Kernel {
     set_raw(index, sizeof(T), &value);
   }
   void set_raw(uint32_t index, uint64_t bytes, const void* value);
-  void check_count(uint64_t count) const;
   void enqueue(uint64_t items, uint64_t local, uint64_t first, cl::Event* event);
   CallSite site(Phase phase) const;
 

@@ -8,7 +8,6 @@ namespace {
 constexpr uint64_t kLocalSize = 64;
 /// Film values that a launch clears: 8 MiB.
 constexpr uint64_t kClearItems = 1u << 20;
-constexpr uint32_t kEvaluationArguments = 14, kFilmArguments = 5;
 /// Means are downloaded in pieces of at most this many bytes and at most this part of the film,
 /// unless that is little.
 constexpr uint64_t kMeansBytes = 16u << 20, kMeansPart = 16, kLittle = 16u << 10;
@@ -43,6 +42,11 @@ uint64_t partial_floats(const KbSpectraLayout& layout, const EvaluationShape& sh
   if (shape.method == Method::kDpeptPath) return 0;
   const uint64_t units = shape.method == Method::kPt ? pool.slots : pool.pixels;
   return units * shape.local_size * layout.derived;
+}
+
+/// Throughputs, or radiances, of the paths in flight.
+uint64_t state_floats(const KbSpectraLayout& layout, const EvaluationShape& shape, const PoolSize& pool) {
+  return shape.method == Method::kPt ? uint64_t{pool.slots} * layout.stride : 0;
 }
 
 uint64_t pixels_of_means(const KbSpectraLayout& layout, uint64_t film_pixels) {
@@ -109,17 +113,20 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
       shape_(shape),
       film_pixels_(film_pixels),
       means_pixels_(pixels_of_means(layout, film_pixels)),
+      layout_buffer_(memory.upload("spectra layout", std::vector{layout})),
       sum_(memory.allocate<float>("film", film_pixels * layout.film_columns)),
       compensation_(memory.allocate<float>("film's rounding errors", film_pixels * layout.film_columns)),
       open_(memory.allocate<float>("sums of chunks", open ? sum_.size() : 0)),
-      dense_(
-          memory.allocate<float>("dense spectra", pool.tables * table_bytes(layout, shape) / sizeof(float))),
-      partial_(memory.allocate<float>("derived channels", partial_floats(layout, shape, pool))),
-      tau_(memory.allocate<float>("throughputs",
-                                  shape.method == Method::kPt ? uint64_t{pool.slots} * layout.stride : 0)),
-      radiance_(memory.allocate<float>("radiances", tau_.size())),
       means_(memory.allocate<float>("means", means_pixels_ * columns(layout))),
       counts_(memory.allocate<uint32_t>("sample counts", film_pixels)),
+      buffers_{
+          .dense = memory.allocate<float>("dense spectra",
+                                          pool.tables * table_bytes(layout, shape) / sizeof(float)),
+          .tau = memory.allocate<float>("throughputs", state_floats(layout, shape, pool)),
+          .radiance = memory.allocate<float>("radiances", state_floats(layout, shape, pool)),
+          .partial = memory.allocate<float>("derived channels", partial_floats(layout, shape, pool)),
+          .parts = shape.local_size,
+      },
       film_program_(build(context, "film/film.cl",
                           shape.film_transposed ? std::vector<std::string>{"KB_FILM_TRANSPOSED=1"}
                                                 : std::vector<std::string>{},
@@ -140,49 +147,33 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
   resample_ = resample_program_->kernel("resample_rows");
 }
 
-uint32_t Evaluation::bind_evaluation(Kernel& kernel, const DeviceScene& scene, const DeviceSpectra& spectra,
-                                     const PathPool& pool) const {
-  kernel.set_from(0, spectra.layout, shape_.shared_wavelengths ? dense_ : spectra.nodes, spectra.tables,
-                  spectra.materials, spectra.cover, spectra.cover_breaks, scene.materials(), scene.textures(),
-                  scene.texels(), scene.texel_values(), pool.round(), pool.pixels(), pool.arena(),
-                  pool.chunk_next());
-  return kEvaluationArguments;
+/// open: rounds that go on with a chunk find its sums in place of the film's.
+FilmArguments::Of<BufferRef> Evaluation::film(uint64_t first_pixel, bool open) const {
+  return {.sum = open ? open_ : sum_,
+          .compensation = compensation_,
+          .counts = counts_,
+          .pixels = static_cast<uint32_t>(film_pixels_),
+          .first = static_cast<uint32_t>(first_pixel)};
 }
 
-/// open: rounds that go on with a chunk find its sums in place of the film's.
-uint32_t Evaluation::bind_film(Kernel& kernel, uint32_t first, uint64_t film_pixel, bool open) const {
-  kernel.set_from(first, open ? open_ : sum_, compensation_, counts_, static_cast<uint32_t>(film_pixels_),
-                  static_cast<uint32_t>(film_pixel));
-  return first + kFilmArguments;
+PackingArguments::Of<BufferRef> Evaluation::packing(const DeviceBuffer<float>& values,
+                                                    uint64_t pixels) const {
+  return {.layout = layout_buffer_,
+          .open = open_,
+          .values = values,
+          .packed = means_,
+          .pixels = static_cast<uint32_t>(pixels)};
 }
 
 void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, const PathPool& pool) {
-  uint32_t next = bind_evaluation(main_, scene, spectra, pool);
-  if (shape_.method == Method::kPt) {
-    film_argument_ = next;
-    next = bind_film(main_, next, 0);
-    main_.set_from(next, pool.states());
-    main_.set_from(next + 3, tau_, radiance_, partial_);  // queue and count stand between
-    if (derived_) derived_->set_from(0, spectra.layout, pool.round());
-    if (derived_) derived_->set_from(2 + kFilmArguments, pool.states(), partial_);
-  } else {
-    main_.set_from(next, pool.saved());
-    film_argument_ = next + 1;
-    next = bind_film(main_, film_argument_, 0);
-    if (shape_.method == Method::kDpeptBatch) main_.set_from(next, partial_);
-    if (derived_) derived_->set_from(0, spectra.layout);
-    if (derived_) derived_->set_from(1 + kFilmArguments, partial_);
-  }
-  for (Kernel* kernel : {&finish_, &pack_, &unpack_}) kernel->set_from(0, spectra.layout);
+  const auto bind_one = [&](EvaluationKernel& kernel, LaunchScale scale) {
+    kernel.set(scene, spectra, pool.buffers(), buffers_, film(0), pool.queue(0));
+    kernel->set_scale(scale);
+  };
   const LaunchScale scale = shape_.method == Method::kPt ? LaunchScale::kSlots : LaunchScale::kPaths;
-  main_.set_scale(scale);
-  if (derived_) derived_->set_scale(scale);
-  if (resample_) {
-    resample_->set_scale(LaunchScale::kPaths);
-    resample_->set_from(0, spectra.layout, spectra.nodes, spectra.tables, spectra.cover, spectra.cover_breaks,
-                        pool.mu());
-    resample_->set_from(7, dense_);
-  }
+  bind_one(main_, scale);
+  if (derived_) bind_one(*derived_, scale);
+  if (resample_) bind_one(*resample_, LaunchScale::kPaths);
 }
 
 /// Film pixels whose values stand among those of the first `pixels`.
@@ -192,17 +183,17 @@ uint64_t Evaluation::touched_pixels(uint64_t pixels) const {
 
 void Evaluation::clear(uint64_t pixels) {
   const uint64_t touched = touched_pixels(pixels), items = touched * layout_.film_columns;
-  clear_.set(sum_, compensation_, counts_, static_cast<uint32_t>(touched), layout_.film_columns);
+  clear_.set(film(0), packing(sum_, touched));
   for (uint64_t first = 0; first < items; first += kClearItems)
-    clear_.launch(std::min(kClearItems, items - first), kLocalSize, first);
+    clear_->launch(std::min(kClearItems, items - first), kLocalSize, first);
   if (!open_.empty()) open_.fill(0.0f, 0, items);
 }
 
 void Evaluation::close_chunk(uint64_t pixels) {
   const uint64_t touched = touched_pixels(pixels), items = touched * layout_.film_columns;
-  close_.set(sum_, compensation_, open_, static_cast<uint32_t>(touched), layout_.film_columns);
+  close_.set(film(0), packing(open_, touched));
   for (uint64_t first = 0; first < items; first += kClearItems)
-    close_.launch(std::min(kClearItems, items - first), kLocalSize, first);
+    close_->launch(std::min(kClearItems, items - first), kLocalSize, first);
 }
 
 void Evaluation::unpack(const std::vector<float>& packed, DeviceBuffer<float>& values) {
@@ -210,9 +201,8 @@ void Evaluation::unpack(const std::vector<float>& packed, DeviceBuffer<float>& v
   for (uint64_t first = 0; first < pixels; first += means_pixels_) {
     const uint64_t some = std::min(means_pixels_, pixels - first);
     means_.upload(std::span(packed).subspan(first * columns(layout_), some * columns(layout_)));
-    unpack_.set_from(1, values, static_cast<uint32_t>(film_pixels_), static_cast<uint32_t>(first),
-                     static_cast<uint32_t>(some), means_);
-    unpack_.launch(some * columns(layout_), kLocalSize);
+    unpack_.set(film(first), packing(values, some));
+    unpack_->launch(some * columns(layout_), kLocalSize);
   }
 }
 
@@ -220,9 +210,8 @@ void Evaluation::pack(uint64_t pixels, const DeviceBuffer<float>& values, std::v
   packed.resize(pixels * columns(layout_));
   for (uint64_t first = 0; first < pixels; first += means_pixels_) {
     const uint64_t some = std::min(means_pixels_, pixels - first);
-    pack_.set_from(1, values, static_cast<uint32_t>(film_pixels_), static_cast<uint32_t>(first),
-                   static_cast<uint32_t>(some), means_);
-    pack_.launch(some * columns(layout_), kLocalSize);
+    pack_.set(film(first), packing(values, some));
+    pack_->launch(some * columns(layout_), kLocalSize);
     const DeviceBuffer<float>& device_means = means_;
     device_means.download(
         std::span<float>(packed).subspan(first * columns(layout_), some * columns(layout_)));
@@ -247,35 +236,31 @@ void Evaluation::save(uint64_t pixels, FilmSums& sums) {
 
 void Evaluation::resample(const KbRound& round) {
   if (!resample_) return;
-  const uint32_t tables = round.blocks * round.samples;
-  resample_->set_from(6, tables);
-  resample_->launch(uint64_t{tables} * layout_.rows * layout_.stride / shape_.width, kLocalSize);
+  const uint64_t tables = uint64_t{round.blocks} * round.samples;
+  (*resample_)->launch(tables * layout_.rows * layout_.stride / shape_.width, kLocalSize);
 }
 
 void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
-  bind_film(main_, film_argument_, film_pixel, round.open != 0);
+  main_.set(film(film_pixel, round.open != 0));
   if (shape_.method == Method::kDpeptPath) {
-    main_.launch(round.pixels, shape_.local_size);
+    main_->launch(round.pixels, shape_.local_size);
     return;
   }
   const uint64_t groups = ceil_div(round.pixels, shape_.units_per_group);
-  main_.launch(groups * shape_.local_size, shape_.local_size);
+  main_->launch(groups * shape_.local_size, shape_.local_size);
   if (!derived_) return;
-  bind_film(*derived_, 1, film_pixel, round.open != 0);
-  derived_->set_from(2 + kFilmArguments, round.pixels, shape_.local_size);
-  derived_->launch(uint64_t{round.pixels} * layout_.derived, kLocalSize);
+  derived_->set(film(film_pixel, round.open != 0));
+  (*derived_)->launch(uint64_t{round.pixels} * layout_.derived, kLocalSize);
 }
 
-void Evaluation::update(const DeviceBuffer<uint32_t>& queue, uint32_t count, uint64_t film_pixel) {
-  if (count == 0) return;
-  bind_film(main_, film_argument_, film_pixel);
-  main_.set_from(film_argument_ + kFilmArguments + 1, queue, count);
-  const uint64_t groups = ceil_div(count, shape_.units_per_group);
-  main_.launch(groups * shape_.local_size, shape_.local_size);
+void Evaluation::update(const PoolQueue& queue, uint64_t film_pixel) {
+  if (queue.count == 0) return;
+  main_.set(film(film_pixel), queue);
+  const uint64_t groups = ceil_div(queue.count, shape_.units_per_group);
+  main_->launch(groups * shape_.local_size, shape_.local_size);
   if (!derived_) return;
-  bind_film(*derived_, 2, film_pixel);
-  derived_->set_from(2 + kFilmArguments + 2, queue, count, shape_.local_size);
-  derived_->launch(uint64_t{count} * layout_.derived, kLocalSize);
+  derived_->set(film(film_pixel), queue);
+  (*derived_)->launch(uint64_t{queue.count} * layout_.derived, kLocalSize);
 }
 
 void Evaluation::finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {
@@ -285,9 +270,8 @@ void Evaluation::finish(uint64_t pixels, std::vector<float>& means, std::vector<
   device_counts.download(std::span<uint32_t>(counts));
   for (uint64_t first = 0; first < pixels; first += means_pixels_) {
     const uint64_t some = std::min(means_pixels_, pixels - first);
-    finish_.set_from(1, sum_, compensation_, counts_, static_cast<uint32_t>(film_pixels_),
-                     static_cast<uint32_t>(first), static_cast<uint32_t>(some), means_);
-    finish_.launch(some * columns(layout_), kLocalSize);
+    finish_.set(film(first), packing(sum_, some));
+    finish_->launch(some * columns(layout_), kLocalSize);
     const DeviceBuffer<float>& device_means = means_;
     device_means.download(std::span<float>(means).subspan(first * columns(layout_), some * columns(layout_)));
   }

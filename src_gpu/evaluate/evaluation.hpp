@@ -63,14 +63,13 @@ class Evaluation {
   /// dpept: the round's saved paths. Enqueued, not waited for.
   void evaluate(const KbRound& round, uint64_t film_pixel);
   /// pt: one bounce of the slots in the queue.
-  void update(const DeviceBuffer<uint32_t>& queue, uint32_t count, uint64_t film_pixel);
+  void update(const PoolQueue& queue, uint64_t film_pixel);
   /// Means [pixel][K + D] and valid samples.
   void finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 
  private:
-  uint32_t bind_evaluation(Kernel& kernel, const DeviceScene& scene, const DeviceSpectra& spectra,
-                           const PathPool& pool) const;
-  uint32_t bind_film(Kernel& kernel, uint32_t first, uint64_t film_pixel, bool open = false) const;
+  FilmArguments::Of<BufferRef> film(uint64_t first_pixel, bool open = false) const;
+  PackingArguments::Of<BufferRef> packing(const DeviceBuffer<float>& values, uint64_t pixels) const;
   void unpack(const std::vector<float>& packed, DeviceBuffer<float>& values);
   void pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
   uint64_t touched_pixels(uint64_t pixels) const;
@@ -79,13 +78,15 @@ class Evaluation {
   KbSpectraLayout layout_;
   EvaluationShape shape_;
   uint64_t film_pixels_, means_pixels_;
-  DeviceBuffer<float> sum_, compensation_, open_, dense_, partial_, tau_, radiance_, means_;
+  DeviceBuffer<KbSpectraLayout> layout_buffer_;
+  DeviceBuffer<float> sum_, compensation_, open_, means_;
   DeviceBuffer<uint32_t> counts_;
+  EvaluationArguments::Of<DeviceBuffer> buffers_;
   Program film_program_, program_;
   std::optional<Program> resample_program_;
-  Kernel clear_, finish_, close_, pack_, unpack_, main_;
-  std::optional<Kernel> resample_, derived_;
-  uint32_t film_argument_ = 0;  // where FILM begins in main_
+  FilmKernel clear_, finish_, close_, pack_, unpack_;
+  EvaluationKernel main_;
+  std::optional<EvaluationKernel> resample_, derived_;
 };
 
 }  // namespace kiloband::gpu

@@ -40,6 +40,9 @@ struct RoundOutcome {
 /// throws std::logic_error for what only a bug of ours can raise
 void throw_for_bugs(const KbFaults& faults);
 
+using PoolBuffers = PoolArguments::Of<DeviceBuffer>;
+using PoolQueue = QueueArguments::Of<BufferRef>;
+
 class PathPool {
  public:
   /// method_pt  the program was built with KB_METHOD_PT=1: vertices stay in a slot's own chunk for one bounce
@@ -51,50 +54,29 @@ class PathPool {
   /// Uploads the round. pixels: [padded_pixels], those past round.pixels are not read. mu: by block and
   /// sample (shared wavelengths).
   void begin(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu);
-  /// Runs it to its end. after_bounce (pt): called with queue and count once per iteration,
-  /// when shadow rays are done.
+  /// Runs it to its end. after_bounce (pt): called with the queue once per iteration, when shadow rays are done.
   /// throws std::logic_error  faults that are bugs of ours
   ///        DeviceLost ...
-  using AfterBounce = std::function<void(const DeviceBuffer<uint32_t>& queue, uint32_t count)>;
+  using AfterBounce = std::function<void(const PoolQueue& queue)>;
   RoundOutcome run(const KbRound& round, const AfterBounce& after_bounce = {});
   /// Called between tracing and shading of every iteration (debugging, parity tests).
   void observe_hits(AfterBounce observer) { on_hits_ = std::move(observer); }
 
-  const DeviceBuffer<KbRound>& round() const { return round_; }
-  const DeviceBuffer<KbRoundPixel>& pixels() const { return pixels_; }
-  const DeviceBuffer<float>& mu() const { return mu_; }
-  const DeviceBuffer<KbPathState>& states() const { return states_; }
-  const DeviceBuffer<KbPathVertex>& arena() const { return arena_; }
-  const DeviceBuffer<uint32_t>& chunk_next() const { return chunk_next_; }
-  const DeviceBuffer<KbSavedPath>& saved() const { return saved_; }
-  const DeviceBuffer<KbHit>& hits() const { return hits_; }
-  const DeviceBuffer<KbRay>& rays() const { return rays_; }
+  const PoolBuffers& buffers() const { return buffers_; }
+  /// The first `count` slots in the queue.
+  PoolQueue queue(uint32_t count) const { return {.slots = queue_, .packed = packed_, .count = count}; }
 
  private:
-  void bind(const DeviceScene& scene, const DeviceBvh& bvh, const DeviceSpectra& spectra);
   void iterate(const AfterBounce& after_bounce);
-  void launch(Kernel& kernel, uint32_t queue_argument);
+  void launch(PathKernel& kernel);
   bool compact();
   void add_tallies(uint32_t slots, RoundOutcome& outcome) const;
 
   DeviceContext& context_;
   PoolSize size_;
-  DeviceBuffer<KbRound> round_;
-  DeviceBuffer<KbRoundPixel> pixels_;
-  DeviceBuffer<float> mu_;
-  DeviceBuffer<KbPathState> states_;
-  DeviceBuffer<KbRay> rays_;
-  DeviceBuffer<KbHit> hits_;
-  DeviceBuffer<KbShadowRay> shadows_;
-  DeviceBuffer<KbPathVertex> arena_;
-  DeviceBuffer<uint32_t> chunk_next_;
-  DeviceBuffer<KbSavedPath> saved_;
-  DeviceBuffer<KbFaults> faults_;
-  DeviceBuffer<KbDispersionState> dispersion_;  // by slot
-  DeviceBuffer<KbGasState> gas_;
-  DeviceBuffer<uint64_t> tallies_;  // by slot: rays in the low word, vertices in the high one
+  PoolBuffers buffers_;
   DeviceBuffer<uint32_t> queue_, packed_;
-  Kernel reset_, generate_, closest_, shade_, any_, compact_;
+  PathKernel reset_, generate_, closest_, shade_, any_, compact_;
   AfterBounce on_hits_;
   uint32_t count_ = 0;  // slots in the queue
 };

@@ -94,51 +94,49 @@ KbSceneConstants scene_constants(const FlatScene& scene) {
   return c;
 }
 
-DeviceScene::DeviceScene(DeviceMemory& memory, const FlatScene& scene)
-    : constants_(memory.upload("scene constants", std::vector{scene_constants(scene)})),
-      materials_(memory.upload("materials", scene.materials)),
-      tables_(memory.upload("tables", scene.tables)),
-      surfaces_(memory.upload("surfaces", scene.surfaces)),
-      shapes_(memory.upload("shapes", scene.shapes)),
-      textures_(memory.upload("textures", scene.textures)),
-      checkerboards_(memory.upload("checkerboards", scene.checkerboards)),
-      texels_(memory.upload("texels", scene.texels)),
-      texel_values_(upload_texel_values(memory, scene)),
-      texel_bounds_(memory.upload("texel bounds", scene.texel_bounds)),
-      spectrum_bounds_(memory.upload("spectrum bounds", bounds_of_rows(scene))),
-      normals_(memory.upload("normals", scene.normals)),
-      uvs_(memory.upload("texture coordinates", scene.uvs)),
-      positions_(memory.upload("positions", scene.positions)),
-      triangles_(memory.upload("triangles", scene.triangles)),
-      area_cdf_(memory.upload("area distribution", scene.area_cdf)),
-      emitters_(memory.upload("emitters", scene.emitters)),
-      emitter_cdf_(memory.upload("emitter distribution", scene.emitter_cdf)),
-      envmap_marginal_(memory.upload("environment rows", scene.envmap.marginal_cdf)),
-      envmap_rows_(memory.upload("environment distribution", scene.envmap.row_cdf)),
-      media_(memory.upload("media", scene.media)),
-      plume_nodes_(memory.upload("plumes", scene.plume_nodes)),
-      interiors_(memory.upload("interiors", scene.interiors)),
-      filter_table_(memory.upload("filter table", filter_nodes(scene.camera))),
-      channel_bins_(memory.upload("reflectances by channel bins", scene.channel_bins)),
-      thermals_(memory.upload("thermal emission", scene.thermals)) {}
-
-void DeviceScene::bind(Kernel& kernel, uint32_t first) const {
-  kernel.set_from(first, constants_, materials_, tables_, surfaces_, shapes_, textures_, checkerboards_,
-                  texels_, texel_bounds_, spectrum_bounds_, normals_, uvs_, positions_, triangles_, area_cdf_,
-                  emitters_, emitter_cdf_, envmap_marginal_, envmap_rows_, media_, plume_nodes_, interiors_,
-                  filter_table_, thermals_);
+DeviceScene upload_scene(DeviceMemory& memory, const FlatScene& scene) {
+  return {
+      .constants = memory.upload("scene constants", std::vector{scene_constants(scene)}),
+      .materials = memory.upload("materials", scene.materials),
+      .tables = memory.upload("tables", scene.tables),
+      .surfaces = memory.upload("surfaces", scene.surfaces),
+      .shapes = memory.upload("shapes", scene.shapes),
+      .textures = memory.upload("textures", scene.textures),
+      .checkerboards = memory.upload("checkerboards", scene.checkerboards),
+      .texels = memory.upload("texels", scene.texels),
+      .texel_values = upload_texel_values(memory, scene),
+      .texel_bounds = memory.upload("texel bounds", scene.texel_bounds),
+      .spectrum_bounds = memory.upload("spectrum bounds", bounds_of_rows(scene)),
+      .normals = memory.upload("normals", scene.normals),
+      .uvs = memory.upload("texture coordinates", scene.uvs),
+      .positions = memory.upload("positions", scene.positions),
+      .triangles = memory.upload("triangles", scene.triangles),
+      .area_cdf = memory.upload("area distribution", scene.area_cdf),
+      .emitters = memory.upload("emitters", scene.emitters),
+      .emitter_cdf = memory.upload("emitter distribution", scene.emitter_cdf),
+      .envmap_marginal = memory.upload("environment rows", scene.envmap.marginal_cdf),
+      .envmap_rows = memory.upload("environment distribution", scene.envmap.row_cdf),
+      .media = memory.upload("media", scene.media),
+      .plume_nodes = memory.upload("plumes", scene.plume_nodes),
+      .interiors = memory.upload("interiors", scene.interiors),
+      .filter_table = memory.upload("filter table", filter_nodes(scene.camera)),
+      .channel_bins = memory.upload("reflectances by channel bins", scene.channel_bins),
+      .thermals = memory.upload("thermal emission", scene.thermals),
+  };
 }
 
-DeviceBvh::DeviceBvh(DeviceMemory& memory, const Bvh& bvh)
-    : nodes(memory.upload("acceleration structure", bvh.nodes)),
-      primitives(memory.upload("primitives", bvh.primitives)) {}
+DeviceBvh upload_bvh(DeviceMemory& memory, const Bvh& bvh) {
+  return {.nodes = memory.upload("acceleration structure", bvh.nodes),
+          .primitives = memory.upload("primitives", bvh.primitives)};
+}
 
-DeviceSpectra::DeviceSpectra(DeviceMemory& memory, const ChannelTables& spectra)
-    : layout(memory.upload("spectra layout", std::vector{spectra.layout})),
-      nodes(memory.upload("spectra", spectra.nodes)),
-      tables(memory.upload("spectra rows", spectra.tables)),
-      materials(memory.upload("rows of materials", spectra.material_rows)),
-      cover(memory.upload("channel cover", spectra.cover)),
-      cover_breaks(memory.upload("breaks of channel cover", spectra.cover_breaks)) {}
+DeviceSpectra upload_spectra(DeviceMemory& memory, const ChannelTables& spectra) {
+  return {.layout = memory.upload("spectra layout", std::vector{spectra.layout}),
+          .nodes = memory.upload("spectra", spectra.nodes),
+          .tables = memory.upload("spectra rows", spectra.tables),
+          .material_rows = memory.upload("rows of materials", spectra.material_rows),
+          .cover = memory.upload("channel cover", spectra.cover),
+          .cover_breaks = memory.upload("breaks of channel cover", spectra.cover_breaks)};
+}
 
 }  // namespace kiloband::gpu

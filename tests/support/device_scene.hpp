@@ -1,13 +1,12 @@
-// A FlatScene in the buffers of an OpenclProbe, in the order of KB_SCENE_PARAMS (kernels/base/scene.clh).
+// A FlatScene in the buffers of an OpenclProbe.
 #pragma once
 
-#include <array>
-#include <tuple>
 #include <vector>
 
 #include "film/filter_table.hpp"
 #include "scene/compile/flat_scene.hpp"
 #include "shared/pipeline.h"
+#include "src_gpu/device/kernel_groups.hpp"
 #include "tests/support/opencl_probe.hpp"
 
 namespace kiloband::test {
@@ -42,40 +41,42 @@ class DeviceScene {
     if (scene.camera.filter == KB_FILTER_GAUSSIAN)
       filter = make_gaussian_filter_table(scene.camera.filter_radius / scene.camera.filter_stddev);
     const auto up = [&](const auto& values) { return probe.upload(values); };
-    buffers_ = {up(std::vector{probe_constants(scene)}),
-                up(scene.materials),
-                up(scene.tables),
-                up(scene.surfaces),
-                up(scene.shapes),
-                up(scene.textures),
-                up(scene.checkerboards),
-                up(scene.texels),
-                up(scene.texel_bounds),
-                up(bounds),
-                up(scene.normals),
-                up(scene.uvs),
-                up(scene.positions),
-                up(scene.triangles),
-                up(scene.area_cdf),
-                up(scene.emitters),
-                up(scene.emitter_cdf),
-                up(scene.envmap.marginal_cdf),
-                up(scene.envmap.row_cdf),
-                up(scene.media),
-                up(scene.plume_nodes),
-                up(scene.interiors),
-                up(filter),
-                up(scene.thermals)};
+    buffers_ = {.constants = up(std::vector{probe_constants(scene)}),
+                .materials = up(scene.materials),
+                .tables = up(scene.tables),
+                .surfaces = up(scene.surfaces),
+                .shapes = up(scene.shapes),
+                .textures = up(scene.textures),
+                .checkerboards = up(scene.checkerboards),
+                .texels = up(scene.texels),
+                .texel_values = {},
+                .texel_bounds = up(scene.texel_bounds),
+                .spectrum_bounds = up(bounds),
+                .normals = up(scene.normals),
+                .uvs = up(scene.uvs),
+                .positions = up(scene.positions),
+                .triangles = up(scene.triangles),
+                .area_cdf = up(scene.area_cdf),
+                .emitters = up(scene.emitters),
+                .emitter_cdf = up(scene.emitter_cdf),
+                .envmap_marginal = up(scene.envmap.marginal_cdf),
+                .envmap_rows = up(scene.envmap.row_cdf),
+                .media = up(scene.media),
+                .plume_nodes = up(scene.plume_nodes),
+                .interiors = up(scene.interiors),
+                .filter_table = up(filter),
+                .channel_bins = up(scene.channel_bins),
+                .thermals = up(scene.thermals)};
   }
 
   template <class... Args>
   void run(const char* name, std::size_t items, const Args&... args) {
-    std::apply([&](const auto&... buffers) { probe_.run(name, items, buffers..., args...); }, buffers_);
+    probe_.run(name, items, buffers_, args...);
   }
 
  private:
   Probe& probe_;
-  std::array<cl::Buffer, 24> buffers_;
+  gpu::SceneArguments::Of<ProbeBuffer> buffers_;
 };
 
 /// One KbPrimitive per triangle of a mesh and per analytic shape, in the order of the shapes.

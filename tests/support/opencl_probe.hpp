@@ -13,6 +13,20 @@
 
 namespace kiloband::test {
 
+/// What kernels take a whole group of (src_gpu/device/kernel_groups.hpp), here with the probe's buffers.
+template <class T>
+using ProbeBuffer = cl::Buffer;
+
+/// Sets arguments from `index` on: values, buffers, whole groups of them. Returns the index behind them.
+template <class Arg>
+cl_uint set_argument(cl::Kernel& kernel, cl_uint index, const Arg& arg) {
+  if constexpr (requires { typename Arg::Group; })
+    arg.each([&](const auto& one) { kernel.setArg(index++, one); });
+  else
+    kernel.setArg(index++, arg);
+  return index;
+}
+
 /// One device, one program built from source text whose includes are rooted at kernels/, src/ and the project.
 /// throws std::runtime_error with the build log
 class OpenclProbe {
@@ -58,7 +72,7 @@ class OpenclProbe {
   void run(const char* name, std::size_t items, const Args&... args) {
     cl::Kernel kernel(program, name);
     cl_uint index = 0;
-    (kernel.setArg(index++, args), ...);
+    ((index = set_argument(kernel, index, args)), ...);
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NullRange);
     queue.finish();
   }

@@ -96,20 +96,21 @@ DeviceEvaluator::DeviceEvaluator(EvaluatorProgram& program, const FlatScene& sce
     : program_(program), layout_(t.layout), film_pixels_(film_pixels) {
   OpenclProbe& probe = program.probe;
   layout_.film_width = kFilmWidth;
-  layout_buffer_ = probe.upload(std::vector{layout_});
-  nodes_ = probe.upload(t.nodes);
-  table_buffer_ = probe.upload(t.tables);
-  material_rows_ = probe.upload(t.material_rows);
-  cover_ = probe.upload(t.cover);
-  breaks_ = probe.upload(t.cover_breaks);
-  materials_ = probe.upload(scene.materials);
-  textures_ = probe.upload(scene.textures);
-  texels_ = probe.upload(scene.texels);
-  texel_values_ = probe.upload(texel_values(scene));
+  spectra_.layout = probe.upload(std::vector{layout_});
+  spectra_.nodes = probe.upload(t.nodes);
+  spectra_.tables = probe.upload(t.tables);
+  spectra_.material_rows = probe.upload(t.material_rows);
+  spectra_.cover = probe.upload(t.cover);
+  spectra_.cover_breaks = probe.upload(t.cover_breaks);
+  scene_.materials = probe.upload(scene.materials);
+  scene_.textures = probe.upload(scene.textures);
+  scene_.texels = probe.upload(scene.texels);
+  scene_.texel_values = probe.upload(texel_values(scene));
   const std::size_t floats = std::size_t{film_pixels} * layout_.film_columns;
-  sum_ = probe.upload(std::vector<float>(floats, 7.0f));  // clear() must do something
-  compensation_ = probe.upload(std::vector<float>(floats, 7.0f));
-  counts_ = probe.upload(std::vector<uint32_t>(film_pixels, 7u));
+  film_.sum = probe.upload(std::vector<float>(floats, 7.0f));  // clear() must do something
+  film_.compensation = probe.upload(std::vector<float>(floats, 7.0f));
+  film_.counts = probe.upload(std::vector<uint32_t>(film_pixels, 7u));
+  film_.pixels = film_pixels;
   clear();
 }
 
@@ -126,13 +127,13 @@ void DeviceEvaluator::load(const PathBuffer& paths, const RoundOfPaths& round, b
   record_.pixels = round.pixels;
   record_.padded_pixels = round.pixels;
   record_.blocks = round.blocks;
-  record_buffer_ = probe.upload(std::vector{record_});
+  pool_.round = probe.upload(std::vector{record_});
   std::vector<KbRoundPixel> pixels;
   for (uint32_t p = 0; p < round.pixels; ++p) pixels.push_back({p % 7, p / 7, round.block[p]});
-  pixels_ = probe.upload(pixels);
+  pool_.pixels = probe.upload(pixels);
   const Arena arena(paths, scattered);
-  arena_ = probe.upload(arena.slots);
-  chunk_next_ = probe.upload(arena.next);
+  pool_.arena = probe.upload(arena.slots);
+  pool_.chunk_next = probe.upload(arena.next);
   std::vector<KbSavedPath> saved;
   for (const uint32_t p : round.path) {
     if (p == RoundOfPaths::kEmpty)
@@ -142,38 +143,28 @@ void DeviceEvaluator::load(const PathBuffer& paths, const RoundOfPaths& round, b
     else
       saved.push_back({arena.first[p], paths.paths[p].count});
   }
-  saved_ = probe.upload(saved);
-  mu_ = probe.upload(round.mu);
+  pool_.saved = probe.upload(saved);
+  pool_.shared_mu = probe.upload(round.mu);
   if (!program_.build.per_path) resample();
 }
 
 void DeviceEvaluator::resample() {
-  tables_ = round_.blocks * round_.samples;
-  const std::size_t floats = std::size_t{tables_} * layout_.rows * layout_.stride;
-  dense_ = cl::Buffer(program_.probe.context, CL_MEM_READ_WRITE, floats * sizeof(float));
-  program_.probe.run("resample_rows", floats / program_.build.width, layout_buffer_, nodes_, table_buffer_,
-                     cover_, breaks_, mu_, tables_, dense_);
+  const std::size_t floats = std::size_t{round_.blocks} * round_.samples * layout_.rows * layout_.stride;
+  evaluation_.dense = cl::Buffer(program_.probe.context, CL_MEM_READ_WRITE, floats * sizeof(float));
+  cl::Kernel k = evaluation_kernel("resample_rows");
+  run(k, floats / program_.build.width, 1);
 }
 
-cl::Kernel DeviceEvaluator::kernel(const char* name) {
-  return cl::Kernel(program_.probe.program, name);
+template <class... Groups>
+cl::Kernel DeviceEvaluator::kernel(const char* name, const Groups&... groups) {
+  cl::Kernel k(program_.probe.program, name);
+  cl_uint index = 0;
+  ((index = set_argument(k, index, groups)), ...);
+  return k;
 }
 
-cl_uint DeviceEvaluator::set_evaluation(cl::Kernel& k, cl_uint index) {
-  const cl::Buffer& rows = program_.build.per_path ? nodes_ : dense_;
-  for (const cl::Buffer* b : std::initializer_list<const cl::Buffer*>{
-           &layout_buffer_, &rows, &table_buffer_, &material_rows_, &cover_, &breaks_, &materials_,
-           &textures_, &texels_, &texel_values_, &record_buffer_, &pixels_, &arena_, &chunk_next_})
-    k.setArg(index++, *b);
-  return index;
-}
-
-cl_uint DeviceEvaluator::set_film(cl::Kernel& k, cl_uint index) {
-  for (const cl::Buffer* b : std::initializer_list<const cl::Buffer*>{&sum_, &compensation_, &counts_})
-    k.setArg(index++, *b);
-  k.setArg(index++, film_pixels_);
-  k.setArg(index++, 0u);
-  return index;
+cl::Kernel DeviceEvaluator::evaluation_kernel(const char* name) {
+  return kernel(name, scene_, spectra_, pool_, evaluation_, film_, queue_);
 }
 
 void DeviceEvaluator::run(cl::Kernel& k, std::size_t items, std::size_t local) {
@@ -183,34 +174,21 @@ void DeviceEvaluator::run(cl::Kernel& k, std::size_t items, std::size_t local) {
 }
 
 cl::Kernel DeviceEvaluator::batch_kernel() {
-  cl::Kernel k = kernel("dpept_batch");
-  cl_uint next = set_evaluation(k, 0);
-  k.setArg(next, saved_);
-  next = set_film(k, next + 1);
   const std::size_t parts = std::max<std::size_t>(1, std::size_t{round_.pixels} * 64 * layout_.derived);
-  partial_ = cl::Buffer(program_.probe.context, CL_MEM_READ_WRITE, parts * sizeof(float));
-  k.setArg(next, partial_);
-  return k;
+  evaluation_.partial = cl::Buffer(program_.probe.context, CL_MEM_READ_WRITE, parts * sizeof(float));
+  return evaluation_kernel("dpept_batch");
 }
 
 cl::Kernel DeviceEvaluator::path_kernel() {
-  cl::Kernel k = kernel("dpept_path");
-  const cl_uint next = set_evaluation(k, 0);
-  k.setArg(next, saved_);
-  set_film(k, next + 1);
-  return k;
+  return evaluation_kernel("dpept_path");
 }
 
 void DeviceEvaluator::batch(uint32_t local_size, uint32_t groups) {
   cl::Kernel k = batch_kernel();
   run(k, std::size_t{groups} * local_size, local_size);
   if (layout_.derived == 0) return;
-  cl::Kernel add = kernel("derived_add");
-  add.setArg(0, layout_buffer_);
-  const cl_uint next = set_film(add, 1);
-  add.setArg(next, partial_);
-  add.setArg(next + 1, round_.pixels);
-  add.setArg(next + 2, local_size);
+  evaluation_.parts = local_size;
+  cl::Kernel add = evaluation_kernel("derived_add");
   run(add, round_.pixels * layout_.derived, 1);
 }
 
@@ -219,21 +197,27 @@ void DeviceEvaluator::path(uint32_t local_size) {
   run(k, round_.pixels, local_size);
 }
 
+cl::Kernel DeviceEvaluator::film_kernel(const char* name, const cl::Buffer& packed) {
+  const gpu::PackingArguments::Of<ProbeBuffer> packing{
+      .layout = spectra_.layout, .open = {}, .values = {}, .packed = packed, .pixels = film_pixels_};
+  return kernel(name, film_, packing);
+}
+
 void DeviceEvaluator::clear() {
-  program_.probe.run("film_clear", std::size_t{film_pixels_} * layout_.film_columns, sum_, compensation_,
-                     counts_, film_pixels_, layout_.film_columns);
+  cl::Kernel k = film_kernel("film_clear", {});
+  run(k, std::size_t{film_pixels_} * layout_.film_columns, 1);
 }
 
 std::vector<float> DeviceEvaluator::means() {
   const std::size_t values = std::size_t{film_pixels_} * (layout_.channels + layout_.derived);
   const cl::Buffer out = program_.probe.upload(std::vector<float>(values, 7.0f));
-  program_.probe.run("film_finish", values, layout_buffer_, sum_, compensation_, counts_, film_pixels_, 0u,
-                     film_pixels_, out);
+  cl::Kernel k = film_kernel("film_finish", out);
+  run(k, values, 1);
   return program_.probe.download<float>(out, values);
 }
 
 std::vector<uint32_t> DeviceEvaluator::counts() {
-  return program_.probe.download<uint32_t>(counts_, film_pixels_);
+  return program_.probe.download<uint32_t>(film_.counts, film_pixels_);
 }
 
 }  // namespace kiloband::test

@@ -8,6 +8,7 @@
 
 #include "scene/compile/flat_scene.hpp"
 #include "src_cpu/path/path_buffer.hpp"
+#include "src_gpu/device/kernel_groups.hpp"
 #include "src_gpu/scene/channel_tables.hpp"
 #include "tests/support/opencl_probe.hpp"
 
@@ -93,9 +94,11 @@ class DeviceEvaluator {
   const KbSpectraLayout& layout() const { return layout_; }
 
  private:
-  cl::Kernel kernel(const char* name);
-  cl_uint set_evaluation(cl::Kernel& kernel, cl_uint index);
-  cl_uint set_film(cl::Kernel& kernel, cl_uint index);
+  /// With all its groups set to what they hold now.
+  cl::Kernel evaluation_kernel(const char* name);
+  cl::Kernel film_kernel(const char* name, const cl::Buffer& packed);
+  template <class... Groups>
+  cl::Kernel kernel(const char* name, const Groups&... groups);
   void run(cl::Kernel& kernel, std::size_t items, std::size_t local);
 
   EvaluatorProgram& program_;
@@ -103,11 +106,12 @@ class DeviceEvaluator {
   uint32_t film_pixels_;
   RoundOfPaths round_;
   KbRound record_{};
-  uint32_t tables_ = 0;
-  cl::Buffer layout_buffer_, nodes_, table_buffer_, material_rows_, cover_, breaks_, materials_, textures_,
-      texels_, texel_values_;
-  cl::Buffer dense_, mu_, record_buffer_, pixels_, arena_, chunk_next_, saved_;
-  cl::Buffer sum_, compensation_, counts_, partial_;
+  gpu::SceneArguments::Of<ProbeBuffer> scene_;
+  gpu::SpectraArguments::Of<ProbeBuffer> spectra_;
+  gpu::PoolArguments::Of<ProbeBuffer> pool_;
+  gpu::EvaluationArguments::Of<ProbeBuffer> evaluation_{};
+  gpu::FilmArguments::Of<ProbeBuffer> film_{};
+  gpu::QueueArguments::Of<ProbeBuffer> queue_{};
 };
 
 }  // namespace kiloband::test

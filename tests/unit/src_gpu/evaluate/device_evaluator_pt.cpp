@@ -53,10 +53,11 @@ bool next_bounce(Slot& slot, uint32_t number, uint32_t slots, const RoundOfPaths
 void DeviceEvaluator::pt(const PathBuffer& paths, uint32_t slots, uint32_t local_size) {
   OpenclProbe& probe = program_.probe;
   const std::size_t floats = std::size_t{slots} * layout_.stride;
-  const cl::Buffer tau = probe.upload(std::vector<float>(floats, NAN));
-  const cl::Buffer radiance = probe.upload(std::vector<float>(floats, NAN));
-  const cl::Buffer parts =
+  evaluation_.tau = probe.upload(std::vector<float>(floats, NAN));
+  evaluation_.radiance = probe.upload(std::vector<float>(floats, NAN));
+  evaluation_.partial =
       probe.upload(std::vector<float>(std::size_t{slots} * local_size * std::max(1u, layout_.derived), NAN));
+  evaluation_.parts = local_size;
   std::vector<Slot> pool(slots);
   std::vector<KbPathState> states(slots);
   std::vector<KbPathVertex> chunks(std::size_t{slots} * KB_CHUNK_SLOTS);
@@ -70,25 +71,13 @@ void DeviceEvaluator::pt(const PathBuffer& paths, uint32_t slots, uint32_t local
       else
         states[s].flags = KB_PATH_FINISHED;
     }
-    arena_ = probe.upload(chunks);
-    const cl::Buffer state_buffer = probe.upload(states), queue_buffer = probe.upload(queue);
-    cl::Kernel k = kernel("pt_update");
-    cl_uint next = set_film(k, set_evaluation(k, 0));
-    k.setArg(next++, state_buffer);
-    k.setArg(next++, queue_buffer);
-    k.setArg(next++, slots);
-    for (const cl::Buffer* b : std::initializer_list<const cl::Buffer*>{&tau, &radiance, &parts})
-      k.setArg(next++, *b);
+    pool_.arena = probe.upload(chunks);
+    pool_.states = probe.upload(states);
+    queue_ = {.slots = probe.upload(queue), .packed = {}, .count = slots};
+    cl::Kernel k = evaluation_kernel("pt_update");
     run(k, std::size_t{local_size} * ((slots + 1) / 2), local_size);
     if (layout_.derived == 0) continue;
-    cl::Kernel add = kernel("pt_derived");
-    add.setArg(0, layout_buffer_);
-    add.setArg(1, record_buffer_);
-    next = set_film(add, 2);
-    for (const cl::Buffer* b : std::initializer_list<const cl::Buffer*>{&state_buffer, &parts, &queue_buffer})
-      add.setArg(next++, *b);
-    add.setArg(next++, slots);
-    add.setArg(next++, local_size);
+    cl::Kernel add = evaluation_kernel("pt_derived");
     run(add, std::size_t{slots} * layout_.derived, 1);
   }
 }
@@ -103,9 +92,9 @@ double processor_seconds() {
 PtTiming DeviceEvaluator::time_pt(uint32_t slots, uint32_t groups, uint32_t bounces, uint32_t repetitions) {
   OpenclProbe& probe = program_.probe;
   const std::size_t floats = std::size_t{slots} * layout_.stride;
-  const cl::Buffer tau = probe.upload(std::vector<float>(floats, 1.0f));
-  const cl::Buffer radiance = probe.upload(std::vector<float>(floats, 0.0f));
-  const cl::Buffer parts =
+  evaluation_.tau = probe.upload(std::vector<float>(floats, 1.0f));
+  evaluation_.radiance = probe.upload(std::vector<float>(floats, 0.0f));
+  evaluation_.partial =
       probe.upload(std::vector<float>(std::max<std::size_t>(1, floats * layout_.derived), 0.0f));
   KbPathVertex vertex{};
   vertex.head = KB_KIND_SCALED | KB_VERTEX_NEE | KB_VERTEX_SCATTER;
@@ -114,10 +103,10 @@ PtTiming DeviceEvaluator::time_pt(uint32_t slots, uint32_t groups, uint32_t boun
   std::vector<KbPathVertex> chunks(std::size_t{slots} * KB_CHUNK_SLOTS, vertex);
   for (uint32_t i = 0; i < chunks.size(); ++i)
     chunks[i].row_a = static_cast<uint16_t>(i / KB_CHUNK_SLOTS % 5);
-  arena_ = probe.upload(chunks);
+  pool_.arena = probe.upload(chunks);
   std::vector<uint32_t> order(slots);
   std::iota(order.begin(), order.end(), 0u);
-  const cl::Buffer queue = probe.upload(order);
+  queue_ = {.slots = probe.upload(order), .packed = {}, .count = slots};
   std::vector<cl::Buffer> states;
   for (uint32_t b = 0; b < bounces; ++b) {
     std::vector<KbPathState> bounce(slots);
@@ -128,21 +117,16 @@ PtTiming DeviceEvaluator::time_pt(uint32_t slots, uint32_t groups, uint32_t boun
     }
     states.push_back(probe.upload(bounce));
   }
-  cl::Kernel k = kernel("pt_update");
-  const cl_uint state_argument = set_film(k, set_evaluation(k, 0));
-  k.setArg(state_argument + 1, queue);
-  k.setArg(state_argument + 2, slots);
-  k.setArg(state_argument + 3, tau);
-  k.setArg(state_argument + 4, radiance);
-  k.setArg(state_argument + 5, parts);
+  std::vector<cl::Kernel> kernels;
+  for (const cl::Buffer& state : states) {
+    pool_.states = state;
+    kernels.push_back(evaluation_kernel("pt_update"));
+  }
   PtTiming timing;
   timing.seconds = 1e30;
   for (uint32_t r = 0; r <= repetitions; ++r) {
     const double start = processor_seconds();
-    for (uint32_t b = 0; b < bounces; ++b) {
-      k.setArg(state_argument, states[b]);
-      run(k, groups, 1);
-    }
+    for (cl::Kernel& k : kernels) run(k, groups, 1);
     if (r > 0) timing.seconds = std::min(timing.seconds, processor_seconds() - start);
   }
   timing.state_bytes = 2 * floats * sizeof(float);
