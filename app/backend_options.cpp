@@ -7,19 +7,13 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "render/backend_registry.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "src_gpu/device/device.hpp"
 #include "src_gpu/opencl_backend.hpp"
 
 namespace kiloband {
 namespace {
-
-Isa parse_isa(const std::string& text) {
-  if (text == "sse4") return Isa::kSse4;
-  if (text == "avx2") return Isa::kAvx2;
-  if (text == "avx512") return Isa::kAvx512;
-  return Isa::kAuto;
-}
 
 /// A real GPU; a loader or driver that fails counts as none.
 bool has_gpu() {
@@ -90,18 +84,16 @@ std::string BackendOptions::resolve() const {
 std::unique_ptr<Backend> make_backend(const BackendOptions& options, std::shared_ptr<const FlatScene> scene,
                                       const DerivedChannels& derived, const SamplingSettings& sampling,
                                       const DiagnosticSink& sink) {
-  const std::string backend = options.resolve();
-  std::optional<uint64_t> memory;
-  if (options.device_memory) memory = parse_bytes("--device-memory", *options.device_memory);
-  if (backend == "cpu")
-    return make_cpu_backend(std::move(scene), derived, sampling,
-                            {parse_isa(options.isa.value_or("auto")), options.threads.value_or(0)});
-  OpenclOptions opencl;
-  opencl.device = options.device;
-  opencl.device_memory = memory;
-  if (options.method) opencl.method = gpu::find_method(*options.method);
-  opencl.sink = sink;
-  return make_opencl_backend(std::move(scene), derived, sampling, opencl);
+  static const BackendRegistry kBackends({cpu_backend_entry(), opencl_backend_entry()});
+  BackendRequest request;
+  request.backend = options.resolve();
+  if (options.device_memory) request.device_memory = parse_bytes("--device-memory", *options.device_memory);
+  if (options.method && request.backend == "opencl") request.backend += ":" + *options.method;
+  request.isa = options.isa.value_or("auto");
+  request.threads = options.threads.value_or(0);
+  request.device = options.device;
+  request.sink = sink;
+  return kBackends.make(request, {std::move(scene), derived, sampling});
 }
 
 }  // namespace kiloband

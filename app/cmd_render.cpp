@@ -144,8 +144,9 @@ std::map<std::string, std::string> metadata_of(const RenderOptions& options, con
   std::map<std::string, std::string> metadata;
   metadata["software"] = fmt::format("kiloband {}", KILOBAND_VERSION);
   metadata["scene"] = std::filesystem::path(options.scene.scene).filename().string();
-  metadata["backend"] = backend.name();
-  metadata["isa"] = backend.isa();
+  const BackendInfo info = backend.info();
+  metadata["backend"] = info.name;
+  metadata["isa"] = info.isa;
   metadata["seed"] = std::to_string(sampling.seed);
   metadata["sampler"] = to_string(sampling.sampler);
   metadata["wavelengths"] = to_string(sampling.wavelengths);
@@ -156,10 +157,11 @@ std::map<std::string, std::string> metadata_of(const RenderOptions& options, con
 }
 
 void print_summary(const RenderReport& report, const Backend& backend, double setup_seconds) {
-  const uint64_t paths = backend.counters().paths;
+  const uint64_t paths = backend.statistics().paths;
+  const BackendInfo info = backend.info();
   tell("{} paths in {:.2f} s ({:.2f} Mpaths/s on {}, {}); set-up {:.2f} s, output {:.2f} s\n", paths,
-       report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, backend.name(),
-       backend.isa(), setup_seconds, report.output_seconds);
+       report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, info.name,
+       info.isa, setup_seconds, report.output_seconds);
   if (report.replicates < 2)
     tell("1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
   if (report.errors.worst) tell("{}\n", describe_errors(report));
@@ -183,10 +185,11 @@ void warn_of_missed_target(const RenderOptions& options, const RenderReport& rep
 }
 
 void print_problems(const RenderReport& report, const Backend& backend) {
-  const uint64_t invalid = backend.counters().invalid_samples;
-  if (invalid > 0) {
-    tell("warning: {} invalid samples (not finite or endless) left the mean; the first:\n", invalid);
-    for (const InvalidSample& s : backend.invalid_samples()) {
+  const BackendStatistics done = backend.statistics();
+  if (done.invalid_samples > 0) {
+    tell("warning: {} invalid samples (not finite or endless) left the mean; the first:\n",
+         done.invalid_samples);
+    for (const InvalidSample& s : done.first_invalid) {
       tell("  pixel {},{} sample {}\n", s.x, s.y, s.sample);
     }
   }
@@ -239,7 +242,8 @@ int render(const RenderOptions& options) {
       stating(wanted, metadata_of(options, scene, sampling, *backend), fingerprint);
   catch_stop_signals();
   if (options.backend.backend == "auto" && !options.quiet) {
-    tell("backend {} ({}, {})\n", backend->name(), backend->device(), backend->isa());
+    const BackendInfo info = backend->info();
+    tell("backend {} ({}, {})\n", info.name, info.device, info.isa);
   }
   const double setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 

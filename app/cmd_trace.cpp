@@ -142,8 +142,9 @@ int trace(const TraceOptions& options) {
   const SamplingSettings sampling = options.sampling.settings(options.replicates);
   const auto backend = make_backend(options.backend, compiled, {}, sampling, sink);
   const SampleRange range{options.sample % options.replicates, options.sample / options.replicates, 1};
+  const BackendInfo info = backend->info();
   answer("pixel {},{} sample {} (replicate {}, index {}) on {} ({})\n", pixel.x, pixel.y, options.sample,
-         range.replicate, range.first, backend->name(), backend->isa());
+         range.replicate, range.first, info.name, info.isa);
   print_path(scene, backend->trace({pixel.x, pixel.y, 1, 1}, range).front());
   return kDone;
 }

@@ -91,12 +91,13 @@ const char* json_text(StopReason reason) {
 
 std::string statistics_json(const RenderContext& context, const RenderReport& report,
                             const Backend& backend) {
-  const RenderCounters& counters = backend.counters();
+  const BackendInfo info = backend.info();
+  const BackendStatistics done = backend.statistics();
   nlohmann::ordered_json json;
-  json["backend"] = backend.name();
-  json["device"] = backend.device();
-  json["isa"] = backend.isa();
-  json["method"] = backend.method();
+  json["backend"] = info.name;
+  json["device"] = info.device;
+  json["isa"] = info.isa;
+  json["method"] = info.method;
   json["wavelengths"] = to_string(context.sampling.wavelengths);
   json["sampler"] = to_string(context.sampling.sampler);
   json["seed"] = context.sampling.seed;
@@ -108,18 +109,17 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["seconds"] = report.sampling_seconds;
   json["setup_seconds"] = context.setup_seconds;
   json["output_seconds"] = report.output_seconds;
-  json["paths"] = counters.paths.load();
-  json["paths_per_second"] = report.sampling_seconds > 0
-                                 ? static_cast<double>(counters.paths.load()) / report.sampling_seconds
-                                 : 0.0;
-  json["vertices"] = counters.vertices.load();
-  json["rays"] = counters.rays.load();
+  json["paths"] = done.paths;
+  json["paths_per_second"] =
+      report.sampling_seconds > 0 ? static_cast<double>(done.paths) / report.sampling_seconds : 0.0;
+  json["vertices"] = done.vertices;
+  json["rays"] = done.rays;
   json["peak_memory_bytes"] = peak_memory_bytes();
-  json["device_memory_bytes"] = backend.device_memory_bytes();
-  json["longest_launch_seconds"] = backend.longest_launch_seconds();
-  json["kernel_seconds"] = backend.kernel_seconds();
-  json["device_losses"] = backend.device_losses();
-  json["invalid_samples"] = counters.invalid_samples.load();
+  json["device_memory_bytes"] = done.device_memory_bytes;
+  json["longest_launch_seconds"] = done.longest_launch_seconds;
+  json["kernel_seconds"] = done.kernel_seconds;
+  json["device_losses"] = done.device_losses;
+  json["invalid_samples"] = done.invalid_samples;
   json["resumed_samples"] = report.resumed_samples;
   add_errors(json, report);
   json["underflowed_values"] = report.underflowed_values;

@@ -72,11 +72,8 @@ class CpuBackend final : public Backend {
         rect, {range.replicate + range.first * settings_.replicates, range.replicate, range.first});
   }
 
-  std::string name() const override { return "cpu"; }
-  std::string device() const override { return processor_name(); }
-  std::string isa() const override { return to_string(isa_); }
-  const RenderCounters& counters() const override { return counters_; }
-  std::vector<InvalidSample> invalid_samples() const override { return invalid_; }
+  BackendInfo info() const override { return {"cpu", processor_name(), to_string(isa_)}; }
+  BackendStatistics statistics() const override;
   std::vector<double> film_scale() const override;
   SumRule sum_rule() const override { return BlockWorker::sum_rule(); }
 
@@ -94,20 +91,20 @@ class CpuBackend final : public Backend {
   TracerScene tracer_scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<std::unique_ptr<BlockWorker>> workers_;
-  RenderCounters counters_;
-  std::mutex mutex_;
+  std::atomic<uint64_t> paths_{0}, vertices_{0}, rays_{0}, invalid_samples_{0};
+  mutable std::mutex mutex_;
   std::vector<InvalidSample> invalid_;
 };
 
 void CpuBackend::note_invalid(const InvalidSample& sample) {
-  ++counters_.invalid_samples;
+  ++invalid_samples_;
   const std::lock_guard lock(mutex_);
   if (invalid_.size() < kReportedInvalid) invalid_.push_back(sample);
 }
 
 void CpuBackend::count(BlockWorker& worker, uint64_t rays_before, uint64_t vertices_before) {
-  counters_.rays += worker.tracer().rays() - rays_before;
-  counters_.vertices += worker.tracer().vertices() - vertices_before;
+  rays_ += worker.tracer().rays() - rays_before;
+  vertices_ += worker.tracer().vertices() - vertices_before;
 }
 
 void CpuBackend::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
@@ -115,7 +112,7 @@ void CpuBackend::render(SpectralFilm& film, const SampleRange& range, const std:
   std::exception_ptr failure;
   std::atomic<bool> failed{false};
   const auto on_sample = [&](uint64_t pixels) {
-    counters_.paths += pixels;
+    paths_ += pixels;
     if (!progress) return;
     const std::lock_guard lock(mutex_);
     progress(pixels);
@@ -181,6 +178,17 @@ std::vector<AuxiliaryPixel> CpuBackend::auxiliary(const PixelRect& rect) {
   return pixels;
 }
 
+BackendStatistics CpuBackend::statistics() const {
+  BackendStatistics done;
+  done.paths = paths_;
+  done.vertices = vertices_;
+  done.rays = rays_;
+  done.invalid_samples = invalid_samples_;
+  const std::lock_guard lock(mutex_);
+  done.first_invalid = invalid_;
+  return done;
+}
+
 std::vector<double> CpuBackend::film_scale() const {
   std::vector<double> scale = scene_.channel_scale;
   for (std::size_t d = 0; d < derived_.names.size(); ++d)
@@ -194,6 +202,14 @@ std::unique_ptr<Backend> make_cpu_backend(std::shared_ptr<const FlatScene> scene
                                           const DerivedChannels& derived, const SamplingSettings& settings,
                                           const CpuOptions& options) {
   return std::make_unique<CpuBackend>(std::move(scene), derived, settings, options);
+}
+
+BackendEntry cpu_backend_entry() {
+  return {"cpu", {}, [](const BackendInput& input, const BackendRequest& request, const auto&) {
+            const std::optional<Isa> isa = find_isa(request.isa);
+            if (!isa) throw InputError("no instruction set '" + request.isa + "'");
+            return make_cpu_backend(input.scene, input.derived, input.sampling, {*isa, request.threads});
+          }};
 }
 
 }  // namespace kiloband

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "render/backend.hpp"
+#include "render/backend_registry.hpp"
 #include "scene/description/derived_channels.hpp"
 #include "src_cpu/evaluate/isa.hpp"
 
@@ -19,5 +19,8 @@ struct CpuOptions {
 std::unique_ptr<Backend> make_cpu_backend(std::shared_ptr<const FlatScene> scene,
                                           const DerivedChannels& derived, const SamplingSettings& settings,
                                           const CpuOptions& options);
+
+/// "cpu".
+BackendEntry cpu_backend_entry();
 
 }  // namespace kiloband

@@ -61,21 +61,14 @@ class Renderer final : public Backend {
     return repeated([&] { return groups_->trace(pixels_of(rect), range); });
   }
 
-  std::string name() const override { return "opencl"; }
-  std::string device() const override { return context_.device().name; }
-  std::string isa() const override { return "opencl " + context_.device().driver_version; }
-  const RenderCounters& counters() const override { return counters_; }
-  std::vector<InvalidSample> invalid_samples() const override { return invalid_; }
+  BackendInfo info() const override {
+    const gpu::DeviceInfo& device = context_.device();
+    return {"opencl", device.name, "opencl " + device.driver_version, gpu::to_string(method_)};
+  }
+  BackendStatistics statistics() const override;
   std::vector<double> film_scale() const override { return host_.film_scale(); }
 
   SumRule sum_rule() const override { return groups_->sum_rule(); }
-  std::string method() const override { return gpu::to_string(method_); }
-  uint64_t device_memory_bytes() const override {
-    return std::max(peak_, state_ ? state_->memory.peak() : 0);
-  }
-  double longest_launch_seconds() const override { return longest_launch_; }
-  std::map<std::string, double> kernel_seconds() const override { return context_.kernel_seconds(); }
-  uint32_t device_losses() const override { return losses_; }
 
  private:
   void limit_memory();
@@ -98,11 +91,8 @@ class Renderer final : public Backend {
   DeviceContext context_;
   std::unique_ptr<DeviceState> state_;
   std::unique_ptr<GroupRenderer> groups_;
-  RenderCounters counters_;
-  std::vector<InvalidSample> invalid_;
-  double longest_launch_ = 0;
-  uint64_t peak_ = 0;
-  uint32_t losses_ = 0, retreats_ = 0;
+  BackendStatistics done_;  // but for what the context and the device memory know
+  uint32_t retreats_ = 0;
 };
 
 /// A budget beyond the device's memory would let allocations through that fail when they are used.
@@ -139,10 +129,10 @@ void Renderer::make_device() {
 
 /// After a lost device: everything on it is made anew, and the work is repeated.
 void Renderer::recover(const DeviceLost& loss) {
-  if (++losses_ > kMostLosses) throw loss;
+  if (++done_.device_losses > kMostLosses) throw loss;
   note(options_.sink, {}, fmt::format("{}: device lost, context rebuilt, work repeated", loss.what()));
   groups_.reset();
-  if (state_) peak_ = std::max(peak_, state_->memory.peak());
+  if (state_) done_.device_memory_bytes = std::max(done_.device_memory_bytes, state_->memory.peak());
   state_.reset();
   context_.rebuild();
 }
@@ -166,19 +156,26 @@ void Renderer::retreat(const gpu::DeviceOutOfMemory& refusal) {
   note(options_.sink, {},
        fmt::format("{}: at most {} MiB of device memory from now on", refusal.what(),
                    *options_.device_memory >> 20));
-  peak_ = std::max(peak_, state_->memory.peak());
+  done_.device_memory_bytes = std::max(done_.device_memory_bytes, state_->memory.peak());
   groups_.reset();
   repeated([] {});
 }
 
+BackendStatistics Renderer::statistics() const {
+  BackendStatistics done = done_;
+  if (state_) done.device_memory_bytes = std::max(done.device_memory_bytes, state_->memory.peak());
+  done.kernel_seconds = context_.kernel_seconds();
+  return done;
+}
+
 void Renderer::count(const RunTally& tally) {
-  counters_.rays += tally.rays;
-  counters_.vertices += tally.vertices;
-  counters_.paths += tally.paths;
-  counters_.invalid_samples += tally.invalid;
-  longest_launch_ = std::max(longest_launch_, tally.longest_launch_seconds);
+  done_.rays += tally.rays;
+  done_.vertices += tally.vertices;
+  done_.paths += tally.paths;
+  done_.invalid_samples += tally.invalid;
+  done_.longest_launch_seconds = std::max(done_.longest_launch_seconds, tally.longest_launch_seconds);
   for (const InvalidSample& sample : tally.invalid_samples) {
-    if (invalid_.size() < kReportedInvalid) invalid_.push_back(sample);
+    if (done_.first_invalid.size() < kReportedInvalid) done_.first_invalid.push_back(sample);
   }
 }
 
@@ -254,6 +251,22 @@ std::unique_ptr<Backend> make_opencl_backend(std::shared_ptr<const FlatScene> sc
                                              const DerivedChannels& derived, const SamplingSettings& settings,
                                              const OpenclOptions& options) {
   return std::make_unique<Renderer>(std::move(scene), derived, settings, options);
+}
+
+BackendEntry opencl_backend_entry() {
+  return {
+      "opencl",
+      {gpu::to_string(gpu::Method::kDpeptBatch), gpu::to_string(gpu::Method::kDpeptPath),
+       gpu::to_string(gpu::Method::kPt)},
+      [](const BackendInput& input, const BackendRequest& request, const std::optional<std::string>& method) {
+        OpenclOptions options;
+        options.device = request.device;
+        options.device_memory = request.device_memory;
+        if (method) options.method = gpu::find_method(*method);
+        options.specialised = request.specialised;
+        options.sink = request.sink;
+        return make_opencl_backend(input.scene, input.derived, input.sampling, options);
+      }};
 }
 
 }  // namespace kiloband

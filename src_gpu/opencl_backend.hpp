@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/diagnostics.hpp"
-#include "render/backend.hpp"
+#include "render/backend_registry.hpp"
 #include "scene/description/derived_channels.hpp"
 #include "src_gpu/path/round_plan.hpp"
 
@@ -28,5 +28,8 @@ struct OpenclOptions {
 std::unique_ptr<Backend> make_opencl_backend(std::shared_ptr<const FlatScene> scene,
                                              const DerivedChannels& derived, const SamplingSettings& settings,
                                              const OpenclOptions& options);
+
+/// "opencl", with the methods of gpu::Method.
+BackendEntry opencl_backend_entry();
 
 }  // namespace kiloband

@@ -39,14 +39,27 @@ struct SampleRange {
   uint32_t count = 0;
 };
 
-/// Counters that a backend keeps over its life.
-struct RenderCounters {
-  std::atomic<uint64_t> paths{0}, vertices{0}, rays{0}, invalid_samples{0};
-};
-
 /// A sample whose value was NaN or infinite; it left the mean.
 struct InvalidSample {
   uint32_t x, y, sample;
+};
+
+/// What computes, and how.
+struct BackendInfo {
+  std::string name;                    // "cpu", "opencl"
+  std::string device;                  // processor or device name
+  std::string isa;                     // instruction set, or driver
+  std::string method = "dpept-batch";  // how paths are evaluated: "dpept-batch", "dpept-path" or "pt"
+};
+
+/// What a backend has done over its life; each fills it as far as it can.
+struct BackendStatistics {
+  uint64_t paths = 0, vertices = 0, rays = 0, invalid_samples = 0;
+  std::vector<InvalidSample> first_invalid;      // at most 16
+  std::map<std::string, double> kernel_seconds;  // on the device, by kernel
+  uint64_t device_memory_bytes = 0;              // peak, beside the host's
+  double longest_launch_seconds = 0;  // of a kernel, measured on the device: display drivers kill long ones
+  uint32_t device_losses = 0;         // how often the device was lost and set up again
 };
 
 /// Auxiliary values of one pixel, from the ray through its centre.
@@ -74,22 +87,8 @@ class Backend {
   /// block of 32 x 32 pixels; range.count is 1.
   virtual std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) = 0;
 
-  virtual std::string name() const = 0;    // "cpu"
-  virtual std::string device() const = 0;  // processor or device name
-  virtual std::string isa() const = 0;
-  /// How paths are evaluated: "dpept-batch", "dpept-path" or "pt".
-  virtual std::string method() const { return "dpept-batch"; }
-  /// Seconds on the device by kernel; empty for backends without.
-  virtual std::map<std::string, double> kernel_seconds() const { return {}; }
-  /// Peak bytes of device memory beside the host's.
-  virtual uint64_t device_memory_bytes() const { return 0; }
-  /// The longest kernel launch, measured on the device; 0 without a device. Display drivers kill long ones.
-  virtual double longest_launch_seconds() const { return 0; }
-  /// How often the device was lost and set up again.
-  virtual uint32_t device_losses() const { return 0; }
-  virtual const RenderCounters& counters() const = 0;
-  /// The first invalid samples, at most 16.
-  virtual std::vector<InvalidSample> invalid_samples() const = 0;
+  virtual BackendInfo info() const = 0;
+  virtual BackendStatistics statistics() const = 0;
   /// Factors that turn film values of all channels, derived ones included, into W m^-2 sr^-1.
   virtual std::vector<double> film_scale() const = 0;
   /// How samples are added; follows from scene, settings and device alone.

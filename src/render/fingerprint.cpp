@@ -60,8 +60,9 @@ void add_gas(WordHash& hash, const FlatScene& scene) {
 }  // namespace
 
 std::string arithmetic_of(const Backend& backend) {
-  if (backend.name() == "cpu") return backend.isa();
-  return backend.isa() + ", " + backend.device() + ", " + backend.method();
+  const BackendInfo info = backend.info();
+  if (info.name == "cpu") return info.isa;
+  return info.isa + ", " + info.device + ", " + info.method;
 }
 
 uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& sampling,

@@ -25,6 +25,13 @@ int64_t target_of(Isa isa) {
 
 }  // namespace
 
+std::optional<Isa> find_isa(std::string_view name) {
+  for (const Isa isa : {Isa::kAuto, Isa::kSse4, Isa::kAvx2, Isa::kAvx512}) {
+    if (name == to_string(isa)) return isa;
+  }
+  return {};
+}
+
 const char* to_string(Isa isa) {
   switch (isa) {
     case Isa::kSse4:

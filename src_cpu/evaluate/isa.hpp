@@ -1,12 +1,18 @@
 // Instruction sets that the CPU backend has code for.
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 namespace kiloband {
 
 enum class Isa { kAuto, kSse4, kAvx2, kAvx512 };
 
 /// The name as `--isa` has it: "auto", "sse4", "avx2", "avx512".
 const char* to_string(Isa isa);
+
+/// The instruction set of that name; nothing: there is none.
+std::optional<Isa> find_isa(std::string_view name);
 
 /// True if this machine runs code for `isa`; kAuto always does.
 bool is_available(Isa isa);

@@ -84,7 +84,7 @@ Render render_with(const FlatScene& scene, OpenclOptions options, uint32_t sampl
   const std::size_t row = std::size_t{f.crop_width} * scene.channels.size();
   result.image.resize(row * f.crop_height);
   for (uint32_t y = 0; y < f.crop_height; ++y) film.row(y, std::span(result.image).subspan(y * row, row), {});
-  result.longest_launch_seconds = backend->longest_launch_seconds();
+  result.longest_launch_seconds = backend->statistics().longest_launch_seconds;
   return result;
 }
 

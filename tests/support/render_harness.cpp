@@ -83,9 +83,10 @@ RenderResult render(const RenderSpec& spec) {
     backend->render(film, {r, 0, static_cast<uint32_t>(plan.size(r))}, blocks, stop, {});
   }
   collect(film, backend->film_scale(), result);
-  result.invalid_samples = backend->counters().invalid_samples;
-  result.vertices = backend->counters().vertices;
-  result.paths = backend->counters().paths;
+  const BackendStatistics done = backend->statistics();
+  result.invalid_samples = done.invalid_samples;
+  result.vertices = done.vertices;
+  result.paths = done.paths;
   return result;
 }
 

@@ -94,21 +94,20 @@ Timing render_once(Backend& backend, const FlatScene& scene, uint32_t spp) {
                     {scene.channels.size(), 1, false, false});
   std::vector<uint32_t> blocks(film.blocks().size());
   std::iota(blocks.begin(), blocks.end(), 0u);
-  const auto kernels_before = backend.kernel_seconds();
-  const uint64_t paths = backend.counters().paths, vertices = backend.counters().vertices;
+  const BackendStatistics before = backend.statistics();
   const std::atomic<bool> stop{false};
   const double start = seconds_now();
   backend.render(film, {0, 0, spp}, blocks, stop, {});
   Timing timing;
   timing.seconds = seconds_now() - start;
-  const auto after = backend.kernel_seconds();
+  const BackendStatistics after = backend.statistics();
   const auto spent = [&](std::initializer_list<const char*> names) {
-    return kernel_sum(after, names) - kernel_sum(kernels_before, names);
+    return kernel_sum(after.kernel_seconds, names) - kernel_sum(before.kernel_seconds, names);
   };
   timing.evaluation = spent({"pt_update", "dpept_path", "dpept_batch"});
   timing.generation = spent({"generate", "closest_hits", "shade", "any_hits", "compact"});
-  timing.paths = static_cast<double>(backend.counters().paths - paths);
-  timing.vertices = static_cast<double>(backend.counters().vertices - vertices);
+  timing.paths = static_cast<double>(after.paths - before.paths);
+  timing.vertices = static_cast<double>(after.vertices - before.vertices);
   return timing;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "film/spectral_film.hpp"
+#include "render/backend_registry.hpp"
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "src_gpu/opencl_backend.hpp"
@@ -59,14 +60,11 @@ std::shared_ptr<const FlatScene> load(const CaseScene& scene) {
 std::unique_ptr<Backend> make_backend(const Configuration& configuration,
                                       const std::shared_ptr<const FlatScene>& scene,
                                       const SamplingSettings& settings) {
-  const std::string& name = configuration.backend;
-  if (name == "cpu") return make_cpu_backend(scene, {}, settings, {});
-  const std::string prefix = "opencl:";
-  OpenclOptions options;
-  if (name.starts_with(prefix)) options.method = gpu::find_method(name.substr(prefix.size()));
-  if (name != "opencl" && !options.method) throw std::logic_error("validation: no backend '" + name + "'");
-  options.specialised = configuration.specialised;
-  return make_opencl_backend(scene, {}, settings, options);
+  static const BackendRegistry kBackends({cpu_backend_entry(), opencl_backend_entry()});
+  BackendRequest request;
+  request.backend = configuration.backend;
+  request.specialised = configuration.specialised;
+  return kBackends.make(request, {scene, {}, settings});
 }
 
 PixelRect film_rect(const FlatScene& scene) {
@@ -98,7 +96,7 @@ Rendering render(const std::shared_ptr<const FlatScene>& scene, const Configurat
   result.seconds = since(start);
   result.stopped = watch.stopped();
   result.image = image_of(film, rect, sampling.replicates, scale);
-  result.invalid_samples = backend->counters().invalid_samples;
+  result.invalid_samples = backend->statistics().invalid_samples;
   return result;
 }
 

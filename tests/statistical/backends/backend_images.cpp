@@ -43,9 +43,10 @@ Image render_part(Backend& backend, const PixelRect& rect, uint32_t replicates, 
       image.samples.push_back(film.replicate_samples(r, p));
     }
   }
-  image.invalid = backend.invalid_samples();
-  image.invalid_samples = backend.counters().invalid_samples;
-  image.paths = backend.counters().paths;
+  const BackendStatistics done = backend.statistics();
+  image.invalid = done.first_invalid;
+  image.invalid_samples = done.invalid_samples;
+  image.paths = done.paths;
   return image;
 }
 

@@ -19,7 +19,7 @@ TEST_F(SessionTest, InterruptedAndResumedHasTheBitsOfUninterrupted) {
   const RenderReport second = run(*fresh, "resumed.hdr");
   EXPECT_FALSE(second.interrupted);
   EXPECT_GT(second.resumed_samples, 0u);
-  EXPECT_EQ(second.resumed_samples + fresh->counters().paths, std::size_t{kSize} * kSize * 40);
+  EXPECT_EQ(second.resumed_samples + fresh->statistics().paths, std::size_t{kSize} * kSize * 40);
   EXPECT_EQ(second.samples_per_pixel, 40u);
   const Values a = read("once.hdr"), b = read("resumed.hdr");
   expect_same(a.mean, b.mean, 0);

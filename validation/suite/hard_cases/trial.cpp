@@ -88,16 +88,18 @@ TrialImage Trial::render(const std::string& xml, const TrialSettings& settings) 
   for (const Channel& channel : scene.channels) image.widths_nm.push_back(channel.width_nm());
   collect_pixels(film, backend->film_scale(), image);
   collect_means(film, backend->film_scale(), image);
-  image.rays = backend->counters().rays;
-  image.paths = backend->counters().paths;
-  image.vertices = backend->counters().vertices;
+  const BackendStatistics done = backend->statistics();
+  image.rays = done.rays;
+  image.paths = done.paths;
+  image.vertices = done.vertices;
   count_invalid(*backend, image);
   return image;
 }
 
 void Trial::count_invalid(const Backend& backend, const TrialImage& image) {
-  invalid_ += backend.counters().invalid_samples;
-  samples_ += backend.counters().paths;
+  const BackendStatistics done = backend.statistics();
+  invalid_ += done.invalid_samples;
+  samples_ += done.paths;
   not_finite_ += static_cast<uint64_t>(
       std::ranges::count_if(image.mean, [](double value) { return !std::isfinite(value); }));
 }

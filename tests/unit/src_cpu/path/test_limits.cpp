@@ -142,8 +142,8 @@ TEST_F(InvalidSamples, LeaveTheSampleCountAndAreListed) {
   for (uint32_t r = 0; r < 2; ++r) backend->render(film, {r, 0, 32}, {0}, false, {});
   uint64_t samples = 0;
   for (uint32_t i = 0; i < 16; ++i) samples += film.samples(i % 4, i / 4);
-  EXPECT_EQ(samples + backend->counters().invalid_samples, 16u * 64);
-  const std::vector<InvalidSample> listed = backend->invalid_samples();
+  EXPECT_EQ(samples + backend->statistics().invalid_samples, 16u * 64);
+  const std::vector<InvalidSample> listed = backend->statistics().first_invalid;
   ASSERT_FALSE(listed.empty());
   EXPECT_LE(listed.size(), 16u);
   for (const InvalidSample& sample : listed) EXPECT_TRUE(sample.x < 4 && sample.y < 4 && sample.sample < 64);
@@ -165,7 +165,7 @@ TEST(Stopping, DeliversWhatIsDone) {
   EXPECT_EQ(reported, 3u * 32 * 32);  // three samples of the first block
   EXPECT_EQ(film.samples(0, 0), 3u);
   EXPECT_EQ(film.samples(39, 39), 0u);
-  EXPECT_EQ(backend->counters().paths, reported);
+  EXPECT_EQ(backend->statistics().paths, reported);
 }
 
 TEST(AuxiliaryImages, ShowTheNearestSurface) {
