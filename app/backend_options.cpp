@@ -18,8 +18,8 @@ namespace {
 /// A real GPU; a loader or driver that fails counts as none.
 bool has_gpu() {
   try {
-    const auto devices = gpu::list_devices();
-    return std::ranges::any_of(devices, [](const auto& d) { return d.type == gpu::DeviceType::kGpu; });
+    const auto devices = opencl::list_devices();
+    return std::ranges::any_of(devices, [](const auto& d) { return d.type == opencl::DeviceType::kGpu; });
   } catch (const DeviceError&) {
     return false;
   }
@@ -84,7 +84,7 @@ std::string BackendOptions::resolve() const {
 std::unique_ptr<Backend> make_backend(const BackendOptions& options, std::shared_ptr<const FlatScene> scene,
                                       const DerivedChannels& derived, const SamplingSettings& sampling,
                                       const DiagnosticSink& sink) {
-  static const BackendRegistry kBackends({cpu_backend_entry(), opencl_backend_entry()});
+  static const BackendRegistry kBackends({cpu::backend_entry(), opencl::backend_entry()});
   BackendRequest request;
   request.backend = options.resolve();
   if (options.device_memory) request.device_memory = parse_bytes("--device-memory", *options.device_memory);

@@ -14,15 +14,15 @@ double gibibytes(uint64_t bytes) {
   return static_cast<double>(bytes) / (1024.0 * 1024.0 * 1024.0);
 }
 
-void print_table(const std::vector<gpu::DeviceInfo>& devices) {
+void print_table(const std::vector<opencl::DeviceInfo>& devices) {
   std::size_t name = 4, platform = 8;  // widths of the columns
-  for (const gpu::DeviceInfo& device : devices) {
+  for (const opencl::DeviceInfo& device : devices) {
     name = std::max(name, device.name.size());
     platform = std::max(platform, device.platform.size());
   }
   answer("{:>5}  {:<{}}  {:<11}  {:<{}}  {:>5}  {:>11}\n", "index", "name", name, "type", "platform",
          platform, "units", "memory");
-  for (const gpu::DeviceInfo& device : devices) {
+  for (const opencl::DeviceInfo& device : devices) {
     answer("{:>5}  {:<{}}  {:<11}  {:<{}}  {:>5}  {:>7.1f} GiB\n", device.index, device.name, name,
            to_string(device.type), device.platform, platform, device.compute_units,
            gibibytes(device.global_memory));
@@ -31,7 +31,7 @@ void print_table(const std::vector<gpu::DeviceInfo>& devices) {
 
 /// That there is none is an answer, not a failure: scripts ask to find out.
 int devices() {
-  const std::vector<gpu::DeviceInfo> found = gpu::list_devices();
+  const std::vector<opencl::DeviceInfo> found = opencl::list_devices();
   if (found.empty()) {
     answer(
         "no OpenCL device\n"

@@ -110,16 +110,16 @@ uint64_t longest_path(const Integrator& integrator) {
 /// What a pool of paths takes on an OpenCL device: pt keeps two floats per channel of every path in flight,
 /// dpept the vertices of whole paths, whatever the number of channels (figures 4 and 7 of the DPEPT paper).
 void print_path_memory(const FlatScene& scene) {
-  using gpu::Method;
+  using opencl::Method;
   const uint64_t vertices = longest_path(scene.integrator);
   const bool textured =
       scene.features.bitmap || scene.features.envmap_light || scene.features.temperature_field;
   const uint64_t slots =
       (textured ? 2 : 1) + (scene.features.gas ? 2 : 0);  // gas: a vertex on the way, one for its light
   const uint64_t pt =
-      gpu::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots, scene.features);
+      opencl::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots, scene.features);
   const uint64_t dpept =
-      gpu::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots, scene.features);
+      opencl::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots, scene.features);
   answer(
       "opencl path  pt {} bytes with {} channels; dpept-path, dpept-batch {} bytes with {} vertices of {} "
       "bytes\n",

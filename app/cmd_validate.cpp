@@ -42,7 +42,7 @@ Effort effort_of(const ValidateOptions& options) {
 std::vector<std::string> backends_of(const ValidateOptions& options) {
   if (!options.backends.empty()) return options.backends;
   std::vector<std::string> backends{"cpu"};
-  if (gpu::list_devices().empty()) {
+  if (opencl::list_devices().empty()) {
     tell("no OpenCL device: the CPU backend alone, against closed forms and between its modes\n");
   } else {
     backends.insert(backends.end(), {"opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"});
@@ -65,7 +65,7 @@ RunRecord record_of(const std::vector<std::string>& backends) {
                    {}};
   for (const std::string& backend : backends)
     record.backends.push_back(backend == "cpu" ? backend
-                                               : backend + " on " + gpu::select_device(std::nullopt).name);
+                                               : backend + " on " + opencl::select_device(std::nullopt).name);
   return record;
 }
 

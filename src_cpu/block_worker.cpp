@@ -10,7 +10,7 @@
 #include "shared/sampler.h"
 #include "src_cpu/path/denormals.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 // Float sums take at most this many samples before they go to double: their rounding error stays below
@@ -208,4 +208,4 @@ void BlockWorker::finish_means(std::size_t pixels) {
   }
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -9,7 +9,7 @@
 #include "src_cpu/evaluate/evaluator.hpp"
 #include "src_cpu/path/path_tracer.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// What is told while a block is rendered.
 struct SampleEvents {
@@ -68,4 +68,4 @@ class BlockWorker {
   std::vector<uint32_t> counts_, invalid_;
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -13,7 +13,7 @@
 #include "src_cpu/path/camera.hpp"
 #include "src_cpu/path/denormals.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 constexpr std::size_t kReportedInvalid = 16;
@@ -47,7 +47,7 @@ void check_threads(int threads) {
 class CpuBackend final : public Backend {
  public:
   CpuBackend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
-             const SamplingSettings& settings, const CpuOptions& options)
+             const SamplingSettings& settings, const Options& options)
       : kept_(std::move(scene)),
         scene_(*kept_),
         derived_(derived),
@@ -198,18 +198,17 @@ std::vector<double> CpuBackend::film_scale() const {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_cpu_backend(std::shared_ptr<const FlatScene> scene,
-                                          const DerivedChannels& derived, const SamplingSettings& settings,
-                                          const CpuOptions& options) {
+std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+                                      const SamplingSettings& settings, const Options& options) {
   return std::make_unique<CpuBackend>(std::move(scene), derived, settings, options);
 }
 
-BackendEntry cpu_backend_entry() {
+BackendEntry backend_entry() {
   return {"cpu", {}, [](const BackendInput& input, const BackendRequest& request, const auto&) {
             const std::optional<Isa> isa = find_isa(request.isa);
             if (!isa) throw InputError("no instruction set '" + request.isa + "'");
-            return make_cpu_backend(input.scene, input.derived, input.sampling, {*isa, request.threads});
+            return make_backend(input.scene, input.derived, input.sampling, {*isa, request.threads});
           }};
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -7,20 +7,19 @@
 #include "scene/description/derived_channels.hpp"
 #include "src_cpu/evaluate/isa.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
-struct CpuOptions {
+struct Options {
   Isa isa = Isa::kAuto;
   int threads = 0;  // 0: all processors
 };
 
 /// Same seed, settings and instruction set: same bits, for any number of threads.
 /// throws DeviceError  no such instruction set here, Embree failed
-std::unique_ptr<Backend> make_cpu_backend(std::shared_ptr<const FlatScene> scene,
-                                          const DerivedChannels& derived, const SamplingSettings& settings,
-                                          const CpuOptions& options);
+std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+                                      const SamplingSettings& settings, const Options& options);
 
 /// "cpu".
-BackendEntry cpu_backend_entry();
+BackendEntry backend_entry();
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

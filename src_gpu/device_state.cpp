@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// Rays of a launch that cannot be measured beforehand: short on any device.
@@ -61,14 +61,14 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       spectra_(upload_spectra(memory, host.spectra)) {}
 
 uint64_t DeviceState::film_bytes_per_pixel(bool open) const {
-  return gpu::film_bytes_per_pixel(host_.spectra.layout, shape_, open);
+  return opencl::film_bytes_per_pixel(host_.spectra.layout, shape_, open);
 }
 uint64_t DeviceState::table_bytes() const {
-  return gpu::table_bytes(host_.spectra.layout, shape_);
+  return opencl::table_bytes(host_.spectra.layout, shape_);
 }
 uint64_t DeviceState::slot_bytes() const {
   const uint64_t more = chunk_slots() - KB_CHUNK_SLOTS;
-  return gpu::slot_bytes(host_.spectra.layout, shape_) + more * sizeof(KbPathVertex);
+  return opencl::slot_bytes(host_.spectra.layout, shape_) + more * sizeof(KbPathVertex);
 }
 
 void DeviceState::release_pool() {
@@ -130,4 +130,4 @@ std::vector<AuxiliaryPixel> DeviceState::auxiliary(const PixelRect& rect) {
   return pixels;
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

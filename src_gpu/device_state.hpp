@@ -14,7 +14,7 @@
 #include "src_gpu/path/round_plan.hpp"
 #include "src_gpu/scene/device_scene.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// What is prepared on the host, once per render.
 struct HostScene {
@@ -54,7 +54,7 @@ class DeviceState {
   uint64_t table_bytes() const;
   uint64_t slot_bytes() const;
   bool has_dispersion() const { return host_.scene.features.dispersion; }
-  uint32_t chunk_slots() const { return gpu::chunk_slots(method, host_.scene.features); }
+  uint32_t chunk_slots() const { return opencl::chunk_slots(method, host_.scene.features); }
   uint32_t derived_channels() const { return host_.spectra.layout.derived; }
   bool has_gas() const { return host_.scene.features.gas; }
 
@@ -102,4 +102,4 @@ class DeviceState {
 /// measured here.
 inline constexpr Method kDefaultMethod = Method::kDpeptBatch;
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

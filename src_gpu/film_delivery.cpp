@@ -8,7 +8,7 @@
 #include "render/planted_helpers.hpp"
 #include "shared/planted_faults.h"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 FilmDelivery::FilmDelivery(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                            std::size_t channels)
@@ -91,4 +91,4 @@ void FilmDelivery::finish_block(std::size_t first, std::size_t pixels) {
   film_.add({block, range_.replicate, std::span(counts_).subspan(first, pixels), block_means, channels_});
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

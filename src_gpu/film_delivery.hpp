@@ -8,7 +8,7 @@
 #include "render/backend.hpp"
 #include "src_gpu/group_renderer.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// Collects the results of groups and hands complete blocks to the film; a film that keeps sums gets them
 /// pixel by pixel. References must outlive it.
@@ -44,4 +44,4 @@ class FilmDelivery {
   std::vector<uint32_t> attempted_;  // by pixel of the open block and those after it
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

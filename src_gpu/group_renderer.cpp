@@ -9,7 +9,7 @@
 #include "shared/planted_faults.h"
 #include "shared/sampler.h"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// Paths in flight and paths of a round. GPUs hide latency with many (Laine et al. 2013; the peak of
@@ -270,4 +270,4 @@ GroupResult GroupRenderer::render(std::span<const ImagePixel> pixels, const Samp
   return result;
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

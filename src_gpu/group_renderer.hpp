@@ -15,7 +15,7 @@
 #include "src_gpu/device_state.hpp"
 #include "src_gpu/path/round_plan.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// What a run of rounds did.
 struct RunTally {
@@ -99,4 +99,4 @@ class GroupRenderer {
   std::vector<float> mu_;
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

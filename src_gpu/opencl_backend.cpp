@@ -11,18 +11,8 @@
 #include "src_gpu/film_delivery.hpp"
 #include "src_gpu/group_renderer.hpp"
 
-namespace kiloband {
+namespace kiloband::opencl {
 namespace {
-
-using gpu::DeviceContext;
-using gpu::DeviceLost;
-using gpu::DeviceState;
-using gpu::GroupRenderer;
-using gpu::GroupResult;
-using gpu::HostScene;
-using gpu::ImagePixel;
-using gpu::NeutralFolder;
-using gpu::RunTally;
 
 constexpr std::size_t kReportedInvalid = 16;
 /// A device that is lost again and again is not worth more attempts.
@@ -40,12 +30,12 @@ std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
 class Renderer final : public Backend {
  public:
   Renderer(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
-           const SamplingSettings& settings, const OpenclOptions& options)
+           const SamplingSettings& settings, const Options& options)
       : options_(options),
         settings_(settings),
         host_(std::move(scene), derived),
-        method_(options.method.value_or(gpu::kDefaultMethod)),
-        context_(gpu::select_device(options.device), {.profiling = true}) {
+        method_(options.method.value_or(kDefaultMethod)),
+        context_(select_device(options.device), {.profiling = true}) {
     limit_memory();
     const NeutralFolder neutral;
     repeated([] {});
@@ -62,8 +52,8 @@ class Renderer final : public Backend {
   }
 
   BackendInfo info() const override {
-    const gpu::DeviceInfo& device = context_.device();
-    return {"opencl", device.name, "opencl " + device.driver_version, gpu::to_string(method_)};
+    const DeviceInfo& device = context_.device();
+    return {"opencl", device.name, "opencl " + device.driver_version, to_string(method_)};
   }
   BackendStatistics statistics() const override;
   std::vector<double> film_scale() const override { return host_.film_scale(); }
@@ -75,19 +65,19 @@ class Renderer final : public Backend {
   void warn_of_cache() const;
   void make_device();
   void recover(const DeviceLost& loss);
-  void retreat(const gpu::DeviceOutOfMemory& refusal);
+  void retreat(const DeviceOutOfMemory& refusal);
   /// Calls `work` until it gets through without losing the device, which is set up where need be.
   template <class Work>
   std::invoke_result_t<Work> repeated(const Work& work);
   GroupResult render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
-                           const gpu::FilmSums* before, const std::atomic<bool>& stop,
+                           const FilmSums* before, const std::atomic<bool>& stop,
                            const std::function<void(uint64_t)>& progress);
   void count(const RunTally& tally);
 
-  OpenclOptions options_;
+  Options options_;
   SamplingSettings settings_;
   HostScene host_;
-  gpu::Method method_;
+  Method method_;
   DeviceContext context_;
   std::unique_ptr<DeviceState> state_;
   std::unique_ptr<GroupRenderer> groups_;
@@ -107,7 +97,7 @@ void Renderer::limit_memory() {
 
 /// One warning: without a cache the render goes on, and the next one compiles again.
 void Renderer::warn_of_cache() const {
-  const std::string pocl = context_.device().is_pocl() ? gpu::pocl_cache_problem() : "";
+  const std::string pocl = context_.device().is_pocl() ? pocl_cache_problem() : "";
   if (!pocl.empty()) {
     warn(options_.sink, {}, pocl);
   } else if (!context_.cache_problem().empty()) {
@@ -121,8 +111,8 @@ void Renderer::make_device() {
   state_.reset();
   state_ = std::make_unique<DeviceState>(
       context_, host_,
-      gpu::DeviceSettings{method_, settings_.wavelengths == WavelengthMode::kShared, options_.specialised,
-                          options_.program_cache, options_.device_memory});
+      DeviceSettings{method_, settings_.wavelengths == WavelengthMode::kShared, options_.specialised,
+                     options_.program_cache, options_.device_memory});
   groups_ = std::make_unique<GroupRenderer>(*state_, settings_, options_.launch_seconds, options_.pool_slots,
                                             options_.sink);
 }
@@ -150,7 +140,7 @@ std::invoke_result_t<Work> Renderer::repeated(const Work& work) {
 }
 
 /// The device refused memory in the middle of work: everything is made anew within half of what was in use.
-void Renderer::retreat(const gpu::DeviceOutOfMemory& refusal) {
+void Renderer::retreat(const DeviceOutOfMemory& refusal) {
   if (++retreats_ > kMostRetreats) throw refusal;
   options_.device_memory = state_->memory.peak() / 2;
   note(options_.sink, {},
@@ -180,7 +170,7 @@ void Renderer::count(const RunTally& tally) {
 }
 
 GroupResult Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
-                                   const gpu::FilmSums* before, const std::atomic<bool>& stop,
+                                   const FilmSums* before, const std::atomic<bool>& stop,
                                    const std::function<void(uint64_t)>& progress) {
   uint64_t reported = 0;  // by an attempt that was lost: not to be reported again
   return repeated([&] {
@@ -203,7 +193,7 @@ std::size_t whole_blocks(const std::vector<ImagePixel>& pixels, std::size_t at, 
   const std::size_t end = std::min(pixels.size(), at + room);
   if (end == pixels.size()) return end - at;
   std::size_t boundary = end;
-  while (boundary > at && gpu::same_block(pixels[boundary - 1], pixels[boundary])) --boundary;
+  while (boundary > at && same_block(pixels[boundary - 1], pixels[boundary])) --boundary;
   return (boundary > at ? boundary : end) - at;
 }
 
@@ -217,7 +207,7 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
     const std::vector<ImagePixel> some = pixels_of(film.blocks()[block]);
     pixels.insert(pixels.end(), some.begin(), some.end());
   }
-  gpu::FilmDelivery delivery(film, range, blocks, film_scale().size());
+  FilmDelivery delivery(film, range, blocks, film_scale().size());
   const std::atomic<bool> never{false};
   for (std::size_t at = 0; at < pixels.size();) {
     const std::size_t room =
@@ -228,13 +218,13 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
     // The parts of a block that is larger than a group get the same samples, stopped or not.
     SampleRange part = range;
     if (in_block) part.count = delivery.attempted();
-    std::optional<gpu::FilmSums> before;
+    std::optional<FilmSums> before;
     if (film.keeps_sums()) before = delivery.sums_of(group);
     try {
       delivery.add(group,
                    render_group(group, part, before ? &*before : nullptr, in_block ? never : stop, told));
       at += number;
-    } catch (const gpu::DeviceOutOfMemory& refusal) {
+    } catch (const DeviceOutOfMemory& refusal) {
       retreat(refusal);  // and the same pixels again, fewer at a time
     }
   }
@@ -247,26 +237,24 @@ std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_opencl_backend(std::shared_ptr<const FlatScene> scene,
-                                             const DerivedChannels& derived, const SamplingSettings& settings,
-                                             const OpenclOptions& options) {
+std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+                                      const SamplingSettings& settings, const Options& options) {
   return std::make_unique<Renderer>(std::move(scene), derived, settings, options);
 }
 
-BackendEntry opencl_backend_entry() {
+BackendEntry backend_entry() {
   return {
       "opencl",
-      {gpu::to_string(gpu::Method::kDpeptBatch), gpu::to_string(gpu::Method::kDpeptPath),
-       gpu::to_string(gpu::Method::kPt)},
+      {to_string(Method::kDpeptBatch), to_string(Method::kDpeptPath), to_string(Method::kPt)},
       [](const BackendInput& input, const BackendRequest& request, const std::optional<std::string>& method) {
-        OpenclOptions options;
+        Options options;
         options.device = request.device;
         options.device_memory = request.device_memory;
-        if (method) options.method = gpu::find_method(*method);
+        if (method) options.method = find_method(*method);
         options.specialised = request.specialised;
         options.sink = request.sink;
-        return make_opencl_backend(input.scene, input.derived, input.sampling, options);
+        return make_backend(input.scene, input.derived, input.sampling, options);
       }};
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::opencl

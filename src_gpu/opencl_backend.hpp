@@ -11,12 +11,12 @@
 #include "scene/description/derived_channels.hpp"
 #include "src_gpu/path/round_plan.hpp"
 
-namespace kiloband {
+namespace kiloband::opencl {
 
-struct OpenclOptions {
+struct Options {
   std::optional<std::string> device;  // index or part of the name; nothing: the first GPU, else what there is
-  std::optional<uint64_t> device_memory;  // bytes; nothing: gpu::default_memory_budget
-  std::optional<gpu::Method> method;      // nothing: gpu::kDefaultMethod
+  std::optional<uint64_t> device_memory;  // bytes; nothing: default_memory_budget
+  std::optional<Method> method;           // nothing: kDefaultMethod
   bool specialised = true;                // kernels compiled for the scene's features only
   bool program_cache = true;              // binaries on disk
   double launch_seconds = 0.5;            // longest launch aimed at: display drivers kill long ones
@@ -25,11 +25,10 @@ struct OpenclOptions {
 };
 
 /// throws DeviceError (no device, kernels do not build, out of memory), InputError (no such device)
-std::unique_ptr<Backend> make_opencl_backend(std::shared_ptr<const FlatScene> scene,
-                                             const DerivedChannels& derived, const SamplingSettings& settings,
-                                             const OpenclOptions& options);
+std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+                                      const SamplingSettings& settings, const Options& options);
 
-/// "opencl", with the methods of gpu::Method.
-BackendEntry opencl_backend_entry();
+/// "opencl", with the methods of Method.
+BackendEntry backend_entry();
 
-}  // namespace kiloband
+}  // namespace kiloband::opencl

@@ -4,7 +4,7 @@
 #include "src_gpu/device_state.hpp"
 #include "src_gpu/group_renderer.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// Appends what the live slots' rays have found to their jobs.
@@ -77,4 +77,4 @@ std::vector<TracedPath> GroupRenderer::trace(std::span<const ImagePixel> pixels,
   return device_.trace(round, round_pixels_, mu_);
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -17,7 +17,7 @@
 
 #include "shared/records.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// The weights of one direction pair, for KbVertexKind eval_kind(material).
 struct BsdfValue {
@@ -114,4 +114,4 @@ inline bool has_smooth_lobe(const KbMaterial& material) {
   return material.type != KB_MATERIAL_CONDUCTOR && material.type != KB_MATERIAL_DIELECTRIC;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -2,7 +2,7 @@
 #include "src_cpu/bsdf/fresnel.hpp"
 #include "src_cpu/bsdf/lobes.hpp"
 
-namespace kiloband::lobes {
+namespace kiloband::cpu::lobes {
 
 BsdfSample sample_conductor(const KbMaterial& material, glm::vec3 wi) {
   BsdfSample sample;
@@ -37,4 +37,4 @@ BsdfSample sample_rough_conductor(const KbMaterial& material, glm::vec3 wi, glm:
   return sample;
 }
 
-}  // namespace kiloband::lobes
+}  // namespace kiloband::cpu::lobes

@@ -4,7 +4,7 @@
 #include "src_cpu/bsdf/fresnel.hpp"
 #include "src_cpu/bsdf/lobes.hpp"
 
-namespace kiloband::lobes {
+namespace kiloband::cpu::lobes {
 namespace {
 
 /// Delta transmission with weight `weight` before the radiance scaling.
@@ -152,9 +152,9 @@ BsdfSample sample_rough_dielectric(const KbMaterial& material, glm::vec3 wi, flo
   return sample;
 }
 
-}  // namespace kiloband::lobes
+}  // namespace kiloband::cpu::lobes
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 bool acts_smooth(const KbMaterial& material, float eta) {
   return lobes::acts_smooth(FacetDistribution(material), eta);
@@ -193,4 +193,4 @@ BsdfSample transmit_dispersive(const KbMaterial& material, glm::vec3 wi, float e
   return sample;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

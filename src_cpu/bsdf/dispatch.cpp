@@ -7,7 +7,7 @@
 #include "src_cpu/bsdf/bsdf.hpp"
 #include "src_cpu/bsdf/lobes.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 glm::vec3 flip(glm::vec3 w) {
@@ -194,4 +194,4 @@ BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lob
   return sample;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

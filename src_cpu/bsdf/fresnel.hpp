@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 struct DielectricFresnel {
   float reflectance = 1;  // unpolarised
@@ -36,4 +36,4 @@ inline glm::vec3 refract_at(glm::vec3 wi, glm::vec3 m, float cos_t, float eta) {
   return (glm::dot(wi, m) / eta - cos_t) * m - wi / eta;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -11,7 +11,7 @@
 #include "src_cpu/bsdf/bsdf.hpp"
 #include "src_cpu/bsdf/microfacet.hpp"
 
-namespace kiloband::lobes {
+namespace kiloband::cpu::lobes {
 
 inline glm::vec3 mirror(glm::vec3 w) {
   return {-w.x, -w.y, w.z};
@@ -66,4 +66,4 @@ inline FacetReflection facet_reflection(const FacetDistribution& facets, glm::ve
   return r;
 }
 
-}  // namespace kiloband::lobes
+}  // namespace kiloband::cpu::lobes

@@ -1,6 +1,6 @@
 #include "src_cpu/bsdf/microfacet.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 constexpr float kLargestBelowOne = KB_ONE_MINUS_EPSILON;
@@ -87,4 +87,4 @@ glm::vec3 FacetDistribution::sample_normal(glm::vec3 wi, glm::vec2 u) const {
   return glm::normalize(glm::vec3(alpha.x * r * std::cos(phi), alpha.y * r * std::sin(phi), 1));
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

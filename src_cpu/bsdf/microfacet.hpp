@@ -13,7 +13,7 @@
 #include "shared/planted_faults.h"
 #include "shared/records.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 class FacetDistribution {
  public:
@@ -79,4 +79,4 @@ class FacetDistribution {
 /// Source: Giles, Approximating the erfinv function, GPU Computing Gems 2, 2010 (single precision).
 float inverse_erf(float x);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -11,7 +11,7 @@
 #include "src_cpu/bsdf/fresnel.hpp"
 #include "src_cpu/bsdf/lobes.hpp"
 
-namespace kiloband::lobes {
+namespace kiloband::cpu::lobes {
 namespace {
 
 bool is_nonlinear(const KbMaterial& material) {
@@ -99,4 +99,4 @@ BsdfSample sample_rough_plastic(const KbMaterial& material, const float* coat, g
   return make_sample(material, wo, value.w0 / value.pdf, value.w1 / value.pdf, value.pdf);
 }
 
-}  // namespace kiloband::lobes
+}  // namespace kiloband::cpu::lobes

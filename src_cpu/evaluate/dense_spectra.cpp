@@ -10,7 +10,7 @@
 #include "shared/planted_faults.h"
 #include "spectral/planck.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 /// Stores x as the sum of two floats: 48 bits, so that differences of rows keep float precision.
@@ -230,4 +230,4 @@ std::array<const float*, 2> DenseSpectra::dispersive(uint32_t material, bool ins
   return {rows.data[inside][0], rows.data[inside][1]};
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

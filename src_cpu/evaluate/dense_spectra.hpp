@@ -13,7 +13,7 @@
 #include "scene/description/derived_channels.hpp"
 #include "src_cpu/evaluate/evaluator_kernels.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// n rounded up to a multiple of the padding of channel rows.
 inline std::size_t pad_channels(std::size_t n) {
@@ -117,4 +117,4 @@ struct DenseSpectra {
   std::size_t used_ = 0;
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 /// Where a table can be other than 0, nm.
@@ -112,4 +112,4 @@ const DerivedPlan* DerivedRows::plan(const DenseSpectra& spectra) {
   return &plan_;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

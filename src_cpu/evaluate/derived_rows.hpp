@@ -5,7 +5,7 @@
 
 #include "src_cpu/evaluate/dense_spectra.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Row d holds, for the channels that response d can cover at any offset, response_d(lambda_k) / cover_k
 /// times channel_scale_k / scale(d): what a film channel adds to film channel d. cover_k >= 1 is the number
@@ -49,4 +49,4 @@ class DerivedRows {
   uint64_t generation_ = 0;
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

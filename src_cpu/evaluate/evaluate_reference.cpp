@@ -9,7 +9,7 @@
 #include "spectral/planck.hpp"
 #include "src_cpu/evaluate/evaluator.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 using Complex = std::complex<double>;
@@ -282,4 +282,4 @@ std::vector<double> evaluate_path_reference(const FlatScene& scene, const Derive
   return values;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -5,7 +5,7 @@
 #include "src_cpu/evaluate/derived_rows.hpp"
 #include "src_cpu/evaluate/evaluator_program.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 static_assert(Evaluator::kChannelPadding == kRowPadding);
 
@@ -78,4 +78,4 @@ void Evaluator::add_per_path(const PathBuffer& paths, std::span<const float> mu,
   }
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

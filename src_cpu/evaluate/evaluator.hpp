@@ -11,7 +11,7 @@
 #include "src_cpu/evaluate/isa.hpp"
 #include "src_cpu/path/path_buffer.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Evaluates saved paths of one thread; owns scratch memory, so one per thread. `scene` must outlive it.
 ///
@@ -59,4 +59,4 @@ class Evaluator {
 std::vector<double> evaluate_path_reference(const FlatScene& scene, const DerivedChannels& derived,
                                             const PathBuffer& paths, std::size_t path, double mu);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

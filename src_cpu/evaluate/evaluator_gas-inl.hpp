@@ -13,7 +13,7 @@
 #include "src_cpu/evaluate/planck_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace kiloband {
+namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
 /// exp(-x) and 1 - exp(-x), which keeps its relative accuracy for thin gas.
@@ -91,7 +91,7 @@ HWY_INLINE void medium_vector(const GeneralVertex& v, std::size_t k, float* tau,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace kiloband
+}  // namespace kiloband::cpu
 HWY_AFTER_NAMESPACE();
 
 #endif

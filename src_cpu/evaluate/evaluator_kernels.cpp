@@ -26,7 +26,7 @@
 #include "src_cpu/evaluate/evaluator_transmission-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace kiloband {
+namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
 /// Vectors of a full block: tau and L take 8 of the 16 (SSE4, AVX2) or 32 registers.
@@ -217,11 +217,11 @@ void evaluate_path(const PathProgram& path, float* film) {
 inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, weighted_sum, mix_bands};
 
 }  // namespace HWY_NAMESPACE
-}  // namespace kiloband
+}  // namespace kiloband::cpu
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace kiloband {
+namespace kiloband::cpu {
 
 // Every target has its own namespace: the choice is the caller's, not Highway's global one.
 const EvaluatorKernels& evaluator_kernels(Isa isa) {
@@ -237,5 +237,5 @@ const EvaluatorKernels& evaluator_kernels(Isa isa) {
   }
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu
 #endif

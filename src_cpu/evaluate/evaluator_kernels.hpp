@@ -8,7 +8,7 @@
 #include "shared/records.h"
 #include "src_cpu/evaluate/isa.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Rows are padded to this many channels: the most that one pass holds in registers (4 AVX-512 vectors).
 inline constexpr std::size_t kRowPadding = 64;
@@ -139,4 +139,4 @@ struct EvaluatorKernels {
 /// isa: resolved, not kAuto.
 const EvaluatorKernels& evaluator_kernels(Isa isa);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -13,7 +13,7 @@
 #include "src_cpu/evaluate/evaluator_kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace kiloband {
+namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -143,7 +143,7 @@ HWY_INLINE Floats texture_value(const TextureTerms& terms, const double* lambda,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace kiloband
+}  // namespace kiloband::cpu
 HWY_AFTER_NAMESPACE();
 
 #endif

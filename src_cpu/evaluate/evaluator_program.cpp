@@ -9,7 +9,7 @@
 #include "shared/planted_faults.h"
 #include "shared/rough_transmission.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 /// One term of a lookup. A flat texel is evaluated here, in double: S(1e10) is exactly 1.
@@ -271,4 +271,4 @@ SpectralSource ProgramBuilder::texture(const KbTextureSample& sample, bool emiss
   return {nullptr, &terms};
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

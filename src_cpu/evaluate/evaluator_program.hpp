@@ -10,7 +10,7 @@
 #include "src_cpu/geometry/texel_corners.hpp"
 #include "src_cpu/path/path_buffer.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 class ProgramBuilder {
  public:
@@ -54,4 +54,4 @@ class ProgramBuilder {
   bool textured_ = false, gas_ = false;
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -12,7 +12,7 @@
 #include "src_cpu/evaluate/evaluator_optics-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace kiloband {
+namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
 inline constexpr std::size_t kLanes = hn::MaxLanes(Tag());
@@ -85,7 +85,7 @@ inline void mix_bands(const float* values, const int32_t* index, const float* fi
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace kiloband
+}  // namespace kiloband::cpu
 HWY_AFTER_NAMESPACE();
 
 #endif

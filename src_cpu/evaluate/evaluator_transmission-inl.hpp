@@ -15,7 +15,7 @@
 #include "src_cpu/evaluate/evaluator_optics-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace kiloband {
+namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
 /// 1 - F of a dielectric boundary, e^2 = E + 1, for cosines that differ from lane to lane; 0 where
@@ -62,7 +62,7 @@ HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace kiloband
+}  // namespace kiloband::cpu
 HWY_AFTER_NAMESPACE();
 
 #endif

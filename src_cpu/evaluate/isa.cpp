@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 /// Highway's bit of an instruction set. Its SSE4 includes AES and PCLMUL, AVX2 includes FMA, BMI2 and F16C,
@@ -61,4 +61,4 @@ Isa resolve_isa(Isa wanted) {
   return wanted;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

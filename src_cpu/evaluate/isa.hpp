@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 enum class Isa { kAuto, kSse4, kAvx2, kAvx512 };
 
@@ -22,4 +22,4 @@ bool is_available(Isa isa);
 /// throws DeviceError  the machine lacks it
 Isa resolve_isa(Isa wanted);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace kiloband {
+namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -46,7 +46,7 @@ HWY_INLINE hn::Vec<hn::ScalableTag<float>> planck_ratio(const PlanckReference& r
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace kiloband
+}  // namespace kiloband::cpu
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -6,7 +6,7 @@
 #include "scene/compile/band_set.hpp"
 #include "src_cpu/geometry/texel_corners.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 SpectralTextures::SpectralTextures(const FlatScene& scene, const EvaluatorKernels& kernels)
     : scene_(scene), kernels_(kernels) {
@@ -100,4 +100,4 @@ const float* SpectralTextures::row(const KbTextureSample& sample, DenseSpectra& 
   return out;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

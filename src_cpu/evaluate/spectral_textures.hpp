@@ -6,7 +6,7 @@
 
 #include "src_cpu/evaluate/dense_spectra.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// A lookup blends the values of its four texels once per vertex. Bands: the M blended values are then
 /// interpolated at every channel's wavelength, whose place between the band centres is found once per offset
@@ -46,4 +46,4 @@ class SpectralTextures {
   std::size_t used_ = 0;
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

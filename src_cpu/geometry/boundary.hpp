@@ -5,7 +5,7 @@
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 inline bool is_boundary(const FlatScene& scene, uint32_t shape) {
   return shape != KB_NONE && (scene.shapes[shape].flags & KB_SHAPE_NULL);
@@ -29,4 +29,4 @@ inline SurfaceHit surface_of(const FlatScene& scene, const TraceRay& ray) {
                           ray.t_max);
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -18,7 +18,7 @@
 #include "scene/compile/shape_bounds.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 #if RTC_VERSION_MAJOR >= 4
@@ -256,4 +256,4 @@ void EmbreeScene::occlusions(std::span<ShadowRay> rays) const {
   for (ShadowRay& ray : rays) occluded1(impl_->scene, query, reinterpret_cast<RTCRay&>(ray));
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

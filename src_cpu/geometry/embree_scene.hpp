@@ -10,7 +10,7 @@
 
 #include "scene/compile/flat_scene.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 inline constexpr std::size_t kPacketSize = 16;
 
@@ -76,4 +76,4 @@ class EmbreeScene {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -8,7 +8,7 @@
 
 #include "shared/records.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// How far off a surface rays begin, in m: far enough that a ray from there does not find
 /// the surface it left.
@@ -104,4 +104,4 @@ inline glm::vec3 offset_ray_origin(glm::vec3 p, glm::vec3 unit_normal, float off
   return p + offset * unit_normal;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

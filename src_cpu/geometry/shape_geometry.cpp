@@ -6,7 +6,7 @@
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
 #include "src_cpu/geometry/shape_geometry_warp.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586476925;
@@ -215,4 +215,4 @@ AreaPoint sample_analytic_area(const KbShape& shape, glm::vec2 u) {
   return point;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

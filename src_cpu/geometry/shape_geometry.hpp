@@ -11,7 +11,7 @@
 
 #include "shared/records.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// A point on a shape. uv and tangent as Mitsuba parameterises the shape: sphere (phi, theta), disk (r, phi),
 /// cylinder (phi, z), with phi / 2 pi in [0, 1), theta / pi, r and z in [0, 1].
@@ -53,4 +53,4 @@ struct SphereGeometry {
 };
 SphereGeometry sphere_geometry(const KbShape& shape);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

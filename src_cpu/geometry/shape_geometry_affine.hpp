@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Column 0..2: the images of the axes; column 3: the image of the origin.
 template <typename T>
@@ -23,4 +23,4 @@ glm::vec<3, T> transform_point(const float (&m)[12], const glm::vec<3, T>& p) {
   return transform_vector(m, p) + affine_column<T>(m, 3);
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

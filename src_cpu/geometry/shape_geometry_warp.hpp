@@ -5,7 +5,7 @@
 
 #include "shared/warp.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Uniform point of the unit disk; keeps neighbours together (Shirley and Chiu 1997).
 inline glm::vec2 warp_concentric_disk(glm::vec2 u) {
@@ -25,4 +25,4 @@ inline glm::vec2 warp_uniform_triangle(glm::vec2 u) {
   return {b.x, b.y};
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

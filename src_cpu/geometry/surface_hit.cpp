@@ -5,7 +5,7 @@
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 glm::vec3 to_glm(const KbFloat3& v) {
@@ -109,4 +109,4 @@ ShadingFrame::ShadingFrame(glm::vec3 normal, glm::vec3 tangent) : z(normal) {
   y = {b, sign + z.y * z.y * a, -z.y};
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

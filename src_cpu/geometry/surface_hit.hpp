@@ -5,7 +5,7 @@
 
 #include "scene/compile/flat_scene.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 struct SurfaceHit {
   glm::vec3 point{0};
@@ -51,4 +51,4 @@ struct ShadingFrame {
   glm::vec3 to_world(glm::vec3 w) const { return w.x * x + w.y * y + w.z * z; }
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -5,7 +5,7 @@
 
 #include "shared/records.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Texels (x0, y0) (x1, y0) (x0, y1) (x1, y1) by their number in the texture, and their weights.
 struct TexelCorners {
@@ -36,4 +36,4 @@ struct TexelCorners {
   }
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -9,7 +9,7 @@
 #include "shared/estimator.h"
 #include "shared/planted_faults.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 /// One axis of a lookup: first texel and weight of the second.
@@ -179,4 +179,4 @@ float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum) {
                    scene.texel_bounds[c.at[3]]});
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -5,7 +5,7 @@
 
 #include "scene/compile/flat_scene.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// The bilinear (or nearest: fx = fy = 0) sample of a bitmap at uv; v = 0 is the first row, pixel centres at
 /// (i + 0.5) / n, wrapped as the texture says. Exact at the borders of all wrap modes.
@@ -36,4 +36,4 @@ float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv)
 /// (of a lookup: of its four texels).
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

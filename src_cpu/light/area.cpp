@@ -9,7 +9,7 @@
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "src_cpu/geometry/shape_geometry_warp.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586476925;
@@ -213,4 +213,4 @@ float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 
                              shape.area);
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -6,7 +6,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Largest i in [0, count) with cdf[i] <= u; intervals of zero width are never chosen. cdf has count + 1
 /// entries, 0 to 1.
@@ -42,4 +42,4 @@ AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, 
 /// Arguments as area_light_pdf().
 float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

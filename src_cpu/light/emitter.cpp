@@ -10,7 +10,7 @@
 #include "src_cpu/light/area.hpp"
 #include "src_cpu/light/environment.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 constexpr float kInvFourPi = 0.25f * KB_INV_PI;
@@ -157,4 +157,4 @@ EmittedRadiance environment_radiance(const FlatScene& scene, glm::vec3 direction
   return radiance;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -7,7 +7,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// What is seen at an emitting point or direction: a spectrum row or a texture sample,
 /// both without MIS weight.
@@ -62,4 +62,4 @@ float environment_pdf(const FlatScene& scene, glm::vec3 direction);
 /// What the environment sends from `direction` (a unit vector towards it); scene.environment must exist.
 EmittedRadiance environment_radiance(const FlatScene& scene, glm::vec3 direction);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

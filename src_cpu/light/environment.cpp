@@ -7,7 +7,7 @@
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
 #include "src_cpu/light/area.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 /// A value drawn from a piecewise constant distribution: the cell and where u fell in it, in [0, 1).
@@ -79,4 +79,4 @@ float envmap_density(const EnvmapSampling& sampling, glm::vec2 uv) {
          (4 * KB_PI * (KB_PLANTED(ENVMAP_SINE) ? 1 : std::sin(middle)) * std::sin(half_step));
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -10,7 +10,7 @@
 
 #include "scene/compile/flat_scene.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Map coordinates of a world direction: u in [0, 1), v in [0, 1].
 glm::vec2 envmap_coordinates(const KbEmitter& emitter, glm::vec3 direction);
@@ -21,4 +21,4 @@ glm::vec3 sample_envmap_direction(const EnvmapSampling& sampling, const KbEmitte
 /// Density at map coordinates [1/sr].
 float envmap_density(const EnvmapSampling& sampling, glm::vec2 uv);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

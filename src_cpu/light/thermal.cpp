@@ -10,7 +10,7 @@
 #include "src_cpu/geometry/texture_lookup.hpp"
 #include "src_cpu/light/area.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 /// Where a direction lies in the tables of a record.
@@ -163,4 +163,4 @@ ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, 
   return emitted;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

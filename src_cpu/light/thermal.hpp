@@ -6,7 +6,7 @@
 #include "src_cpu/geometry/surface_hit.hpp"
 #include "src_cpu/light/emitter.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Radiance = weight * `radiance`, which is one of the emission spectra that KbThermal names, chosen by
 /// random numbers so that the mean is eps(lambda, direction) B(lambda, T). A mask's opacity is in the weight.
@@ -22,4 +22,4 @@ struct ThermalRadiance {
 ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 towards,
                                  glm::vec2 u);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -10,7 +10,7 @@
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
 #include "src_cpu/geometry/shape_geometry_warp.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 constexpr float kUsualRatio = 4;  // Mitsuba's radius / stddev
@@ -96,4 +96,4 @@ CameraRay centre_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y) {
   return ray_through(camera, glm::dvec2(x, y) + 0.5, glm::vec2(0));
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -5,7 +5,7 @@
 
 #include "shared/records.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 struct CameraRay {
   glm::vec3 origin;     // world, m: the eye, not the near plane
@@ -21,4 +21,4 @@ CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, cons
 /// The ray through the pixel's centre and the lens's centre, for auxiliary images.
 CameraRay centre_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

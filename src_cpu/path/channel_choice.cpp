@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 uint32_t bin_size(uint32_t bin, uint32_t channels) {
@@ -62,4 +62,4 @@ ChannelChoice choose_channel(const BinnedThroughput& carried, uint32_t channels,
   return choice;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

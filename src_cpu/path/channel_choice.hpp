@@ -14,7 +14,7 @@
 #include "shared/records.h"
 #include "shared/spectra_layout.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 using BinnedThroughput = std::array<float, KB_CHANNEL_BINS>;
 
@@ -30,4 +30,4 @@ void carry(BinnedThroughput& carried, const KbPathVertex& vertex, std::span<cons
 /// u uniform in [0, 1).
 ChannelChoice choose_channel(const BinnedThroughput& carried, uint32_t channels, float u);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

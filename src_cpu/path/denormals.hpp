@@ -3,7 +3,7 @@
 
 #include <xmmintrin.h>
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Denormals to zero while a thread renders (Embree's advice); the caller's mode comes back afterwards. What
 /// a film computes from sums is outside: whichever thread does it gets the same bits.
@@ -18,4 +18,4 @@ class DenormalsToZero {
   unsigned saved_;
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -7,7 +7,7 @@
 
 #include "shared/pipeline.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// The interiors that a path has entered and not left, in that order; the last one is where it is. Shapes of
 /// one medium count together, so that a volume may be bounded by several shapes; entering what the path is in
@@ -46,4 +46,4 @@ class MediumStack {
   std::array<uint16_t, KB_MEDIUM_DEPTH> inside_{};
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -6,7 +6,7 @@
 
 #include "shared/records.h"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Vertices of path p are slots[first[p]] .. slots[first[p] + count[p]): KbPathVertex records, each followed
 /// by the slots of its texture samples (two KbTextureSample per 32-byte slot, see path_vertex.h).
@@ -26,4 +26,4 @@ struct PathBuffer {
   }
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

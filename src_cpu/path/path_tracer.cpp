@@ -11,7 +11,7 @@
 #include "src_cpu/path/camera.hpp"
 #include "src_cpu/path/path_tracer_detail.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 constexpr uint32_t kWavefront = 16;  // paths that advance together
@@ -274,4 +274,4 @@ void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) {
   }
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

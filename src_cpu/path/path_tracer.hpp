@@ -28,7 +28,7 @@
 #include "src_cpu/path/path_buffer.hpp"
 #include "src_cpu/path/spectral_mis.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// What all threads share.
 struct TracerScene {
@@ -213,4 +213,4 @@ class PathTracer {
   uint64_t rays_ = 0, vertices_ = 0;
 };
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 inline constexpr float kInfiniteDistance = std::numeric_limits<float>::infinity();
 
@@ -16,4 +16,4 @@ inline float power_heuristic(float pdf, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -8,7 +8,7 @@
 #include "src_cpu/path/path_tracer.hpp"
 #include "src_cpu/path/path_tracer_detail.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Index of the interior over the exterior at the chosen channel's wavelength.
 float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, float mu) const {
@@ -165,4 +165,4 @@ bool PathTracer::scatter_heroes(Path& path, const Boundary& at, const HeroSet& h
   return true;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

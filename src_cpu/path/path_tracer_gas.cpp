@@ -21,7 +21,7 @@
 #include "src_cpu/path/path_tracer.hpp"
 #include "src_cpu/path/path_tracer_detail.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 KbFloat3 to_record(glm::vec3 v) {
@@ -268,4 +268,4 @@ void PathTracer::append_columns(Path& path, uint32_t slot, const Columns& column
   }
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

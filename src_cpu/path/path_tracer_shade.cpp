@@ -11,7 +11,7 @@
 #include "src_cpu/path/path_tracer.hpp"
 #include "src_cpu/path/path_tracer_detail.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 bool is_black(const KbMaterial& material) {
@@ -253,4 +253,4 @@ bool PathTracer::roulette(Draft& draft, Path& path, uint32_t bounce, float u) {
   return true;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

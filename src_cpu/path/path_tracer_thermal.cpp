@@ -4,7 +4,7 @@
 #include "src_cpu/path/path_tracer.hpp"
 #include "src_cpu/path/path_tracer_detail.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Kirchhoff's law. What has only the ambient temperature is not sampled as a light:
 /// it is found by this ray alone.
@@ -41,4 +41,4 @@ LightSample PathTracer::choose_light(const Path& path, const SurfaceHit& hit, co
   return light;
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

@@ -6,7 +6,7 @@
 #include "shared/planted_faults.h"
 #include "src_cpu/bsdf/lobes.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 namespace {
 
 MaterialContext seen_by(const KbMaterial& material, float eta) {
@@ -47,4 +47,4 @@ glm::vec3 sample_heroes(const KbMaterial& material, const HeroSet& heroes, glm::
   return sample.pdf > 0 ? sample.wo : glm::vec3(0);
 }
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

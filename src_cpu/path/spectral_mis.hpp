@@ -19,7 +19,7 @@
 #include "shared/estimator.h"
 #include "src_cpu/bsdf/bsdf.hpp"
 
-namespace kiloband {
+namespace kiloband::cpu {
 
 /// Hero c of a path: a channel index in [0, channels). offset: xi in [0, 1).
 uint32_t hero_channel(uint32_t c, uint32_t heroes, uint32_t channels, float offset);
@@ -44,4 +44,4 @@ HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm:
 glm::vec3 sample_heroes(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec2 u_hero,
                         float u_lobe, glm::vec2 u);
 
-}  // namespace kiloband
+}  // namespace kiloband::cpu

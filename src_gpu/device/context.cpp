@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// Releases what `object` refers to; unlike an assignment, never an exception. A lost device may fail at it.
@@ -72,4 +72,4 @@ void DeviceContext::flush() {
   checked(site(Phase::kRun), [&] { queue_.flush(); });
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -9,7 +9,7 @@
 #include "src_gpu/device/device.hpp"
 #include "src_gpu/device/errors.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 struct ContextOptions {
   bool profiling = false;  // events of the queue carry times: Kernel::launch_timed
@@ -96,4 +96,4 @@ class DeviceContext {
 /// throws DeviceLost, DeviceError
 double seconds_of(const DeviceContext& context, const cl::Event& event);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

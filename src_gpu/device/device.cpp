@@ -10,7 +10,7 @@
 #include "src_gpu/device/errors.hpp"
 #include "src_gpu/device/pocl_cache.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 std::string lower(std::string text) {
@@ -193,4 +193,4 @@ DeviceInfo select_device(const std::optional<std::string>& choice) {
   return select_device(list_devices(), choice);
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -9,7 +9,7 @@
 
 struct _cl_device_id;
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 enum class DeviceType { kGpu, kAccelerator, kCpu };
 
@@ -54,4 +54,4 @@ DeviceInfo select_device(const std::optional<std::string>& choice);
 /// The same among given devices.
 DeviceInfo select_device(const std::vector<DeviceInfo>& devices, const std::optional<std::string>& choice);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 constexpr std::pair<cl_int, const char*> kNames[] = {
@@ -115,4 +115,4 @@ void throw_device_error(const CallSite& site, const std::string& call, cl_int co
   throw DeviceError(message);
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "src_gpu/device/opencl.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// Memory of the device (or the budget) is used up. The caller may try again with less.
 class DeviceOutOfMemory : public DeviceError {
@@ -66,4 +66,4 @@ decltype(auto) checked(const CallSite& site, Call&& call) {
   }
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 uint64_t round_up(uint64_t items, uint64_t multiple) {
@@ -75,4 +75,4 @@ void Kernel::enqueue(uint64_t items, uint64_t local, uint64_t first, cl::Event* 
   if (context_->options().profiling) context_->record(scale_, name_, *event);
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -7,7 +7,7 @@
 
 #include "src_gpu/device/memory.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// `count` elements of T in local memory, as a kernel argument.
 template <class T>
@@ -87,4 +87,4 @@ class Kernel {
   uint64_t max_work_group_size_ = 0, preferred_multiple_ = 0, private_bytes_ = 0, local_bytes_ = 0;
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

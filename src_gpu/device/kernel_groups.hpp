@@ -12,7 +12,7 @@
 #include "shared/thermal.h"
 #include "src_gpu/device/kernel.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// Somebody else's buffer as an argument; it must outlive the launches.
 template <class T>
@@ -105,4 +105,4 @@ using AuxiliaryKernel = KernelOf<KB_AUXILIARY_KERNEL(KB_HOST_GROUP_NAME, KB_COMM
 using EvaluationKernel = KernelOf<KB_EVALUATION_KERNEL(KB_HOST_GROUP_NAME, KB_COMMA)>;
 using FilmKernel = KernelOf<KB_FILM_KERNEL(KB_HOST_GROUP_NAME, KB_COMMA)>;
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

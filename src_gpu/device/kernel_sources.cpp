@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 std::string_view without_blanks(std::string_view text) {
@@ -115,4 +115,4 @@ std::string assemble_source(const SourceMap& sources, std::string_view main) {
   return assembler.take();
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

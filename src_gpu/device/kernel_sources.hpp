@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// Path as messages name it ("kernels/path/paths.cl", "src/shared/warp.h") to text.
 using SourceMap = std::map<std::string, std::string, std::less<>>;
@@ -19,4 +19,4 @@ const SourceMap& embedded_sources();
 /// throws std::logic_error  a file is not there: "kernels/a.cl:3: no source 'b.clh'"
 std::string assemble_source(const SourceMap& sources, std::string_view main);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

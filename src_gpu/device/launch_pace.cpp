@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 constexpr uint64_t kGrowth = 4;
@@ -25,4 +25,4 @@ void LaunchPace::learn(uint64_t units, double seconds) {
   limit_ = std::clamp(fit, fewest_, most_);
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

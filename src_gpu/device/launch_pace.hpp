@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// A limit on the units (slots, paths) of a launch: small at first, then by the time that units are measured
 /// to take, at most four times more from one look to the next. Aims at half of the budget, as the next part
@@ -24,4 +24,4 @@ class LaunchPace {
   double rate_ = 0;  // seconds per unit; a hard part is forgotten by halves
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

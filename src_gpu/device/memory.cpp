@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 constexpr uint64_t kSmallest = 4;  // bytes
@@ -131,4 +131,4 @@ void RawBuffer::copy_from(const RawBuffer& source, uint64_t from, uint64_t to, u
 }
 
 }  // namespace detail
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -15,7 +15,7 @@
 
 #include "src_gpu/device/context.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// 70 % of a GPU's or an accelerator's memory. A CPU device shares the memory of the host, which needs it for
 /// the film and the scene: a quarter, at most 2 GiB.
@@ -165,4 +165,4 @@ class DeviceMemory {
   std::shared_ptr<detail::MemoryAccount> account_;
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

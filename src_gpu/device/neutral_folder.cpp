@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 NeutralFolder::NeutralFolder() {
   const int here = open(".", O_PATH | O_DIRECTORY | O_CLOEXEC);
@@ -30,4 +30,4 @@ void NeutralFolder::enter_root() const {
   if (left_ >= 0 && chdir("/") != 0) return;
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -1,7 +1,7 @@
 // The current folder is left while an OpenCL driver may build programs.
 #pragma once
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// While one lives, the process stands in "/". Drivers start linkers, and those take files of the current
 /// folder for parts of the program: GNU ld looks there first for what a linker script names, such as the
@@ -34,4 +34,4 @@ class NeutralFolder {
   int left_ = -1;  // descriptor of the folder that was left; -1: it was not
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

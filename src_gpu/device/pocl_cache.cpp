@@ -10,7 +10,7 @@
 
 #include "base/temporary_folder.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ std::string pocl_build_hint() {
          "' cannot be written: " + reason + " (POCL_CACHE_DIR names another)";
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// PoCL's own choice: $POCL_CACHE_DIR, else $XDG_CACHE_HOME/pocl/kcache, else $HOME/.cache/pocl/kcache, else
 /// /tmp/pocl/kcache. Source: pocl_cache_init_topdir() of PoCL 3.1.
@@ -27,4 +27,4 @@ std::string pocl_cache_problem();
 /// empty if that is not why.
 std::string pocl_build_hint();
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -7,7 +7,7 @@
 #include "src_gpu/device/pocl_cache.hpp"
 #include "src_gpu/device/program_cache.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// No fast-math, ever: results are compared with the CPU's. Devices that can round divisions and roots
@@ -119,4 +119,4 @@ Program build_program(DeviceContext& context, const std::string& main,
   return build_program(context, main, ProgramOptions{defines, true});
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -9,7 +9,7 @@
 #include "src_gpu/device/kernel.hpp"
 #include "src_gpu/device/kernel_sources.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// Where a program came from.
 enum class ProgramOrigin { kSource, kDisk, kProcess };
@@ -50,4 +50,4 @@ Program build_program(DeviceContext& context, const std::string& main, const Pro
 Program build_program(DeviceContext& context, const SourceMap& sources, const std::string& main,
                       const ProgramOptions& options);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

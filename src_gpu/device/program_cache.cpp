@@ -11,7 +11,7 @@
 #include "base/error.hpp"
 #include "files/atomic_file.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,4 +116,4 @@ std::string ProgramCache::save(const std::string& key, const std::vector<unsigne
   return {};
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -9,7 +9,7 @@
 
 #include "src_gpu/device/device.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// 128 bits of FNV-1a of the text as 32 hex digits: names of programs. Not for secrets.
 std::string text_hash(const std::string& text);
@@ -37,4 +37,4 @@ class ProgramCache {
   std::filesystem::path folder_;  // empty: no cache
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 constexpr uint64_t kLocalSize = 64;
@@ -277,4 +277,4 @@ void Evaluation::finish(uint64_t pixels, std::vector<float>& means, std::vector<
   }
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -12,7 +12,7 @@
 #include "src_gpu/path/round_plan.hpp"
 #include "src_gpu/scene/device_scene.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// How evaluation is compiled and launched; what follows from device, method and number of channels.
 struct EvaluationShape {
@@ -89,4 +89,4 @@ class Evaluation {
   std::optional<EvaluationKernel> resample_, derived_;
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -20,7 +20,7 @@
 #include "base/threads.hpp"
 #include "src_gpu/geometry/bvh_primitives.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 constexpr unsigned kMaxDepth = 64;   // Embree's builder adds up to 8 levels of forced leaves, then fails
@@ -238,4 +238,4 @@ Bvh build_bvh(const FlatScene& scene, int threads) {
   return bvh;
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

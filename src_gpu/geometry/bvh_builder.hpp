@@ -7,7 +7,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "shared/pipeline.h"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// A bounding volume hierarchy over triangles and analytic shapes. Node 0 is the root, and always an inner
 /// node; nodes stand depth first, primitives in the order of their leaves.
@@ -26,4 +26,4 @@ struct Bvh {
 /// throws DeviceError  there is no memory, too many primitives, or Embree fails
 Bvh build_bvh(const FlatScene& scene, int threads = 0);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -7,7 +7,7 @@
 
 #include "scene/compile/shape_bounds.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 constexpr float kLargest = 1.844e18f;  // Embree drops what reaches farther: squares of lengths would overflow
@@ -89,4 +89,4 @@ std::vector<KbPrimitive> collect_primitives(const FlatScene& scene) {
   return primitives;
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -6,7 +6,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "shared/pipeline.h"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// An axis-aligned box, m. Empty if low > high.
 struct Box {
@@ -21,4 +21,4 @@ Box primitive_box(const KbPrimitive& primitive, const FlatScene& scene);
 /// beyond 1.8e18 m.
 std::vector<KbPrimitive> collect_primitives(const FlatScene& scene);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -1,6 +1,6 @@
 #include "src_gpu/path/path_memory.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uint64_t slots_each,
                         const SceneFeatures& features) {
@@ -19,4 +19,4 @@ uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uin
   return path_pool_bytes(one);
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

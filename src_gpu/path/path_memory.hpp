@@ -6,7 +6,7 @@
 
 #include "src_gpu/path/round_plan.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// Bytes per path in flight.
 /// channels    K; only the method pt keeps anything per channel
@@ -16,4 +16,4 @@ namespace kiloband::gpu {
 uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uint64_t slots_each,
                         const SceneFeatures& features);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

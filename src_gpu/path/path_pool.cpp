@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 constexpr uint64_t kLocalSize = 64;
@@ -137,4 +137,4 @@ RoundOutcome PathPool::run(const KbRound& round, const AfterBounce& after_bounce
   return outcome;
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

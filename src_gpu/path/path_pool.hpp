@@ -10,7 +10,7 @@
 #include "src_gpu/device/program.hpp"
 #include "src_gpu/scene/device_scene.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// Capacities. Bytes of each: see path_pool_bytes().
 struct PoolSize {
@@ -81,4 +81,4 @@ class PathPool {
   uint32_t count_ = 0;  // slots in the queue
 };
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

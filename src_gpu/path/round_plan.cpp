@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 // Shares of the budget. What a share leaves unused is nobody's: a smaller footprint is faster on CPU devices.
@@ -152,4 +152,4 @@ RoundPlan plan_rounds(const PlanRequest& r) {
   return plan;
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

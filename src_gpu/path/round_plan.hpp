@@ -9,7 +9,7 @@
 #include "film/replicate_sums.hpp"
 #include "src_gpu/path/path_pool.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// The three evaluations of one pipeline (DPEPT paper, sections 4 and 5).
 enum class Method { kDpeptBatch, kDpeptPath, kPt };
@@ -73,4 +73,4 @@ bool begins_chunk(uint32_t first, const SumRule& rule);
 /// throws DeviceOutOfMemory  not even a pixel fits: says what would be needed
 RoundPlan plan_rounds(const PlanRequest& request);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -6,7 +6,7 @@
 
 #include "base/error.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// The smallest float mu in [0, 1] at which the channel's wavelength reaches the edge. Floats that are not
@@ -78,4 +78,4 @@ ChannelCover make_channel_cover(const ChannelList& channels, std::size_t max_byt
   return result;
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

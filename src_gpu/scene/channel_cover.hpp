@@ -6,7 +6,7 @@
 #include "shared/spectra_layout.h"
 #include "spectral/channels.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 struct ChannelCover {
   bool overlapping = false;          // else every cover is 1 and the tables are empty
@@ -18,4 +18,4 @@ struct ChannelCover {
 /// throws InputError  the breaks take more than max_bytes
 ChannelCover make_channel_cover(const ChannelList& channels, std::size_t max_bytes);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

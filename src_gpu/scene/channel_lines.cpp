@@ -2,7 +2,7 @@
 
 #include "shared/lang.h"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 std::size_t padded(std::size_t n) {
@@ -30,4 +30,4 @@ void fill_lines(const ChannelKnots& lines, float* nodes) {
   }
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -5,7 +5,7 @@
 
 #include "spectral/channel_knots.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// Floats that the row takes, heads and knots.
 std::size_t line_floats(const ChannelKnots& lines);
@@ -14,4 +14,4 @@ std::size_t line_floats(const ChannelKnots& lines);
 /// kernels/evaluate/spectral_row.clh reads it.
 void fill_lines(const ChannelKnots& lines, float* nodes);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -6,7 +6,7 @@
 #include "render/planted_helpers.hpp"
 #include "shared/planted_faults.h"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// Edges of channels and of data that agree to this fraction are the same wavelength.
@@ -211,4 +211,4 @@ void fill_nodes(const RowFunction& row, const ChannelList& channels, const RowUn
   }
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

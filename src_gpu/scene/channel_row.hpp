@@ -9,7 +9,7 @@
 #include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// A function of wavelength that is linear, or at least smooth, between its kinks.
 struct RowFunction {
@@ -49,4 +49,4 @@ struct RowUnits {
 void fill_nodes(const RowFunction& row, const ChannelList& channels, const RowUnits& units, uint32_t cells,
                 std::size_t stride, float* nodes);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -9,7 +9,7 @@
 #include "shared/spectra_layout.h"
 #include "spectral/planck.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 RowFunction planck_row(const SpectrumRow& row) {
@@ -63,4 +63,4 @@ Channel support(const RegularTable& table) {
   return {table.min_nm, table.min_nm + table.step_nm * last * (1 + 1e-11), {}};
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -4,7 +4,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "src_gpu/scene/channel_row.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// A spectrum of the scene: a table, or Planck's law times a table. `row` must outlive the function.
 RowFunction spectrum_row(const SpectrumRow& row);
@@ -16,4 +16,4 @@ RowFunction band_position_row(const BandSet& set);
 /// Where a response can be other than 0, nm.
 Channel support(const RegularTable& table);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

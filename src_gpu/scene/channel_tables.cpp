@@ -11,7 +11,7 @@
 #include "src_gpu/scene/channel_row.hpp"
 #include "src_gpu/scene/channel_row_sources.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// Where no number of cells attains the wanted error, ten times that is good enough.
@@ -287,4 +287,4 @@ ChannelTables make_channel_tables(const FlatScene& scene, const DerivedChannels&
   return TableMaker(scene, derived, options).make();
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

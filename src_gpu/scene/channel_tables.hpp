@@ -10,7 +10,7 @@
 #include "shared/pipeline.h"
 #include "shared/spectra_layout.h"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 struct ChannelTableOptions {
   double relative_error = 1e-6;                  // of the row's largest value in the channel
@@ -43,4 +43,4 @@ struct ChannelTables {
 ChannelTables make_channel_tables(const FlatScene& scene, const DerivedChannels& derived,
                                   const ChannelTableOptions& options = {});
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -5,7 +5,7 @@
 
 #include "film/filter_table.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 namespace {
 
 /// The gaussian filter's table; other filters read none.
@@ -139,4 +139,4 @@ DeviceSpectra upload_spectra(DeviceMemory& memory, const ChannelTables& spectra)
           .cover_breaks = memory.upload("breaks of channel cover", spectra.cover_breaks)};
 }
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -13,7 +13,7 @@
 #include "src_gpu/geometry/bvh_builder.hpp"
 #include "src_gpu/scene/channel_tables.hpp"
 
-namespace kiloband::gpu {
+namespace kiloband::opencl {
 
 /// The macros that specialise kernels for the scene: KB_SPECIALISED and KB_HAS_* for each feature. With
 /// `specialised` false: none, everything is compiled in.
@@ -32,4 +32,4 @@ DeviceScene upload_scene(DeviceMemory& memory, const FlatScene& scene);
 DeviceBvh upload_bvh(DeviceMemory& memory, const Bvh& bvh);
 DeviceSpectra upload_spectra(DeviceMemory& memory, const ChannelTables& spectra);
 
-}  // namespace kiloband::gpu
+}  // namespace kiloband::opencl

@@ -11,7 +11,7 @@
 namespace kiloband::test {
 namespace {
 
-using gpu::LaunchPace;
+using opencl::LaunchPace;
 
 TEST(LaunchPace, BeginsSmallAndGrowsByFour) {
   LaunchPace pace(0.5, 100, 10, 5000);
@@ -69,12 +69,12 @@ struct Render {
   std::vector<std::string> notes;
 };
 
-Render render_with(const FlatScene& scene, OpenclOptions options, uint32_t samples) {
+Render render_with(const FlatScene& scene, opencl::Options options, uint32_t samples) {
   Render result;
   options.sink = [&](const Diagnostic& d) { result.notes.push_back(d.to_string()); };
   SamplingSettings sampling;
   sampling.replicates = 1;
-  const auto backend = make_opencl_backend(std::make_shared<const FlatScene>(scene), {}, sampling, options);
+  const auto backend = opencl::make_backend(std::make_shared<const FlatScene>(scene), {}, sampling, options);
   const Film& f = scene.film;
   SpectralFilm film({0, 0, f.crop_width, f.crop_height}, {scene.channels.size(), 1, false, false});
   std::vector<uint32_t> blocks(film.blocks().size());
@@ -97,8 +97,9 @@ void keep_shorter(Render& best, Render other) {
 /// Paths of a hundred vertices and more: with little memory a round's arena is full again and again.
 TEST(OpenclLimits, LongPathsInLittleMemory) {
   const FlatScene scene = closed_room(16, 100, "400:700:8");
-  for (const gpu::Method method : {gpu::Method::kDpeptBatch, gpu::Method::kDpeptPath, gpu::Method::kPt}) {
-    OpenclOptions options;
+  for (const opencl::Method method :
+       {opencl::Method::kDpeptBatch, opencl::Method::kDpeptPath, opencl::Method::kPt}) {
+    opencl::Options options;
     options.method = method;
     const Render whole = render_with(scene, options, 4);
     options.launch_seconds = 1e-4;
@@ -116,8 +117,8 @@ TEST(OpenclLimits, LongPathsInLittleMemory) {
 /// which is several times the given time.
 TEST(OpenclLimits, LaunchesAreShort) {
   const FlatScene scene = closed_room(96, 12, "400:700:1600");
-  for (const gpu::Method method : {gpu::Method::kDpeptBatch, gpu::Method::kDpeptPath}) {
-    OpenclOptions options;
+  for (const opencl::Method method : {opencl::Method::kDpeptBatch, opencl::Method::kDpeptPath}) {
+    opencl::Options options;
     options.method = method;
     Render quick, free;
     for (int attempt = 0; attempt < 8; ++attempt) {
@@ -128,12 +129,12 @@ TEST(OpenclLimits, LaunchesAreShort) {
       if (quick.longest_launch_seconds < free.longest_launch_seconds / 2) break;
     }
     const std::string found =
-        fmt::format("{}: longest launch {:.4f} s, without a limit {:.4f} s", gpu::to_string(method),
+        fmt::format("{}: longest launch {:.4f} s, without a limit {:.4f} s", opencl::to_string(method),
                     quick.longest_launch_seconds, free.longest_launch_seconds);
     EXPECT_EQ(quick.image, free.image) << found;
     EXPECT_GT(quick.longest_launch_seconds, 0.0) << found;
     EXPECT_LT(quick.longest_launch_seconds, free.longest_launch_seconds / 2) << found;
-    RecordProperty(gpu::to_string(method), found);
+    RecordProperty(opencl::to_string(method), found);
     std::puts(found.c_str());
   }
 }

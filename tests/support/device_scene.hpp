@@ -76,7 +76,7 @@ class DeviceScene {
 
  private:
   Probe& probe_;
-  gpu::SceneArguments::Of<ProbeBuffer> buffers_;
+  opencl::SceneArguments::Of<ProbeBuffer> buffers_;
 };
 
 /// One KbPrimitive per triangle of a mesh and per analytic shape, in the order of the shapes.

@@ -16,7 +16,7 @@ std::string test_backend_name() {
 std::unique_ptr<Backend> make_test_backend(const FlatScene& scene, const DerivedChannels& derived,
                                            const SamplingSettings& settings, const std::string& isa,
                                            int threads) {
-  static const BackendRegistry kBackends({cpu_backend_entry(), opencl_backend_entry()});
+  static const BackendRegistry kBackends({cpu::backend_entry(), opencl::backend_entry()});
   BackendRequest request;
   request.backend = test_backend_name();
   request.isa = isa;

@@ -16,6 +16,8 @@
 #include "validation/bench/synthetic_paths.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr uint32_t kBlockPixels = 1024, kBlocks = 2, kPixels = kBlocks * kBlockPixels, kSamples = 32;
@@ -107,7 +109,7 @@ double triad_bandwidth(std::size_t bytes) {
 
 void bench(std::size_t channels) {
   const FlatScene scene = synthetic_scene(channels);
-  const gpu::ChannelTables tables = gpu::make_channel_tables(scene, {});
+  const opencl::ChannelTables tables = opencl::make_channel_tables(scene, {});
   const PathBuffer paths = synthetic_paths(kPixels * kSamples, kBlockPixels, 4.0, 0.7f);
   const RoundOfPaths round = make_round(kBlocks, kSamples);
   EvaluatorBuild build;

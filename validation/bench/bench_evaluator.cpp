@@ -16,6 +16,8 @@
 #include "validation/bench/synthetic_paths.hpp"
 
 namespace kiloband {
+
+using namespace cpu;
 namespace {
 
 constexpr std::size_t kPixels = 1024;

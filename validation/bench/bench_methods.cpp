@@ -53,23 +53,23 @@ double median(std::vector<double> values) {
 }
 
 /// Bytes per second of a = b + s c over three arrays of `bytes` in all.
-double triad_bandwidth(gpu::DeviceContext& context, uint64_t bytes) {
-  const gpu::SourceMap source{
+double triad_bandwidth(opencl::DeviceContext& context, uint64_t bytes) {
+  const opencl::SourceMap source{
       {"kernels/triad.cl",
        "__kernel void triad(__global float16* restrict a, __global const float16* restrict b,\n"
        "  __global const float16* restrict c, uint repeats, uint items) {\n"
        "  for (uint r = 0; r < repeats; ++r)\n"
        "    for (uint i = get_global_id(0); i < items; i += get_global_size(0))\n"
        "      a[i] = b[i] + 3.0f * c[i];\n}\n"}};
-  gpu::Kernel kernel = gpu::build_program(context, source, "kernels/triad.cl", {}).kernel("triad");
-  gpu::DeviceMemory memory(context, uint64_t{1} << 33);
+  opencl::Kernel kernel = opencl::build_program(context, source, "kernels/triad.cl", {}).kernel("triad");
+  opencl::DeviceMemory memory(context, uint64_t{1} << 33);
   const uint64_t items = std::max<uint64_t>(bytes / 3 / 64, 64);
   const auto floats = items * 16;
   const std::vector<float> ones(floats, 1.0f);
-  gpu::DeviceBuffer<float> a = memory.upload("a", ones), b = memory.upload("b", ones),
-                           c = memory.upload("c", ones);
+  opencl::DeviceBuffer<float> a = memory.upload("a", ones), b = memory.upload("b", ones),
+                              c = memory.upload("c", ones);
   const uint64_t threads =
-      std::min<uint64_t>(items, context.device().type == gpu::DeviceType::kCpu ? 64 : 1u << 18);
+      std::min<uint64_t>(items, context.device().type == opencl::DeviceType::kCpu ? 64 : 1u << 18);
   const auto repeats = static_cast<uint32_t>(std::max<uint64_t>((uint64_t{1} << 29) / (items * 192), 1));
   kernel.set(a, b, c, repeats, static_cast<uint32_t>(items));
   double best = 0;
@@ -111,14 +111,15 @@ Timing render_once(Backend& backend, const FlatScene& scene, uint32_t spp) {
   return timing;
 }
 
-Timing measure(const std::shared_ptr<const FlatScene>& scene, const Settings& settings, gpu::Method method) {
-  OpenclOptions options;
+Timing measure(const std::shared_ptr<const FlatScene>& scene, const Settings& settings,
+               opencl::Method method) {
+  opencl::Options options;
   options.device = settings.device;
   options.method = method;
   options.pool_slots = settings.pool;
   SamplingSettings sampling;
   sampling.replicates = 1;
-  const auto backend = make_opencl_backend(scene, {}, sampling, options);
+  const auto backend = opencl::make_backend(scene, {}, sampling, options);
   render_once(*backend, *scene, settings.spp);  // compiles the kernels
   std::vector<double> seconds, evaluation, generation;
   Timing timing;
@@ -142,11 +143,12 @@ std::shared_ptr<const FlatScene> load(const Settings& settings, uint32_t channel
   return compile_scene(scene, {parse_channels(fmt::format("400:700:{}", channels)), {}, {}});
 }
 
-nlohmann::json row(gpu::DeviceContext& context, const Settings& settings, uint32_t channels, double cache) {
+nlohmann::json row(opencl::DeviceContext& context, const Settings& settings, uint32_t channels,
+                   double cache) {
   const auto scene = load(settings, channels);
-  const Timing pt = measure(scene, settings, gpu::Method::kPt);
-  const Timing path = measure(scene, settings, gpu::Method::kDpeptPath);
-  const Timing batch = measure(scene, settings, gpu::Method::kDpeptBatch);
+  const Timing pt = measure(scene, settings, opencl::Method::kPt);
+  const Timing path = measure(scene, settings, opencl::Method::kDpeptPath);
+  const Timing batch = measure(scene, settings, opencl::Method::kDpeptBatch);
   const double padded = (channels + 15) / 16 * 16;
   const double triad = triad_bandwidth(context, static_cast<uint64_t>(8 * padded * settings.pool));
   const auto ns = [&](const Timing& t) { return t.evaluation / (t.vertices * channels) * 1e9; };
@@ -188,7 +190,7 @@ int run(int argc, char** argv) {
   app.add_option("--json", settings.json);
   CLI11_PARSE(app, argc, argv);
 
-  gpu::DeviceContext context(gpu::select_device(settings.device), {.profiling = true});
+  opencl::DeviceContext context(opencl::select_device(settings.device), {.profiling = true});
   const double cache = triad_bandwidth(context, 3 * 8192);
   nlohmann::json json;
   json["device"] = context.device().name;

@@ -18,6 +18,8 @@
 #include "src_cpu/block_worker.hpp"
 
 namespace kiloband {
+
+using namespace cpu;
 namespace {
 
 constexpr uint32_t kSamples = 2;  // per benchmark iteration

@@ -30,6 +30,8 @@
 #include "tests/support/opencl_probe.hpp"
 
 namespace kiloband {
+
+using namespace cpu;
 namespace {
 
 constexpr int kRounds = 7;
@@ -107,7 +109,7 @@ class Contest {
  public:
   Contest(const FlatScene& scene, int threads)
       : embree_(scene, best_isa(), threads),
-        bvh_(gpu::build_bvh(scene)),
+        bvh_(opencl::build_bvh(scene)),
         probe_(kKernels, fmt::format("-DKB_BVH_STACK={} -DKB_SPECIALISED=1 {}", bvh_.stack_entries(),
                                      scene.features.analytic_shapes ? "-DKB_HAS_ANALYTIC_SHAPES=1" : "")),
         nodes_(probe_.upload(bvh_.nodes)),
@@ -136,7 +138,7 @@ class Contest {
   }
   uint32_t faults() { return probe_.download<cl_uint>(faults_, 1)[0]; }
   test::OpenclProbe& probe() { return probe_; }
-  const gpu::Bvh& bvh() const { return bvh_; }
+  const opencl::Bvh& bvh() const { return bvh_; }
 
  private:
   template <class F>
@@ -148,7 +150,7 @@ class Contest {
   }
 
   EmbreeScene embree_;
-  gpu::Bvh bvh_;
+  opencl::Bvh bvh_;
   test::OpenclProbe probe_;
   cl::Buffer nodes_, primitives_, shapes_, faults_;
   int threads_;
@@ -224,7 +226,7 @@ void occlusion(Contest& contest, const std::string& scene, const std::vector<KbR
 void bench(const std::string& name, int threads, uint32_t width) {
   const FlatScene scene = load(name);
   const auto start = std::chrono::steady_clock::now();
-  const std::size_t nodes = gpu::build_bvh(scene).nodes.size();
+  const std::size_t nodes = opencl::build_bvh(scene).nodes.size();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Contest contest(scene, threads);
   std::cout << fmt::format("{}: {} primitives, {} nodes of {} children, depth {}, built in {:.3f} s\n", name,

@@ -8,6 +8,8 @@
 
 namespace kiloband {
 
+using namespace cpu;
+
 /// Five named reflectances (rows 0-4) and one tabulated lamp (row 5) in `channels` equal
 /// channels over 380-780 nm.
 inline FlatScene synthetic_scene(std::size_t channels) {

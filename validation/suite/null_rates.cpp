@@ -93,7 +93,7 @@ int run(int argc, char** argv) {
   const std::filesystem::path root = KILOBAND_SOURCE_DIR;
   CaseSettings settings;
   settings.backends = {"cpu"};
-  if (!gpu::list_devices().empty()) settings.backends.push_back("opencl:dpept-batch");
+  if (!opencl::list_devices().empty()) settings.backends.push_back("opencl:dpept-batch");
   settings.effort = Effort::kQuick;
   // Nothing may fail: what fails is rendered again, and the p-values of the first attempt would be lost.
   settings.rule.first = 1e-30;

@@ -60,7 +60,7 @@ std::shared_ptr<const FlatScene> load(const CaseScene& scene) {
 std::unique_ptr<Backend> make_backend(const Configuration& configuration,
                                       const std::shared_ptr<const FlatScene>& scene,
                                       const SamplingSettings& settings) {
-  static const BackendRegistry kBackends({cpu_backend_entry(), opencl_backend_entry()});
+  static const BackendRegistry kBackends({cpu::backend_entry(), opencl::backend_entry()});
   BackendRequest request;
   request.backend = configuration.backend;
   request.specialised = configuration.specialised;

@@ -23,6 +23,8 @@
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr double kPi = std::numbers::pi;

@@ -8,10 +8,11 @@ namespace kiloband::test {
 
 std::unique_ptr<Backend> make_zoo_backend(const std::string& name, const FlatScene& scene,
                                           const DerivedChannels& derived, const SamplingSettings& settings,
-                                          OpenclOptions options) {
-  if (name == "cpu") return make_cpu_backend(std::make_shared<const FlatScene>(scene), derived, settings, {});
-  options.method = gpu::find_method(name.substr(name.find(':') + 1)).value();
-  return make_opencl_backend(std::make_shared<const FlatScene>(scene), derived, settings, options);
+                                          opencl::Options options) {
+  if (name == "cpu")
+    return cpu::make_backend(std::make_shared<const FlatScene>(scene), derived, settings, {});
+  options.method = opencl::find_method(name.substr(name.find(':') + 1)).value();
+  return opencl::make_backend(std::make_shared<const FlatScene>(scene), derived, settings, options);
 }
 
 std::vector<std::string> zoo_names() {

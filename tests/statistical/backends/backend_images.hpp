@@ -16,7 +16,7 @@ namespace kiloband::test {
 /// general ones unless `options` says otherwise: one program serves all scenes.
 std::unique_ptr<Backend> make_zoo_backend(const std::string& name, const FlatScene& scene,
                                           const DerivedChannels& derived, const SamplingSettings& settings,
-                                          OpenclOptions options = {.specialised = false});
+                                          opencl::Options options = {.specialised = false});
 
 /// The three methods' backend names.
 inline const std::vector<std::string> kOpenclMethods{"opencl:pt", "opencl:dpept-path", "opencl:dpept-batch"};

@@ -20,8 +20,8 @@ SamplingSettings settings_of(WavelengthMode wavelengths, uint64_t seed = 5) {
   return {wavelengths, SamplerType::kSobol, seed, kReplicates};
 }
 
-OpenclOptions general() {
-  OpenclOptions options;
+opencl::Options general() {
+  opencl::Options options;
   options.specialised = false;
   return options;
 }
@@ -60,7 +60,7 @@ void expect_rounding(const Image& a, const Image& b, const std::string& what) {
 class Methods : public testing::Test {
  protected:
   Image image(const std::string& method, const FlatScene& scene, const DerivedChannels& derived,
-              WavelengthMode mode, const OpenclOptions& options = general()) {
+              WavelengthMode mode, const opencl::Options& options = general()) {
     return render_image(*make_zoo_backend(method, scene, derived, settings_of(mode), options), scene,
                         kReplicates, kSamples);
   }
@@ -128,7 +128,7 @@ TEST_F(Methods, SameSeedSameBitsWhateverThePool) {
     const Image first = image(method, scene, {}, WavelengthMode::kShared);
     expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared), method + ", again");
     for (const uint32_t slots : {64u, 100u, 4096u}) {
-      OpenclOptions options = general();
+      opencl::Options options = general();
       options.pool_slots = slots;
       expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared, options),
                        method + ", " + std::to_string(slots) + " slots");
@@ -143,7 +143,7 @@ TEST_F(Methods, SmallDeviceMemoryGivesTheSameBits) {
     const Image first = image(method, scene, {}, WavelengthMode::kShared);
     for (const uint64_t kibibytes : {6000u, 1500u, 600u}) {
       std::vector<std::string> notes;
-      OpenclOptions options = general();
+      opencl::Options options = general();
       options.device_memory = kibibytes << 10;
       options.sink = [&](const Diagnostic& d) { notes.push_back(d.to_string()); };
       expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared, options),

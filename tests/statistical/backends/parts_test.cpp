@@ -111,12 +111,12 @@ std::vector<Parts> chunks_after(const Parts& parts, const SumRule& rule) {
   uint32_t first = 0;
   for (const uint32_t count : parts) {
     for (const uint32_t end = first + count; first < end;) {
-      const gpu::SampleCut cut = gpu::next_cut(first, end, rule);
-      if (first > 0 && gpu::begins_chunk(first, rule)) close();
+      const opencl::SampleCut cut = opencl::next_cut(first, end, rule);
+      if (first > 0 && opencl::begins_chunk(first, rule)) close();
       EXPECT_TRUE(cut.open || open.empty());
-      EXPECT_LE(cut.samples, cut.open ? gpu::kSamplesInRegisters : rule.period);
+      EXPECT_LE(cut.samples, cut.open ? opencl::kSamplesInRegisters : rule.period);
       for (const uint32_t last = first + cut.samples; first < last; ++first) {
-        if (!cut.open && open.size() == gpu::kSamplesInRegisters) close();  // as kernels do
+        if (!cut.open && open.size() == opencl::kSamplesInRegisters) close();  // as kernels do
         open.push_back(first);
       }
       if (!cut.open) close();
@@ -127,7 +127,7 @@ std::vector<Parts> chunks_after(const Parts& parts, const SumRule& rule) {
 }
 
 TEST(SampleCuts, GiveTheChunksOfOneDelivery) {
-  using gpu::Method, gpu::sum_rule_of;
+  using opencl::Method, opencl::sum_rule_of;
   for (const uint32_t round : {1u, 5u, 16u, 32u, 33u, 40u, 64u}) {
     const SumRule rule = sum_rule_of(Method::kDpeptBatch, round, false);
     for (const uint32_t total : {1u, 16u, 31u, 32u, 64u, 65u, 150u}) {
@@ -140,7 +140,7 @@ TEST(SampleCuts, GiveTheChunksOfOneDelivery) {
       EXPECT_EQ(beyond, total);
       if (total <= rule.chunk) {
         EXPECT_EQ(at_once.size(), 1u);
-        EXPECT_TRUE(gpu::next_cut(0, total, rule).open);
+        EXPECT_TRUE(opencl::next_cut(0, total, rule).open);
       }
     }
   }

@@ -8,6 +8,8 @@
 #include "src_cpu/evaluate/evaluator.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr double kRelative = 1e-4;  // what the backends owe each other

@@ -37,7 +37,7 @@ TEST(Overflow, IsCounted) {
   settings.outputs = {folder.path() / "bright.hdr"};
   SamplingSettings sampling;
   sampling.replicates = session_replicates(settings.stop, settings.replicates);
-  const auto backend = make_cpu_backend(std::make_shared<const FlatScene>(scene), {}, sampling, {});
+  const auto backend = cpu::make_backend(std::make_shared<const FlatScene>(scene), {}, sampling, {});
   const RenderReport report = run_session(scene, {}, *backend, settings, false, {});
 
   std::vector<float> mean(kSide * kSide * kBands), variance(mean.size());

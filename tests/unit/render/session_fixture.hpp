@@ -37,7 +37,7 @@ class SessionTest : public ::testing::Test {
     SamplingSettings sampling;
     sampling.seed = seed;
     sampling.replicates = session_replicates(settings_.stop, settings_.replicates);
-    return make_cpu_backend(std::make_shared<const FlatScene>(scene_), {}, sampling, {});
+    return cpu::make_backend(std::make_shared<const FlatScene>(scene_), {}, sampling, {});
   }
 
   struct Values {

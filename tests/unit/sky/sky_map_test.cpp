@@ -11,6 +11,8 @@
 #include "src_cpu/light/environment.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr double kPi = std::numbers::pi;

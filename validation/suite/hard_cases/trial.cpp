@@ -162,8 +162,8 @@ std::vector<TracedPath> trace_paths(const std::string& backend, const std::share
 /// What the oracle sees along a path, per channel; a path without records brings nothing.
 std::vector<double> evaluated(const FlatScene& scene, const TracedPath& path, double mu) {
   if (path.slots.empty()) return std::vector<double>(scene.channels.size(), 0.0);
-  const PathBuffer buffer{path.slots, {{0, static_cast<uint32_t>(path.slots.size()), 0}}};
-  return evaluate_path_reference(scene, {}, buffer, 0, mu);
+  const cpu::PathBuffer buffer{path.slots, {{0, static_cast<uint32_t>(path.slots.size()), 0}}};
+  return cpu::evaluate_path_reference(scene, {}, buffer, 0, mu);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 
 namespace kiloband::test {
 
+using namespace cpu;
+
 // The records below are read by the kernels in probe.cpp: plain 4-byte members.
 struct Query {
   float wi[3], wo[3];

@@ -5,6 +5,8 @@
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 const char* const kSource = R"(

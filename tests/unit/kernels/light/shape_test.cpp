@@ -6,6 +6,8 @@
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 using testing::make_shape;

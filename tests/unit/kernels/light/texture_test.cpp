@@ -5,6 +5,8 @@
 #include "support.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 const char* const kSource = R"(

@@ -12,6 +12,8 @@
 #include "support.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 FlatScene flat(const std::string& body, const TemporaryFolder& folder, const std::string& bands,

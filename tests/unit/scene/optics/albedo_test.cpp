@@ -10,6 +10,8 @@
 #include "src_cpu/bsdf/bsdf.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 glm::dvec3 direction(double degrees, double phi) {

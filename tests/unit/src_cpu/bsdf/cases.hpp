@@ -9,6 +9,8 @@
 
 namespace kiloband::test {
 
+using namespace cpu;
+
 KbMaterial material_of(KbMaterialType type);
 KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, float alpha_v, bool visible,
                  float eta = 1.5f);

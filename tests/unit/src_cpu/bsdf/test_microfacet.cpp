@@ -11,6 +11,8 @@
 #include "src_cpu/bsdf/microfacet.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 // Near the critical angle F has an infinite slope, so the formula cannot do better than what half an ulp of

@@ -9,6 +9,8 @@
 #include "src_cpu/path/spectral_mis.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 struct HeroCase {

@@ -11,6 +11,8 @@
 
 namespace kiloband::test {
 
+using namespace cpu;
+
 enum class Layout { kRegular, kOverlapping, kNarrow, kInfrared };
 
 /// K channels: equal ones over 380-780 nm; of random width and order that overlap and leave gaps; 0.1 nm

@@ -9,6 +9,8 @@
 #include "test_scene.hpp"
 
 namespace kiloband::testing {
+
+using namespace cpu;
 namespace {
 
 constexpr double kPi = 3.141592653589793238463;

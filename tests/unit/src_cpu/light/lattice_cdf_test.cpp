@@ -13,6 +13,8 @@
 #include "test_scene.hpp"
 
 namespace kiloband::testing {
+
+using namespace cpu;
 namespace {
 
 constexpr uint32_t kSteps = 1u << 24;

@@ -13,6 +13,8 @@
 #include "test_scene.hpp"
 
 namespace kiloband::testing {
+
+using namespace cpu;
 namespace {
 
 constexpr int kSamples = 200000;

@@ -5,6 +5,8 @@
 #include "test_scene.hpp"
 
 namespace kiloband::testing {
+
+using namespace cpu;
 namespace {
 
 // Where they oppose the winding, samples, their density and that of rays change sides with them; the target

@@ -10,6 +10,8 @@
 #include "test_scene.hpp"
 
 namespace kiloband::testing {
+
+using namespace cpu;
 namespace {
 
 using Real = long double;

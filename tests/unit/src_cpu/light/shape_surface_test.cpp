@@ -11,6 +11,8 @@
 #include "test_scene.hpp"
 
 namespace kiloband::testing {
+
+using namespace cpu;
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

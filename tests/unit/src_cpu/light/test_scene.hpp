@@ -10,6 +10,8 @@
 
 namespace kiloband::testing {
 
+using namespace cpu;
+
 inline void set_matrix(float (&out)[12], const glm::dmat4& m) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) out[4 * row + column] = static_cast<float>(m[column][row]);

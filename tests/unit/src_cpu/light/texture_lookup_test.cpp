@@ -11,6 +11,8 @@
 #include "test_scene.hpp"
 
 namespace kiloband::testing {
+
+using namespace cpu;
 namespace {
 
 /// Index i of an axis of n texels, wrapped by the textbook rules.

@@ -8,6 +8,8 @@
 #include "src_cpu/path/channel_choice.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 BinnedThroughput all(float value) {

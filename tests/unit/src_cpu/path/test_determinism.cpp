@@ -10,6 +10,8 @@
 #include "src_cpu/cpu_backend.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr WavelengthMode kModes[] = {WavelengthMode::kShared, WavelengthMode::kPerPath};
@@ -72,7 +74,7 @@ std::vector<float> render_in_passes(const std::vector<uint32_t>& passes, Samplin
   const SceneDescription description = read_scene_text(room_spec({40, 40}).xml, "test.xml", ".", {});
   const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
   sampling.replicates = 4;
-  const auto backend = make_cpu_backend(scene, {}, sampling, {Isa::kAuto, 1});
+  const auto backend = cpu::make_backend(scene, {}, sampling, {Isa::kAuto, 1});
   FilmOptions options{4, 4, true, true};
   options.sums = backend->sum_rule();
   SpectralFilm film({0, 0, 40, 40}, options);

@@ -10,6 +10,8 @@
 #include "src_cpu/cpu_backend.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr FilmSize kFilm{16, 16};
@@ -137,7 +139,7 @@ TEST_F(InvalidSamples, LeaveTheSampleCountAndAreListed) {
   const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
   SamplingSettings sampling = spec_.sampling;
   sampling.replicates = 2;
-  const auto backend = make_cpu_backend(scene, {}, sampling, {Isa::kAuto, 1});
+  const auto backend = cpu::make_backend(scene, {}, sampling, {Isa::kAuto, 1});
   SpectralFilm film({0, 0, 4, 4}, {4, 2, true, false});
   for (uint32_t r = 0; r < 2; ++r) backend->render(film, {r, 0, 32}, {0}, false, {});
   uint64_t samples = 0;
@@ -154,7 +156,7 @@ TEST(Stopping, DeliversWhatIsDone) {
   const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
   SamplingSettings sampling;
   sampling.replicates = 1;
-  const auto backend = make_cpu_backend(scene, {}, sampling, {Isa::kAuto, 1});
+  const auto backend = cpu::make_backend(scene, {}, sampling, {Isa::kAuto, 1});
   SpectralFilm film({0, 0, 40, 40}, {4, 1, true, true});
   std::atomic<bool> stop{false};
   uint64_t reported = 0;
@@ -183,7 +185,7 @@ TEST(AuxiliaryImages, ShowTheNearestSurface) {
       "<emitter type=\"constant\"/>";
   const SceneDescription description = read_scene_text(scene_text(-1, parts), "test.xml", ".", {});
   const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
-  const auto backend = make_cpu_backend(scene, {}, {}, {Isa::kAuto, 1});
+  const auto backend = cpu::make_backend(scene, {}, {}, {Isa::kAuto, 1});
   const std::vector<AuxiliaryPixel> pixels = backend->auxiliary({0, 0, 4, 4});
   ASSERT_EQ(pixels.size(), 16u);
 

@@ -11,6 +11,8 @@
 #include "src_cpu/path/path_tracer.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr uint32_t kSize = 20;

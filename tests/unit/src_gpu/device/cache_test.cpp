@@ -6,7 +6,7 @@
 #include "src_gpu/device/program_cache.hpp"
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
-namespace kiloband::gpu::test {
+namespace kiloband::opencl::test {
 namespace {
 
 using Bytes = std::vector<unsigned char>;
@@ -75,4 +75,4 @@ TEST(ProgramCache, KeyDependsOnEverything) {
 }
 
 }  // namespace
-}  // namespace kiloband::gpu::test
+}  // namespace kiloband::opencl::test

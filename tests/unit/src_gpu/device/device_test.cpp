@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
-namespace kiloband::gpu::test {
+namespace kiloband::opencl::test {
 namespace {
 
 DeviceInfo made_up(uint32_t index, const std::string& name, DeviceType type) {
@@ -82,4 +82,4 @@ TEST(ListDevices, PoclIsToldToUseLoops) {
 }
 
 }  // namespace
-}  // namespace kiloband::gpu::test
+}  // namespace kiloband::opencl::test

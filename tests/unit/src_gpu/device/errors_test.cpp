@@ -5,7 +5,7 @@
 
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
-namespace kiloband::gpu::test {
+namespace kiloband::opencl::test {
 namespace {
 
 enum class Kind { kOutOfMemory, kLost, kOther };
@@ -64,4 +64,4 @@ TEST(Errors, CheckedTranslatesAndReturns) {
 }
 
 }  // namespace
-}  // namespace kiloband::gpu::test
+}  // namespace kiloband::opencl::test

@@ -10,7 +10,7 @@
 #include "base/temporary_folder.hpp"
 #include "src_gpu/device/program.hpp"
 
-namespace kiloband::gpu::test {
+namespace kiloband::opencl::test {
 
 /// XDG_CACHE_HOME is this folder while the object lives.
 class CacheFolder {
@@ -61,4 +61,4 @@ std::string message_of(const Call& call) {
   return {};
 }
 
-}  // namespace kiloband::gpu::test
+}  // namespace kiloband::opencl::test

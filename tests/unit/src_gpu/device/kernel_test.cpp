@@ -5,7 +5,7 @@
 
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
-namespace kiloband::gpu::test {
+namespace kiloband::opencl::test {
 namespace {
 
 const std::string kCount = R"(
@@ -105,4 +105,4 @@ TEST_F(KernelTest, NoTimesWithoutProfiling) {
 }
 
 }  // namespace
-}  // namespace kiloband::gpu::test
+}  // namespace kiloband::opencl::test

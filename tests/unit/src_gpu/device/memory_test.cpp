@@ -6,7 +6,7 @@
 
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
-namespace kiloband::gpu::test {
+namespace kiloband::opencl::test {
 namespace {
 
 class Memory : public GpuTest {};
@@ -156,4 +156,4 @@ TEST_F(Memory, WorksAgainAfterRebuild) {
 }
 
 }  // namespace
-}  // namespace kiloband::gpu::test
+}  // namespace kiloband::opencl::test

@@ -11,7 +11,7 @@
 namespace {
 
 using namespace kiloband;
-using namespace kiloband::gpu;
+using namespace kiloband::opencl;
 
 const char* const kText =
     "__kernel void add(__global uint* a, __global const uint* b) { a[get_global_id(0)] += b[0]; }\n";

@@ -9,7 +9,7 @@
 
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
-namespace kiloband::gpu::test {
+namespace kiloband::opencl::test {
 namespace {
 
 struct Finished {
@@ -142,4 +142,4 @@ TEST_F(Shim, NoPlatform) {
 }
 
 }  // namespace
-}  // namespace kiloband::gpu::test
+}  // namespace kiloband::opencl::test

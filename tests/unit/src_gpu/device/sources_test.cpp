@@ -7,7 +7,7 @@
 #include "src_gpu/device/kernel_sources.hpp"
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
-namespace kiloband::gpu::test {
+namespace kiloband::opencl::test {
 namespace {
 
 TEST(AssembleSource, PutsIncludesInPlaceOnce) {
@@ -83,4 +83,4 @@ TEST(EmbeddedSources, AllIncludesAreThere) {
 }
 
 }  // namespace
-}  // namespace kiloband::gpu::test
+}  // namespace kiloband::opencl::test

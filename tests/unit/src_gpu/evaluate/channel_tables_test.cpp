@@ -9,7 +9,7 @@
 namespace kiloband::test {
 namespace {
 
-double interpolated(const gpu::ChannelTables& t, uint32_t row, std::size_t k, double mu) {
+double interpolated(const opencl::ChannelTables& t, uint32_t row, std::size_t k, double mu) {
   const KbChannelTable table = t.tables[row];
   const double position = mu * table.cells;
   const auto cell = std::min<uint32_t>(static_cast<uint32_t>(position), table.cells - 1);
@@ -19,7 +19,8 @@ double interpolated(const gpu::ChannelTables& t, uint32_t row, std::size_t k, do
 
 /// Largest error of a row over random mu, relative to its largest value in the channel.
 /// float rounding included.
-double observed_error(const FlatScene& scene, const gpu::ChannelTables& t, uint32_t s, std::mt19937& random) {
+double observed_error(const FlatScene& scene, const opencl::ChannelTables& t, uint32_t s,
+                      std::mt19937& random) {
   double worst = 0;
   for (std::size_t k = 0; k < scene.channels.size(); ++k) {
     const Channel& c = scene.channels[k];
@@ -39,7 +40,7 @@ double observed_error(const FlatScene& scene, const gpu::ChannelTables& t, uint3
 TEST(ChannelTables, AreExactWhereNodesMeetKinks) {
   std::mt19937 random(1);
   const FlatScene scene = make_device_scene(40, Layout::kRegular, random);
-  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {});
   EXPECT_EQ(t.layout.stride, 48u);
   for (uint32_t s = 0; s < scene.spectra.size(); ++s) {
     EXPECT_LE(t.error[s], 1e-6) << s;
@@ -53,9 +54,9 @@ TEST(ChannelTables, AreExactWhereNodesMeetKinks) {
 TEST(ChannelTables, StateTheirErrorWhereKinksAreAnywhere) {
   std::mt19937 random(2);
   const FlatScene scene = make_scene(make_channels(30, Layout::kOverlapping, random), random);
-  gpu::ChannelTableOptions options;
+  opencl::ChannelTableOptions options;
   options.max_cells = 64;
-  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {}, options);
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {}, options);
   int stated = 0;
   for (uint32_t s = 0; s < scene.spectra.size(); ++s) {
     EXPECT_LE(t.tables[s].cells, 64u);
@@ -75,7 +76,7 @@ TEST(ChannelTables, PlanckRowsKeepTheBound) {
   thermal.is_planck = thermal.is_emission = true;
   thermal.temperature_k = 300;
   scene.spectra.push_back(thermal);
-  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {});
   EXPECT_LE(t.error[0], 1e-6);
   EXPECT_LE(t.tables[0].cells, 256u);
 }
@@ -85,7 +86,7 @@ TEST(ChannelTables, DataThatEndAtAnEdgeDoNotReachAcrossIt) {
   scene.channels = {{390, 400, {}}, {400, 410, {}}, {410, 420, {}}, {420, 430, {}}};
   scene.channel_scale.assign(4, 1.0);
   scene.spectra.push_back(row(table(400, 10, {0.5, 0.7, 0.9})));
-  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {});
   EXPECT_FALSE(t.has_jump[0]);
   for (double mu : {0.0, 0.3, 1.0}) {
     EXPECT_EQ(interpolated(t, 0, 0, mu), 0) << mu;
@@ -100,7 +101,7 @@ TEST(ChannelTables, AJumpInsideAChannelIsANarrowRamp) {
   scene.channels = {{400, 410, {}}};
   scene.channel_scale.assign(1, 1.0);
   scene.spectra.push_back(row(table(400, 2.5, {0.5, 0.5, 0.5})));
-  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {});
   EXPECT_TRUE(t.has_jump[0]);
   EXPECT_GE(t.tables[0].cells, 4000u);
   EXPECT_EQ(interpolated(t, 0, 0, 0.4999), 0.5);
@@ -110,9 +111,9 @@ TEST(ChannelTables, AJumpInsideAChannelIsANarrowRamp) {
 TEST(ChannelTables, FitTheirBudget) {
   std::mt19937 random(3);
   const FlatScene scene = make_scene(make_channels(30, Layout::kOverlapping, random), random);
-  gpu::ChannelTableOptions options;
+  opencl::ChannelTableOptions options;
   options.max_bytes = 1u << 20;
-  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {}, options);
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {}, options);
   EXPECT_LE(t.nodes.size() * sizeof(float), options.max_bytes);
   EXPECT_GT(t.nodes.size() * sizeof(float), options.max_bytes / 4);
 }
@@ -120,7 +121,7 @@ TEST(ChannelTables, FitTheirBudget) {
 TEST(ChannelTables, RowsOfMaterials) {
   std::mt19937 random(4);
   const FlatScene scene = make_device_scene(16, Layout::kRegular, random);
-  const gpu::ChannelTables t = gpu::make_channel_tables(scene, {});
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {});
   EXPECT_EQ(t.material_rows[5], KB_NONE);
   EXPECT_EQ(t.material_rows[6], KB_NONE);
   const double lambda = scene.channels[3].min_nm;
@@ -137,7 +138,7 @@ TEST(ChannelTables, RowsOfMaterials) {
 TEST(ChannelCover, IsExactForEveryOffset) {
   std::mt19937 random(5);
   const ChannelList channels = make_channels(60, Layout::kOverlapping, random);
-  const gpu::ChannelCover cover = gpu::make_channel_cover(channels, 1 << 20);
+  const opencl::ChannelCover cover = opencl::make_channel_cover(channels, 1 << 20);
   ASSERT_TRUE(cover.overlapping);
   const auto counted = [&](std::size_t k, float mu) {
     const double lambda = (1 - static_cast<double>(mu)) * channels[k].min_nm + mu * channels[k].max_nm;
@@ -166,8 +167,8 @@ TEST(ChannelCover, IsExactForEveryOffset) {
       }
     }
   }
-  EXPECT_FALSE(gpu::make_channel_cover(make_channels(60, Layout::kRegular, random), 0).overlapping);
-  EXPECT_THROW(gpu::make_channel_cover(channels, 64), InputError);
+  EXPECT_FALSE(opencl::make_channel_cover(make_channels(60, Layout::kRegular, random), 0).overlapping);
+  EXPECT_THROW(opencl::make_channel_cover(channels, 64), InputError);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ float per_path_mu(const RoundOfPaths& round, uint32_t pixel, uint32_t sample) {
 }
 
 DeviceEvaluator::DeviceEvaluator(EvaluatorProgram& program, const FlatScene& scene,
-                                 const gpu::ChannelTables& t, uint32_t film_pixels)
+                                 const opencl::ChannelTables& t, uint32_t film_pixels)
     : program_(program), layout_(t.layout), film_pixels_(film_pixels) {
   OpenclProbe& probe = program.probe;
   layout_.film_width = kFilmWidth;
@@ -198,7 +198,7 @@ void DeviceEvaluator::path(uint32_t local_size) {
 }
 
 cl::Kernel DeviceEvaluator::film_kernel(const char* name, const cl::Buffer& packed) {
-  const gpu::PackingArguments::Of<ProbeBuffer> packing{
+  const opencl::PackingArguments::Of<ProbeBuffer> packing{
       .layout = spectra_.layout, .open = {}, .values = {}, .packed = packed, .pixels = film_pixels_};
   return kernel(name, film_, packing);
 }

@@ -14,6 +14,8 @@
 
 namespace kiloband::test {
 
+using namespace cpu;
+
 /// Slots of a vertex with its texture samples.
 uint32_t slots_of(const KbPathVertex& vertex);
 
@@ -65,7 +67,7 @@ struct PtTiming {
 /// A film, and evaluations that add to it.
 class DeviceEvaluator {
  public:
-  DeviceEvaluator(EvaluatorProgram& program, const FlatScene& scene, const gpu::ChannelTables& tables,
+  DeviceEvaluator(EvaluatorProgram& program, const FlatScene& scene, const opencl::ChannelTables& tables,
                   uint32_t film_pixels);
 
   /// Uploads the paths and resamples the spectra. scattered: over the arena's chunks in a random order, else
@@ -106,12 +108,12 @@ class DeviceEvaluator {
   uint32_t film_pixels_;
   RoundOfPaths round_;
   KbRound record_{};
-  gpu::SceneArguments::Of<ProbeBuffer> scene_;
-  gpu::SpectraArguments::Of<ProbeBuffer> spectra_;
-  gpu::PoolArguments::Of<ProbeBuffer> pool_;
-  gpu::EvaluationArguments::Of<ProbeBuffer> evaluation_{};
-  gpu::FilmArguments::Of<ProbeBuffer> film_{};
-  gpu::QueueArguments::Of<ProbeBuffer> queue_{};
+  opencl::SceneArguments::Of<ProbeBuffer> scene_;
+  opencl::SpectraArguments::Of<ProbeBuffer> spectra_;
+  opencl::PoolArguments::Of<ProbeBuffer> pool_;
+  opencl::EvaluationArguments::Of<ProbeBuffer> evaluation_{};
+  opencl::FilmArguments::Of<ProbeBuffer> film_{};
+  opencl::QueueArguments::Of<ProbeBuffer> queue_{};
 };
 
 }  // namespace kiloband::test

@@ -38,14 +38,14 @@ struct Workload {
            bool temperatures = false)
       : derived(responses),
         scene(with_temperatures(make_device_scene(c.channels, c.layout, random), temperatures)),
-        tables(gpu::make_channel_tables(scene, derived)),
+        tables(opencl::make_channel_tables(scene, derived)),
         paths(make_paths(scene, c.channels == 1000 ? 8 : 40, random)),
         round(make_round(paths, c.channels == 1000 ? 6 : 12, c.channels == 1000 ? 2 : 5, random)),
         expected(reference(scene, derived, tables, paths, round, per_path)) {}
 
   DerivedChannels derived;
   FlatScene scene;
-  gpu::ChannelTables tables;
+  opencl::ChannelTables tables;
   PathBuffer paths;
   RoundOfPaths round;
   Expected expected;

@@ -98,8 +98,9 @@ RoundOfPaths make_round(const PathBuffer& paths, uint32_t pixels, uint32_t sampl
   return round;
 }
 
-Expected reference(const FlatScene& scene, const DerivedChannels& derived, const gpu::ChannelTables& tables,
-                   const PathBuffer& paths, const RoundOfPaths& round, bool per_path) {
+Expected reference(const FlatScene& scene, const DerivedChannels& derived,
+                   const opencl::ChannelTables& tables, const PathBuffer& paths, const RoundOfPaths& round,
+                   bool per_path) {
   const std::size_t channels = scene.channels.size(), columns = channels + derived.responses.size();
   Expected out;
   out.means.assign(round.pixels * columns, 0);

@@ -9,6 +9,8 @@
 
 namespace kiloband::test {
 
+using namespace cpu;
+
 /// make_scene() with tables whose kinks meet nodes: steps that are simple fractions of a channel for equal
 /// channels, straight lines for others, so that interpolation is exact and what is compared is evaluation.
 FlatScene make_device_scene(std::size_t count, Layout layout, std::mt19937& random);
@@ -24,8 +26,9 @@ struct Expected {
   std::vector<uint32_t> counts;
 };
 
-Expected reference(const FlatScene& scene, const DerivedChannels& derived, const gpu::ChannelTables& tables,
-                   const PathBuffer& paths, const RoundOfPaths& round, bool per_path);
+Expected reference(const FlatScene& scene, const DerivedChannels& derived,
+                   const opencl::ChannelTables& tables, const PathBuffer& paths, const RoundOfPaths& round,
+                   bool per_path);
 
 /// Largest |value - mean| / magnitude.
 double largest_error(const std::vector<float>& values, const Expected& expected);

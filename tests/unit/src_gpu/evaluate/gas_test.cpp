@@ -11,6 +11,8 @@
 #include "tests/unit/src_cpu/evaluate/random_gas.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr double kTolerance = 1e-5, kRounding = 2e-6;
@@ -19,14 +21,14 @@ struct GasWorkload {
   GasWorkload(std::size_t channels, Layout layout, bool per_path, std::mt19937& random)
       : scene(make_device_scene(channels, layout, random)) {
     add_gas(scene, random);
-    tables = gpu::make_channel_tables(scene, {});
+    tables = opencl::make_channel_tables(scene, {});
     paths = make_gas_paths(scene, 60, random);
     round = make_round(paths, 12, 5, random);
     expected = reference(scene, {}, tables, paths, round, per_path);
   }
 
   FlatScene scene;
-  gpu::ChannelTables tables;
+  opencl::ChannelTables tables;
   PathBuffer paths;
   RoundOfPaths round;
   Expected expected;
@@ -103,7 +105,7 @@ TEST(DeviceGasPlanck, RatioOverTheFloatRange) {
     round.path = {0, 1, 2, 3, 4, 5};
     round.mu = {0.25f};
     round.block.assign(6, 0);
-    const gpu::ChannelTables tables = gpu::make_channel_tables(scene, {});
+    const opencl::ChannelTables tables = opencl::make_channel_tables(scene, {});
     DeviceEvaluator device(program, scene, tables, 6);
     device.load(paths, round);
     device.batch(1, 6);
@@ -116,10 +118,10 @@ TEST(DeviceGasPlanck, RatioOverTheFloatRange) {
 TEST(DeviceGasTables, RowsOfLinesKeepTheirKnots) {
   std::mt19937 random(32);
   FlatScene scene = make_device_scene(7, Layout::kRegular, random);
-  const gpu::ChannelTables before = gpu::make_channel_tables(scene, {});
+  const opencl::ChannelTables before = opencl::make_channel_tables(scene, {});
   add_gas(scene, random);
   scene.features.plume = false;
-  const gpu::ChannelTables tables = gpu::make_channel_tables(scene, {});
+  const opencl::ChannelTables tables = opencl::make_channel_tables(scene, {});
   EXPECT_EQ(before.layout.lambda_row, KB_NONE);
   EXPECT_EQ(tables.layout.lambda_row, KB_NONE);
   const std::size_t row = scene.spectra.size() - 4;

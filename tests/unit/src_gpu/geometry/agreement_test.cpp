@@ -9,6 +9,8 @@
 #include "tests/unit/src_gpu/geometry/ray_tester.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr std::size_t kRays = 1u << 18;

@@ -11,8 +11,8 @@
 namespace kiloband::test {
 namespace {
 
-using gpu::build_bvh;
-using gpu::Bvh;
+using opencl::build_bvh;
+using opencl::Bvh;
 
 Mesh triangle_soup(std::size_t count, float size, uint32_t seed) {
   std::mt19937 random(seed);

@@ -10,6 +10,8 @@
 #include "tests/unit/src_gpu/geometry/ray_tester.hpp"
 
 namespace kiloband::test {
+
+using namespace cpu;
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();

@@ -179,7 +179,7 @@ glm::vec3 random_direction(std::mt19937& random) {
 }
 
 RayTester::RayTester(const FlatScene& scene, uint32_t stack)
-    : bvh_(gpu::build_bvh(scene, 2)),
+    : bvh_(opencl::build_bvh(scene, 2)),
       probe_(kKernels, defines(scene, stack > 0 ? stack : bvh_.stack_entries())),
       nodes_(probe_.upload(bvh_.nodes)),
       primitives_(probe_.upload(bvh_.primitives)),

@@ -50,10 +50,10 @@ class RayTester {
   std::vector<uint32_t> any(const std::vector<KbRay>& rays);
   /// KB_FAULT_* of all queries so far.
   uint32_t faults();
-  const gpu::Bvh& bvh() const { return bvh_; }
+  const opencl::Bvh& bvh() const { return bvh_; }
 
  private:
-  gpu::Bvh bvh_;
+  opencl::Bvh bvh_;
   OpenclProbe probe_;
   cl::Buffer nodes_, primitives_, shapes_, faults_;
 };
