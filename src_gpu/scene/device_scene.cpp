@@ -41,36 +41,11 @@ DeviceBuffer<float> upload_texel_values(DeviceMemory& memory, const FlatScene& s
 
 std::vector<std::string> scene_defines(const SceneFeatures& f, bool specialised) {
   if (!specialised) return {};
-  const std::pair<const char*, bool> features[] = {
-      {"DIFFUSE", f.diffuse},
-      {"CONDUCTOR", f.conductor},
-      {"ROUGH_CONDUCTOR", f.rough_conductor},
-      {"DIELECTRIC", f.dielectric},
-      {"ROUGH_DIELECTRIC", f.rough_dielectric},
-      {"PLASTIC", f.plastic},
-      {"ROUGH_PLASTIC", f.rough_plastic},
-      {"TWO_SIDED", f.two_sided},
-      {"MASK", f.mask},
-      {"BLEND", f.blend},
-      {"DISPERSION", f.dispersion},
-      {"BITMAP", f.bitmap},
-      {"CHECKERBOARD", f.checkerboard},
-      {"SPECTRAL_TEXTURE", f.spectral_texture},
-      {"AREA_LIGHT", f.area_light},
-      {"CONSTANT_LIGHT", f.constant_light},
-      {"ENVMAP_LIGHT", f.envmap_light},
-      {"DELTA_LIGHT", f.delta_light},
-      {"ANALYTIC_SHAPES", f.analytic_shapes},
-      {"THERMAL", f.thermal},
-      {"COMPENSATION", f.compensation},
-      {"TEMPERATURE_FIELD", f.temperature_field},
-      {"GAS", f.gas},
-      {"PLUME", f.plume},
-  };
   std::vector<std::string> defines{"KB_SPECIALISED"};
-  for (const auto& [name, present] : features) {
-    defines.push_back(std::string("KB_HAS_") + name + (present ? "=1" : "=0"));
-  }
+#define KB_ADD_DEFINE(macro, member, name) \
+  defines.push_back(std::string("KB_HAS_" #macro "=") + (f.member ? "1" : "0"));
+  KB_SCENE_FEATURES(KB_ADD_DEFINE)
+#undef KB_ADD_DEFINE
   return defines;
 }
 

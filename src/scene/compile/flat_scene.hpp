@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/compile/scene_features.hpp"
 #include "scene/description/description.hpp"
 #include "shared/pipeline.h"
 #include "shared/records.h"
@@ -16,25 +17,6 @@
 #include "spectral/spectrum.hpp"
 
 namespace kiloband {
-
-/// What the scene needs. Backends are specialised for it; what is false costs nothing.
-struct SceneFeatures {
-  bool diffuse = false, conductor = false, rough_conductor = false, dielectric = false,
-       rough_dielectric = false;
-  bool plastic = false, rough_plastic = false, two_sided = false, mask = false, blend = false;
-  bool dispersion = false;
-  bool bitmap = false, checkerboard = false, spectral_texture = false;
-  bool area_light = false, constant_light = false, envmap_light = false, delta_light = false;
-  bool analytic_shapes = false;
-  bool thermal = false;            // surfaces emit by Kirchhoff's law
-  bool compensation = false;       // rough ones among them
-  bool temperature_field = false;  // and their temperature depends on the place
-  bool gas = false;                // media or null boundaries
-  bool plume = false;              // media that vary in space
-
-  /// Names of the features that are present, for `info` and the statistics.
-  std::vector<std::string> names() const;
-};
 
 /// One row of the spectrum table.
 struct SpectrumRow {

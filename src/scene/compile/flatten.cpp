@@ -48,34 +48,11 @@ std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, co
 }
 
 std::vector<std::string> SceneFeatures::names() const {
-  const std::pair<const char*, bool> all[] = {{"diffuse", diffuse},
-                                              {"conductor", conductor},
-                                              {"roughconductor", rough_conductor},
-                                              {"dielectric", dielectric},
-                                              {"roughdielectric", rough_dielectric},
-                                              {"plastic", plastic},
-                                              {"roughplastic", rough_plastic},
-                                              {"twosided", two_sided},
-                                              {"mask", mask},
-                                              {"blend", blend},
-                                              {"dispersion", dispersion},
-                                              {"bitmap", bitmap},
-                                              {"checkerboard", checkerboard},
-                                              {"spectral texture", spectral_texture},
-                                              {"area light", area_light},
-                                              {"constant environment", constant_light},
-                                              {"environment map", envmap_light},
-                                              {"delta light", delta_light},
-                                              {"analytic shapes", analytic_shapes},
-                                              {"thermal emission", thermal},
-                                              {"energy compensation", compensation},
-                                              {"temperature field", temperature_field},
-                                              {"gas", gas},
-                                              {"plume", plume}};
   std::vector<std::string> present;
-  for (const auto& [name, is_present] : all) {
-    if (is_present) present.emplace_back(name);
-  }
+#define KB_ADD_NAME(macro, member, name) \
+  if (member) present.emplace_back(name);
+  KB_SCENE_FEATURES(KB_ADD_NAME)
+#undef KB_ADD_NAME
   return present;
 }
 
