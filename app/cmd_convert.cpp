@@ -57,7 +57,7 @@ int convert(const ConvertOptions& options) {
   const CubeInfo info = open_cube(options.in)->info();
   check_holds_radiances(options.in, info);
   CubeSelection selection = selection_of(options, info);
-  if (to_lower(out.extension().string()) != ".csv") {
+  if (lowered_extension(out) != ".csv") {
     if (options.places.any())
       throw InputError("--pixel, --region and --signature write CSV: the output must end in .csv");
     convert_cube(options.in, out, selection, sink);

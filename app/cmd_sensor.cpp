@@ -30,7 +30,7 @@ std::vector<NamedResponse> load_responses(const std::vector<std::string>& names,
   std::vector<NamedResponse> responses;
   for (const std::string& name : names) {
     std::error_code unknown;
-    const bool built_in = to_lower(name) == "xyz" && !std::filesystem::exists(name, unknown);
+    const bool built_in = lowered(name) == "xyz" && !std::filesystem::exists(name, unknown);
     for (auto& response : built_in ? xyz_responses() : read_response_file(name, sink))
       responses.push_back(std::move(response));
   }
@@ -38,7 +38,7 @@ std::vector<NamedResponse> load_responses(const std::vector<std::string>& names,
 }
 
 bool is_table(const std::string& file) {
-  return to_lower(std::filesystem::path(file).extension().string()) == ".csv";
+  return lowered_extension(file) == ".csv";
 }
 
 void check_options(const SensorOptions& o) {
@@ -58,7 +58,7 @@ void check_options(const SensorOptions& o) {
     throw InputError("CSV output needs --pixel X,Y, --region X,Y,WIDTH,HEIGHT or --signature");
   if (!table && o.places.any())
     throw InputError("--pixel, --region and --signature write CSV: an output must end in .csv");
-  if (o.png && to_lower(std::filesystem::path(*o.png).extension().string()) != ".png")
+  if (o.png && lowered_extension(*o.png) != ".png")
     throw InputError(fmt::format("--png {}: must end in .png", *o.png));
 }
 

@@ -15,10 +15,6 @@
 namespace kiloband {
 namespace {
 
-std::string extension_of(const std::filesystem::path& file) {
-  return to_lower(file.extension().string());
-}
-
 std::filesystem::path plain_name(const std::filesystem::path& file) {
   return std::filesystem::absolute(file).lexically_normal();
 }
@@ -52,7 +48,7 @@ class Claims {
 /// All files of a cube: a writer of ENVI cubes also removes the parts that an earlier cube has left.
 void claim_cube(Claims& claims, const std::filesystem::path& cube) {
   claims.claim("-o", cube);
-  if (extension_of(cube) != ".hdr") return;
+  if (lowered_extension(cube) != ".hdr") return;
   for (const char* end : {".img", ".var.hdr", ".var.img", ".aux.hdr", ".aux.img"})
     claims.claim("-o", std::filesystem::path(cube).replace_extension(end));
 }
@@ -71,7 +67,7 @@ void check_output_files(const OutputFiles& files) {
   for (const auto& [option, file] : others) claims.claim(option, file);
   if (files.checkpoint) claims.claim("--checkpoint", *files.checkpoint);
   for (const auto& cube : files.cubes) check_cube_name(cube);
-  if (files.preview && extension_of(*files.preview) != ".png") {
+  if (files.preview && lowered_extension(*files.preview) != ".png") {
     throw InputError(fmt::format("--preview {}: must end in .png", files.preview->string()));
   }
   for (const auto& [option, file] : others) check_writable(file);

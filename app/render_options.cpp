@@ -63,7 +63,7 @@ void check_scene_file(const std::filesystem::path& file) {
   static const std::set<std::string> kImages{".exr", ".hdr",  ".img", ".png",
                                              ".jpg", ".jpeg", ".tif", ".tiff"};
   std::error_code ignored;  // a file that is not there is reported as such by the reader
-  if (!kImages.contains(to_lower(file.extension().string()))) return;
+  if (!kImages.contains(lowered_extension(file))) return;
   if (!std::filesystem::is_regular_file(file, ignored)) return;
   throw InputError(
       file.string() +

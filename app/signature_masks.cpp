@@ -35,7 +35,7 @@ std::vector<std::pair<std::string, uint32_t>> named_objects(const CubeInfo& info
   const auto found = info.metadata.find("objects");
   if (found == info.metadata.end()) return objects;
   for (const std::string_view part : split(found->second, ',')) {
-    const std::string_view entry = trim(part);
+    const std::string_view entry = trimmed(part);
     const auto blank = entry.find(' ');
     const auto number = parse_unsigned(entry.substr(0, blank));
     if (number && blank != std::string_view::npos)
@@ -53,12 +53,12 @@ std::set<uint32_t> object_ids(const CubeInfo& info, const std::string& text) {
   for (const std::string_view word : split(text, ',')) {
     bool found = false;
     for (const auto& [name, id] : names)
-      if (name == trim(word)) ids.insert(id), found = true;
+      if (name == trimmed(word)) ids.insert(id), found = true;
     if (found) continue;
-    const auto number = parse_unsigned(trim(word));
+    const auto number = parse_unsigned(trimmed(word));
     if (!number || *number > UINT32_MAX)
-      throw InputError(fmt::format("--object {}: no object '{}'{}", text, trim(word),
-                                   suggestion(std::string(trim(word)), known)));
+      throw InputError(fmt::format("--object {}: no object '{}'{}", text, trimmed(word),
+                                   suggestion(std::string(trimmed(word)), known)));
     ids.insert(static_cast<uint32_t>(*number));
   }
   return ids;

@@ -29,14 +29,14 @@ void check_holds_radiances(const std::filesystem::path& file, const CubeInfo& in
 }
 
 void check_cube_name(const std::filesystem::path& file) {
-  const std::string extension = to_lower(file.extension().string());
+  const std::string extension = lowered_extension(file);
   if (extension != ".exr" && extension != ".hdr") refuse_name(file);
 }
 
 std::unique_ptr<CubeWriter> create_cube_writer_from(const std::filesystem::path& file, const CubeInfo& info,
                                                     uint32_t rows_per_strip, Quantity given) {
   check_cube_info(info, file.string());
-  const std::string extension = to_lower(file.extension().string());
+  const std::string extension = lowered_extension(file);
   if (extension == ".exr") return create_exr_writer(file, info, rows_per_strip, given);
   if (extension == ".hdr") return create_envi_writer(file, info, rows_per_strip, given);
   refuse_name(file);
@@ -48,7 +48,7 @@ std::unique_ptr<CubeWriter> create_cube_writer(const std::filesystem::path& file
 }
 
 std::unique_ptr<CubeReader> open_cube(const std::filesystem::path& file, const DiagnosticSink& sink) {
-  const std::string extension = to_lower(file.extension().string());
+  const std::string extension = lowered_extension(file);
   if (extension == ".exr") return open_exr_cube(file, sink);
   if (extension == ".hdr" || extension == ".img") return open_envi_cube(file, sink);
   throw InputError("'" + file.string() +

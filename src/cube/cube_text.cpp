@@ -8,9 +8,6 @@
 namespace kiloband {
 namespace {
 
-/// Line ends count as blanks: headers come from every system.
-constexpr std::string_view kBlanks = " \t\r\n";
-
 bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
 }
@@ -37,7 +34,7 @@ std::string format_short(double value) {
 }
 
 std::optional<double> parse_number(std::string_view text) {
-  text = trim(text);
+  text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -46,24 +43,11 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 std::optional<uint64_t> parse_unsigned(std::string_view text) {
-  text = trim(text);
+  text = trimmed(text);
   uint64_t value = 0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
   if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-std::string_view trim(std::string_view text) {
-  const auto begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
-
-std::string to_lower(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {

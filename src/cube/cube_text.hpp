@@ -18,8 +18,6 @@ std::string format_short(double value);
 std::optional<double> parse_number(std::string_view text);
 std::optional<uint64_t> parse_unsigned(std::string_view text);
 
-std::string_view trim(std::string_view text);
-std::string to_lower(std::string_view text);
 /// The parts look into `text`, which must outlive them: not a temporary string.
 std::vector<std::string_view> split(std::string_view text, char separator);
 template <std::same_as<std::string> Temporary>

@@ -31,25 +31,25 @@ EnviHeader::EnviHeader(const std::filesystem::path& file, std::string_view text)
   };
   // Editors on some systems put a byte-order mark in front.
   if (text.starts_with("\xEF\xBB\xBF")) position = 3;
-  if (trim(next_line(text, position, line)) != "ENVI")
+  if (trimmed(next_line(text, position, line)) != "ENVI")
     fail(1, "not an ENVI header: the first line must be 'ENVI'");
   while (position < text.size()) {
     const std::size_t begin = position;
-    const std::string_view content = trim(next_line(text, position, line));
+    const std::string_view content = trimmed(next_line(text, position, line));
     if (content.empty() || content.front() == ';') continue;
     const std::size_t equals = content.find('=');
     if (equals == std::string_view::npos) fail(line, "'" + printable(content) + "': expected 'key = value'");
     Entry entry;
     entry.line = line;
-    entry.key = trim(content.substr(0, equals));
-    entry.lower = to_lower(entry.key);
-    const std::string_view value = trim(content.substr(equals + 1));
+    entry.key = trimmed(content.substr(0, equals));
+    entry.lower = lowered(entry.key);
+    const std::string_view value = trimmed(content.substr(equals + 1));
     entry.list = value.starts_with('{');
     if (entry.list) {  // up to the closing brace, perhaps many lines below; the rest of its line is dropped
       const std::size_t open = text.find('{', text.find('=', begin));
       const std::size_t close = text.find('}', open);
       if (close == std::string_view::npos) fail(entry.line, printable(entry.key) + ": '{' without '}'");
-      entry.value = trim(text.substr(open + 1, close - open - 1));
+      entry.value = trimmed(text.substr(open + 1, close - open - 1));
       line = entry.line + static_cast<int>(std::count(text.begin() + begin, text.begin() + close, '\n'));
       position = std::min(text.find('\n', close), text.size()) + 1;
     } else {
@@ -88,7 +88,7 @@ std::vector<std::string> EnviHeader::texts(std::string_view key, std::size_t siz
     throw InputError(where(*entry) + ": " + std::to_string(parts.size()) + " entries for " +
                      std::to_string(size) + " bands");
   std::vector<std::string> texts;
-  for (const std::string_view part : parts) texts.emplace_back(trim(part));
+  for (const std::string_view part : parts) texts.emplace_back(trimmed(part));
   return texts;
 }
 
@@ -138,7 +138,7 @@ EnviStorage read_envi_storage(const EnviHeader& header) {
                      "': must be 1, 2, 3, 4, 5, 12, 13, 14 or 15 (real numbers)");
   const EnviHeader::Entry* interleave = header.find("interleave");
   if (!interleave) throw InputError(header.file().string() + ": 'interleave' is missing");
-  const std::string kind = to_lower(interleave->value);
+  const std::string kind = lowered(interleave->value);
   if (kind != "bsq" && kind != "bil" && kind != "bip")
     throw InputError(header.where(*interleave) + " '" + printable(interleave->value) +
                      "': must be bsq, bil or bip");

@@ -13,7 +13,7 @@ namespace {
 double wavelength_unit(const EnviHeader& header, const std::vector<double>& wavelengths,
                        const DiagnosticSink& sink) {
   const EnviHeader::Entry* entry = header.find("wavelength units");
-  const std::string unit = entry ? to_lower(entry->value) : "unknown";
+  const std::string unit = entry ? lowered(entry->value) : "unknown";
   if (unit == "nanometers" || unit == "nanometer" || unit == "nanometres" || unit == "nm") return 1;
   if (unit == "micrometers" || unit == "micrometer" || unit == "micrometres" || unit == "microns" ||
       unit == "um" || unit == "\xC2\xB5m" || unit == "\xCE\xBCm")

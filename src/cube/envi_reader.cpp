@@ -148,7 +148,7 @@ class EnviPixels {
 
 /// X.img -> X.hdr or X.img.hdr; a header is taken as it is.
 std::filesystem::path find_header(const std::filesystem::path& file) {
-  if (to_lower(file.extension().string()) == ".hdr") return file;
+  if (lowered_extension(file) == ".hdr") return file;
   const std::filesystem::path replaced = envi_stem(file) += ".hdr",
                               appended = std::filesystem::path(file) += ".hdr";
   std::error_code unknown;  // a name that is too long is no file

@@ -83,7 +83,7 @@ void add_bands(std::string& text, const CubeInfo& info) {
 /// Entries whose names are taken (or begin with the prefix themselves) get the prefix.
 void add_metadata(std::string& text, const CubeInfo& info) {
   for (const auto& [key, value] : info.metadata) {
-    const bool taken = key.starts_with(kEnviMetaPrefix) || is_reserved_envi_key(to_lower(key));
+    const bool taken = key.starts_with(kEnviMetaPrefix) || is_reserved_envi_key(lowered(key));
     add(text, (taken ? std::string(kEnviMetaPrefix) : "") + encode_text(key, "={};"),
         encode_text(value, "{}"));
   }

@@ -132,10 +132,10 @@ std::string sensitivity_text(const Channel& channel) {
 std::optional<Sensitivity> parse_sensitivity(std::string_view text) {
   std::vector<std::pair<double, double>> points;  // nm, response
   for (const std::string_view part : split(text, ';')) {
-    if (trim(part).empty()) continue;
+    if (trimmed(part).empty()) continue;
     const std::size_t colon = part.find(':');
     if (colon == std::string_view::npos) return std::nullopt;
-    const auto wavelength = parse_with_unit(trim(part.substr(0, colon)), '.');
+    const auto wavelength = parse_with_unit(trimmed(part.substr(0, colon)), '.');
     const auto response = parse_number(part.substr(colon + 1));
     if (!wavelength || !response) return std::nullopt;
     points.emplace_back(wavelength->nm, *response);

@@ -59,7 +59,7 @@ void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity q
 
 void convert_cube(const std::filesystem::path& in, const std::filesystem::path& out,
                   const CubeSelection& selection, const DiagnosticSink& sink) {
-  const bool exr = to_lower(out.extension().string()) == ".exr";
+  const bool exr = lowered_extension(out) == ".exr";
   const Quantity quantity = selection.quantity.value_or(exr ? Quantity::kDensity : Quantity::kIntegral);
   CubeSelection part = selection;
   part.quantity.reset();  // converted once, by the writer

@@ -1,5 +1,4 @@
 // Wavelengths for bands that have names only (convert.hpp).
-#include <algorithm>
 #include <set>
 
 #include "cube/cube_layout.hpp"
@@ -12,11 +11,11 @@ namespace {
 /// "red=600-700": the last '=' separates, so that names may contain it.
 Channel parse_entry(std::string_view entry) {
   const std::size_t equals = entry.rfind('=');
-  const std::string name(trim(entry.substr(0, equals)));
+  const std::string name(trimmed(entry.substr(0, equals)));
   if (equals == std::string_view::npos || name.empty())
     throw InputError("wavelengths '" + printable(entry) +
                      "': must be NAME=MIN-MAX in nm, such as red=600-700");
-  const ChannelList one = parse_channels(trim(entry.substr(equals + 1)));
+  const ChannelList one = parse_channels(trimmed(entry.substr(equals + 1)));
   if (one.size() != 1)
     throw InputError("wavelengths '" + printable(entry) + "': must be one interval such as 600-700");
   return {one[0].min_nm, one[0].max_nm, name};
@@ -47,8 +46,8 @@ ChannelList parse_band_wavelengths(std::string_view text) {
   std::set<std::string> names;
   for (const std::string_view line : split(text, '\n')) {
     for (const std::string_view entry : split(line.substr(0, line.find('#')), ',')) {
-      if (trim(entry).empty()) continue;
-      named.push_back(parse_entry(trim(entry)));
+      if (trimmed(entry).empty()) continue;
+      named.push_back(parse_entry(trimmed(entry)));
       if (!names.insert(named.back().name).second)
         throw InputError("wavelengths of band '" + printable(named.back().name) + "': given twice");
     }

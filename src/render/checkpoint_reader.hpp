@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/word_hash.hpp"
+#include "base/hash.hpp"
 #include "render/checkpoint.hpp"
 #include "render/checkpoint_source.hpp"
 

@@ -24,7 +24,7 @@ uint32_t rows_per_write(uint32_t at_most, std::size_t row_bytes) {
 }
 
 bool is_exr(const std::filesystem::path& file) {
-  return to_lower(file.extension().string()) == ".exr";
+  return lowered_extension(file) == ".exr";
 }
 
 }  // namespace

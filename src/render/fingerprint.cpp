@@ -1,6 +1,6 @@
 #include "render/fingerprint.hpp"
 
-#include "base/word_hash.hpp"
+#include "base/hash.hpp"
 #include "spectral/channel_knots.hpp"
 
 namespace kiloband {

@@ -14,6 +14,8 @@
 namespace kiloband {
 namespace {
 
+constexpr std::string_view kBlanks = " \t\r\v\f";  // line ends are none: a list is one line
+
 // From gamma rays to radio waves, and Planck's law stays a number.
 constexpr double kMinWavelengthNm = 1e-3, kMaxWavelengthNm = 1e9;
 
@@ -21,14 +23,15 @@ constexpr double kMinWavelengthNm = 1e-3, kMaxWavelengthNm = 1e9;
 void check_interval(const std::string& where, double min_nm, double max_nm) {
   for (const double edge_nm : {min_nm, max_nm})
     if (!std::isfinite(edge_nm) || edge_nm <= 0)
-      throw InputError(where + ": wavelength " + to_text(edge_nm) + " nm: must be finite and positive");
+      throw InputError(where + ": wavelength " + format_number(edge_nm) + " nm: must be finite and positive");
   for (const double edge_nm : {min_nm, max_nm})
     if (edge_nm < kMinWavelengthNm || edge_nm > kMaxWavelengthNm)
-      throw InputError(where + ": wavelength " + to_text(edge_nm) + " nm: must be from 0.001 to 1e+09 nm");
+      throw InputError(where + ": wavelength " + format_number(edge_nm) +
+                       " nm: must be from 0.001 to 1e+09 nm");
   if (min_nm == max_nm) throw InputError(where + ": the interval is empty");
   if (min_nm > max_nm)
-    throw InputError(where + ": the interval is reversed: " + to_text(min_nm) + " nm is above " +
-                     to_text(max_nm) + " nm");
+    throw InputError(where + ": the interval is reversed: " + format_number(min_nm) + " nm is above " +
+                     format_number(max_nm) + " nm");
 }
 
 void check_count(const std::string& where, std::size_t count) {
@@ -60,8 +63,8 @@ std::size_t parse_count(const std::string& where, std::string_view text) {
 ChannelList parse_range(const std::string& where, std::string_view text) {
   std::vector<std::string_view> parts;
   for (std::size_t colon; (colon = text.find(':')) != std::string_view::npos; text.remove_prefix(colon + 1))
-    parts.push_back(trimmed(text.substr(0, colon)));
-  parts.push_back(trimmed(text));
+    parts.push_back(trimmed(text.substr(0, colon), kBlanks));
+  parts.push_back(trimmed(text, kBlanks));
   if (parts.size() != 3) throw InputError(where + ": must be FIRST:LAST:COUNT or MIN-MAX, MIN-MAX, ...");
   const double first_nm = edge_number(where, parts[0]);
   const double last_nm = edge_number(where, parts[1]);
@@ -93,8 +96,8 @@ Channel parse_interval(const std::string& where, std::string_view item) {
   const std::size_t dash = find_dash(item);
   if (dash == std::string_view::npos)
     throw InputError(where + ": " + quote_text(item) + ": must be FIRST:LAST:COUNT or MIN-MAX, MIN-MAX, ...");
-  const double min_nm = edge_number(where, trimmed(item.substr(0, dash)));
-  const double max_nm = edge_number(where, trimmed(item.substr(dash + 1)));
+  const double min_nm = edge_number(where, trimmed(item.substr(0, dash), kBlanks));
+  const double max_nm = edge_number(where, trimmed(item.substr(dash + 1), kBlanks));
   check_interval(where + ": " + quote_text(item), min_nm, max_nm);
   return {min_nm, max_nm, {}};
 }
@@ -119,13 +122,13 @@ Channel parse_line(const std::string& where, const std::vector<std::string_view>
 
 ChannelList parse_channels(std::string_view text) {
   const std::string where = "bands " + quote_text(text);
-  if (trimmed(text).empty()) throw InputError(where + ": no channels");
+  if (trimmed(text, kBlanks).empty()) throw InputError(where + ": no channels");
   if (text.find(':') != std::string_view::npos) return parse_range(where, text);
   check_count(where, 1 + static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')));
   ChannelList channels;
   for (std::size_t comma = 0; comma != std::string_view::npos;) {
     comma = text.find(',');
-    channels.push_back(parse_interval(where, trimmed(text.substr(0, comma))));
+    channels.push_back(parse_interval(where, trimmed(text.substr(0, comma), kBlanks)));
     if (comma != std::string_view::npos) text.remove_prefix(comma + 1);
   }
   return channels;
@@ -141,7 +144,7 @@ ChannelList read_channels_file(const std::filesystem::path& file) {
     const std::size_t hash = line.find('#');
     if (hash != std::string_view::npos && first)
       unit = find_unit_in_comment(line.substr(hash + 1)).value_or(unit);
-    line = trimmed(line.substr(0, hash));
+    line = trimmed(line.substr(0, hash), kBlanks);
     if (line.empty()) continue;
     const std::vector<std::string_view> fields = split_fields(line, 4);
     const bool header = first && is_header(fields);

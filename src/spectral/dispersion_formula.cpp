@@ -100,16 +100,16 @@ Spectrum tabulate_formula(const std::string& where, int number, const std::vecto
   const auto index = [&](double lambda_um) {
     const double n = dispersion_formula(number, coefficients, lambda_um);
     if (!std::isfinite(n) || n <= 0)
-      throw InputError(where + ": formula " + std::to_string(number) + " gives n = " + to_text(n) + " at " +
-                       to_text(lambda_um) + " um: must be positive and finite");
+      throw InputError(where + ": formula " + std::to_string(number) + " gives n = " + format_number(n) +
+                       " at " + format_number(lambda_um) + " um: must be positive and finite");
     if (n > kLargestIndex)
-      throw InputError(where + ": formula " + std::to_string(number) + " gives n = " + to_text(n) + " at " +
-                       to_text(lambda_um) + " um: must be <= " + to_text(kLargestIndex));
+      throw InputError(where + ": formula " + std::to_string(number) + " gives n = " + format_number(n) +
+                       " at " + format_number(lambda_um) + " um: must be <= " + format_number(kLargestIndex));
     return n;
   };
   return tabulate_function(index, min_um, max_um, {.absolute = 1e-6}, [&](double lambda_um) {
     throw InputError(where + ": formula " + std::to_string(number) + " varies too fast at " +
-                     to_text(lambda_um) + " um");
+                     format_number(lambda_um) + " um");
   });
 }
 

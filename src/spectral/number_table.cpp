@@ -170,9 +170,9 @@ WavelengthAxis wavelength_axis(const std::filesystem::path& file, const std::vec
       throw InputError(at_line(file, lines[i], what + ": must be finite and positive"));
     if (i > 0 && raw[i] == raw[i - 1]) throw InputError(at_line(file, lines[i], what + " is repeated"));
     if (i > 0 && (raw[i] < raw[i - 1]) != falling)
-      throw InputError(
-          at_line(file, lines[i],
-                  what + " after " + to_text(raw[i - 1]) + " " + unit_name(unit) + ": the order changes"));
+      throw InputError(at_line(
+          file, lines[i],
+          what + " after " + format_number(raw[i - 1]) + " " + unit_name(unit) + ": the order changes"));
   }
   WavelengthAxis axis;
   axis.reversed = falling != (unit == WavelengthUnit::kWavenumber);
@@ -181,7 +181,7 @@ WavelengthAxis wavelength_axis(const std::filesystem::path& file, const std::vec
   // Conversion rounds: two neighbours may have become one, and a denormal wavenumber infinite.
   for (std::size_t i = 0; i < axis.lambda_nm.size(); ++i)
     if (!std::isfinite(axis.lambda_nm[i]) || (i > 0 && axis.lambda_nm[i - 1] >= axis.lambda_nm[i]))
-      throw InputError(file.string() + ": wavelength " + to_text(axis.lambda_nm[i]) +
+      throw InputError(file.string() + ": wavelength " + format_number(axis.lambda_nm[i]) +
                        " nm: not finite or not distinct");
   return axis;
 }
@@ -197,7 +197,7 @@ std::vector<double> finite_column(const NumberTable& table, std::size_t column) 
     values[row] = table.at(row, column);
     if (!std::isfinite(values[row]))
       throw InputError(
-          at_line(table.file, table.lines[row], "value " + to_text(values[row]) + ": must be finite"));
+          at_line(table.file, table.lines[row], "value " + format_number(values[row]) + ": must be finite"));
   }
   return values;
 }

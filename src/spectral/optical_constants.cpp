@@ -31,8 +31,8 @@ void require_physical(const std::filesystem::path& file, const Spectrum& spectru
   for (std::size_t i = 0; i < spectrum.knots_nm().size(); ++i) {
     const double value = spectrum.knot_values()[i];
     if (value < 0 || (is_n && value == 0))
-      throw InputError(file.string() + ": " + what + " " + to_text(value) + " at " +
-                       to_text(spectrum.knots_nm()[i]) + " nm: must be " +
+      throw InputError(file.string() + ": " + what + " " + format_number(value) + " at " +
+                       format_number(spectrum.knots_nm()[i]) + " nm: must be " +
                        (is_n ? "positive" : "at least 0"));
   }
 }
@@ -156,7 +156,7 @@ Found read_text(const std::filesystem::path& file, const std::string& text, cons
 }  // namespace
 
 OpticalConstants read_optical_constants(const std::filesystem::path& file, const DiagnosticSink& sink) {
-  const std::string extension = lowered(file.extension().string());
+  const std::string extension = lowered_extension(file);
   const bool yaml = extension == ".yml" || extension == ".yaml";
   const std::string text = read_text_file(file, yaml ? kMaxYamlBytes : kMaxTextBytes);
   Found found;

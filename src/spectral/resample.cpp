@@ -1,6 +1,7 @@
 // Regular tables of spectra.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "base/error.hpp"
@@ -154,11 +155,18 @@ RegularTable refined(const Request& request) {
   }
   if (common > 0 && (table = sampled(request, common)).max_error <= request.tolerance) return table;
   throw InputError("spectrum: " + std::to_string(request.max_entries) + " entries over " +
-                   to_text(request.min_nm) + " to " + to_text(request.max_nm) + " nm reach an error of " +
-                   to_text(table.max_error) + ": must be at most " + to_text(request.tolerance));
+                   format_number(request.min_nm) + " to " + format_number(request.max_nm) +
+                   " nm reach an error of " + format_number(table.max_error) + ": must be at most " +
+                   format_number(request.tolerance));
 }
 
 }  // namespace
+
+Spectrum::Range RegularTable::support() const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (extrapolate) return {-kInfinity, kInfinity};
+  return {min_nm, min_nm + step_nm * static_cast<double>(values.size() - 1) * (1 + 1e-11)};
+}
 
 double RegularTable::operator()(double lambda_nm) const {
   const double position = (lambda_nm - min_nm) / step_nm;

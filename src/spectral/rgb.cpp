@@ -17,7 +17,7 @@ const char* const kComponents[3] = {"red", "green", "blue"};
 void require_components(const Rgb& rgb, double largest, const char* rule) {
   for (int k = 0; k < 3; ++k)
     if (!std::isfinite(rgb[k]) || rgb[k] < 0 || rgb[k] > largest)
-      throw InputError(std::string("rgb: ") + kComponents[k] + " " + to_text(rgb[k]) + ": " + rule);
+      throw InputError(std::string("rgb: ") + kComponents[k] + " " + format_number(rgb[k]) + ": " + rule);
 }
 
 /// Y of a linear sRGB colour: the grey that a search starts from.

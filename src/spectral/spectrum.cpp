@@ -12,12 +12,14 @@ namespace kiloband {
 namespace {
 
 void require_finite(const char* what, double value) {
-  if (!std::isfinite(value)) throw InputError(std::string(what) + " " + to_text(value) + ": must be finite");
+  if (!std::isfinite(value))
+    throw InputError(std::string(what) + " " + format_number(value) + ": must be finite");
 }
 
 void require_interval(double min_nm, double max_nm) {
   if (!std::isfinite(min_nm) || !std::isfinite(max_nm) || min_nm > max_nm)
-    throw std::logic_error("Spectrum: interval [" + to_text(min_nm) + ", " + to_text(max_nm) + "] nm");
+    throw std::logic_error("Spectrum: interval [" + format_number(min_nm) + ", " + format_number(max_nm) +
+                           "] nm");
 }
 
 void check_table(const std::vector<double>& lambda_nm, const std::vector<double>& values) {
@@ -28,11 +30,11 @@ void check_table(const std::vector<double>& lambda_nm, const std::vector<double>
   for (std::size_t i = 0; i < lambda_nm.size(); ++i) {
     require_finite("spectrum: wavelength", lambda_nm[i]);
     if (!std::isfinite(values[i]))
-      throw InputError("spectrum: value " + to_text(values[i]) + " at " + to_text(lambda_nm[i]) +
+      throw InputError("spectrum: value " + format_number(values[i]) + " at " + format_number(lambda_nm[i]) +
                        " nm: must be finite");
     if (i > 0 && !(lambda_nm[i - 1] < lambda_nm[i]))
-      throw InputError("spectrum: wavelength " + to_text(lambda_nm[i]) + " nm after " +
-                       to_text(lambda_nm[i - 1]) + " nm: must increase strictly");
+      throw InputError("spectrum: wavelength " + format_number(lambda_nm[i]) + " nm after " +
+                       format_number(lambda_nm[i - 1]) + " nm: must increase strictly");
   }
 }
 
@@ -84,11 +86,12 @@ Spectrum Spectrum::sigmoid(const std::array<double, 3>& c, double scale) {
 
 Spectrum Spectrum::planck(double temperature_k, double scale, std::optional<Range> range) {
   if (!std::isfinite(temperature_k) || temperature_k < 0)
-    throw InputError("planck: temperature " + to_text(temperature_k) + " K: must be finite and at least 0");
+    throw InputError("planck: temperature " + format_number(temperature_k) +
+                     " K: must be finite and at least 0");
   require_finite("planck: scale", scale);
   if (range &&
       !(std::isfinite(range->min_nm) && std::isfinite(range->max_nm) && range->min_nm < range->max_nm))
-    throw InputError("planck: range " + to_text(range->min_nm) + " to " + to_text(range->max_nm) +
+    throw InputError("planck: range " + format_number(range->min_nm) + " to " + format_number(range->max_nm) +
                      " nm: must increase");
   return Spectrum(std::make_shared<PlanckNode>(temperature_k, scale, range));
 }

@@ -81,6 +81,8 @@ struct RegularTable {
   double max_error = 0;  // bound of |table - spectrum| over the range that was asked for, absolute
 
   double operator()(double lambda_nm) const;
+  /// Where it can be other than 0, nm. The last entry's wavelength may round to a hair beyond it.
+  Spectrum::Range support() const;
 };
 
 struct ResampleOptions {

@@ -56,7 +56,7 @@ Spectrum read_ecostress(const std::filesystem::path& file, std::string_view text
   const NumberTable table =
       parse_number_table(file, text.substr(header.bytes), {2, 2, true}, std::max(header.lines, 1));
   if (header.count && *header.count != static_cast<double>(table.rows()))
-    throw InputError(file.string() + ": the header states " + to_text(*header.count) +
+    throw InputError(file.string() + ": the header states " + format_number(*header.count) +
                      " values, the file has " + std::to_string(table.rows()));
   const WavelengthAxis axis = wavelength_axis(file, first_column(table), table.lines, *unit);
   const ValueScale scale = scale_of_name(file.string(), header.y_units, kind, sink);
@@ -87,7 +87,7 @@ std::vector<std::pair<std::string, Spectrum>> modis_responses(const NumberTable&
     for (std::size_t column = 0; column < 4; ++column)
       if (!std::isfinite(table.at(row, column)))
         throw InputError(at_line(table.file, table.lines[row],
-                                 "value " + to_text(table.at(row, column)) + ": must be finite"));
+                                 "value " + format_number(table.at(row, column)) + ": must be finite"));
     Detector& detector = detectors[{table.at(row, 0), table.at(row, 1)}];
     detector.wavelength.push_back(table.at(row, 2));
     detector.response.push_back(table.at(row, 3));
@@ -100,7 +100,7 @@ std::vector<std::pair<std::string, Spectrum>> modis_responses(const NumberTable&
         wavelength_axis(table.file, detector.wavelength, detector.lines,
                         micrometres ? WavelengthUnit::kMicrometre : WavelengthUnit::kNanometre);
     if (axis.reversed) std::reverse(detector.response.begin(), detector.response.end());
-    result.emplace_back("band" + to_text(key.first) + "_detector" + to_text(key.second),
+    result.emplace_back("band" + format_number(key.first) + "_detector" + format_number(key.second),
                         Spectrum::tabulated(axis.lambda_nm, detector.response));
   }
   if (result.empty()) throw InputError(table.file.string() + ": no data");
@@ -113,8 +113,8 @@ void check_response(const std::filesystem::path& file, const std::string& name, 
   for (std::size_t i = 0; i < response.knots_nm().size(); ++i)
     if (std::abs(response.knot_values()[i]) > kLargest)
       throw InputError(file.string() + ": response " + quote_text(name) + " " +
-                       to_text(response.knot_values()[i]) + " at " + to_text(response.knots_nm()[i]) +
-                       " nm: must be from -1e+15 to 1e+15");
+                       format_number(response.knot_values()[i]) + " at " +
+                       format_number(response.knots_nm()[i]) + " nm: must be from -1e+15 to 1e+15");
 }
 
 /// Names of the responses: the header's, or the file's stem (numbered if there are several).

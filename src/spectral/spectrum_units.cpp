@@ -10,11 +10,6 @@
 namespace kiloband {
 namespace {
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-}
-
 /// Lower-case words without units of power; the ways to write micrometres and inverse centimetres made one.
 std::vector<std::string> words(std::string_view text) {
   std::string plain = lowered(without_power_units(text));
@@ -89,7 +84,7 @@ const char* unit_name(WavelengthUnit unit) {
 }
 
 std::string describe(double value, WavelengthUnit unit) {
-  return (unit == WavelengthUnit::kWavenumber ? "wavenumber " : "wavelength ") + to_text(value) + " " +
+  return (unit == WavelengthUnit::kWavenumber ? "wavenumber " : "wavelength ") + format_number(value) + " " +
          unit_name(unit);
 }
 

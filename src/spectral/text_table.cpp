@@ -1,6 +1,5 @@
 #include "spectral/text_table.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -71,19 +70,6 @@ bool LineReader::next(std::string_view& line) {
   return true;
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::string lowered(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
-
 std::vector<std::string_view> split_fields(std::string_view line, std::size_t max_fields) {
   std::vector<std::string_view> fields;
   const std::size_t first_separator = line.find_first_of(",;");
@@ -110,19 +96,6 @@ std::optional<double> to_number(std::string_view text) {
   if (error == std::errc::result_out_of_range) return out_of_range_value(text);
   if (error != std::errc{}) return std::nullopt;
   return value;
-}
-
-std::string quote_text(std::string_view text) {
-  constexpr std::size_t kMaxShown = 40;
-  std::string result = "'";
-  for (const char c : text.substr(0, kMaxShown)) result += (c >= ' ' && c <= '~') ? c : '?';
-  return result + (text.size() > kMaxShown ? "...'" : "'");
-}
-
-std::string to_text(double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return std::string(buffer, result.ptr);
 }
 
 std::string at_line(const std::filesystem::path& file, int line, const std::string& message) {

@@ -1,4 +1,4 @@
-// Text files of numbers: reading a file whole, walking over its lines, numbers without locale, safe quoting.
+// Text files of numbers: reading a file whole, walking over its lines, numbers without locale.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/text.hpp"
 
 namespace kiloband {
 
@@ -31,8 +33,6 @@ class LineReader {
   int line_number_ = 0;
 };
 
-std::string_view trimmed(std::string_view text);
-std::string lowered(std::string_view text);
 /// Fields between commas (or semicolons), blanks around them removed; without either, between blanks. A line
 /// with more than `max_fields` fields is cut there: what follows is in the last field.
 std::vector<std::string_view> split_fields(std::string_view line,
@@ -42,10 +42,6 @@ std::vector<std::string_view> split_fields(std::string_view line,
 /// otherwise. A number too large for a double is infinite, one too small is 0.
 std::optional<double> to_number(std::string_view text);
 
-/// The text in single quotes for a message: at most 40 bytes, bytes outside printable ASCII as '?'.
-std::string quote_text(std::string_view text);
-/// The shortest decimal text that reads back as the same double.
-std::string to_text(double value);
 /// "file:line: message".
 std::string at_line(const std::filesystem::path& file, int line, const std::string& message);
 

@@ -74,11 +74,6 @@ constexpr KnownUnit kUnits[] = {{"w", Dimension::kPower, 1},
 
 constexpr KnownUnit kMegawatt{"MW", Dimension::kPower, 1e6};
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-}
-
 }  // namespace
 
 std::string units_in_ascii(std::string_view text) {

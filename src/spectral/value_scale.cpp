@@ -157,7 +157,7 @@ void report_assumed_units(const NumberTable& table, bool wavelength_is_stated, c
   bool wavelength_is_open = !wavelength_is_stated;
   if (wavelength_is_open && largest < kSuspicious) {
     warn(sink, position,
-         "wavelengths up to " + to_text(largest) + " are read as nm: the file states no unit");
+         "wavelengths up to " + format_number(largest) + " are read as nm: the file states no unit");
     wavelength_is_open = false;
   }
   const bool value_is_open = !unit.empty() && !scale.is_stated;

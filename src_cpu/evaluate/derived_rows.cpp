@@ -1,22 +1,8 @@
 #include "src_cpu/evaluate/derived_rows.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace kiloband::cpu {
-namespace {
-
-/// Where a table can be other than 0, nm.
-Channel support(const RegularTable& table) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (table.extrapolate) return {-kInfinity, kInfinity, {}};
-  // The last entry's wavelength may round to a hair beyond it.
-  const double last_nm =
-      table.min_nm + table.step_nm * static_cast<double>(table.values.size() - 1) * (1 + 1e-11);
-  return {table.min_nm, last_nm, {}};
-}
-
-}  // namespace
 
 DerivedRows::DerivedRows(const FlatScene& scene, const DerivedChannels& derived,
                          const EvaluatorKernels& kernels, std::size_t film_offset)
@@ -37,7 +23,7 @@ DerivedRows::DerivedRows(const FlatScene& scene, const DerivedChannels& derived,
 
 DerivedRows::Row DerivedRows::make_row(const RegularTable& response) const {
   Row row;
-  const Channel range = support(response);
+  const Spectrum::Range range = response.support();
   const auto covers = [&](const Channel& c) { return c.max_nm >= range.min_nm && c.min_nm <= range.max_nm; };
   std::size_t first = scene_.channels.size(), end = 0;
   for (std::size_t k = 0; k < scene_.channels.size(); ++k) {

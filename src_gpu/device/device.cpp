@@ -1,11 +1,11 @@
 #include "src_gpu/device/device.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdlib>
 #include <thread>
 
+#include "base/text.hpp"
 #include "base/threads.hpp"
 #include "src_gpu/device/errors.hpp"
 #include "src_gpu/device/pocl_cache.hpp"
@@ -13,18 +13,9 @@
 namespace kiloband::opencl {
 namespace {
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 /// Drivers pad names with spaces and end them with zeros.
-std::string trimmed(std::string text) {
-  const char* blank = " \t\r\n";
-  text.resize(std::min(text.size(), text.find('\0')));
-  text.erase(0, text.find_first_not_of(blank));
-  text.erase(text.find_last_not_of(blank) + 1);
-  return text;
+std::string unpadded(const std::string& name) {
+  return std::string(trimmed(std::string_view(name).substr(0, name.find('\0'))));
 }
 
 /// PoCL ends the process where it cannot have a thread per processor, and starts a linker.
@@ -70,11 +61,11 @@ DeviceType type_of(cl_device_type type) {
 
 DeviceInfo describe(const cl::Platform& platform, const cl::Device& device) {
   DeviceInfo info;
-  info.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
-  info.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
-  info.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
-  info.platform_version = trimmed(platform.getInfo<CL_PLATFORM_VERSION>());
-  info.driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+  info.name = unpadded(device.getInfo<CL_DEVICE_NAME>());
+  info.vendor = unpadded(device.getInfo<CL_DEVICE_VENDOR>());
+  info.platform = unpadded(platform.getInfo<CL_PLATFORM_NAME>());
+  info.platform_version = unpadded(platform.getInfo<CL_PLATFORM_VERSION>());
+  info.driver_version = unpadded(device.getInfo<CL_DRIVER_VERSION>());
   info.type = type_of(device.getInfo<CL_DEVICE_TYPE>());
   info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   info.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
@@ -129,10 +120,10 @@ DeviceInfo device_of_index(const std::vector<DeviceInfo>& devices, const std::st
 }
 
 DeviceInfo device_of_name(const std::vector<DeviceInfo>& devices, const std::string& choice) {
-  const std::string wanted = lower(choice);
+  const std::string wanted = lowered(choice);
   std::vector<DeviceInfo> exact, partial;
   for (const DeviceInfo& device : devices) {
-    const std::string name = lower(device.name);
+    const std::string name = lowered(device.name);
     if (name == wanted) exact.push_back(device);
     if (name.find(wanted) != std::string::npos) partial.push_back(device);
   }

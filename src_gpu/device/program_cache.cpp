@@ -1,14 +1,15 @@
 #include "src_gpu/device/program_cache.hpp"
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <string_view>
 
 #include "base/error.hpp"
+#include "base/hash.hpp"
 #include "files/atomic_file.hpp"
 
 namespace kiloband::opencl {
@@ -22,21 +23,9 @@ constexpr std::size_t kHashLength = 32;
 constexpr std::size_t kHeaderLength = kMagic.size() + 2 * kHashLength + 8;
 constexpr uint64_t kLargest = uint64_t{256} << 20;  // no program is that large: the file is not ours
 
-std::string hash_of(const void* data, std::size_t size) {
-  // FNV-1a, 128 bits. Source: Fowler, Noll, Vo, Eastlake, The FNV Non-Cryptographic Hash
-  // Algorithm (RFC 9923).
-  using Word = unsigned __int128;
-  const Word prime = (Word{1} << 88) + 0x13b;
-  Word hash = (Word{0x6c62272e07bb0142u} << 64) + 0x62b821756295c58du;
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * prime;
-  std::string text(kHashLength, '0');
-  for (std::size_t i = kHashLength; i-- > 0; hash >>= 4)
-    text[i] = "0123456789abcdef"[static_cast<int>(hash & 15)];
-  return text;
-}
-
 std::string header_of(const std::string& key, const std::vector<unsigned char>& binary) {
-  std::string header = std::string(kMagic) + key + hash_of(binary.data(), binary.size());
+  std::string header = std::string(kMagic) + key;
+  header += text_hash({reinterpret_cast<const char*>(binary.data()), binary.size()});
   for (int byte = 0; byte < 8; ++byte)
     header += static_cast<char>(uint64_t{binary.size()} >> (8 * byte) & 255);
   return header;
@@ -64,8 +53,9 @@ fs::path absolute_path_of(const char* variable) {
 
 }  // namespace
 
-std::string text_hash(const std::string& text) {
-  return hash_of(text.data(), text.size());
+std::string text_hash(std::string_view text) {
+  const Uint128 hash = fnv1a<Uint128>(text);
+  return fmt::format("{:016x}{:016x}", static_cast<uint64_t>(hash >> 64), static_cast<uint64_t>(hash));
 }
 
 ProgramCache ProgramCache::of_user() {

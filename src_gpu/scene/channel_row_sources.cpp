@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "scene/compile/band_set.hpp"
 #include "shared/planted_faults.h"
@@ -53,14 +52,6 @@ RowFunction band_position_row(const BandSet& set) {
     if (!inner || std::abs((c[i + 1] - c[i]) / (c[i] - c[i - 1]) - 1) > 1e-9) f.kinks_nm.push_back(c[i]);
   }
   return f;
-}
-
-/// The last entry's wavelength may round to a hair beyond it.
-Channel support(const RegularTable& table) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (table.extrapolate) return {-kInfinity, kInfinity, {}};
-  const double last = static_cast<double>(table.values.size() - 1);
-  return {table.min_nm, table.min_nm + table.step_nm * last * (1 + 1e-11), {}};
 }
 
 }  // namespace kiloband::opencl

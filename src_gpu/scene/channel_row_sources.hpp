@@ -13,7 +13,4 @@ RowFunction wavelength_row();
 /// Position in bands: linear between centres, constant outside. `set` must outlive the function.
 RowFunction band_position_row(const BandSet& set);
 
-/// Where a response can be other than 0, nm.
-Channel support(const RegularTable& table);
-
 }  // namespace kiloband::opencl

@@ -173,7 +173,7 @@ void TableMaker::add_band_sets() {
 void TableMaker::add_derived() {
   out_.layout.derived_row = static_cast<uint32_t>(rows_.size());
   for (const RegularTable& response : derived_.responses) {
-    const Channel range = support(response);
+    const Spectrum::Range range = response.support();
     std::vector<double> factor(scene_.channels.size(), 0.0);
     double scale = 0;
     for (std::size_t k = 0; k < factor.size(); ++k) {

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/hash.hpp"
 #include "scenes/generator/scenes.hpp"
 #include "tests/end_to_end/support/program.hpp"
 
@@ -28,14 +29,9 @@ std::string hash_of(const fs::path& scene) {
   for (const char* part : {"meshes", "textures"}) {
     for (const auto& entry : fs::directory_iterator(scene / part)) files.insert(entry.path());
   }
-  uint64_t hash = 0xcbf29ce484222325u;
-  const auto add = [&](const std::string& text) {
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  };
-  for (const fs::path& file : files) {
-    add(file.filename().string() + '\n');
-    add(bytes_of(file));
-  }
+  uint64_t hash = kFnvBasis<uint64_t>;
+  for (const fs::path& file : files)
+    hash = fnv1a(bytes_of(file), fnv1a(file.filename().string() + '\n', hash));
   std::ostringstream text;
   text << std::hex << hash;
   return text.str();

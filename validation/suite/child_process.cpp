@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace kiloband::validation {
 namespace {
@@ -129,9 +130,9 @@ class Child {
   Clock::time_point stopped_at_;
 };
 
-std::string last_line(std::string text) {
-  text.erase(text.find_last_not_of(" \n\r\t") + 1);
-  return text.substr(text.rfind('\n') + 1);
+std::string last_line(std::string_view text) {
+  text = trimmed(text);
+  return std::string(text.substr(text.rfind('\n') + 1));
 }
 
 }  // namespace

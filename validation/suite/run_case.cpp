@@ -6,14 +6,15 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/hash.hpp"
 
 namespace kiloband::validation {
 namespace {
 
 /// A seed per attempt and side: sides must be independent of each other. FNV-1a of what it belongs to.
 uint64_t seed_of(uint64_t run_seed, const std::string& case_name, const std::string& side, int attempt) {
-  uint64_t hash = 0xcbf29ce484222325u ^ run_seed * 0x9e3779b97f4a7c15u;
-  for (const char c : case_name + "\n" + side) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  const uint64_t start = kFnvBasis<uint64_t> ^ run_seed * 0x9e3779b97f4a7c15u;
+  const uint64_t hash = fnv1a(case_name + "\n" + side, start);
   return attempt == 0 ? hash : stats::repeat_seed(hash);
 }
 

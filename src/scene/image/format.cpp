@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <string_view>
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace kiloband {
 namespace {
@@ -38,10 +38,7 @@ constexpr std::array<Signature, 16> kSignatures = {{{"\x76\x2f\x31\x01"sv, Image
 
 // Targa has no signature.
 bool is_targa_name(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".tga";
+  return lowered_extension(path) == ".tga";
 }
 
 ImageFormat recognise(const ImageFile& file, const std::filesystem::path& path, std::ifstream& stream) {

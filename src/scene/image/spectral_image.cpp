@@ -163,16 +163,9 @@ SpectralImage read_cube(const std::filesystem::path& file, bool weights, const D
   return image;
 }
 
-std::string lower_extension(const std::filesystem::path& file) {
-  std::string text = file.extension().string();
-  std::ranges::transform(text, text.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return text;
-}
-
 /// Radiance HDR pictures have the extension of ENVI headers: the first bytes tell.
 bool is_envi(const std::filesystem::path& file) {
-  const std::string extension = lower_extension(file);
+  const std::string extension = lowered_extension(file);
   if (extension == ".img") return true;
   if (extension != ".hdr") return false;
   char first[4] = {};

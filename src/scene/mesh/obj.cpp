@@ -84,7 +84,7 @@ void ObjReader::read_line(std::string_view line) {
     for (const char* ignored : {"mtllib", "usemtl", "g", "o", "s", "l", "p"}) {
       if (keyword == ignored) return;
     }
-    fail("unknown keyword " + in_quotes(keyword));
+    fail("unknown keyword " + quote_text(keyword));
   }
 }
 
@@ -98,7 +98,7 @@ std::array<float, N> ObjReader::numbers(LineTokens tokens, std::string_view keyw
   for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next(), ++count) {
     float value = 0;
     if (const char* problem = parse_number(token, value))
-      fail(std::string(keyword) + ": " + in_quotes(token) + " " + problem);
+      fail(std::string(keyword) + ": " + quote_text(token) + " " + problem);
     if (count == most) fail(std::string(keyword) + ": more than " + std::to_string(most) + " numbers");
     if (count < N) result[count] = value;
   }
@@ -132,7 +132,7 @@ Corner ObjReader::corner(std::string_view token) {
     rest.remove_prefix(slash + 1);
   }
   if (count > 2 || parts[0].empty())
-    fail("f: corner " + in_quotes(token) + ": must be v, v/vt, v//vn or v/vt/vn");
+    fail("f: corner " + quote_text(token) + ": must be v, v/vt, v//vn or v/vt/vn");
   Corner result;
   result.position = index(parts[0], token, "position", positions_.size());
   if (!parts[1].empty()) result.uv = index(parts[1], token, "texture coordinate", uvs_.size());
@@ -142,14 +142,14 @@ Corner ObjReader::corner(std::string_view token) {
 
 /// count  lines of that kind so far; the index is in 1..count
 uint32_t ObjReader::index(std::string_view digits, std::string_view token, const char* what, size_t count) {
-  const std::string place = "f: corner " + in_quotes(token) + ": ";
+  const std::string place = "f: corner " + quote_text(token) + ": ";
   if (digits[0] == '-')
     fail(place + "negative " + what + " index: relative indices are not supported, neither by Mitsuba");
   uint64_t value = 0;
   const char* end = digits.data() + digits.size();
   const auto [stop, error] = std::from_chars(digits.data(), end, value);
   if (error == std::errc::invalid_argument || stop != end)
-    fail(place + in_quotes(digits) + " is not an index");
+    fail(place + quote_text(digits) + " is not an index");
   if (error != std::errc() || value == 0 || value > count || value > UINT32_MAX) {
     fail(place + what + " index " + std::string(digits.substr(0, 24)) + ": must be in 1.." +
          std::to_string(count) + ", the number of such lines above");

@@ -46,7 +46,7 @@ class BodyReader {
   uint64_t read_list_count();
   /// "vertex 7: property 'x': message", with the position in front
   [[noreturn]] void fail(const std::string& message) const {
-    source_.fail(element_->name + " " + std::to_string(row_) + ": property " + in_quotes(property_->name) +
+    source_.fail(element_->name + " " + std::to_string(row_) + ": property " + quote_text(property_->name) +
                  ": " + message);
   }
 
@@ -187,9 +187,9 @@ void check_elements(const PlyHeader& header, const MeshFile& file) {
   if (!face) file.fail("header: no element 'face'");
   for (const char* name : {"x", "y", "z"}) {
     const int i = vertex->find(name);
-    if (i < 0) file.fail_line(vertex->line, "header: element 'vertex' has no property " + in_quotes(name));
+    if (i < 0) file.fail_line(vertex->line, "header: element 'vertex' has no property " + quote_text(name));
     if (vertex->properties[i].is_list)
-      file.fail_line(vertex->line, "header: property " + in_quotes(name) + " must not be a list");
+      file.fail_line(vertex->line, "header: property " + quote_text(name) + " must not be a list");
   }
   if (vertex->count > UINT32_MAX) file.fail_line(vertex->line, "header: more than 4294967295 vertices");
   int list = face->find("vertex_indices");
@@ -198,7 +198,8 @@ void check_elements(const PlyHeader& header, const MeshFile& file) {
     file.fail_line(face->line, "header: element 'face' has no property 'vertex_indices' or 'vertex_index'");
   const PlyProperty& indices = face->properties[list];
   if (!indices.is_list || !is_integer(indices.type)) {
-    file.fail_line(face->line, "header: property " + in_quotes(indices.name) + " must be a list of integers");
+    file.fail_line(face->line,
+                   "header: property " + quote_text(indices.name) + " must be a list of integers");
   }
 }
 
@@ -206,7 +207,7 @@ void note_skipped(const PlyHeader& header, const MeshFile& file, const Diagnosti
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex" || element.name == "face") continue;
     note(sink, {file.name, static_cast<int>(element.line)},
-         "element " + in_quotes(element.name) + " is skipped");
+         "element " + quote_text(element.name) + " is skipped");
   }
 }
 

@@ -80,10 +80,10 @@ bool HeaderReader::read_line() {
   } else if (keyword == "property") {
     read_property(tokens);
   } else if (keyword != "end_header") {
-    fail("unknown keyword " + in_quotes(keyword));
+    fail("unknown keyword " + quote_text(keyword));
   }
   if (const auto extra = tokens.next(); !extra.empty())
-    fail("unexpected " + in_quotes(extra) + " at the end of the line");
+    fail("unexpected " + quote_text(extra) + " at the end of the line");
   return keyword != "end_header";
 }
 
@@ -94,9 +94,9 @@ void HeaderReader::read_format(LineTokens& tokens) {
   if (name == "binary_little_endian") format_ = PlyFormat::kLittleEndian;
   if (name == "binary_big_endian") format_ = PlyFormat::kBigEndian;
   if (!format_)
-    fail("format " + in_quotes(name) + ": must be ascii, binary_little_endian or binary_big_endian");
+    fail("format " + quote_text(name) + ": must be ascii, binary_little_endian or binary_big_endian");
   if (const auto version = tokens.next(); version != "1.0")
-    fail("version " + in_quotes(version) + ": must be 1.0");
+    fail("version " + quote_text(version) + ": must be 1.0");
 }
 
 void HeaderReader::read_element(LineTokens& tokens) {
@@ -104,13 +104,13 @@ void HeaderReader::read_element(LineTokens& tokens) {
   element.name = tokens.next();
   element.line = line_;
   if (element.name.empty()) fail("element without a name");
-  if (!element_names_.insert(element.name).second) fail("second element " + in_quotes(element.name));
+  if (!element_names_.insert(element.name).second) fail("second element " + quote_text(element.name));
   property_names_.clear();
   const std::string_view count = tokens.next();
   const char* end = count.data() + count.size();
   const auto [stop, error] = std::from_chars(count.data(), end, element.count);
   if (count.empty() || error != std::errc() || stop != end) {
-    fail("element " + in_quotes(element.name) + ": " + in_quotes(count) + " is not a count");
+    fail("element " + quote_text(element.name) + ": " + quote_text(count) + " is not a count");
   }
   header_.elements.push_back(std::move(element));
 }
@@ -128,8 +128,8 @@ void HeaderReader::read_property(LineTokens& tokens) {
   property.name = tokens.next();
   if (property.name.empty()) fail("property without a name");
   if (!property_names_.insert(property.name).second) {
-    fail("element " + in_quotes(header_.elements.back().name) + ": second property " +
-         in_quotes(property.name));
+    fail("element " + quote_text(header_.elements.back().name) + ": second property " +
+         quote_text(property.name));
   }
   header_.elements.back().properties.push_back(std::move(property));
 }
@@ -139,7 +139,7 @@ PlyType HeaderReader::type(LineTokens& tokens) {
   for (const TypeRow& row : kTypes) {
     if (name == row.name || name == row.new_name) return row.type;
   }
-  fail("unknown type " + in_quotes(name));
+  fail("unknown type " + quote_text(name));
 }
 
 PlyType HeaderReader::integer_type(LineTokens& tokens) {
@@ -161,7 +161,7 @@ void HeaderReader::check_counts() const {
     // The last number of a text needs no blank.
     const size_t available = rest_.size() + (header_.format == PlyFormat::kAscii ? 1 : 0);
     if (row_bytes > 0 && element.count > available / row_bytes) {
-      file_.fail_line(element.line, "header: element " + in_quotes(element.name) + ": " +
+      file_.fail_line(element.line, "header: element " + quote_text(element.name) + ": " +
                                         std::to_string(element.count) + " rows of at least " +
                                         std::to_string(row_bytes) + " bytes, but only " +
                                         std::to_string(rest_.size()) + " bytes follow the header");

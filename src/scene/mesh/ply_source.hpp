@@ -24,9 +24,9 @@ class PlyTextSource {
   bool read(PlyType type, double& value) {
     const std::string_view token = tokens_.next();
     if (token.empty()) return refuse("the file ends too early");
-    if (const char* problem = parse_number(token, value)) return refuse(in_quotes(token) + " " + problem);
+    if (const char* problem = parse_number(token, value)) return refuse(quote_text(token) + " " + problem);
     if (is_integer(type) && !fits(type, value))
-      return refuse(in_quotes(token) + " is not of type " + type_name(type));
+      return refuse(quote_text(token) + " is not of type " + type_name(type));
     return true;
   }
 
@@ -35,7 +35,7 @@ class PlyTextSource {
   /// throws InputError  if anything is left
   void finish() {
     if (const auto token = tokens_.next(); !token.empty())
-      fail("unexpected " + in_quotes(token) + " after the last element");
+      fail("unexpected " + quote_text(token) + " after the last element");
   }
 
  private:

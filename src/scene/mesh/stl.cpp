@@ -1,5 +1,4 @@
 // STL, text and binary.
-#include <cctype>
 #include <cmath>
 
 #include "scene/mesh/binary.hpp"
@@ -87,12 +86,6 @@ class TextReader {
   }
 
  private:
-  static std::string lower(std::string_view token) {
-    std::string text(token);
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-  }
-
   /// Goes to the next line that is not blank.
   /// returns false at the end of the file
   bool next_line() {
@@ -107,8 +100,8 @@ class TextReader {
 
   void expect(const char* keyword) {
     const std::string_view token = tokens_.next();
-    if (lower(token) != keyword)
-      file_.fail_line(line_, "expected '" + std::string(keyword) + "', found " + in_quotes(token));
+    if (lowered(token) != keyword)
+      file_.fail_line(line_, "expected '" + std::string(keyword) + "', found " + quote_text(token));
   }
 
   void expect_line(std::initializer_list<const char*> keywords) {
@@ -118,14 +111,14 @@ class TextReader {
 
   void end_line() {
     if (const auto extra = tokens_.next(); !extra.empty())
-      file_.fail_line(line_, "unexpected " + in_quotes(extra));
+      file_.fail_line(line_, "unexpected " + quote_text(extra));
   }
 
   /// returns false at endsolid
   bool read_facet() {
     if (!next_line()) file_.fail_line(line_, "the file ends before 'endsolid'");
     LineTokens ahead = tokens_;
-    if (lower(ahead.next()) == "endsolid") return false;
+    if (lowered(ahead.next()) == "endsolid") return false;
     expect("facet");
     expect_line({"outer", "loop"});
     std::array<Vec3f, 3> corners{};
@@ -145,7 +138,7 @@ class TextReader {
       const std::string_view token = tokens_.next();
       if (token.empty()) file_.fail_line(line_, "vertex: must have 3 numbers");
       if (const char* problem = parse_number(token, value))
-        file_.fail_line(line_, "vertex: " + in_quotes(token) + " " + problem);
+        file_.fail_line(line_, "vertex: " + quote_text(token) + " " + problem);
     }
     end_line();
     return position;

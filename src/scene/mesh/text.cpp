@@ -39,13 +39,6 @@ const char* parse_real(std::string_view token, Real& value) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view token) {
-  constexpr size_t kLongest = 40;
-  std::string text = "'";
-  for (const char c : token.substr(0, kLongest)) text += c >= ' ' && c <= '~' ? c : '?';
-  return text + (token.size() > kLongest ? "...'" : "'");
-}
-
 const char* parse_number(std::string_view token, float& value) {
   return parse_real(token, value);
 }

@@ -5,10 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace kiloband {
+#include "base/text.hpp"
 
-/// The token in single quotes for a message: at most 40 bytes, unprintable ones as '?'.
-std::string in_quotes(std::string_view token);
+namespace kiloband {
 
 /// Reads the whole token as a decimal number.
 /// value    the nearest float; a magnitude too small for a float becomes 0 or a denormal

@@ -75,17 +75,18 @@ std::vector<GridField::Node> load_grid(const std::filesystem::path& file,
     const auto temperature = static_cast<float>(table.at(row, 0)),
                scale = static_cast<float>(table.at(row, 1));
     if (!(temperature > 0) || !std::isfinite(temperature))
-      throw InputError(
-          at_line(file, table.lines[row], "temperature " + to_text(table.at(row, 0)) + ": must be > 0 K"));
+      throw InputError(at_line(file, table.lines[row],
+                               "temperature " + format_number(table.at(row, 0)) + ": must be > 0 K"));
     if (temperature < kMinGasK || temperature > kMaxTemperatureK)
-      throw InputError(
-          at_line(file, table.lines[row], "temperature " + to_text(table.at(row, 0)) + ": " + kGasRule));
+      throw InputError(at_line(file, table.lines[row],
+                               "temperature " + format_number(table.at(row, 0)) + ": " + kGasRule));
     if (!(scale >= 0) || !std::isfinite(scale))
       throw InputError(
-          at_line(file, table.lines[row], "scale " + to_text(table.at(row, 1)) + ": must be >= 0"));
+          at_line(file, table.lines[row], "scale " + format_number(table.at(row, 1)) + ": must be >= 0"));
     if (scale > kMaxAbsorptionScale)
-      throw InputError(at_line(file, table.lines[row],
-                               "scale " + to_text(table.at(row, 1)) + ": " + at_most(kMaxAbsorptionScale)));
+      throw InputError(
+          at_line(file, table.lines[row],
+                  "scale " + format_number(table.at(row, 1)) + ": " + at_most(kMaxAbsorptionScale)));
     values.push_back({temperature, scale});
   }
   return values;

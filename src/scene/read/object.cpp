@@ -12,12 +12,6 @@ std::string article(std::string_view noun) {
   return (vowel ? "an " : "a ") + std::string(noun);
 }
 
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-  return text;
-}
-
 }  // namespace
 
 Place place_of_value(const Node& node) {
@@ -170,7 +164,7 @@ glm::dmat3 ObjectReader::get_uv_transform(std::string_view name, const Diagnosti
 std::size_t ObjectReader::get_choice(std::string_view name,
                                      const std::vector<std::string_view>& choices) const {
   const std::string value = get_string(name, std::string(choices[0]));
-  const auto found = std::find(choices.begin(), choices.end(), lower_case(value));
+  const auto found = std::find(choices.begin(), choices.end(), lowered(value));
   if (found != choices.end()) return static_cast<std::size_t>(found - choices.begin());
   std::string known;
   for (const std::string_view choice : choices) known += (known.empty() ? "" : ", ") + std::string(choice);

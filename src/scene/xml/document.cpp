@@ -5,6 +5,8 @@
 #include <cstring>
 #include <pugixml.hpp>
 
+#include "base/text.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -153,9 +155,7 @@ class Converter {
   Place place(const char* text) const { return lines_.at(static_cast<std::size_t>(text - base_)); }
 
   void check_encoding(const pugi::xml_node& declaration) const {
-    std::string encoding = declaration.attribute("encoding").value();
-    std::transform(encoding.begin(), encoding.end(), encoding.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+    const std::string encoding = lowered(declaration.attribute("encoding").value());
     if (!encoding.empty() && encoding != "utf-8" && encoding != "us-ascii") {
       fail(place(declaration.attribute("encoding").value()),
            "encoding '" + encoding + "' is not supported: use UTF-8");

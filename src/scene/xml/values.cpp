@@ -8,17 +8,31 @@
 namespace kiloband {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
+constexpr std::string_view kBlank = " ";  // the parser has made it of all others
 
 /// A user's text for a message: long ones are cut.
 std::string quoted(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   if (text.size() <= kLongest) return "'" + std::string(text) + "'";
   return "'" + std::string(text.substr(0, kLongest)) + "...'";
+}
+
+struct Kind {
+  const char *one, *many;
+};
+
+/// What the whole of the text spells.
+template <class T>
+T parse_whole(std::string_view text, const Place& place, const std::string& context, const Kind& kind) {
+  std::string_view digits = trimmed(text, kBlank);
+  if (digits.starts_with('+') && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
+  T value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
+    fail(place, context + quoted(text) + " is not " + kind.one);
+  }
+  if (error != std::errc{}) fail(place, context + quoted(text) + " is outside the range of " + kind.many);
+  return value;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -50,34 +64,17 @@ std::vector<std::string_view> split_tokens(std::string_view text) {
 }
 
 double parse_number(std::string_view text, const Place& place, const std::string& context) {
-  std::string_view digits = trimmed(text);
-  if (digits.starts_with('+') && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
-    fail(place, context + quoted(text) + " is not a number");
-  }
-  if (error != std::errc{}) fail(place, context + quoted(text) + " is outside the range of numbers");
+  const double value = parse_whole<double>(text, place, context, {"a number", "numbers"});
   if (!std::isfinite(value)) fail(place, context + quoted(text) + " is not finite");
   return value;
 }
 
 int64_t parse_integer(std::string_view text, const Place& place, const std::string& context) {
-  std::string_view digits = trimmed(text);
-  if (digits.starts_with('+') && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
-  int64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
-    fail(place, context + quoted(text) + " is not an integer");
-  }
-  if (error != std::errc{}) fail(place, context + quoted(text) + " is outside the range of integers");
-  return value;
+  return parse_whole<int64_t>(text, place, context, {"an integer", "integers"});
 }
 
 bool parse_boolean(std::string_view text, const Place& place, const std::string& context) {
-  std::string lower(trimmed(text));
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+  const std::string lower = lowered(trimmed(text, kBlank));
   if (lower != "true" && lower != "false")
     fail(place, context + quoted(text) + " is neither 'true' nor 'false'");
   return lower == "true";

@@ -15,7 +15,7 @@ namespace {
 constexpr TabulationError kMetalError{.absolute = 1e-7, .relative = 1e-5};
 
 [[noreturn]] void too_fast(double lambda_um) {
-  throw std::logic_error("built-in material varies too fast at " + to_text(lambda_um) + " um");
+  throw std::logic_error("built-in material varies too fast at " + format_number(lambda_um) + " um");
 }
 
 template <class Entries>

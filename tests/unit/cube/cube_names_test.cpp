@@ -75,7 +75,7 @@ TEST(CubeText, EncodedTextComesBack) {
     const std::string encoded = encode_text(text, ",{}");
     EXPECT_EQ(decode_text(encoded), text);
     EXPECT_EQ(encoded.find_first_of(",{}\n\t"), std::string::npos);
-    EXPECT_EQ(trim(encoded), encoded);
+    EXPECT_EQ(trimmed(encoded), encoded);
   }
   EXPECT_EQ(decode_text("%zz%4"), "%zz%4");
 }

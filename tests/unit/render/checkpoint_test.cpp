@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/word_hash.hpp"
+#include "base/hash.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kiloband {

@@ -118,7 +118,7 @@ TEST(ValueUnits, ColumnsOfWavelengths) {
       {"wavelength (angstrom)", 10}, {"wavelength (\xC3\x85)", 10}, {"wavelength_m", 1e-9},
       {"lambda [mm]", 1e-6},         {"wavelength / cm", 1e-7},     {"wavelength, \xC2\xB5m", 1e-3}};
   for (const auto& [name, per_nm] : cases) {
-    const std::string rows = to_text(500 * per_nm) + ";1\n" + to_text(600 * per_nm) + ";2\n";
+    const std::string rows = format_number(500 * per_nm) + ";1\n" + format_number(600 * per_nm) + ";2\n";
     EXPECT_NEAR(read(name + std::string(";R\n") + rows, ValueKind::kPlain).spectrum(550), 1.5, 1e-9) << name;
   }
 }
