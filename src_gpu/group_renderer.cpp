@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 
 #include "shared/planted_faults.h"
@@ -32,10 +31,6 @@ uint32_t most_slots(const DeviceState& device, std::optional<uint32_t> wanted) {
 
 uint64_t most_jobs(const DeviceState& device, uint32_t slots) {
   return std::max<uint64_t>(is_cpu(device) ? kCpuJobs : kGpuJobs, slots);
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 uint64_t round_up(uint64_t n, uint64_t multiple) {
@@ -208,7 +203,6 @@ void GroupRenderer::render_part(std::span<const ImagePixel> pixels, uint64_t at,
   if (uint64_t{round.blocks} * round.samples > plan_->pool.tables && (number > 1 || samples.count > 1))
     return split(pixels, at, number, samples, open, tally);
   fill_mu(round);
-  const auto start = std::chrono::steady_clock::now();
   const RoundOutcome outcome = device_.generate(round, round_pixels_, mu_, at);
   learn(outcome, round);
   tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, outcome.longest_launch_seconds);
@@ -216,12 +210,9 @@ void GroupRenderer::render_part(std::span<const ImagePixel> pixels, uint64_t at,
   note_invalid(outcome, round, tally);
   tally.rays += outcome.rays;
   tally.vertices += outcome.vertices;
-  tally.generate_seconds += seconds_since(start);
-  const auto middle = std::chrono::steady_clock::now();
   const double longest = device_.evaluate(round, at);
   paths_pace_.learn(number * samples.count, longest);
   tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, longest);
-  tally.evaluate_seconds += seconds_since(middle);
   tally.paths += number * samples.count;
 }
 

@@ -21,9 +21,8 @@ namespace kiloband::opencl {
 struct RunTally {
   uint64_t rays = 0, vertices = 0, paths = 0;
   uint64_t invalid = 0;
-  std::vector<InvalidSample> invalid_samples;         // the first of them
-  double longest_launch_seconds = 0;                  // of all kernels
-  double generate_seconds = 0, evaluate_seconds = 0;  // wall time until the device was done
+  std::vector<InvalidSample> invalid_samples;  // the first of them
+  double longest_launch_seconds = 0;           // of all kernels
 };
 
 /// A pixel in full-film coordinates.

@@ -211,14 +211,6 @@ double capsule_distance(Vec3 p, Vec3 a, Vec3 b, double a_radius, double b_radius
   return length(p - mix(a, b, t)) - mix(a_radius, b_radius, t);
 }
 
-double box_distance(Vec3 p, Vec3 centre, Vec3 half, double rounding) {
-  const Vec3 d = p - centre;
-  const Vec3 q{std::fabs(d.x) - half.x + rounding, std::fabs(d.y) - half.y + rounding,
-               std::fabs(d.z) - half.z + rounding};
-  const Vec3 outside{std::max(q.x, 0.0), std::max(q.y, 0.0), std::max(q.z, 0.0)};
-  return length(outside) + std::min(std::max({q.x, q.y, q.z}), 0.0) - rounding;
-}
-
 double blend(double a, double b, double radius) {
   const double h = std::max(radius - std::fabs(a - b), 0.0) / radius;
   return std::min(a, b) - h * h * radius * 0.25;

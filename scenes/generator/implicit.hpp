@@ -26,7 +26,6 @@ double sphere_distance(Vec3 p, Vec3 centre, double radius);
 double ellipsoid_distance(Vec3 p, Vec3 centre, Vec3 radii);
 /// Cone with round ends: radius a_radius at a, b_radius at b.
 double capsule_distance(Vec3 p, Vec3 a, Vec3 b, double a_radius, double b_radius);
-double box_distance(Vec3 p, Vec3 centre, Vec3 half, double rounding);
 
 /// Union and intersection with a fillet of about `radius`: the polynomial smooth minimum of Quilez.
 double blend(double a, double b, double radius);

@@ -62,12 +62,8 @@ SpectralFilm::SpectralFilm(const PixelRect& rect, const FilmOptions& options)
                                options.memory_bytes - std::min(options.memory_bytes, counts)),
                  std::vector(options.replicates, std::vector<uint64_t>(rect.pixels()))});
   }
-  if (!options.held) {
+  if (!options.held)
     pixels_ = std::make_unique<ReplicateMoments>(rect.pixels(), options.channels, options.variance);
-    if (options.variance) {
-      tiles_ = std::make_unique<ReplicateMoments>(blocks_.size() * kTilesPerBlock, options.channels, true);
-    }
-  }
   block_sums_.resize(blocks_.size());
   block_counts_.assign(blocks_.size(), std::vector<uint64_t>(options.replicates));
 }
@@ -130,23 +126,18 @@ SpectralFilm::Coarse SpectralFilm::coarse_sums(const BlockSamples& samples, cons
   return coarse;
 }
 
-/// 8x8 tiles and the image.
+/// The block's share of the image, tile by tile: few numbers to a sum keep its rounding small.
 void SpectralFilm::add_coarse(const BlockSamples& samples, const PixelRect& block) {
   const std::size_t channels = options_.channels;
   const Coarse coarse = coarse_sums(samples, block);
   auto& block_sums = block_sums_[samples.block];
   if (block_sums.empty()) block_sums.resize(options_.replicates * channels);
-  std::vector<float> tile_mean(channels);
   for (std::size_t tile = 0; tile < kTilesPerBlock; ++tile) {
     const uint64_t count = coarse.counts[tile];
     if (count == 0) continue;
     const double* const sums = &coarse.sums[tile * channels];
-    for (std::size_t c = 0; c < channels; ++c) {
-      block_sums[samples.replicate * channels + c] += sums[c];
-      tile_mean[c] = static_cast<float>(sums[c] / static_cast<double>(count));
-    }
+    for (std::size_t c = 0; c < channels; ++c) block_sums[samples.replicate * channels + c] += sums[c];
     block_counts_[samples.block][samples.replicate] += count;
-    if (tiles_) tiles_->add(samples.block * kTilesPerBlock + tile, count, tile_mean);
   }
 }
 
@@ -198,11 +189,6 @@ void SpectralFilm::replicate_mean(uint32_t replicate, std::size_t pixel, std::sp
 uint64_t SpectralFilm::replicate_samples(uint32_t replicate, std::size_t pixel) const {
   require_held();
   return sums_ ? pixel_sums(replicate, pixel).count : held_->samples.at(replicate)[pixel];
-}
-
-const ReplicateMoments& SpectralFilm::tile_moments() const {
-  if (!tiles_) throw std::logic_error("SpectralFilm: tile moments are kept by folded films with variance");
-  return *tiles_;
 }
 
 void SpectralFilm::add_image_sums(std::vector<std::vector<double>>& sums,

@@ -96,10 +96,7 @@ class SpectralFilm {
   void replicate_mean(uint32_t replicate, std::size_t pixel, std::span<float> mean) const;
   uint64_t replicate_samples(uint32_t replicate, std::size_t pixel) const;
 
-  /// Moments of the 8x8-pixel tiles' means (tiles are aligned to the blocks, row by row within a block: index
-  /// block * 16 + (y / 8) * 4 + x / 8, coordinates relative to the block) and
-  /// of the whole rectangle's mean (unit 0).
-  const ReplicateMoments& tile_moments() const;
+  /// Moments of the whole rectangle's mean (unit 0).
   ReplicateMoments image_moments() const;
   /// Sums over the rectangle of pixel means of a replicate times counts, and the number of samples: to be
   /// added over strips.
@@ -130,7 +127,6 @@ class SpectralFilm {
   std::unique_ptr<ReplicateMoments> pixels_;  // folded
   std::unique_ptr<Held> held_;                // held means
   std::unique_ptr<Sums> sums_;
-  std::unique_ptr<ReplicateMoments> tiles_;      // folded, with variance
   std::vector<std::vector<double>> block_sums_;  // [block][replicate * channels + channel], sum of samples
   std::vector<std::vector<uint64_t>> block_counts_;  // [block][replicate]
 };

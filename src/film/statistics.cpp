@@ -70,29 +70,11 @@ void ReplicateMoments::add(std::size_t unit, uint64_t n, std::span<const float> 
   ++replicates_[unit];
 }
 
-void ReplicateMoments::merge(const ReplicateMoments& other) {
-  if (other.units() != units() || other.channels_ != channels_ || other.variance_ != variance_)
-    throw std::logic_error("ReplicateMoments::merge: shapes differ");
-  for (std::size_t unit = 0; unit < samples_.size(); ++unit) {
-    if (other.replicates_[unit] == 0) continue;
-    const uint32_t replicates = replicates_[unit] + other.replicates_[unit];
-    add(unit, other.samples_[unit], other.mean(unit));
-    replicates_[unit] = replicates;
-    if (!variance_) continue;
-    float* __restrict m2 = m2_.data() + unit * channels_;
-    const float* __restrict added = other.m2_.data() + unit * channels_;
-    for (std::size_t k = 0; k < channels_; ++k) m2[k] += added[k];
-  }
-}
-
 std::size_t ReplicateMoments::units() const {
   return samples_.size();
 }
 std::size_t ReplicateMoments::channels() const {
   return channels_;
-}
-bool ReplicateMoments::has_variance() const {
-  return variance_;
 }
 uint64_t ReplicateMoments::samples(std::size_t unit) const {
   return samples_.at(unit);

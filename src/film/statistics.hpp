@@ -24,12 +24,9 @@ class ReplicateMoments {
 
   /// Adds a replicate mean of n samples (n = 0: nothing) of a unit; means has one entry per channel.
   void add(std::size_t unit, uint64_t n, std::span<const float> means);
-  /// Combines with moments of the same shape whose replicates are all different ones (other tiles, processes, passes).
-  void merge(const ReplicateMoments& other);
 
   std::size_t units() const;
   std::size_t channels() const;
-  bool has_variance() const;
   uint64_t samples(std::size_t unit) const;             // N
   uint32_t replicates(std::size_t unit) const;          // R, those with n > 0
   std::span<const float> mean(std::size_t unit) const;  // 0 for N = 0

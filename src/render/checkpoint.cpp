@@ -112,39 +112,6 @@ uint64_t put_block(Writer& out, const SpectralFilm& film, uint32_t replicate, ui
   return not_finite;
 }
 
-uint64_t fill(CheckpointReader in, SpectralFilm& film, uint64_t fingerprint) {
-  const CheckpointOutline& found = in.outline();
-  const CheckpointHeader expected = header_of(film, fingerprint);
-  if (found.replicates != expected[kEntryReplicates])
-    in.fail("belongs to another render: it has " + std::to_string(found.replicates) +
-            " replicates, this one " + std::to_string(expected[kEntryReplicates]));
-  const CheckpointHeader header{
-      found.fingerprint, found.rect.x0,    found.rect.y0,    found.rect.width,
-      found.rect.height, found.channels,   found.replicates, static_cast<uint64_t>(found.rule.kind),
-      found.rule.chunk,  found.rule.period};
-  if (header != expected)
-    in.fail(
-        "belongs to another render: scene, channels, sampling, size, instruction set or OpenCL device "
-        "differ");
-  if (found.most_samples > film.options().most_samples)
-    throw std::logic_error("read_checkpoint: the film has no room for as many samples");
-  in.read_sums([&](uint32_t replicate, std::size_t pixel) { return film.pixel_sums(replicate, pixel); });
-  for_blocks(film, [&](uint32_t r, uint32_t b, uint32_t) { film.set_attempted(r, b, in.attempted(r, b)); });
-  return found.pixel_samples;
-}
-
-CheckpointOutline inspect(CheckpointReader in) {
-  std::vector<float> open;
-  std::vector<ClosedSum> closed;
-  uint32_t count = 0;
-  in.read_sums([&](uint32_t, std::size_t) {
-    open.resize(in.outline().channels);  // the file has as many for every pixel
-    closed.resize(in.outline().channels);
-    return PixelSums{count, open, closed};
-  });
-  return in.outline();
-}
-
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& film, uint64_t fingerprint) {
@@ -167,7 +134,7 @@ void write_checkpoint(const std::filesystem::path& file, const SpectralFilm& fil
 }
 
 CheckpointOutline checkpoint_outline(const std::filesystem::path& file) {
-  return CheckpointReader(open_checkpoint(file), file.string()).outline();
+  return CheckpointReader(file).outline();
 }
 
 bool checkpoint_exists(const std::filesystem::path& file) {
@@ -183,21 +150,26 @@ std::optional<uint32_t> checkpoint_replicates(const std::filesystem::path& file)
   return checkpoint_outline(file).replicates;
 }
 
-CheckpointOutline inspect_checkpoint(const std::filesystem::path& file) {
-  return inspect(CheckpointReader(open_checkpoint(file), file.string()));
-}
-
-CheckpointOutline inspect_checkpoint(std::span<const char> bytes, const std::string& name) {
-  return inspect(CheckpointReader(checkpoint_in_memory(bytes), name));
-}
-
 uint64_t read_checkpoint(const std::filesystem::path& file, SpectralFilm& film, uint64_t fingerprint) {
-  return fill(CheckpointReader(open_checkpoint(file), file.string()), film, fingerprint);
-}
-
-uint64_t read_checkpoint(std::span<const char> bytes, const std::string& name, SpectralFilm& film,
-                         uint64_t fingerprint) {
-  return fill(CheckpointReader(checkpoint_in_memory(bytes), name), film, fingerprint);
+  CheckpointReader in(file);
+  const CheckpointOutline& found = in.outline();
+  const CheckpointHeader expected = header_of(film, fingerprint);
+  if (found.replicates != expected[kEntryReplicates])
+    in.fail("belongs to another render: it has " + std::to_string(found.replicates) +
+            " replicates, this one " + std::to_string(expected[kEntryReplicates]));
+  const CheckpointHeader header{
+      found.fingerprint, found.rect.x0,    found.rect.y0,    found.rect.width,
+      found.rect.height, found.channels,   found.replicates, static_cast<uint64_t>(found.rule.kind),
+      found.rule.chunk,  found.rule.period};
+  if (header != expected)
+    in.fail(
+        "belongs to another render: scene, channels, sampling, size, instruction set or OpenCL device "
+        "differ");
+  if (found.most_samples > film.options().most_samples)
+    throw std::logic_error("read_checkpoint: the film has no room for as many samples");
+  in.read_sums([&](uint32_t replicate, std::size_t pixel) { return film.pixel_sums(replicate, pixel); });
+  for_blocks(film, [&](uint32_t r, uint32_t b, uint32_t) { film.set_attempted(r, b, in.attempted(r, b)); });
+  return found.pixel_samples;
 }
 
 void check_checkpoint_file(const std::filesystem::path& file, bool resume) {

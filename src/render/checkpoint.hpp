@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
-#include <string>
 
 #include "film/spectral_film.hpp"
 #include "render/fingerprint.hpp"
@@ -39,21 +37,11 @@ bool checkpoint_exists(const std::filesystem::path& file);
 /// throws as checkpoint_outline(), checkpoint_exists()
 std::optional<uint32_t> checkpoint_replicates(const std::filesystem::path& file);
 
-/// Reads and checks all of a checkpoint without a film: sizes, counts, values, checksums. Memory: that of a
-/// pixel and a table of blocks, no more than the file is long. The second form takes the file's bytes.
-/// name  for messages
-/// throws as read_checkpoint()
-CheckpointOutline inspect_checkpoint(const std::filesystem::path& file);
-CheckpointOutline inspect_checkpoint(std::span<const char> bytes, const std::string& name);
-
 /// Fills a fresh film that holds sums from `file` and returns the number of pixel samples in it.
 /// throws InputError  missing, no regular file, of another version, of another render (fingerprint), damaged:
 ///                    sizes, checksums, counts that no deal of samples gives, sums that no samples add up to.
 ///                    Then the film is spoilt
 uint64_t read_checkpoint(const std::filesystem::path& file, SpectralFilm& film, uint64_t fingerprint);
-/// The same from memory.
-uint64_t read_checkpoint(std::span<const char> bytes, const std::string& name, SpectralFilm& film,
-                         uint64_t fingerprint);
 
 /// To be called before a render that saves itself in `file` begins. resume: it goes on from what is there.
 /// throws InputError   what is there is no regular file, or exists although the render does not resume

@@ -49,8 +49,7 @@ uint64_t count_not_finite(const SumRule& rule, const PixelSumsView& sums) {
   return count;
 }
 
-CheckpointReader::CheckpointReader(std::unique_ptr<CheckpointSource> source, std::string name)
-    : source_(std::move(source)), name_(std::move(name)) {
+CheckpointReader::CheckpointReader(const std::filesystem::path& file) : source_(file), name_(file.string()) {
   read_header();
   read_attempted();
   check_size();
@@ -61,7 +60,7 @@ void CheckpointReader::fail(const std::string& what) const {
 }
 
 void CheckpointReader::get(std::span<char> bytes) {
-  if (!source_->read(bytes)) fail("is not a checkpoint or ends early");
+  if (!source_.read(bytes)) fail("is not a checkpoint or ends early");
   hash_.add(bytes);
 }
 
@@ -114,7 +113,7 @@ uint32_t CheckpointReader::attempted(uint32_t replicate, uint32_t block) const {
 void CheckpointReader::read_attempted() {
   const PixelRect& rect = outline_.rect;
   const uint64_t blocks = blocks_along(rect.x0, rect.width) * blocks_along(rect.y0, rect.height);
-  if (blocks * outline_.replicates > source_->size() / sizeof(uint32_t))
+  if (blocks * outline_.replicates > source_.size() / sizeof(uint32_t))
     fail("is not a checkpoint or ends early");
   blocks_ = cut_into_blocks(rect);
   attempted_.resize(blocks * outline_.replicates);
@@ -134,7 +133,7 @@ void CheckpointReader::read_attempted() {
 
 /// Of the whole file, before anything that depends on it is allocated.
 void CheckpointReader::check_size() const {
-  uint64_t left = source_->size();
+  uint64_t left = source_.size();
   const auto take = [&](uint64_t bytes) {
     if (bytes > left) fail("is not a checkpoint or ends early");
     left -= bytes;

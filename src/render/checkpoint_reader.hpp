@@ -4,7 +4,6 @@
 
 #include <array>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -43,9 +42,9 @@ uint64_t count_not_finite(const SumRule& rule, const PixelSumsView& sums);
 
 class CheckpointReader {
  public:
-  /// Reads and checks all before the sums. name: of the file, for messages.
+  /// Reads and checks all before the sums.
   /// throws InputError
-  CheckpointReader(std::unique_ptr<CheckpointSource> source, std::string name);
+  explicit CheckpointReader(const std::filesystem::path& file);
 
   const CheckpointOutline& outline() const { return outline_; }
   const std::vector<PixelRect>& blocks() const { return blocks_; }
@@ -70,7 +69,7 @@ class CheckpointReader {
                   const std::function<PixelSums(uint32_t, std::size_t)>& place);
   void check_pixel(uint32_t replicate, uint32_t block, std::size_t pixel, const PixelSumsView& sums) const;
 
-  std::unique_ptr<CheckpointSource> source_;
+  CheckpointSource source_;
   std::string name_;
   WordHash hash_;
   CheckpointOutline outline_;

@@ -1,27 +1,35 @@
-// Bytes of a checkpoint, from a file or from memory.
+// A checkpoint's bytes, one after the other.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace kiloband {
 
 class CheckpointSource {
  public:
-  virtual ~CheckpointSource() = default;
-  virtual uint64_t size() const = 0;  // bytes in all
-  /// The next bytes; false: there are not as many, or they cannot be read.
-  virtual bool read(std::span<char> to) = 0;
-};
+  /// Opens without waiting.
+  /// throws InputError  "checkpoint FILE ...": missing, no regular file
+  explicit CheckpointSource(const std::filesystem::path& file);
+  ~CheckpointSource();
+  CheckpointSource(const CheckpointSource&) = delete;
+  CheckpointSource& operator=(const CheckpointSource&) = delete;
 
-/// Opens without waiting.
-/// throws InputError  "checkpoint FILE ...": missing, no regular file
-std::unique_ptr<CheckpointSource> open_checkpoint(const std::filesystem::path& file);
-/// The bytes must outlive the source.
-std::unique_ptr<CheckpointSource> checkpoint_in_memory(std::span<const char> bytes);
+  uint64_t size() const { return size_; }  // bytes in all
+  /// The next bytes; false: there are not as many, or they cannot be read.
+  bool read(std::span<char> to);
+
+ private:
+  bool fill();
+
+  int descriptor_;
+  uint64_t size_ = 0;
+  std::vector<char> buffer_;
+  std::size_t next_ = 0, end_ = 0;
+};
 
 /// "is a folder", "is a named pipe" ...; empty: a regular file. mode: st_mode of stat()
 std::string irregular_kind(unsigned mode);

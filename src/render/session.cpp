@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "render/checkpoint.hpp"
 #include "render/cube_output.hpp"
@@ -163,12 +162,8 @@ class Session {
   void finish_image_moments() {
     const ReplicateMoments moments = moments_of_sums(image_sums_, image_counts_);
     const std::vector<double> scale = backend_.film_scale();
-    std::vector<float> variance(moments.channels());
-    moments.variance_of_mean(0, variance);
-    for (const std::size_t c : bands_.film_channels) {
+    for (const std::size_t c : bands_.film_channels)
       report_.image_mean.push_back(moments.mean(0)[c] * scale[c]);
-      report_.image_standard_error.push_back(std::sqrt(variance[c]) * scale[c]);
-    }
   }
 
   const FlatScene& scene_;

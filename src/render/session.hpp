@@ -83,8 +83,8 @@ struct RenderReport {
   bool interrupted = false;
   bool streamed = false;  // strips, since the film did not fit the budget
   std::vector<std::filesystem::path> written;
-  /// Per output band, replicate moments of the image's mean (W m^-2 sr^-1).
-  std::vector<double> image_mean, image_standard_error;
+  /// The image's mean per output band, W m^-2 sr^-1.
+  std::vector<double> image_mean;
 };
 
 /// The bands of the output: every rendered channel, or the named ones and the derived if the film is a

@@ -1,5 +1,4 @@
-// Filter importance sampling: offsets from the pixel's centre, in pixels,
-// with the filter as density. Also erf^-1.
+// The inverse error function, with which normal distributions are sampled.
 #ifndef KILOBAND_SHARED_FILTER_SAMPLE_H
 #define KILOBAND_SHARED_FILTER_SAMPLE_H
 
@@ -37,27 +36,6 @@ KB_FN float kb_erf_inv(float x) {
     p = 2.83297682f + p * w;
   }
   return p * x;
-}
-
-/* Box filter: uniform in [-radius, radius). */
-KB_FN float kb_filter_box(float u, float radius) {
-  return (2.0f * u - 1.0f) * radius;
-}
-
-/* Tent filter, density (1 - |x| / radius) / radius: the exact inverse of the distribution. */
-KB_FN float kb_filter_tent(float u, float radius) {
-  if (u < 0.5f) return radius * (kb_sqrt(2.0f * u) - 1.0f);
-  return radius * (1.0f - kb_sqrt(2.0f * (1.0f - u)));
-}
-
-/* Gaussian of the given standard deviation, cut off at +-radius: density ~ exp(-x^2 / (2 stddev^2)). Mitsuba
-   3 lowers the curve by its value at the radius as well, which at 4 standard deviations moves 1.1e-3 of the
-   weight; we do not. Error: below 3e-7 in u; in x 3.3e-5 pixels at most, far out in the tails (measured with
-   stddev 0.5, radius 2). */
-KB_FN float kb_filter_gaussian(float u, float stddev, float radius) {
-  const float scale = 1.41421356237f * stddev;
-  const float x = scale * kb_erf_inv((2.0f * u - 1.0f) * kb_erf(radius / scale));
-  return kb_fmin(kb_fmax(x, -radius), radius);
 }
 
 #endif

@@ -87,12 +87,6 @@ KB_FN KbFloat4 kb_sampler_block(KbSamplerKey key, kb_u32 block) {
   return kb_unit_float4(kb_sobol_block(key.reversed_index, key.key0, key.key1, block));
 }
 
-/* The same in one call. */
-KB_FN KbFloat4 kb_sample_block(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 replicate,
-                               kb_u32 index_in_replicate, kb_u32 block) {
-  return kb_sampler_block(kb_sampler_key(sampler, seed, pixel, sample, replicate, index_in_replicate), block);
-}
-
 /* Wavelength offset of one path (per-path wavelengths). sobol: a scrambled van der Corput point, so that the
    paths of a replicate of a pixel have stratified offsets. */
 KB_FN float kb_path_mu(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 replicate,

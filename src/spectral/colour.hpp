@@ -27,6 +27,5 @@ const Spectrum& illuminant_d65();
 std::array<double, 3> xyz_to_linear_srgb(const std::array<double, 3>& xyz);
 /// The sRGB transfer function, [0,1] to [0,1]; clamps.
 double srgb_encode(double linear);
-double srgb_decode(double encoded);
 
 }  // namespace kiloband

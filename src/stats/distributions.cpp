@@ -1,7 +1,6 @@
 #include "stats/distributions.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
@@ -32,17 +31,6 @@ double kolmogorov_p(double x) {
 
 double sidak(double p, double tests) {
   return p >= 1 ? 1 : -std::expm1(tests * std::log1p(-p));
-}
-
-double sidak_level(double alpha, double tests) {
-  return -std::expm1(std::log1p(-alpha) / tests);
-}
-
-double binomial_p(double successes, double trials, double p0) {
-  const boost::math::binomial law(trials, p0);
-  const double lower = boost::math::cdf(law, successes);
-  const double upper = successes <= 0 ? 1 : boost::math::cdf(boost::math::complement(law, successes - 1));
-  return std::min(1.0, 2 * std::min(lower, upper));
 }
 
 }  // namespace kiloband::stats

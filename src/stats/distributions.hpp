@@ -15,10 +15,5 @@ inline constexpr double kKolmogorovMean = 0.86873116063615;
 /// P(the smallest of `tests` p-values <= p) if they are independent (Sidak 1967); an upper bound for
 /// two-sided normal tests of any correlation. Exact for tiny p.
 double sidak(double p, double tests);
-/// The level of one of `tests` tests for which sidak() gives alpha.
-double sidak_level(double alpha, double tests);
-
-/// Two-sided p that m of n or more extreme successes have under probability p0 (twice the smaller tail).
-double binomial_p(double successes, double trials, double p0);
 
 }  // namespace kiloband::stats

@@ -148,21 +148,4 @@ double label_permutation_p(const UnitSample& a, const UnitSample& b, int permuta
   return (1.0 + hits) / (1.0 + permutations);
 }
 
-double sign_flip_p(const UnitSample& a, const UnitSample& b, int permutations, uint64_t seed) {
-  UnitSample flipped = a, zero = b;
-  std::ranges::fill(zero.means, 0);
-  const double observed = largest_t(paired_contrast(a, b, 0));
-  Random random(seed);
-  int hits = 0;
-  for (int i = 0; i < permutations; ++i) {
-    for (std::size_t r = 0; r < a.replicates(); ++r) {
-      const double sign = random.uniform() < 0.5 ? -1 : 1;
-      for (std::size_t c = 0; c < a.channels; ++c)
-        flipped.means[r * a.channels + c] = sign * (a.mean_at(r, c) - b.mean_at(r, c));
-    }
-    hits += largest_t(paired_contrast(flipped, zero, 0)) >= observed;
-  }
-  return (1.0 + hits) / (1.0 + permutations);
-}
-
 }  // namespace kiloband::stats

@@ -48,7 +48,5 @@ double max_t_p(const Contrast& contrast, const std::vector<bool>& wanted, const 
 /// where both sides have one distribution): (1 + hits) / (1 + permutations).
 /// What max_t_p is measured against.
 double label_permutation_p(const UnitSample& a, const UnitSample& b, int permutations, uint64_t seed);
-/// By random signs of a - b (paired; exact for symmetric differences).
-double sign_flip_p(const UnitSample& a, const UnitSample& b, int permutations, uint64_t seed);
 
 }  // namespace kiloband::stats

@@ -122,8 +122,7 @@ UniformityResult Uniformity::finish() {
   result_.distance = distance(t[0], reference);
   double mean = 0;
   for (int d = 1; d <= kDivisions; ++d) mean += distance(t[d], reference) / kDivisions;
-  const double root = kKolmogorovMean / mean;
-  result_.effective_units = root * root;
+  const double root = kKolmogorovMean / mean;  // of n_eff
   result_.p = kolmogorov_p(root * result_.distance);
   return std::move(result_);
 }

@@ -21,8 +21,7 @@ inline constexpr int kDivisions = 49;
 
 struct UniformityResult {
   std::size_t units = 0;
-  double distance = 0;         // D
-  double effective_units = 0;  // n_eff
+  double distance = 0;  // D
   double p = 1;
   std::vector<double> p_values;  // Student's p of the units, unsorted: for histograms and QQ plots
 };

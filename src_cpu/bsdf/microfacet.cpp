@@ -1,5 +1,7 @@
 #include "src_cpu/bsdf/microfacet.hpp"
 
+#include "shared/filter_sample.h"
+
 namespace kiloband::cpu {
 namespace {
 
@@ -21,7 +23,7 @@ float visible_beckmann_slope(float cos_theta, float sin_theta, float u) {
   const float grazing = -std::erf(std::sqrt(-std::log(std::max(u, 1e-30f))));
   float b = std::clamp(grazing + (2 * u - 1 - grazing) * cos_theta, low, high);
   for (int i = 0; i < 12; ++i) {
-    const float s = inverse_erf(b);
+    const float s = kb_erf_inv(b);
     const float excess = cos_theta * (1 + b) + k * std::exp(-s * s) - target;
     (excess > 0 ? high : low) = b;
     if (std::abs(excess) < 5e-7f) break;  // the norm is between 0.56 and 2
@@ -29,7 +31,7 @@ float visible_beckmann_slope(float cos_theta, float sin_theta, float u) {
     const float next = b - excess / slope;
     b = next > low && next < high ? next : 0.5f * (low + high);  // also taken when slope == 0
   }
-  return std::min(inverse_erf(b), cot);
+  return std::min(kb_erf_inv(b), cot);
 }
 
 glm::vec3 sample_visible_beckmann(glm::vec3 wi, glm::vec2 alpha, glm::vec2 u) {
@@ -37,7 +39,7 @@ glm::vec3 sample_visible_beckmann(glm::vec3 wi, glm::vec2 alpha, glm::vec2 u) {
   const float sin_theta = std::sqrt(v.x * v.x + v.y * v.y);
   const glm::vec2 axis = sin_theta > 0 ? glm::vec2(v.x, v.y) / sin_theta : glm::vec2(1, 0);
   const float along = visible_beckmann_slope(v.z, sin_theta, u.x);
-  const float across = inverse_erf(2 * u.y - 1);
+  const float across = kb_erf_inv(2 * u.y - 1);
   const glm::vec2 slope(axis.x * along - axis.y * across, axis.y * along + axis.x * across);
   return glm::normalize(glm::vec3(-slope.x * alpha.x, -slope.y * alpha.y, 1));
 }
@@ -55,26 +57,6 @@ glm::vec3 sample_visible_ggx(glm::vec3 wi, glm::vec2 alpha, glm::vec2 u) {
 }
 
 }  // namespace
-
-float inverse_erf(float x) {
-  x = std::clamp(x, -kLargestBelowOne, kLargestBelowOne);
-  float w = -std::log((1 - x) * (1 + x));
-  float p;
-  if (w < 5) {
-    w -= 2.5f;
-    p = 2.81022636e-08f;
-    for (float c : {3.43273939e-07f, -3.5233877e-06f, -4.39150654e-06f, 0.00021858087f, -0.00125372503f,
-                    -0.00417768164f, 0.246640727f, 1.50140941f})
-      p = c + p * w;
-  } else {
-    w = std::sqrt(w) - 3;
-    p = -0.000200214257f;
-    for (float c : {0.000100950558f, 0.00134934322f, -0.00367342844f, 0.00573950773f, -0.0076224613f,
-                    0.00943887047f, 1.00167406f, 2.83297682f})
-      p = c + p * w;
-  }
-  return p * x;
-}
 
 glm::vec3 FacetDistribution::sample_normal(glm::vec3 wi, glm::vec2 u) const {
   const glm::vec2 alpha(alpha_u_, alpha_v_);

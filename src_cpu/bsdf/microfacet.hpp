@@ -74,9 +74,4 @@ class FacetDistribution {
   bool ggx_, visible_;
 };
 
-/// Inverse error function for x in (-1, 1), relative error below 1e-6;
-/// clamped to what a float below 1 can give (3.8).
-/// Source: Giles, Approximating the erfinv function, GPU Computing Gems 2, 2010 (single precision).
-float inverse_erf(float x);
-
 }  // namespace kiloband::cpu

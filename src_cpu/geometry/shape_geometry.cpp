@@ -185,13 +185,6 @@ SurfacePoint analytic_surface(const KbShape& shape, const glm::dvec3& hit_point)
   return point;
 }
 
-double analytic_area(const KbShape& shape) {
-  const Placement placement(shape);
-  if (shape.type == KB_SHAPE_SPHERE) return 4 * kPi * glm::dot(placement.x, placement.x);
-  if (shape.type == KB_SHAPE_DISK) return kPi * glm::length(glm::cross(placement.x, placement.y));
-  return kTwoPi * glm::length(placement.x) * glm::length(placement.z);
-}
-
 AreaPoint sample_analytic_area(const KbShape& shape, glm::vec2 u) {
   AreaPoint point;
   point.local = canonical_area_point(shape.type, u);

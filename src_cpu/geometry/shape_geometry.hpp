@@ -32,9 +32,6 @@ bool intersect_analytic(const KbShape& shape, const glm::dvec3& origin, const gl
 /// the point is projected onto the surface.
 SurfacePoint analytic_surface(const KbShape& shape, const glm::dvec3& hit_point);
 
-/// Surface area, m^2 (see above for cylinders).
-double analytic_area(const KbShape& shape);
-
 /// A uniformly distributed point: density 1 / area. `local` is the point in the shape's own coordinates.
 struct AreaPoint {
   glm::vec3 position;  // world, m

@@ -24,9 +24,7 @@ struct DeviceInfo {
   uint32_t compute_units = 0;
   uint64_t global_memory = 0;   // bytes
   uint64_t max_allocation = 0;  // bytes, of one buffer
-  uint64_t local_memory = 0;    // bytes per work-group
   uint64_t max_work_group_size = 0;
-  bool fp64 = false;
   _cl_device_id* id = nullptr;
 
   /// PoCL: needs settings of its own.

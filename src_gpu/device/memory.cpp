@@ -123,12 +123,5 @@ void RawBuffer::fill(uint64_t offset, uint64_t bytes, const void* pattern, uint6
   });
 }
 
-void RawBuffer::copy_from(const RawBuffer& source, uint64_t from, uint64_t to, uint64_t bytes) {
-  source.check_range(from, bytes);
-  check_range(to, bytes);
-  if (bytes == 0) return;
-  checked(site(), [&] { context_->queue().enqueueCopyBuffer(source.buffer_, buffer_, from, to, bytes); });
-}
-
 }  // namespace detail
 }  // namespace kiloband::opencl

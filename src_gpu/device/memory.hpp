@@ -48,7 +48,6 @@ class RawBuffer {
   void read(uint64_t offset, uint64_t bytes, void* to) const;
   /// pattern_bytes 1, 2, 4, 8 ... 128 and a divisor of bytes.
   void fill(uint64_t offset, uint64_t bytes, const void* pattern, uint64_t pattern_bytes);
-  void copy_from(const RawBuffer& source, uint64_t from, uint64_t to, uint64_t bytes);
 
   const cl::Buffer& cl_buffer() const { return buffer_; }
   const std::string& what() const { return what_; }
@@ -114,10 +113,6 @@ class DeviceBuffer {
     const unsigned char zero = 0;
     raw_.fill(0, bytes(), &zero, 1);
   }
-  /// Device to device.
-  void copy_from(const DeviceBuffer& source, uint64_t from, uint64_t to, uint64_t count) {
-    raw_.copy_from(source.raw_, from * sizeof(T), to * sizeof(T), count * sizeof(T));
-  }
 
   const cl::Buffer& cl_buffer() const { return raw_.cl_buffer(); }
 
@@ -157,8 +152,6 @@ class DeviceMemory {
   /// Bytes of the largest buffer that could be allocated now: what is left,
   /// and no more than the device's limit.
   uint64_t largest() const { return std::min(available(), context_.device().max_allocation); }
-  /// For runs that follow each other: the peak begins anew with what is in use.
-  void restart_peak() { account_->peak = account_->used; }
 
  private:
   DeviceContext& context_;

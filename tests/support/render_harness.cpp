@@ -45,10 +45,34 @@ void collect(const SpectralFilm& film, const std::vector<double>& scale, RenderR
     }
   }
   append(film.image_moments(), 0, scale, result.image_mean, result.image_variance);
-  if (film.options().held) return;
-  for (std::size_t tile = 0; tile < film.tile_moments().units(); ++tile) {
-    if (film.tile_moments().samples(tile) > 0)
-      append(film.tile_moments(), tile, scale, result.tile_mean, result.tile_variance);
+}
+
+/// From the replicates that a film holds.
+void collect_tiles(const SpectralFilm& film, const std::vector<double>& scale, RenderResult& result) {
+  const std::size_t across = (result.width + kTileSize - 1) / kTileSize, pixels = film.rect().pixels();
+  const std::size_t tiles = across * ((result.height + kTileSize - 1) / kTileSize),
+                    channels = result.channels;
+  ReplicateMoments moments(tiles, channels, true);
+  std::vector<float> mean(channels);
+  for (uint32_t r = 0; r < result.replicates; ++r) {
+    std::vector<double> sums(tiles * channels);
+    std::vector<uint64_t> counts(tiles);
+    for (std::size_t p = 0; p < pixels; ++p) {
+      const std::size_t tile = p / result.width / kTileSize * across + p % result.width / kTileSize;
+      const uint64_t samples = film.replicate_samples(r, p);
+      film.replicate_mean(r, p, mean);
+      for (std::size_t c = 0; c < channels; ++c)
+        sums[tile * channels + c] += static_cast<double>(samples) * mean[c];
+      counts[tile] += samples;
+    }
+    for (std::size_t tile = 0; tile < tiles; ++tile) {
+      for (std::size_t c = 0; c < channels; ++c)
+        mean[c] = static_cast<float>(sums[tile * channels + c] / static_cast<double>(counts[tile]));
+      if (counts[tile] > 0) moments.add(tile, counts[tile], mean);
+    }
+  }
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    if (moments.samples(tile) > 0) append(moments, tile, scale, result.tile_mean, result.tile_variance);
   }
 }
 
@@ -83,6 +107,7 @@ RenderResult render(const RenderSpec& spec) {
     backend->render(film, {r, 0, static_cast<uint32_t>(plan.size(r))}, blocks, stop, {});
   }
   collect(film, backend->film_scale(), result);
+  if (spec.held) collect_tiles(film, backend->film_scale(), result);
   const BackendStatistics done = backend->statistics();
   result.invalid_samples = done.invalid_samples;
   result.vertices = done.vertices;

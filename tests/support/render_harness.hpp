@@ -35,7 +35,7 @@ struct RenderResult {
   uint32_t replicates = 0;
   std::vector<double> mean;                        // [pixel][channel]
   std::vector<double> variance;                    // of the mean, [pixel][channel]
-  std::vector<double> tile_mean, tile_variance;    // [tile with samples][channel]
+  std::vector<double> tile_mean, tile_variance;    // held: [tile with samples][channel]
   std::vector<double> image_mean, image_variance;  // [channel]
   uint64_t invalid_samples = 0, vertices = 0, paths = 0;
   std::vector<std::string> diagnostics;

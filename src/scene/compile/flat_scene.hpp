@@ -96,7 +96,6 @@ struct FlatScene {
   EnvmapSampling envmap;
   /// Where the coordinates of all of this begin, in the scene file's: 0 unless it is far.
   std::array<double, 3> origin{};
-  KbFloat3 scene_centre{0, 0, 0};
   float scene_radius = 0;  // bounding sphere of the geometry, m
 
   KbCamera camera{};

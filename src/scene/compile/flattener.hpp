@@ -89,7 +89,6 @@ class Flattener {
   uint32_t add_thermal(KbThermal record, uint32_t heat);
   KbThermal thermal_of(const KbMaterial& material, const std::string& name, uint32_t heat);
   KbThermal thermal_of_metal(const KbMaterial& material, const std::string& name, uint32_t heat);
-  KbThermal thermal_of_plastic(const KbMaterial& material, uint32_t heat);
   uint32_t nonlinear_complement(const KbMaterial& material, uint32_t heat);
   void check_thermal(const Bsdf& bsdf, const KbMaterial& material) const;
   void require_emission_data(const Texture& texture, const SpectrumSource& use) const;

@@ -1,8 +1,10 @@
-// Bounds of analytic shapes, for both backends' acceleration structures.
+// Bounds of analytic shapes, for both backends' acceleration structures, and their areas.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
+#include <numbers>
 #include <utility>
 
 #include "shared/records.h"
@@ -21,6 +23,15 @@ inline std::pair<float, float> analytic_interval(const KbShape& shape, int axis)
   const double to = row[3] + std::max(0.0, along) + reach;
   const double slack = 1e-6 * std::max({std::abs(from), std::abs(to), reach});
   return {static_cast<float>(from - slack), static_cast<float>(to + slack)};
+}
+
+/// Surface area of a canonical analytic shape under its transform (a similarity for spheres; see the reader's checks).
+inline double analytic_area(uint32_t type, const glm::dmat4& to_world) {
+  const glm::dvec3 x(to_world[0]), y(to_world[1]), z(to_world[2]);
+  const double pi = std::numbers::pi;
+  if (type == KB_SHAPE_SPHERE) return 4 * pi * glm::dot(x, x);
+  if (type == KB_SHAPE_DISK) return pi * glm::length(glm::cross(x, y));
+  return 2 * pi * glm::length(x) * glm::length(z);
 }
 
 }  // namespace kiloband

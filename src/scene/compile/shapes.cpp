@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "scene/compile/flattener.hpp"
 #include "scene/compile/lattice_cdf.hpp"
+#include "scene/compile/shape_bounds.hpp"
 
 namespace kiloband {
 namespace {
@@ -16,16 +16,6 @@ KbFloat3 to_record(const glm::dvec3& v) {
 
 glm::dvec3 to_glm(const KbFloat3& v) {
   return {v.x, v.y, v.z};
-}
-
-/// Area of a canonical analytic shape under its transform
-/// (a similarity for spheres; see the reader's checks).
-double analytic_area(uint32_t type, const Transform& m) {
-  const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
-  const double pi = std::numbers::pi;
-  if (type == KB_SHAPE_SPHERE) return 4 * pi * glm::dot(x, x);
-  if (type == KB_SHAPE_DISK) return pi * glm::length(glm::cross(x, y));
-  return 2 * pi * glm::length(x) * glm::length(z);
 }
 
 bool mirrors(const Transform& to_world) {
@@ -166,7 +156,6 @@ void Flattener::compute_bounds() {
     if (shape.type != KB_SHAPE_MESH) extend_bounds(shape, low, high);
   }
   if (!(low.x <= high.x)) return;  // no geometry: radius 0
-  out_.scene_centre = to_record(0.5 * (low + high));
   out_.scene_radius = static_cast<float>(0.5 * glm::length(high - low));
 }
 

@@ -197,6 +197,13 @@ double dielectric_reflectance(double cos_i, double eta) {
   return 0.5 * (s * s + p * p);
 }
 
+/// With s^2 = 1 - c^2, t = n^2 - 1 - k^2 + c^2, q = |(n - ik)^2 - s^2| = sqrt(t^2 + 4 n^2 k^2), and a the real part of
+/// the root of (n - ik)^2 - s^2, a^2 = (q + t) / 2:
+///   R_s = (q + c^2 - 2 a c) / (q + c^2 + 2 a c)
+///   R_p = R_s Q,  Q = (q c^2 + s^4 - 2 a c s^2) / (q c^2 + s^4 + 2 a c s^2).
+/// q + t cancels where k >> n (silver would lose four digits); there a = n k / b with the imaginary part
+/// b^2 = (q - t) / 2. 1 - R_s and 1 - Q are taken as fractions of their own.
+/// Source: Born, Wolf, Principles of Optics, 7th ed., 14.2.
 double metal_absorptance(double cos_i, double n, double k) {
   const double c2 = cos_i * cos_i, s2 = (1 - cos_i) * (1 + cos_i);
   const double t = (n - 1) * (n + 1) - k * k + c2;

@@ -42,8 +42,7 @@ std::vector<VisibleFacet> visible_facets(const Facets& facets, const glm::dvec3&
 
 /// Unpolarised Fresnel reflectance; eta: far over near index; 1 beyond the critical angle. cos_i in [0, 1]
 double dielectric_reflectance(double cos_i, double eta);
-/// 1 - F of a metal of index n - i k for light from vacuum, without cancellation
-/// (shared/fresnel.h has the derivation).
+/// 1 - F of a metal of index n - i k for light from vacuum, without cancellation.
 double metal_absorptance(double cos_i, double n, double k);
 
 /// Part of the light from v that leaves on either side.

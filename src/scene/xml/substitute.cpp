@@ -31,13 +31,13 @@ Substitution::Substitution(const std::vector<std::pair<std::string, std::string>
   for (const auto& [name, value] : defines) {
     if (!is_name(name))
       throw InputError("-D " + name + "=" + value + ": '" + name + "' is not a parameter name");
-    parameters_[name] = {value, true, false};
+    parameters_[name] = {value, false};
   }
 }
 
 void Substitution::set_default(const std::string& name, const std::string& value, const Place& place) {
   if (!is_name(name)) fail(place, "'" + name + "' is not a parameter name");
-  parameters_.try_emplace(name, Parameter{value, false, true}).first->second.known = true;
+  parameters_.try_emplace(name, Parameter{value, true}).first->second.known = true;
 }
 
 const Substitution::Parameter& Substitution::look_up(const std::string& name, const Place& place) {

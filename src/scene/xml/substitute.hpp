@@ -26,7 +26,6 @@ class Substitution {
  private:
   struct Parameter {
     std::string value;
-    bool from_command_line = false;
     bool known = false;  // the scene mentions it
   };
   const Parameter& look_up(const std::string& name, const Place& place);

@@ -39,6 +39,7 @@ RenderSpec spec_of(const Mode& mode, uint64_t spp) {
   spec.xml = scene(4, box_sensor(kCrop) + box_walls() + box_block() + box_light(comb(400, 780, 5, 1, 10)));
   spec.bands = "400:780:76";
   spec.spp = spp;
+  spec.held = true;
   spec.threads = 1;
   spec.sampling.sampler = std::get<0>(mode);
   spec.sampling.wavelengths = std::get<1>(mode);

@@ -22,6 +22,11 @@ bool same(const KbFloat4& a, const KbFloat4& b) {
   return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
 }
 
+KbFloat4 sample_block(uint32_t sampler, uint64_t seed, uint32_t pixel, uint32_t sample, uint32_t replicate,
+                      uint32_t index_in_replicate, uint32_t block) {
+  return kb_sampler_block(kb_sampler_key(sampler, seed, pixel, sample, replicate, index_in_replicate), block);
+}
+
 TEST(Sampler, BlocksOfABounce) {
   EXPECT_EQ(KB_BLOCK_CAMERA, 0u);
   EXPECT_EQ(kb_block_light(0), 1u);
@@ -34,7 +39,7 @@ TEST(Sampler, BlocksOfABounce) {
 TEST(Sampler, IndependentIsPhiloxOfPixelSampleBlock) {
   for (uint32_t block = 0; block < 5; ++block) {
     const KbPhilox4 r = kb_philox4x32({17, 23, block, 0}, {0x89abcdefu, 0x01234567u});
-    const KbFloat4 u = kb_sample_block(KB_SAMPLER_INDEPENDENT, kSeed, 17, 23, block, 5, block);
+    const KbFloat4 u = sample_block(KB_SAMPLER_INDEPENDENT, kSeed, 17, 23, block, 5, block);
     EXPECT_EQ(u.x, kb_unit_float(r.x));
     EXPECT_EQ(u.y, kb_unit_float(r.y));
     EXPECT_EQ(u.z, kb_unit_float(r.z));
@@ -46,20 +51,12 @@ TEST(Sampler, IndependentIsPhiloxOfPixelSampleBlock) {
   EXPECT_EQ(kb_degrade_sample(kSeed, 17, 23, 6), kb_unit_float(degrade.x));
 }
 
-TEST(Sampler, KeyedAndDirectCallsAgree) {
-  for (const uint32_t sampler : {KB_SAMPLER_INDEPENDENT, KB_SAMPLER_SOBOL}) {
-    const KbSamplerKey key = kb_sampler_key(sampler, kSeed, 99, 35, 3, 2);
-    for (uint32_t block = 0; block < 9; ++block)
-      EXPECT_TRUE(same(kb_sampler_block(key, block), kb_sample_block(sampler, kSeed, 99, 35, 3, 2, block)));
-  }
-}
-
 // Every argument that should matter does;
 // with sobol the sample itself enters only through its replicate and index.
 TEST(Sampler, SobolDependsOnSeedPixelReplicateIndexBlock) {
   const auto sobol = [](uint64_t seed, uint32_t pixel, uint32_t sample, uint32_t replicate, uint32_t index,
                         uint32_t block) {
-    return kb_sample_block(KB_SAMPLER_SOBOL, seed, pixel, sample, replicate, index, block);
+    return sample_block(KB_SAMPLER_SOBOL, seed, pixel, sample, replicate, index, block);
   };
   const KbFloat4 reference = sobol(kSeed, 1, 2, 3, 4, 5);
   EXPECT_TRUE(same(reference, sobol(kSeed, 1, 99, 3, 4, 5)));
@@ -74,7 +71,7 @@ TEST(Sampler, SobolDependsOnSeedPixelReplicateIndexBlock) {
 TEST(Sampler, SobolPointsOfAReplicateAreStratifiedInEachDimension) {
   std::set<int> x, y, z, w;
   for (uint32_t i = 0; i < 64; ++i) {
-    const KbFloat4 u = kb_sample_block(KB_SAMPLER_SOBOL, kSeed, 7, 16 * i + 3, 3, i, 2);
+    const KbFloat4 u = sample_block(KB_SAMPLER_SOBOL, kSeed, 7, 16 * i + 3, 3, i, 2);
     x.insert(static_cast<int>(u.x * 64));
     y.insert(static_cast<int>(u.y * 64));
     z.insert(static_cast<int>(u.z * 64));
@@ -85,7 +82,7 @@ TEST(Sampler, SobolPointsOfAReplicateAreStratifiedInEachDimension) {
 
 TEST(Sampler, NumbersStayBelowOne) {
   for (uint32_t i = 0; i < 200'000; ++i) {
-    const KbFloat4 u = kb_sample_block(i & 1, kSeed, i, 0, 0, 0, 0);
+    const KbFloat4 u = sample_block(i & 1, kSeed, i, 0, 0, 0, 0);
     const float mu = kb_shared_mu(kSeed, 0, i, 0, 0);
     for (const float v : {u.x, u.y, u.z, u.w, mu}) {
       ASSERT_GE(v, 0.0f);
@@ -132,7 +129,7 @@ TEST(Sampler, MuIsUniformAndIndependentAmongItsKeys) {
   test("seeds", [&](uint32_t i) { return Pair{mu(2 * i, 0, 0, 0), mu(2 * i + 1, 0, 0, 0)}; });
   test("mu and camera", [&](uint32_t i) {
     return Pair{kb_path_mu(KB_SAMPLER_SOBOL, 1, i, 0, 0, 0),
-                kb_sample_block(KB_SAMPLER_SOBOL, 1, i, 0, 0, 0, 0).x};
+                sample_block(KB_SAMPLER_SOBOL, 1, i, 0, 0, 0, 0).x};
   });
   test("mu and degradation", [&](uint32_t i) {
     return Pair{kb_path_mu(KB_SAMPLER_INDEPENDENT, 1, i, 0, 0, 0), kb_degrade_sample(1, i, 0, 0)};
@@ -152,7 +149,7 @@ TEST(Sampler, SobolReplicatesGiveHonestErrorBars) {
     for (uint32_t r = 0; r < kReplicates; ++r) {
       double m = 0;
       for (uint32_t i = 0; i < kPerReplicate; ++i) {
-        const KbFloat4 u = kb_sample_block(KB_SAMPLER_SOBOL, 5, pixel, i * kReplicates + r, r, i, 1);
+        const KbFloat4 u = sample_block(KB_SAMPLER_SOBOL, 5, pixel, i * kReplicates + r, r, i, 1);
         m += static_cast<double>(u.x) * u.y * u.z / kPerReplicate;
       }
       sum += m;

@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "stats/distributions.hpp"
+#include "stats/random.hpp"
 #include "tests/support/simulated_image.hpp"
+#include "tests/unit/stats/support.hpp"
 
 namespace kiloband::stats {
 namespace {
@@ -24,6 +26,25 @@ UnitSample draw(std::size_t channels, double common, uint64_t seed, uint32_t rep
 double rotation_p(const UnitSample& a, const UnitSample& b, uint64_t seed) {
   const Contrast contrast = independent_contrast(a, b, 0);
   return max_t_p(contrast, {}, strongest_channel(contrast, {}), seed);
+}
+
+/// max_t_p by random signs of a - b (exact for symmetric differences).
+double sign_flip_p(const UnitSample& a, const UnitSample& b, int flips, uint64_t seed) {
+  const auto largest_t = [](const Contrast& c) { return std::abs(strongest_channel(c, {}).t); };
+  UnitSample flipped = a, zero = b;
+  std::ranges::fill(zero.means, 0);
+  const double observed = largest_t(paired_contrast(a, b, 0));
+  Random random(seed);
+  int hits = 0;
+  for (int i = 0; i < flips; ++i) {
+    for (std::size_t r = 0; r < a.replicates(); ++r) {
+      const double sign = random.uniform() < 0.5 ? -1 : 1;
+      for (std::size_t c = 0; c < a.channels; ++c)
+        flipped.means[r * a.channels + c] = sign * (a.mean_at(r, c) - b.mean_at(r, c));
+    }
+    hits += largest_t(paired_contrast(flipped, zero, 0)) >= observed;
+  }
+  return (1.0 + hits) / (1.0 + flips);
 }
 
 /// Channels that are all the same are one test; independent ones are Sidak's K tests.

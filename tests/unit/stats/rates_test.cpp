@@ -6,8 +6,8 @@
 #include <map>
 
 #include "stats/comparison.hpp"
-#include "stats/distributions.hpp"
 #include "tests/support/simulated_image.hpp"
+#include "tests/unit/stats/support.hpp"
 
 namespace kiloband::stats {
 namespace {

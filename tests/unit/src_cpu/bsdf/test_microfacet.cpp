@@ -1,8 +1,6 @@
-// The building blocks: Fresnel's formulas, the inverse error function,
-// distributions of normals, rough transmittance.
+// The building blocks: Fresnel's formulas, distributions of normals, rough transmittance.
 #include <gtest/gtest.h>
 
-#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
 #include "cases.hpp"
@@ -35,16 +33,6 @@ TEST(Fresnel, KnownPoints) {
   EXPECT_EQ(fresnel_dielectric(0.3f, 1).reflectance, 0);
   EXPECT_EQ(fresnel_dielectric(0, 1.5f).reflectance, 1);
   EXPECT_EQ(fresnel_dielectric(0.5f, 1 / 1.5f).reflectance, 1);  // beyond the critical angle of 41.8 degrees
-}
-
-TEST(Microfacet, InverseErrorFunction) {
-  for (int i = -9999; i <= 9999; ++i) {
-    const float x = i / 10000.0f;
-    EXPECT_NEAR(inverse_erf(x), boost::math::erf_inv(double(x)),
-                2e-6 * (1 + std::abs(boost::math::erf_inv(double(x)))));
-  }
-  EXPECT_NEAR(inverse_erf(-1), -3.83, 0.02);
-  EXPECT_NEAR(inverse_erf(1), 3.83, 0.02);
 }
 
 TEST(Microfacet, DensityAndMaskingMatchDouble) {

@@ -108,9 +108,9 @@ TEST(AreaSampling, UniformOnEveryShape) {
 
 TEST(Area, ClosedForms) {
   const double pi = 3.14159265358979;
-  EXPECT_NEAR(analytic_area(make_shape(KB_SHAPE_SPHERE, placed({1, 2, 3}, 1, {2, 2, 2}))), 16 * pi, 1e-5);
-  EXPECT_NEAR(analytic_area(make_shape(KB_SHAPE_DISK, placed({1, 2, 3}, 1, {2, 3, 1}))), 6 * pi, 1e-5);
-  EXPECT_NEAR(analytic_area(make_shape(KB_SHAPE_CYLINDER, placed({1, 2, 3}, 1, {2, 2, 5}))), 20 * pi, 1e-5);
+  EXPECT_NEAR(analytic_area(KB_SHAPE_SPHERE, placed({1, 2, 3}, 1, {2, 2, 2})), 16 * pi, 1e-5);
+  EXPECT_NEAR(analytic_area(KB_SHAPE_DISK, placed({1, 2, 3}, 1, {2, 3, 1})), 6 * pi, 1e-5);
+  EXPECT_NEAR(analytic_area(KB_SHAPE_CYLINDER, placed({1, 2, 3}, 1, {2, 2, 5})), 20 * pi, 1e-5);
 }
 
 TEST(RayOffset, FollowsTheCornersAndNotThePoint) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/compile/flat_scene.hpp"
+#include "scene/compile/shape_bounds.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
 
@@ -35,7 +36,7 @@ inline KbShape make_shape(uint32_t type, const glm::dmat4& to_world, uint32_t fl
   shape.first_cdf = KB_NONE;
   set_matrix(shape.to_world, to_world);
   set_matrix(shape.to_object, glm::inverse(to_world));
-  shape.area = static_cast<float>(analytic_area(shape));
+  shape.area = static_cast<float>(analytic_area(type, to_world));
   return shape;
 }
 
