@@ -14,6 +14,7 @@
 #include "app/render_options.hpp"
 #include "app/standard_output.hpp"
 #include "base/error.hpp"
+#include "cube/cube_layout.hpp"
 #include "files/atomic_file.hpp"
 
 namespace kiloband {
@@ -56,16 +57,11 @@ void check_sides(const CompareOptions& o, const CompareSide& a, const CompareSid
     throw InputError("--image-only needs replicates (--keep-replicates) or several renders of both sides");
 }
 
-std::string metadata(const CubeInfo& info, const char* key) {
-  const auto found = info.metadata.find(key);
-  return found == info.metadata.end() ? std::string() : found->second;
-}
-
 /// With one seed both sides have the same noise: differences are far smaller than the errors say.
 void warn_of_equal_seeds(const CompareOptions& o, const CompareSide& a, const CompareSide& b,
                          const DiagnosticSink& sink) {
-  const std::string seed = metadata(a.info(), "seed");
-  if (o.paired || seed.empty() || seed != metadata(b.info(), "seed")) return;
+  const std::string seed = metadata_of(a.info(), "seed");
+  if (o.paired || seed.empty() || seed != metadata_of(b.info(), "seed")) return;
   warn(
       sink, {},
       fmt::format("A and B have the same seed {}: their noise is common and hides nothing but the tests; use "

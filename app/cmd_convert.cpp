@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "app/commands.hpp"
@@ -13,6 +12,7 @@
 #include "cube/cube_io.hpp"
 #include "cube/cube_text.hpp"
 #include "post/convert.hpp"
+#include "spectral/text_table.hpp"
 
 namespace kiloband {
 namespace {
@@ -31,12 +31,7 @@ WavelengthRange parse_range(const std::string& text) {
 
 /// The option's value, or what stands in the file that it names.
 std::string text_or_file(const std::string& value) {
-  if (!std::filesystem::is_regular_file(value)) return value;
-  std::ifstream in(value, std::ios::binary);
-  std::string text(std::filesystem::file_size(value), '\0');
-  if (!in.read(text.data(), static_cast<std::streamsize>(text.size())))
-    throw InputError(fmt::format("--wavelengths {}: cannot be read", value));
-  return text;
+  return std::filesystem::is_regular_file(value) ? read_text_file(value) : value;
 }
 
 CubeSelection selection_of(const ConvertOptions& options, const CubeInfo& info) {

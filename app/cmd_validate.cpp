@@ -7,7 +7,6 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "app/commands.hpp"
@@ -16,6 +15,7 @@
 #include "app/stop_signals.hpp"
 #include "base/error.hpp"
 #include "scenes/generator/scenes.hpp"
+#include "src_cpu/cpu_backend.hpp"
 #include "src_gpu/device/device.hpp"
 #include "validation/suite/child_process.hpp"
 #include "validation/suite/results.hpp"
@@ -50,17 +50,9 @@ std::vector<std::string> backends_of(const ValidateOptions& options) {
   return backends;
 }
 
-std::string processor_name() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
-}
-
 RunRecord record_of(const std::vector<std::string>& backends) {
   RunRecord record{"kiloband " KILOBAND_VERSION,
-                   processor_name(),
+                   cpu::processor_name(),
                    fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))),
                    {}};
   for (const std::string& backend : backends)

@@ -8,12 +8,13 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "cube/cube_layout.hpp"
 #include "post/replicated_cube.hpp"
 
 namespace kiloband {
 namespace {
 
-std::string band_text(const Band& band) {
+std::string exact_band_text(const Band& band) {
   if (band.derived) return fmt::format("the response '{}'", band.channel.name);
   return fmt::format("{:.10g}-{:.10g} nm", band.channel.min_nm, band.channel.max_nm);
 }
@@ -34,11 +35,6 @@ double factor_of(const CubeInfo& info, std::size_t band, Quantity wanted) {
   if (b.derived || info.quantity == wanted) return 1;
   const double width = b.channel.max_nm - b.channel.min_nm;
   return wanted == Quantity::kIntegral ? width : 1 / width;
-}
-
-std::string seed_of(const CubeInfo& info) {
-  const auto found = info.metadata.find("seed");
-  return found == info.metadata.end() ? std::string() : found->second;
 }
 
 bool is_missing(const std::vector<float>& values, std::size_t pixel, std::size_t channels) {
@@ -71,8 +67,8 @@ void check_same_shape(const std::string& name_a, const CubeInfo& a, const std::s
         fmt::format("{} has {} channels, {} has {}", name_a, a.bands.size(), name_b, b.bands.size()));
   for (std::size_t i = 0; i < a.bands.size(); ++i) {
     if (!same_band(a.bands[i], b.bands[i]))
-      throw InputError(fmt::format("channel {}: {} has {}, {} has {}", i, name_a, band_text(a.bands[i]),
-                                   name_b, band_text(b.bands[i])));
+      throw InputError(fmt::format("channel {}: {} has {}, {} has {}", i, name_a, exact_band_text(a.bands[i]),
+                                   name_b, exact_band_text(b.bands[i])));
   }
 }
 
@@ -97,11 +93,12 @@ void CompareSide::open_renders(const std::vector<std::string>& files, const Diag
   for (const std::string& file : files) {
     cubes_.push_back(open_cube(file, sink));
     const CubeInfo& info = cubes_.back()->info();
+    const std::string seed = metadata_of(info, "seed");
     check_same_shape(files.front(), this->info(), file, info);
     for (std::size_t other = 0; other + 1 < cubes_.size(); ++other) {
-      if (!seed_of(info).empty() && seed_of(info) == seed_of(cubes_[other]->info()))
+      if (!seed.empty() && seed == metadata_of(cubes_[other]->info(), "seed"))
         throw InputError(fmt::format("{} and {} have the same seed {}: they are not independent renders",
-                                     files[other], file, seed_of(info)));
+                                     files[other], file, seed));
     }
     samples_.push_back(info.samples_per_pixel);
   }

@@ -29,14 +29,6 @@ const char* embree_isa(Isa isa) {
   }
 }
 
-std::string processor_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown processor";
-}
-
 /// OpenMP starts all threads but the caller's, and so does TBB, which Embree builds with, and one per processor
 /// when Embree lets go of its limit. Both end the process where they cannot.
 void check_threads(int threads) {
@@ -197,6 +189,14 @@ std::vector<double> CpuBackend::film_scale() const {
 }
 
 }  // namespace
+
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown processor";
+}
 
 std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
                                       const SamplingSettings& settings, const Options& options) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "render/backend_registry.hpp"
 #include "scene/description/derived_channels.hpp"
@@ -13,6 +14,9 @@ struct Options {
   Isa isa = Isa::kAuto;
   int threads = 0;  // 0: all processors
 };
+
+/// As the operating system calls it.
+std::string processor_name();
 
 /// Same seed, settings and instruction set: same bits, for any number of threads.
 /// throws DeviceError  no such instruction set here, Embree failed

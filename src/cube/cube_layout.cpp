@@ -65,6 +65,18 @@ std::string band_text(const Band& band) {
   return format_short(band.channel.min_nm) + "-" + format_short(band.channel.max_nm) + " nm";
 }
 
+ChannelList channels_of(const std::vector<Band>& bands) {
+  ChannelList channels;
+  for (const Band& band : bands)
+    if (!band.derived) channels.push_back(band.channel);
+  return channels;
+}
+
+std::string metadata_of(const CubeInfo& info, const std::string& key) {
+  const auto found = info.metadata.find(key);
+  return found == info.metadata.end() ? std::string() : found->second;
+}
+
 QuantityConversion::QuantityConversion(const std::vector<Band>& bands, Quantity from, Quantity to)
     : divide_(from == Quantity::kIntegral), same_(from == to) {
   width_.reserve(bands.size());

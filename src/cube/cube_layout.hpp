@@ -26,6 +26,11 @@ void check_cube_info(const CubeInfo& info, const std::string& where);
 /// "400-410 nm", or the name of a derived band: for messages.
 std::string band_text(const Band& band);
 
+/// The channels of all bands that are not derived.
+ChannelList channels_of(const std::vector<Band>& bands);
+/// Empty where the cube has no such entry.
+std::string metadata_of(const CubeInfo& info, const std::string& key);
+
 /// Changes values and variances of bands from one quantity to the other; derived bands stay as they are.
 class QuantityConversion {
  public:

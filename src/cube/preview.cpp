@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cube/cube_io.hpp"
+#include "cube/cube_layout.hpp"
 #include "spectral/colour.hpp"
 
 namespace kiloband {
@@ -27,13 +27,6 @@ std::array<float, 3> false_colour_weight(const Channel& c, double low, double th
     weight[static_cast<std::size_t>(2 - part)] = static_cast<float>(std::max(overlap, 0.0) / c.width_nm());
   }
   return weight;
-}
-
-ChannelList channels_of(const std::vector<Band>& bands) {
-  ChannelList channels;
-  for (const Band& band : bands)
-    if (!band.derived) channels.push_back(band.channel);
-  return channels;
 }
 
 }  // namespace

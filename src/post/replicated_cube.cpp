@@ -12,19 +12,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string metadata(const CubeInfo& info, const char* key) {
-  const auto found = info.metadata.find(key);
-  return found == info.metadata.end() ? std::string() : found->second;
-}
-
 /// A replicate must be of the same picture: a later render under the same name may have left old ones.
 void check_replicate(const CubeInfo& whole, const CubeInfo& part, uint32_t replicate, const fs::path& file) {
   const bool same_bands = whole.bands.size() == part.bands.size();
   const bool same_size = whole.width == part.width && whole.height == part.height;
-  const bool same_render = metadata(whole, "seed") == metadata(part, "seed") &&
-                           metadata(whole, "scene") == metadata(part, "scene") &&
+  const bool same_render = metadata_of(whole, "seed") == metadata_of(part, "seed") &&
+                           metadata_of(whole, "scene") == metadata_of(part, "scene") &&
                            whole.samples_per_pixel == part.samples_per_pixel;
-  if (!same_bands || !same_size || !same_render || metadata(part, "replicate") != std::to_string(replicate))
+  if (!same_bands || !same_size || !same_render ||
+      metadata_of(part, "replicate") != std::to_string(replicate))
     throw InputError(file.string() + ": is no replicate of this cube (of another render?): remove it");
 }
 

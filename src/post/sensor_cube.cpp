@@ -16,13 +16,6 @@ namespace {
 
 constexpr double kWorthAWarning = 1e-3;
 
-ChannelList channels_of(const std::vector<Band>& bands) {
-  ChannelList channels;
-  for (const Band& band : bands)
-    if (!band.derived) channels.push_back(band.channel);
-  return channels;
-}
-
 /// Where the number of channels that cover a wavelength changes, and that number in the interval
 /// that begins there.
 class Cover {

@@ -11,10 +11,6 @@ namespace {
 
 constexpr uint32_t kPartSamples = 16;  // most samples of a replicate that are rendered at a time
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
   std::vector<uint32_t> blocks(film.blocks().size());
   std::iota(blocks.begin(), blocks.end(), 0u);

@@ -10,6 +10,10 @@
 
 namespace kiloband {
 
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 class Passes {
  public:
   /// All references must outlive the object. channels: those of the film that are output, band by band; a

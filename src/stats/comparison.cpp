@@ -11,10 +11,6 @@
 namespace kiloband::stats {
 namespace {
 
-uint32_t tiles_along(uint32_t pixels) {
-  return (pixels + kTileEdge - 1) / kTileEdge;
-}
-
 /// Everything about one of the fine scales.
 struct FineScale {
   FineScale(Kind kind, uint32_t columns, uint32_t rows, std::size_t channels, uint32_t ra, uint32_t rb,

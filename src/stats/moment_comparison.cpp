@@ -12,10 +12,6 @@
 namespace kiloband::stats {
 namespace {
 
-uint32_t tiles_along(uint32_t pixels) {
-  return (pixels + kTileEdge - 1) / kTileEdge;
-}
-
 /// dof of va + vb, in shares of the sum (contrast.cpp).
 double joint_dof(double va, double dof_a, double vb, double dof_b) {
   const double share = va + vb > 0 ? va / (va + vb) : 0.5;

@@ -31,6 +31,9 @@ void check_shape(const ReplicateImage& image);
 /// the others miss: a few wrong pixels, a region, a small error everywhere.
 enum class Scale { kPixel, kTile, kImage };
 inline constexpr uint32_t kTileEdge = 8;
+inline uint32_t tiles_along(uint32_t pixels) {
+  return (pixels + kTileEdge - 1) / kTileEdge;
+}
 const char* name_of(Scale scale);
 
 /// One side of a unit: its replicate means.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scene/compile/flattener.hpp"
+#include "scene/optics/facet_quadrature.hpp"
 
 namespace kiloband {
 
@@ -12,22 +13,12 @@ std::string describe(const Bsdf& bsdf) {
 
 namespace {
 
-/// Unpolarised Fresnel reflectance of a dielectric for light from the outside (eta: inside over outside).
-double fresnel(double cos_i, double eta) {
-  const double sin2_t = (1 - cos_i * cos_i) / (eta * eta);
-  if (sin2_t >= 1) return 1;
-  const double cos_t = std::sqrt(1 - sin2_t);
-  const double s = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-  const double p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-  return 0.5 * (s * s + p * p);
-}
-
 /// Reflectance of diffuse light, 2 int_0^1 F(c) c dc, by the midpoint rule in c^2
 /// (error below 1e-6 for eta in 0.3-3).
 double diffuse_fresnel(double eta) {
   constexpr int kSteps = 20000;
   double sum = 0;
-  for (int i = 0; i < kSteps; ++i) sum += fresnel(std::sqrt((i + 0.5) / kSteps), eta);
+  for (int i = 0; i < kSteps; ++i) sum += dielectric_reflectance(std::sqrt((i + 0.5) / kSteps), eta);
   return sum / kSteps;
 }
 
