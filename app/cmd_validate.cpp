@@ -123,7 +123,7 @@ void print_case(const CaseResult& c) {
 void print_mitsuba(const MitsubaScene& s) {
   if (!s.passed) return answer("FAILED  mitsuba/{} on {}: {}\n", s.name, s.backend, s.failure);
   answer("passed  mitsuba/{} on {}: largest difference {:+.2g} %, would show {:.2g} %\n", s.name, s.backend,
-         100 * s.largest_difference, 100 * s.detectable);
+         100 * s.figure("/largest_difference"), 100 * s.figure("/detectable/typical"));
 }
 
 void print_verdict(const SuiteResult& result) {

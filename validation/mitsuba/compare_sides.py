@@ -21,16 +21,10 @@ import argparse
 import json
 import pathlib
 import sys
-import traceback
 
 sys.dont_write_bytecode = True  # nothing is left in the source folder
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "report")]
-
 import compare_with_mitsuba  # noqa: E402
-import cubes  # noqa: E402
-import numpy  # noqa: E402
 import render_mitsuba  # noqa: E402
 import side_scenes  # noqa: E402
 import welch  # noqa: E402
@@ -81,14 +75,10 @@ def light_views(name, cells, above):
         yield f"max_depth {depth}", above, ours, theirs, pixels
 
 
-def render_ours(options, backend, file, cells, spp):
+def render_ours(options, backend, file, spp):
     """[replicate][pixel], as radiance."""
-    cube = options.output / "ours.hdr"
-    arguments = ["render", file, "--bands", BAND, "--spp", spp * REPLICATES, "--replicates", REPLICATES]
-    arguments += ["--keep-replicates", "--quiet", "--seed", options.seed, "-o", cube]
-    compare_with_mitsuba.run(options.kiloband, *arguments, *compare_with_mitsuba.backend_arguments(backend))
-    files = [cube.with_suffix(f".r{r:02d}.hdr") for r in range(REPLICATES)]
-    return numpy.array([cubes.read_cube(f)[0, :, 0] for f in files], dtype=float) / UNIT
+    arguments = (options.seed, file, BAND, spp, REPLICATES, options.output / "ours.hdr")
+    return compare_with_mitsuba.render_replicates(options, backend, *arguments)[:, 0, :, 0].astype(float) / UNIT
 
 
 def render_theirs(options, mitsuba, file, cells, spp):
@@ -156,7 +146,7 @@ def compare(options, mitsuba):
             theirs = render_theirs(options, mitsuba, file, cells, spp * (8 if view[3] != view[2] else 1))
             file.write_text(view[2])
             for backend in options.backends:
-                ours = render_ours(options, backend, file, cells, spp)
+                ours = render_ours(options, backend, file, spp)
                 records += compare_view(cells, view, (ours, theirs), level, backend)
         print(f"{len(records)} values, {sum(r['differs'] for r in records)} differ: {cells[-1].name()}", flush=True)
     return records
@@ -188,27 +178,17 @@ def parse():
     parser.add_argument("kiloband", type=pathlib.Path)
     parser.add_argument("-o", dest="output", type=pathlib.Path, default=pathlib.Path("side_results"))
     parser.add_argument("--views", nargs="+", default=[], choices=list(side_scenes.table()))
-    parser.add_argument("--backends", type=lambda text: text.split(","), default=["cpu"])
-    parser.add_argument("--effort", type=float, default=1.0, help="factor of all sample counts")
-    parser.add_argument("--rate", type=float, default=1e-4, help="of false alarms, all values together")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--variant", default="scalar_spectral")
+    compare_with_mitsuba.add_options(parser, 1e-4)
     return parser.parse_args()
 
 
 def main():
     options = parse()
-    try:
-        mitsuba = render_mitsuba.find_mitsuba(options.variant)
-        records = compare(options, mitsuba)
-        write_results(options, mitsuba, records)
-        return 1 if any(record["differs"] for record in records) else 0
-    except render_mitsuba.Impossible as error:
-        print(f"compare_sides.py: {error}", file=sys.stderr)
-    except Exception:  # Python's own exit code would be that of a difference
-        traceback.print_exc()
-    return 2
+    mitsuba = render_mitsuba.find_mitsuba(options.variant)
+    records = compare(options, mitsuba)
+    write_results(options, mitsuba, records)
+    return 1 if any(record["differs"] for record in records) else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(compare_with_mitsuba.exit_code(main))

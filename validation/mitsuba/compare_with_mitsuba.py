@@ -68,15 +68,19 @@ def backend_arguments(backend):
     return ["--backend", name] + (["--method", method] if method else [])
 
 
+def render_replicates(options, backend, seed, scene_file, bands, spp, replicates, cube, *more):
+    """[replicate][line][sample][channel], by kiloband. spp: of a replicate."""
+    command = [options.kiloband, "render", scene_file, "--bands", bands, "--spp", spp * replicates, "--replicates", replicates]
+    command += ["--keep-replicates", "--seed", seed, "--quiet", "-o", cube, *more]
+    run(*command, *backend_arguments(backend))
+    return numpy.stack([cubes.read_cube(cube.with_suffix(f".r{r:02d}.hdr")) for r in range(replicates)])
+
+
 def render_ours(options, backend, scene_file, spp, cube):
     """Returns [replicate][channel], image means. Backends get seeds of their own: what one sees is no repetition of another."""
     seed = (options.seed + options.backends.index(backend)) % 2**64
-    size = f"{SIZE[0]}x{SIZE[1]}"
-    command = [options.kiloband, "render", scene_file, "--bands", BANDS, "--size", size, "--spp", spp * REPLICATES]
-    command += ["--replicates", REPLICATES, "--keep-replicates", "--seed", seed, "--quiet", "-o", cube]
-    run(*command, *backend_arguments(backend))
-    images = [cubes.read_cube(cube.with_suffix(f".r{r:02d}.hdr")) for r in range(REPLICATES)]
-    return numpy.array([image.mean(axis=(0, 1), dtype=float) for image in images])
+    size = ("--size", f"{SIZE[0]}x{SIZE[1]}")
+    return render_replicates(options, backend, seed, scene_file, BANDS, spp, REPLICATES, cube, *size).mean(axis=(1, 2), dtype=float)
 
 
 def render_theirs(options, mitsuba, scene_file, spp, cube):
@@ -164,16 +168,20 @@ def finite(value):
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def add_options(parser, rate):
+    parser.add_argument("--effort", type=float, default=1.0, help="factor of all sample counts")
+    parser.add_argument("--backends", type=lambda text: text.split(","), default=["cpu"])
+    parser.add_argument("--rate", type=float, default=rate, help="of false alarms, all comparisons together")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--variant", default="scalar_spectral")
+
+
 def parse():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("kiloband", type=pathlib.Path, nargs="?")
     parser.add_argument("-o", dest="output", type=pathlib.Path, default=pathlib.Path("validation_results"))
     parser.add_argument("--scenes", nargs="+", default=[], choices=[entry[0] for entry in SCENES])
-    parser.add_argument("--effort", type=float, default=1.0, help="factor of all sample counts")
-    parser.add_argument("--backends", type=lambda text: text.split(","), default=["cpu"])
-    parser.add_argument("--rate", type=float, default=RATE, help="of false alarms, all comparisons together")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--variant", default="scalar_spectral")
+    add_options(parser, RATE)
     parser.add_argument("--probe", action="store_true", help="print the version of Mitsuba")
     parser.add_argument("--list", action="store_true", help="print the names of the scenes")
     options = parser.parse_args()
@@ -214,23 +222,28 @@ def compare(options, mitsuba):
     return 0 if all(scene["passed"] for scene in record["scenes"]) else 1
 
 
-def main():
-    options = parse()
+def exit_code(action):
+    """What `action` returns; 2 where it cannot be done: Python's own would be that of a disagreement."""
     try:
-        if options.list:
-            print("\n".join(entry[0] for entry in SCENES))
-            return 0
-        mitsuba = render_mitsuba.find_mitsuba(options.variant)
-        if options.probe:
-            print(mitsuba.__version__)
-            return 0
-        return compare(options, mitsuba)
+        return action()
     except render_mitsuba.Impossible as error:
-        print(f"compare_with_mitsuba.py: {error}", file=sys.stderr)
-    except Exception:  # Python's own exit code would be that of a disagreement
+        print(f"{pathlib.Path(sys.argv[0]).name}: {error}", file=sys.stderr)
+    except Exception:
         traceback.print_exc()
     return 2
 
 
+def main():
+    options = parse()
+    if options.list:
+        print("\n".join(entry[0] for entry in SCENES))
+        return 0
+    mitsuba = render_mitsuba.find_mitsuba(options.variant)
+    if options.probe:
+        print(mitsuba.__version__)
+        return 0
+    return compare(options, mitsuba)
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_code(main))

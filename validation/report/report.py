@@ -3,8 +3,8 @@
 
 Usage: report.py DIR    (needs numpy and matplotlib: apt-get install python3-matplotlib)
 
-Reads DIR/results.json, the cubes that it names, and DIR/mitsuba.json if there is one (written by the suite, or by
-compare_with_mitsuba.py alone). Sections and values that are missing are left out: a run that was interrupted has a report
+Reads DIR/results.json, the cubes that it names, and, where the suite had no case against Mitsuba, DIR/mitsuba.json if
+compare_with_mitsuba.py has written one. Sections and values that are missing are left out: a run that was interrupted has a report
 too.
 """
 
@@ -40,32 +40,15 @@ def read_results(directory):
         results[section] = [entry for entry in results.get(section) or [] if isinstance(entry, dict)]
     for case in results["cases"]:
         case["pairings"] = [p for p in case.get("pairings") or [] if isinstance(p, dict)]
-    results["mitsuba"] = read_mitsuba(directory / "mitsuba.json", with_scenes(results.get("mitsuba")))
+    results["mitsuba"] = read_mitsuba(results.get("mitsuba"), directory / "mitsuba.json")
     return results
 
 
-def with_scenes(record):
+def read_mitsuba(section, file):
+    """The section of results.json; where the suite made no such comparison, what compare_with_mitsuba.py wrote alone."""
+    record = section or (read_json(file) if file.exists() else {})
     record = record if isinstance(record, dict) else {}
     return record | {"scenes": [scene for scene in record.get("scenes") or [] if isinstance(scene, dict)]}
-
-
-def read_mitsuba(file, verdicts):
-    """What compare_with_mitsuba.py wrote; no scenes where that comparison was not made.
-
-    verdicts: the section of results.json. If it has scenes, they decide, those that the script did not come to among them; the
-    file adds their spectra.
-    """
-    try:
-        record = with_scenes(read_json(file) if file.exists() else {})
-    except ReportError:
-        if not verdicts["scenes"]:
-            raise
-        record = with_scenes({})  # the run has said so: its scenes have failed
-    if not verdicts["scenes"]:
-        return record
-    details = {(scene.get("name"), scene.get("backend")): scene for scene in record["scenes"]}
-    scenes = [details.get((scene.get("name"), scene.get("backend")), {}) | scene for scene in verdicts["scenes"]]
-    return record | verdicts | {"scenes": scenes}
 
 
 def navigation(sections):

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 
@@ -45,34 +43,19 @@ std::optional<MitsubaDriver> probe(const std::string& interpreter, const fs::pat
   return MitsubaDriver{interpreter, lines_of(version.out).back(), script, lines_of(list.out)};
 }
 
-/// NaN where there is no number.
-double number_at(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number() ? found->get<double>()
-                                                     : std::numeric_limits<double>::quiet_NaN();
-}
-
-std::string failure_of(const json& entry, const MitsubaScene& scene) {
-  std::string text = fmt::format("channel means: p {:.3g}, level {:.3g}, largest difference {:+.3g} %",
-                                 scene.p, scene.level, 100 * scene.largest_difference);
-  if (const auto pixels = entry.find("pixels"); pixels != entry.end() && pixels->is_object())
-    text += fmt::format("; {}: p {:.3g}", pixels->at("name").get<std::string>(), number_at(*pixels, "p"));
+std::string failure_of(const MitsubaScene& scene) {
+  std::string text =
+      fmt::format("channel means: p {:.3g}, level {:.3g}, largest difference {:+.3g} %", scene.figure("/p"),
+                  scene.figure("/level"), 100 * scene.figure("/largest_difference"));
+  if (const auto pixels = scene.entry.find("pixels"); pixels != scene.entry.end() && pixels->is_object())
+    text += fmt::format("; {}: p {:.3g}", pixels->at("name").get<std::string>(), scene.figure("/pixels/p"));
   return text;
 }
 
 /// throws json::exception  it is no such entry
 MitsubaScene scene_of(const json& entry) {
-  MitsubaScene scene;
-  scene.name = entry.at("name").get<std::string>();
-  scene.backend = entry.at("backend").get<std::string>();
-  scene.p = number_at(entry, "p");
-  scene.level = number_at(entry, "level");
-  scene.largest_difference = number_at(entry, "largest_difference");
-  scene.detectable = number_at(entry.at("detectable"), "typical");
-  scene.detectable_in_worst = number_at(entry.at("detectable"), "largest");
-  scene.seconds = number_at(entry, "seconds_ours");
-  scene.passed = entry.at("passed").get<bool>();
-  if (!scene.passed) scene.failure = failure_of(entry, scene);
+  MitsubaScene scene{entry.at("name"), entry.at("backend"), entry.at("passed").get<bool>(), {}, entry};
+  if (!scene.passed) scene.failure = failure_of(scene);
   return scene;
 }
 
@@ -81,12 +64,10 @@ MitsubaResult parsed(const std::string& text, std::string& problem) {
   MitsubaResult result;
   if (text.empty()) return result;
   try {
-    const json record = json::parse(text);
-    result.version = record.at("mitsuba").get<std::string>();
-    result.variant = record.at("variant").get<std::string>();
-    result.python = record.at("python").get<std::string>();
-    result.numpy = record.at("numpy").get<std::string>();
-    for (const json& entry : record.at("scenes")) result.scenes.push_back(scene_of(entry));
+    result.record = json::parse(text);
+    const json scenes = result.record.at("scenes");
+    result.record.erase("scenes");
+    for (const json& entry : scenes) result.scenes.push_back(scene_of(entry));
   } catch (const json::exception& error) {
     problem = std::string("mitsuba.json cannot be read: ") + error.what();
   }
@@ -123,6 +104,12 @@ std::vector<std::string> command_of(const MitsubaDriver& driver, const MitsubaRu
 }
 
 }  // namespace
+
+double MitsubaScene::figure(const char* pointer) const {
+  const json::json_pointer at(pointer);
+  return entry.contains(at) && entry[at].is_number() ? entry[at].get<double>()
+                                                     : std::numeric_limits<double>::quiet_NaN();
+}
 
 bool MitsubaResult::passed() const {
   return std::ranges::all_of(scenes, &MitsubaScene::passed);
@@ -176,9 +163,7 @@ MitsubaResult read_mitsuba(const std::string& text, const MitsubaRun& run, const
         result.scenes.push_back(*at);
       } else if (!end.stopped) {
         missing = true;
-        constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-        result.scenes.push_back(
-            {name, backend, false, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, 0, problem});
+        result.scenes.push_back({name, backend, false, problem, {}});
       }
     }
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,15 +31,15 @@ struct MitsubaDriver {
 struct MitsubaScene {
   std::string name, backend;
   bool passed = false;
-  double p = 0, level = 0;                         // of the channel means; NaN: not known
-  double largest_difference = 0;                   // of a channel mean, relative
-  double detectable = 0, detectable_in_worst = 0;  // relative bias: median channel, worst channel
-  double seconds = 0;                              // of our renderer
-  std::string failure;                             // why it did not pass
+  std::string failure;   // why it did not pass
+  nlohmann::json entry;  // all that mitsuba.json has of it; null: nothing
+
+  /// "/detectable/typical" of the entry; NaN where there is no such number.
+  double figure(const char* pointer) const;
 };
 
 struct MitsubaResult {
-  std::string version, variant, python, numpy;
+  nlohmann::json record;  // what mitsuba.json says of all scenes: versions, rate, date
   std::vector<MitsubaScene> scenes;
   bool passed() const;
 };

@@ -166,27 +166,15 @@ json to_json(const ConvergenceResult& c) {
   return out;
 }
 
-json to_json(const MitsubaScene& s) {
-  json out{{"name", s.name},
-           {"backend", s.backend},
-           {"passed", s.passed},
-           {"p", number(s.p)},
-           {"level", number(s.level)},
-           {"largest_difference", number(s.largest_difference)},
-           {"detectable", {{"typical", number(s.detectable)}, {"largest", number(s.detectable_in_worst)}}},
-           {"seconds_ours", number(s.seconds)}};
-  if (!s.passed) out["failure"] = s.failure;
-  return out;
-}
-
-/// Names as in mitsuba.json, which has the means of all channels as well.
+/// The whole of mitsuba.json, with the suite's verdicts.
 json to_json(const MitsubaResult& m) {
-  json out{{"mitsuba", m.version},
-           {"variant", m.variant},
-           {"python", m.python},
-           {"numpy", m.numpy},
-           {"scenes", json::array()}};
-  for (const MitsubaScene& s : m.scenes) out["scenes"].push_back(to_json(s));
+  json out = m.record.is_object() ? m.record : json::object();
+  out["scenes"] = json::array();
+  for (const MitsubaScene& s : m.scenes) {
+    json& scene = out["scenes"].emplace_back(s.entry.is_object() ? s.entry : json::object());
+    scene.update({{"name", s.name}, {"backend", s.backend}, {"passed", s.passed}});
+    if (!s.passed) scene["failure"] = s.failure;
+  }
   return out;
 }
 
