@@ -69,11 +69,6 @@ fs::path file_of_cache(const TemporaryFolder& cache, std::size_t index) {
   return files.at(index);
 }
 
-std::string read_all(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 class CachedPrograms : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -102,18 +97,18 @@ class CachedPrograms : public ::testing::Test {
 /// leave it alone. (It need not be the first one: drivers put into a binary what they have compiled by then.)
 TEST_F(CachedPrograms, DamagedFilesAreReplaced) {
   const fs::path file = file_of_cache(cache_, 0), other = file_of_cache(cache_, 1);
-  const std::string whole = read_all(file);
+  const std::string whole = read_file(file);
   std::string flipped = whole;
   flipped[whole.size() / 2] ^= 1;
   for (const std::string& bytes : {std::string(), std::string("x"), whole.substr(0, whole.size() / 2),
-                                   flipped, whole + "x", read_all(other)}) {
+                                   flipped, whole + "x", read_file(other)}) {
     write(file, bytes);
     EXPECT_EQ(render({}), image_) << bytes.size();
-    const std::string mended = read_all(file);
+    const std::string mended = read_file(file);
     EXPECT_NE(mended, bytes);
     EXPECT_GT(mended.size(), whole.size() / 2);
     EXPECT_EQ(render({}), image_);
-    EXPECT_EQ(read_all(file), mended);
+    EXPECT_EQ(read_file(file), mended);
   }
 }
 

@@ -2,18 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "tests/end_to_end/support/program.hpp"
+#include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {
 namespace {
-
-std::filesystem::path data_folder() {
-  const char* folder = std::getenv("KILOBAND_DATA");
-  const std::filesystem::path path = folder ? folder : KILOBAND_SOURCE_DIR "/../shared/data";
-  return std::filesystem::exists(path) ? path : std::filesystem::path();
-}
 
 /// Renders a scene of the data folder at 24 x 18 pixels and expects finite values that are not all black.
 void expect_renders(const std::string& scene, const std::vector<std::string>& more) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -16,13 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << stream.rdbuf();
-  return bytes.str();
-}
-
 /// FNV-1a, 64 bits, over names and contents of all files in meshes/ and textures/, sorted by name.
 std::string hash_of(const fs::path& scene) {
   std::set<fs::path> files;
@@ -31,7 +23,7 @@ std::string hash_of(const fs::path& scene) {
   }
   uint64_t hash = kFnvBasis<uint64_t>;
   for (const fs::path& file : files)
-    hash = fnv1a(bytes_of(file), fnv1a(file.filename().string() + '\n', hash));
+    hash = fnv1a(read_file(file), fnv1a(file.filename().string() + '\n', hash));
   std::ostringstream text;
   text << std::hex << hash;
   return text.str();

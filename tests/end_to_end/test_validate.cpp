@@ -4,7 +4,6 @@
 #include <signal.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "tests/end_to_end/support/program.hpp"
@@ -159,8 +158,7 @@ TEST(Validate, AWrongClosedFormFails) {
   const std::filesystem::path source = KILOBAND_SOURCE_DIR;
   std::filesystem::create_directories(folder / "scenes/analytic");
   std::filesystem::copy(source / "scenes/analytic/spectra", folder / "scenes/analytic/spectra");
-  std::ifstream file(source / "scenes/analytic/point_light.xml");
-  std::string text(std::istreambuf_iterator<char>(file), {});
+  std::string text = read_file(source / "scenes/analytic/point_light.xml");
   const auto at = text.find("Expected: ") + 10;
   const double value = std::stod(text.substr(at));
   text.replace(at, text.find(',', at) - at, std::to_string(value * 1.02));

@@ -2,10 +2,8 @@
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
 
 #include "scene/read/reader.hpp"
 #include "tests/support/test_backend.hpp"
@@ -123,12 +121,6 @@ std::string perspective_sensor(const std::string& origin, const std::string& tar
          origin + "\" target=\"" + target +
          "\" up=\"0, 1, 0\"/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"" + n +
          "\"/><integer name=\"height\" value=\"" + n + "\"/><rfilter type=\"box\"/></film></sensor>";
-}
-
-std::filesystem::path data_directory() {
-  if (const char* named = std::getenv("KILOBAND_DATA")) return named;
-  const std::filesystem::path beside = std::filesystem::path(KILOBAND_SOURCE_DIR) / ".." / "shared" / "data";
-  return std::filesystem::exists(beside) ? beside : std::filesystem::path();
 }
 
 double z_score(double value, double expected, double variance) {

@@ -52,10 +52,6 @@ RenderResult render(const RenderSpec& spec);
 std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees,
                                uint32_t size);
 
-/// An existing folder of public scenes and meshes (KILOBAND_DATA, or shared/data beside
-/// the checkout), or empty.
-std::filesystem::path data_directory();
-
 /// |value - expected| in standard errors; infinite if the error is 0 and they differ by more
 /// than 1e-5 relative.
 double z_score(double value, double expected, double variance);

@@ -2,12 +2,12 @@
 // what tests of backends loop over.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "scene/compile/flat_scene.hpp"
 #include "scene/description/derived_channels.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
 
@@ -32,21 +32,12 @@ const ZooScene& zoo_scene(const std::string& name);
 
 inline const char* const kZooBands = "450:650:4";
 
-/// A folder with the pictures, meshes and indices that the scenes name,
-/// unique to this object; removed with it.
-class ZooFolder {
+/// A folder with the pictures, meshes and indices that the scenes name.
+class ZooFolder : public TemporaryFolder {
  public:
   ZooFolder();
-  ~ZooFolder();
-  ZooFolder(const ZooFolder&) = delete;
-  ZooFolder& operator=(const ZooFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
   /// The scene read and flattened for the bands (guide bands are the same).
   FlatScene flatten(const ZooScene& scene, const std::string& bands = kZooBands) const;
-
- private:
-  std::filesystem::path path_;
 };
 
 /// Two responses over the zoo's bands: a triangle and a constant.

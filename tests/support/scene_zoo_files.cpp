@@ -1,24 +1,11 @@
 // The files that the zoo's scenes name.
-#include <unistd.h>
-
-#include <cmath>
-#include <fstream>
-
-#include "base/temporary_folder.hpp"
 #include "scene/read/reader.hpp"
 #include "tests/support/cube_files.hpp"
+#include "tests/support/picture_files.hpp"
 #include "tests/support/scene_zoo.hpp"
 
 namespace kiloband::test {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// An 8-bit picture, binary PPM (3 values per pixel) or PGM (1).
-void write_picture(const fs::path& file, int width, int height, int values, const std::string& bytes) {
-  std::ofstream out(file, std::ios::binary);
-  out << (values == 3 ? "P6" : "P5") << '\n' << width << ' ' << height << "\n255\n" << bytes;
-}
 
 /// Colours from 40 to 230 without a pattern that a shifted or mirrored lookup could miss.
 std::string colours(int width, int height, int values) {
@@ -31,18 +18,23 @@ std::string colours(int width, int height, int values) {
   return bytes;
 }
 
-/// A sky with a small sun, 16 x 8, as PFM (rows from the bottom).
-void write_sky(const fs::path& file) {
-  std::ofstream out(file, std::ios::binary);
-  out << "PF\n16 8\n-1.0\n";
-  for (int y = 0; y < 8; ++y) {
+/// An 8-bit picture, binary PPM (3 values per pixel) or PGM (1).
+std::string picture(int width, int height, int values) {
+  return std::string(values == 3 ? "P6" : "P5") + "\n" + std::to_string(width) + " " +
+         std::to_string(height) + "\n255\n" + colours(width, height, values);
+}
+
+/// A sky with a small sun, 16 x 8.
+std::string sky() {
+  std::vector<float> texels;
+  for (int y = 7; y >= 0; --y) {
     for (int x = 0; x < 16; ++x) {
       const bool sun = y == 6 && x == 5;
-      const float rgb[3] = {sun ? 30.0f : 0.2f + 0.02f * static_cast<float>(x), sun ? 28.0f : 0.3f,
-                            sun ? 20.0f : 0.25f + 0.05f * static_cast<float>(y)};
-      out.write(reinterpret_cast<const char*>(rgb), sizeof rgb);
+      texels.insert(texels.end(), {sun ? 30.0f : 0.2f + 0.02f * static_cast<float>(x), sun ? 28.0f : 0.3f,
+                                   sun ? 20.0f : 0.25f + 0.05f * static_cast<float>(y)});
     }
   }
+  return pfm_image(16, 8, 3, texels);
 }
 
 /// An octahedron: without normals in the file it is smoothed.
@@ -56,7 +48,7 @@ const char* const kPrism =
 
 /// Reflectances in regular bands, a lamp in irregular ones, a sky whose sun is bright
 /// in the short bands only.
-void write_spectral_images(const fs::path& folder) {
+void write_spectral_images(const std::filesystem::path& folder) {
   ChannelList regular, irregular, sky;
   for (int i = 0; i < 22; ++i) regular.push_back({440.0 + 10 * i, 450.0 + 10 * i, ""});
   for (double nm = 440; nm < 660; nm += regular.size() % 2 == irregular.size() % 2 ? 10 : 20)
@@ -74,24 +66,12 @@ void write_spectral_images(const fs::path& folder) {
   });
 }
 
-/// Kelvins, 3 x 2, as PFM.
-void write_temperatures(const fs::path& file) {
-  std::ofstream out(file, std::ios::binary);
-  const float kelvin[] = {2100, 2400, 2000, 2300, 0, 2500};
-  out << "Pf\n3 2\n-1.0\n";
-  out.write(reinterpret_cast<const char*>(kelvin), sizeof kelvin);
-}
-
 /// A folded square with a temperature at each vertex.
 const char* const kHotPly =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
     "property float u\nproperty float v\nproperty float kelvin\nelement face 2\n"
     "property list uchar int vertex_indices\nend_header\n"
     "-1 -1 0 0 0 2000\n1 -1 0.2 1 0 2200\n1 1 0 1 1 2500\n-1 1 0.2 0 1 2300\n3 0 1 2\n3 0 2 3\n";
-
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
 
 /// Nodes of a plume, 4 x 3 x 5: temperature and scale.
 std::string plume_nodes() {
@@ -103,26 +83,21 @@ std::string plume_nodes() {
 
 }  // namespace
 
-ZooFolder::ZooFolder() : path_(make_temporary_folder("kiloband_zoo")) {
-  write_picture(path_ / "colours.ppm", 7, 5, 3, colours(7, 5, 3));
-  write_picture(path_ / "grey.pgm", 6, 6, 1, colours(6, 6, 1));
-  write_sky(path_ / "sky.pfm");
-  write_spectral_images(path_);
-  write_temperatures(path_ / "kelvin.pfm");
-  write_text(path_ / "hot.ply", kHotPly);
-  write_text(path_ / "gem.obj", kGem);
-  write_text(path_ / "prism.obj", kPrism);
-  write_text(path_ / "plume.txt", plume_nodes());
-  write_text(path_ / "glass.txt", "380 1.60\n500 1.545\n600 1.525\n720 1.51\n");
-}
-
-ZooFolder::~ZooFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
+ZooFolder::ZooFolder() {
+  write("colours.ppm", picture(7, 5, 3));
+  write("grey.pgm", picture(6, 6, 1));
+  write("sky.pfm", sky());
+  write_spectral_images(path());
+  write("kelvin.pfm", pfm_image(3, 2, 1, {2300, 0, 2500, 2100, 2400, 2000}));
+  write("hot.ply", kHotPly);
+  write("gem.obj", kGem);
+  write("prism.obj", kPrism);
+  write("plume.txt", plume_nodes());
+  write("glass.txt", "380 1.60\n500 1.545\n600 1.525\n720 1.51\n");
 }
 
 FlatScene ZooFolder::flatten(const ZooScene& scene, const std::string& bands) const {
-  const SceneDescription description = read_scene_text(scene.xml, scene.name + ".xml", path_, {});
+  const SceneDescription description = read_scene_text(scene.xml, scene.name + ".xml", path(), {});
   return *compile_scene(description, {parse_channels(bands), parse_channels(kZooBands), {}});
 }
 

@@ -125,18 +125,6 @@ Outcome run_program(const TemporaryFolder& folder, const std::vector<std::string
   return outcome;
 }
 
-Cube read_cube(const std::filesystem::path& file) {
-  const auto reader = open_cube(file);
-  Cube cube;
-  cube.info = reader->info();
-  cube.mean.resize(cube.pixels() * cube.info.bands.size());
-  if (cube.info.variance) cube.variance.resize(cube.mean.size());
-  cube.aux.resize(cube.pixels() * cube.info.aux.size());
-  reader->read_rows(0, cube.info.height, cube.mean, cube.variance);
-  if (!cube.aux.empty()) reader->read_aux(0, cube.info.height, cube.aux);
-  return cube;
-}
-
 nlohmann::json read_json(const TemporaryFolder& folder, const std::string& name) {
   return nlohmann::json::parse(folder.read(name));
 }

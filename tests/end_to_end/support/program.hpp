@@ -2,14 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cube/cube_io.hpp"
+#include "tests/support/cube_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
@@ -43,15 +42,6 @@ struct Outcome {
 /// Runs with the folder as working directory; a program that takes longer than 120 s is killed.
 Outcome run_program(const TemporaryFolder& folder, const std::vector<std::string>& arguments,
                     const Treatment& treatment = {});
-
-/// A cube in memory, values as they are on disk, [y][x][band].
-struct Cube {
-  CubeInfo info;
-  std::vector<float> mean, variance, aux;
-
-  std::size_t pixels() const { return std::size_t{info.width} * info.height; }
-};
-Cube read_cube(const std::filesystem::path& file);
 
 nlohmann::json read_json(const TemporaryFolder& folder, const std::string& name);
 

@@ -1,13 +1,9 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <sstream>
-
-#include "base/temporary_folder.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -136,29 +132,6 @@ std::string wide_sensor(const std::string& steps, double fov_degrees, uint32_t w
 std::string plane_sensor(uint32_t size) {
   return "<sensor type=\"orthographic\">" + to_world(lookat("0, 0, 5", "0, 0, 0")) + film(size, size) +
          "</sensor>";
-}
-
-TemporaryFolder::TemporaryFolder() : path_(make_temporary_folder("kiloband_analytic")) {}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-void TemporaryFolder::write(const std::string& name, const std::string& content) const {
-  std::ofstream(path_ / name, std::ios::binary) << content;
-}
-
-std::string pfm_image(uint32_t width, uint32_t height, uint32_t components,
-                      const std::vector<float>& values) {
-  static_assert(std::endian::native == std::endian::little);
-  std::string text =
-      (components == 3 ? "PF\n" : "Pf\n") + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n";
-  const std::size_t row = std::size_t{width} * components;
-  for (uint32_t y = height; y-- > 0;) {  // the format begins with the bottom row
-    text.append(reinterpret_cast<const char*>(&values[y * row]), row * sizeof(float));
-  }
-  return text;
 }
 
 RenderResult render_valid(const std::string& xml, const std::string& bands, const Mode& mode,

@@ -22,7 +22,9 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/picture_files.hpp"
 #include "tests/support/render_harness.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
 
@@ -83,22 +85,6 @@ std::string wide_sensor(const std::string& steps, double fov_degrees, uint32_t w
 /// Views [-1, 1]^2 of the plane z = 0 from above.
 std::string plane_sensor(uint32_t size);
 std::string vec(double x, double y, double z);
-
-/// A folder that is removed with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  void write(const std::string& name, const std::string& content) const;
-
- private:
-  std::filesystem::path path_;
-};
-
-/// A greyscale or RGB float image, rows from the top, as PFM.
-std::string pfm_image(uint32_t width, uint32_t height, uint32_t components, const std::vector<float>& values);
 
 // ---- renders and comparisons ----
 

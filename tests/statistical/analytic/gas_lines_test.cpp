@@ -5,6 +5,7 @@
 #include "gas_scenes.hpp"
 #include "spectral/planck.hpp"
 #include "spectral/spectrum_files.hpp"
+#include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -42,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, GasLines, ::testing::ValuesIn(all_modes()), mode
 /// A slab of 1 m: `scale` stands for its thickness. Detectable bias: 10 % in 100 nm of CO, whose lines are a
 /// thousandth as wide, 6 % elsewhere.
 TEST_P(GasLines, MeasuredSpectraOfCoAndCo2) {
-  const std::filesystem::path data = data_directory();
+  const std::filesystem::path data = data_folder();
   if (data.empty()) GTEST_SKIP() << "no folder of public data";
   constexpr double kLamp = 0.02;
   for (const Lines& lines :

@@ -1,9 +1,9 @@
 // Which gas a ray is in: boundaries, nested and overlapping shapes, glass bodies, atmospheres and escaping
 // rays, cameras in gas. Coefficients are flat, so that nothing is random:
 // optical depths are exact to rounding.
-#include "base/error.hpp"
 #include "gas_scenes.hpp"
 #include "spectral/planck.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -86,12 +86,7 @@ TEST(Gas, EscapingRaysCarryNoAtmosphere) {
 }
 
 std::string message_of(const std::string& xml) {
-  try {
-    render_valid(xml, "500-510", {}, {1, 42});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return error_of([&] { render_valid(xml, "500-510", {}, {1, 42}); });
 }
 
 /// Rays must all begin in the same media: a boundary through the near plane is refused, and so are more than

@@ -12,12 +12,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
-#include "base/temporary_folder.hpp"
 #include "box_scene.hpp"
 #include "tests/support/render_harness.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -150,11 +148,7 @@ TEST(ChannelsWithoutGuide, AgreeInTheMean) {
 
 class DispersiveChannels : public ::testing::Test {
  protected:
-  DispersiveChannels() {
-    directory_ = make_temporary_folder("kiloband_channels");
-    std::ofstream(directory_ / "flint.txt") << "400 1.85\n500 1.80\n600 1.78\n700 1.77\n";
-  }
-  ~DispersiveChannels() override { std::filesystem::remove_all(directory_); }
+  DispersiveChannels() { folder_.write("flint.txt", "400 1.85\n500 1.80\n600 1.78\n700 1.77\n"); }
 
   RenderSpec spec(const std::string& type) const {
     const std::string ball =
@@ -164,14 +158,14 @@ class DispersiveChannels : public ::testing::Test {
         "\">"
         "<string name=\"int_material\" value=\"flint.txt\"/></bsdf></shape>";
     RenderSpec spec = base_spec(box_walls() + box_light(kSpikes) + ball, "");
-    spec.directory = directory_;
+    spec.directory = folder_.path();
     spec.guide = "400:700:30";
     spec.spp = 256;
     spec.sampling.replicates = 16;
     return spec;
   }
 
-  std::filesystem::path directory_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(DispersiveChannels, SmoothGlassAgreesInTheMean) {

@@ -57,37 +57,34 @@ TEST(BrokenEnvi, Messages) {
       {with("{500, 600}", "{500, 6\x01\xFF}"), ":9: wavelength: '6\\x01\\xFF' is not a number"},
   };
   const TemporaryFolder folder;
-  write_file(folder / "f.img", std::string(2 * 3 * 2 * 4, '\0'));
+  folder.write("f.img", std::string(2 * 3 * 2 * 4, '\0'));
   for (const auto& broken : cases) {
-    write_file(folder / "f.hdr", broken.header);
-    EXPECT_EQ(error_of<InputError>([&] { open_cube(folder / "f.hdr"); }),
-              (folder / "f.hdr").string() + broken.message)
+    folder.write("f.hdr", broken.header);
+    EXPECT_EQ(error_of([&] { open_cube(folder / "f.hdr"); }), (folder / "f.hdr").string() + broken.message)
         << broken.header;
   }
-  write_file(folder / "f.hdr", kGoodHeader);
-  EXPECT_EQ(read_cube_file(folder / "f.hdr").mean.size(), 12u);
+  folder.write("f.hdr", kGoodHeader);
+  EXPECT_EQ(read_cube(folder / "f.hdr").mean.size(), 12u);
 }
 
 TEST(BrokenEnvi, FilesThatAreMissingOrShort) {
   const TemporaryFolder folder;
   const std::string base = (folder / "f").string();
-  const auto error = [&](const char* name) {
-    return error_of<InputError>([&] { open_cube(folder / name); });
-  };
+  const auto error = [&](const char* name) { return error_of([&] { open_cube(folder / name); }); };
   EXPECT_EQ(error("f.hdr"), "cannot open '" + base + ".hdr': No such file or directory");
   EXPECT_EQ(error("f.img"), "'" + base + ".img': no header 'f.hdr' or 'f.img.hdr' beside it");
   EXPECT_EQ(error("f.tif"),
             "'" + base + ".tif': cannot tell the format of a cube: must end in .exr, .hdr or .img (ENVI)");
-  write_file(folder / "f.hdr", kGoodHeader);
+  folder.write("f.hdr", kGoodHeader);
   EXPECT_EQ(error("f.hdr"), "'" + base + ".hdr': no data file 'f.img' beside it");
-  write_file(folder / "f.img", std::string(47, '\0'));
+  folder.write("f.img", std::string(47, '\0'));
   EXPECT_EQ(error("f.hdr"), base + ".img: the file has 47 bytes, its header needs 48");
-  write_file(folder / "f.hdr", with("bands = 2", "header offset = 4\nbands = 2"));
+  folder.write("f.hdr", with("bands = 2", "header offset = 4\nbands = 2"));
   EXPECT_EQ(error("f.hdr"), base + ".img: the file has 47 bytes, its header needs 52");
   std::filesystem::remove(folder / "f.hdr");
   std::filesystem::create_directory(folder / "f.hdr");
   EXPECT_EQ(error("f.hdr"), "cannot open '" + base + ".hdr': not a regular file");
-  EXPECT_EQ(error_of<InputError>([&] {
+  EXPECT_EQ(error_of([&] {
               create_cube_writer(folder / "f.tif", make_cube(1, 1, equal_bands(400, 500, 1)).info, 1);
             }),
             "'" + base + ".tif': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)");
@@ -100,10 +97,10 @@ TEST(BrokenEnvi, DataThatAreLongerThanTheirHeaderSays) {
   for (const char* part : {"f.img", "f.var.img"}) {
     write_cube_file(make_cube(2, 3, equal_bands(400, 500, 2), true), folder / "f.hdr");
     std::filesystem::resize_file(folder / part, 52);
-    EXPECT_EQ(error_of<InputError>([&] { open_cube(folder / "f.hdr"); }),
+    EXPECT_EQ(error_of([&] { open_cube(folder / "f.hdr"); }),
               (folder / part).string() + ": the file has 52" + reason);
   }
-  write_file(folder / "f.hdr", kGoodHeader);  // another program's
+  folder.write("f.hdr", kGoodHeader);  // another program's
   Messages messages;
   EXPECT_EQ(open_cube(folder / "f.hdr", messages.sink())->info().width, 2u);
   EXPECT_FALSE(messages.contain("bytes"));
@@ -119,8 +116,7 @@ class BrokenExr : public testing::Test {
     good = read_file(file);
   }
   std::string error(const std::string& bytes) {
-    write_file(file, bytes);
-    return error_of<InputError>([&] { read_cube_file(file); });
+    return error_of([&] { read_cube(folder.write("f.exr", bytes)); });
   }
   /// The good file with the little-endian number at `at` replaced.
   std::string with_number(std::size_t at, uint32_t number) const {
@@ -140,7 +136,7 @@ class BrokenExr : public testing::Test {
 
 TEST_F(BrokenExr, Messages) {
   const std::string damaged = where + ": not a readable EXR file: ";
-  EXPECT_EQ(error(good), "no error");
+  EXPECT_EQ(error(good), "accepted");
   EXPECT_EQ(error(""), damaged + "the file ends too early");
   EXPECT_EQ(error("v/1"), damaged + "the file ends too early");
   EXPECT_EQ(error("PNG and something more"), damaged + "it does not begin as one");
@@ -189,7 +185,7 @@ TEST(BrokenInfo, WhatNoFileCanHoldIsRefusedBeforeWriting) {
   const auto error = [&](const std::function<void(CubeInfo&)>& damage) {
     CubeInfo info = make_cube(2, 2, equal_bands(400, 500, 2), false, {"depth.Z"}).info;
     damage(info);
-    const std::string text = error_of<InputError>([&] { create_cube_writer(file, info, 32); });
+    const std::string text = error_of([&] { create_cube_writer(file, info, 32); });
     return text.starts_with(file.string() + ": ") ? text.substr(file.string().size() + 2) : text;
   };
   EXPECT_EQ(error([](CubeInfo& i) { i.width = 0; }), "image size 0x2: must be between 1 and 1048576");

@@ -70,7 +70,7 @@ TEST(ForeignExr, ScanLinesAndTilesOfAnyCompression) {
         maker.header.dataWindow() = Imath::Box2i(Imath::V2i(-5, 7), Imath::V2i(-2, 9));
         for (const char* name : {"S0.1000nm", "S0.400,5nm", "S0.0,7um", "R", "G", "B", "A"}) maker.add(name);
         maker.write(folder / "f.exr", tiled);
-        const Cube cube = read_cube_file(folder / "f.exr", 2);
+        const Cube cube = read_cube(folder / "f.exr", 2);
         ASSERT_EQ(cube.info.bands.size(), 3u);
         EXPECT_EQ(cube.info.aux, std::vector<std::string>{"A"});
         EXPECT_EQ(cube.info.quantity, Quantity::kDensity);
@@ -123,7 +123,7 @@ TEST(ForeignExr, WhatIsNoCubeIsRefused) {
     ExrMaker maker;
     (maker.add(names), ...);
     maker.write(file, false);
-    return error_of<InputError>([&] { open_cube(file); });
+    return error_of([&] { open_cube(file); });
   };
   EXPECT_EQ(error("R", "G", "B"),
             file.string() + ": no spectral channels: names such as S0.550,0nm or T.550,0nm are expected");
@@ -133,7 +133,7 @@ TEST(ForeignExr, WhatIsNoCubeIsRefused) {
   maker.add("S0.550nm", "wide");
   maker.write(file, false);
   EXPECT_EQ(
-      error_of<InputError>([&] { open_cube(file); }),
+      error_of([&] { open_cube(file); }),
       file.string() + ": sensitivity of channel 'S0.550nm': 'wide' is no spectrum such as 545nm:1;555nm:1;");
 }
 
@@ -177,11 +177,11 @@ TEST(MitsubaExr, APictureIsNoCube) {
   const std::string refusal =
       file.string() + ": no spectral channels: names such as S0.550,0nm or T.550,0nm are expected";
   mitsuba_file({"R", "G", "B", "A", "dd.T"}).write(file, false);
-  EXPECT_EQ(error_of<InputError>([&] { open_cube(file); }), refusal);
+  EXPECT_EQ(error_of([&] { open_cube(file); }), refusal);
   ExrMaker other;  // names of unknown origin say nothing
   other.add("red");
   other.write(file, false);
-  EXPECT_EQ(error_of<InputError>([&] { open_cube(file); }), refusal);
+  EXPECT_EQ(error_of([&] { open_cube(file); }), refusal);
   mitsuba_file({"R", "G", "B", "infrared"}).write(file, false);
   EXPECT_EQ(open_cube(file)->info().bands.size(), 4u);
 }
@@ -201,7 +201,7 @@ TEST(MitsubaExr, WavelengthsCanBeGiven) {
   CubeSelection selection;
   selection.wavelengths = parse_band_wavelengths("red=600-700,  green = 500-600");
   convert_cube(folder / "f.exr", folder / "g.exr", selection);
-  const Cube cube = read_cube_file(folder / "g.exr");
+  const Cube cube = read_cube(folder / "g.exr");
   ASSERT_EQ(cube.info.bands.size(), 3u);
   EXPECT_EQ(cube.info.bands[0].channel.name, "red");
   EXPECT_EQ(cube.info.bands[0].channel.min_nm, 600);
@@ -215,9 +215,7 @@ TEST(MitsubaExr, WavelengthsCanBeGiven) {
 }
 
 TEST(MitsubaExr, WrongWavelengths) {
-  const auto parse = [](const char* text) {
-    return error_of<InputError>([&] { parse_band_wavelengths(text); });
-  };
+  const auto parse = [](const char* text) { return error_of([&] { parse_band_wavelengths(text); }); };
   EXPECT_EQ(parse("# nothing\n"), "wavelengths: none are given (NAME=MIN-MAX in nm, such as red=600-700)");
   EXPECT_EQ(parse("600-700"), "wavelengths '600-700': must be NAME=MIN-MAX in nm, such as red=600-700");
   EXPECT_EQ(parse("a=400:500:2"), "wavelengths 'a=400:500:2': must be one interval such as 600-700");
@@ -228,14 +226,14 @@ TEST(MitsubaExr, WrongWavelengths) {
   const auto give = [&](const char* file, const char* text) {
     CubeSelection selection;
     selection.wavelengths = parse_band_wavelengths(text);
-    return error_of<InputError>([&] { select_from_cube(open_cube(folder / file), selection); });
+    return error_of([&] { select_from_cube(open_cube(folder / file), selection); });
   };
   EXPECT_EQ(give("f.exr", "blue=400-500"),
             "wavelengths of band 'blue': the cube has no such band; without wavelengths are 'green', 'red'");
   EXPECT_EQ(give("s.exr", "blue=400-500"),
             "wavelengths of band 'blue': the cube has no such band; all of its bands have wavelengths");
   EXPECT_EQ(
-      error_of<InputError>([&] { apply_responses(open_cube(folder / "f.exr"), xyz_responses()); }),
+      error_of([&] { apply_responses(open_cube(folder / "f.exr"), xyz_responses()); }),
       "response 'X': no band of the cube has wavelengths: give them with kiloband convert --wavelengths");
 }
 
@@ -255,7 +253,7 @@ TEST(ForeignExr, AFileThatWasNeverFinishedIsIncomplete) {
   }
   std::filesystem::resize_file(folder / "f.exr", 64 * 64 * 4 + 1000);
   EXPECT_EQ(
-      error_of<InputError>([&] { open_cube(folder / "f.exr"); }),
+      error_of([&] { open_cube(folder / "f.exr"); }),
       (folder / "f.exr").string() + ": the EXR file is incomplete: parts of the image were never written");
 }
 

@@ -69,14 +69,14 @@ TEST(ForeignEnvi, EveryTypeInterleaveAndByteOrder) {
     for (const std::string interleave : {"bsq", "BIL", "bip"})
       for (const bool big : {false, true}) {
         const std::size_t offset = big ? 7 : 0;
-        write_file(folder / "f.hdr",
-                   "ENVI\nSamples=4\nlines = 3\nbands = 5\n; a comment\n\nheader offset = " +
-                       std::to_string(offset) + "\ndata type = " + std::to_string(type) +
-                       "\ninterleave = " + interleave + "\nbyte order = " + (big ? "1" : "0") +
-                       "\nwavelength units = Micrometers\nwavelength = {0.4, 0.5,\n 0.6, 0.7, 0.8}\n");
+        folder.write("f.hdr",
+                     "ENVI\nSamples=4\nlines = 3\nbands = 5\n; a comment\n\nheader offset = " +
+                         std::to_string(offset) + "\ndata type = " + std::to_string(type) +
+                         "\ninterleave = " + interleave + "\nbyte order = " + (big ? "1" : "0") +
+                         "\nwavelength units = Micrometers\nwavelength = {0.4, 0.5,\n 0.6, 0.7, 0.8}\n");
         std::string lower = interleave == "BIL" ? "bil" : interleave;
-        write_file(folder / "f.dat", envi_bytes_of_type(type, lower, big, offset));
-        const Cube cube = read_cube_file(folder / "f.hdr", 2);
+        folder.write("f.dat", envi_bytes_of_type(type, lower, big, offset));
+        const Cube cube = read_cube(folder / "f.hdr", 2);
         ASSERT_EQ(cube.mean.size(), 60u);
         for (std::size_t i = 0; i < 60; ++i)
           ASSERT_EQ(cube.mean[i], envi_number(i / 20, i / 5 % 4, i % 5)) << type << interleave << big;
@@ -89,9 +89,9 @@ class EnviHeaderText : public testing::Test {
  protected:
   /// Opens a 1x1 image of `bands` float bands with these extra header lines.
   std::unique_ptr<CubeReader> open(std::size_t bands, const std::string& lines) {
-    write_file(folder / "f.hdr", "ENVI\nsamples = 1\nlines = 1\nbands = " + std::to_string(bands) +
-                                     "\ndata type = 4\ninterleave = bip\nbyte order = 0\n" + lines);
-    write_file(folder / "f", std::string(bands * 4, '\0'));  // no extension
+    folder.write("f.hdr", "ENVI\nsamples = 1\nlines = 1\nbands = " + std::to_string(bands) +
+                              "\ndata type = 4\ninterleave = bip\nbyte order = 0\n" + lines);
+    folder.write("f", std::string(bands * 4, '\0'));  // no extension
     return open_cube(folder / "f.hdr", messages.sink());
   }
   TemporaryFolder folder;

@@ -33,7 +33,7 @@ void expect_round_trip(Cube cube, const std::string& extension, uint32_t strip =
   const TemporaryFolder folder;
   const auto file = folder / ("cube" + extension);
   write_cube_file(cube, file, strip);
-  const Cube read = read_cube_file(file);
+  const Cube read = read_cube(file);
   expect_same_info(read.info, cube.info);
   EXPECT_EQ(count_differences(read.mean, cube.mean), 0u);
   EXPECT_EQ(count_differences(read.variance, cube.variance), 0u);
@@ -99,7 +99,7 @@ TEST_P(RoundTrip, DensityIsTheQuotientRoundedOnce) {
   const TemporaryFolder folder;
   const auto file = folder / (std::string("cube") + GetParam());
   write_cube_file(cube, file);
-  const Cube read = read_cube_file(file);
+  const Cube read = read_cube(file);
   EXPECT_EQ(read.info.quantity, Quantity::kDensity);
   for (std::size_t i = 0; i < cube.mean.size(); ++i) {
     const Band& band = cube.info.bands[i % cube.info.bands.size()];
@@ -155,10 +155,10 @@ INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, testing::Values(".exr", ".hdr"),
 TEST(CubeMemory, AFewRowsOfManyBandsAreReadAlone) {
   // 64 GB of ENVI data in a sparse file: reading a row touches 4 KiB per band, not the file.
   const TemporaryFolder folder;
-  write_file(
-      folder / "big.hdr",
+  folder.write(
+      "big.hdr",
       "ENVI\nsamples = 1000\nlines = 16000\nbands = 1000\ndata type = 4\ninterleave = bsq\nbyte order = 0\n");
-  write_file(folder / "big.img", "");
+  folder.write("big.img", "");
   std::filesystem::resize_file(folder / "big.img", 64'000'000'000);
   const auto reader = open_cube(folder / "big.hdr");
   std::vector<float> row(1000 * 1000, 1.0f);

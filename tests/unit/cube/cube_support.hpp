@@ -1,53 +1,18 @@
-// Cubes with known contents, and folders that disappear.
+// Cubes with known contents.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <functional>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "cube/cube_io.hpp"
+#include "tests/support/cube_files.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
-
-/// What a reader says.
-struct Messages {
-  std::vector<std::string> texts;
-  DiagnosticSink sink() {
-    return [this](const Diagnostic& d) { texts.push_back(d.message); };
-  }
-  bool contain(const std::string& part) const {
-    for (const std::string& text : texts)
-      if (text.find(part) != std::string::npos) return true;
-    return false;
-  }
-};
-
-inline std::string read_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-/// Removes an older file first: truncating one in place makes some file systems wait for the disk.
-inline void write_file(const std::filesystem::path& file, const std::string& bytes) {
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-  std::ofstream(file, std::ios::binary) << bytes;
-}
-
-/// A cube in memory; values are channel values (integrals).
-struct Cube {
-  CubeInfo info;
-  std::vector<float> mean, variance, aux;
-};
 
 /// Numbers of every magnitude, with a few special ones, from a fixed generator (SplitMix64).
 inline std::vector<float> test_numbers(std::size_t count, uint64_t seed) {
@@ -111,30 +76,6 @@ inline void write_cube_file(const Cube& cube, const std::filesystem::path& file,
   writer->finish();
 }
 
-/// Reads a whole cube in strips of `strip` rows.
-inline Cube read_cube(CubeReader& reader, uint32_t strip = 7) {
-  Cube cube;
-  cube.info = reader.info();
-  const std::size_t bands = cube.info.bands.size();
-  for (uint32_t y = 0; y < cube.info.height; y += strip) {
-    const uint32_t rows = std::min(strip, cube.info.height - y);
-    const std::size_t pixels = std::size_t{rows} * cube.info.width;
-    std::vector<float> mean(pixels * bands), variance(cube.info.variance ? mean.size() : 0),
-        aux(pixels * cube.info.aux.size());
-    reader.read_rows(y, rows, mean, variance);
-    reader.read_aux(y, rows, aux);
-    cube.mean.insert(cube.mean.end(), mean.begin(), mean.end());
-    cube.variance.insert(cube.variance.end(), variance.begin(), variance.end());
-    cube.aux.insert(cube.aux.end(), aux.begin(), aux.end());
-  }
-  return cube;
-}
-
-inline Cube read_cube_file(const std::filesystem::path& file, uint32_t strip = 7) {
-  const auto reader = open_cube(file);
-  return read_cube(*reader, strip);
-}
-
 /// Positions at which two buffers differ in their bits; SIZE_MAX if they are not of the same length.
 inline std::size_t count_differences(const std::vector<float>& a, const std::vector<float>& b) {
   if (a.size() != b.size()) return SIZE_MAX;
@@ -142,19 +83,6 @@ inline std::size_t count_differences(const std::vector<float>& a, const std::vec
   for (std::size_t i = 0; i < a.size(); ++i)
     count += std::bit_cast<uint32_t>(a[i]) != std::bit_cast<uint32_t>(b[i]);
   return count;
-}
-
-/// The message of the Error that the action throws; "no error" or "another error: ..." otherwise.
-template <class Error>
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  } catch (const std::exception& error) {
-    return std::string("another error: ") + error.what();
-  }
-  return "no error";
 }
 
 }  // namespace kiloband::test

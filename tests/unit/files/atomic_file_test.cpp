@@ -74,14 +74,14 @@ TEST_P(Atomic, AnOldCubeSurvivesAWriterThatFails) {
   const Names before = folder.list();
   create_cube_writer(file(), cube.info, 32)->write_rows(rows_of(cube, 0, 32));
   EXPECT_EQ(folder.list(), before);
-  EXPECT_EQ(count_differences(read_cube_file(file()).aux, cube.aux), 0u);
+  EXPECT_EQ(count_differences(read_cube(file()).aux, cube.aux), 0u);
 }
 
 TEST_P(Atomic, ANewCubeReplacesTheOldOneWithAllItsFiles) {
   write_cube_file(small_cube(), file());
   const Cube cube = make_cube(8, 8, equal_bands(600, 700, 2));
   write_cube_file(cube, file());
-  EXPECT_EQ(read_cube_file(file()).info.bands.size(), 2u);
+  EXPECT_EQ(read_cube(file()).info.bands.size(), 2u);
   for (const std::string& name : folder.list()) EXPECT_EQ(name.find("var"), std::string::npos) << name;
 }
 
@@ -139,15 +139,15 @@ TEST(AtomicExr, AFailureWhileWritingReachesTheCaller) {
 
 TEST(AtomicFile, ForeignVarianceFilesStay) {
   const TemporaryFolder folder;
-  write_file(folder / "cube.var.hdr", "ENVI\nsamples = 1\n");
-  write_file(folder / "cube.var.img", "data");
+  folder.write("cube.var.hdr", "ENVI\nsamples = 1\n");
+  folder.write("cube.var.img", "data");
   write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2)), folder / "cube.hdr");
   EXPECT_EQ(folder.list(), (Names{"cube.hdr", "cube.img", "cube.var.hdr", "cube.var.img"}));
 }
 
 TEST(AtomicFile, LinksAreFollowed) {
   const TemporaryFolder folder;
-  write_file(folder / "real.exr", "old");
+  folder.write("real.exr", "old");
   std::filesystem::create_symlink("real.exr", folder / "link.exr");
   write_file_atomically(folder / "link.exr", std::string("new"));
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.exr"));

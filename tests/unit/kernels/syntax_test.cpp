@@ -2,33 +2,20 @@
 // with each feature left out.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include "scene/compile/scene_features.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/opencl_syntax.hpp"
 
+namespace kiloband::test {
 namespace {
 
 namespace fs = std::filesystem;
 
 const fs::path kKernels = fs::path(KILOBAND_SOURCE_DIR) / "kernels";
-
-/// Compiles a kernel file (what a left-out feature reads is then an unused parameter); returns the compiler's messages, empty if there are none.
-std::string compile(const fs::path& file, const std::string& options) {
-  const kiloband::test::TemporaryFolder folder;
-  const std::string command =
-      std::string(KILOBAND_CLANG) +
-      " -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -Wall -Wextra -Werror"
-      " -Wno-unused-function -Wno-unused-parameter -fsyntax-only '-I" KILOBAND_SOURCE_DIR
-      "/kernels' '-I" KILOBAND_SOURCE_DIR "/src' " +
-      options + " '" + file.string() + "' 2> '" + (folder / "log").string() + "'";
-  const int status = std::system(command.c_str());
-  return status == 0 ? "" : folder.read("log") + "(status " + std::to_string(status) + ")";
-}
 
 std::vector<fs::path> kernel_files(const std::string& extension) {
   std::vector<fs::path> files;
@@ -60,7 +47,7 @@ TEST(KernelSyntax, EveryFileCompilesAlone) {
   std::size_t count = 0;
   for (const std::string extension : {".cl", ".clh"}) {
     for (const fs::path& file : kernel_files(extension)) {
-      EXPECT_EQ(compile(file, ""), "") << file;
+      EXPECT_EQ(kernel_syntax(file), "") << file;
       ++count;
     }
   }
@@ -77,22 +64,24 @@ TEST(KernelSyntax, EveryFeatureCanBeAbsent) {
   };
   for (const fs::path& file : kernel_files(".cl")) {
     for (const std::string& feature : features) {
-      EXPECT_EQ(compile(file, defines(feature, "1", "0")), "") << file << " with " << feature << " alone";
-      EXPECT_EQ(compile(file, defines(feature, "0", "1")), "") << file << " without " << feature;
+      EXPECT_EQ(kernel_syntax(file, defines(feature, "1", "0")), "")
+          << file << " with " << feature << " alone";
+      EXPECT_EQ(kernel_syntax(file, defines(feature, "0", "1")), "") << file << " without " << feature;
     }
   }
 }
 
 TEST(KernelSyntax, TheMethodPtCompiles) {
-  EXPECT_EQ(compile(kKernels / "path/paths.cl", "-DKB_METHOD_PT=1"), "");
+  EXPECT_EQ(kernel_syntax(kKernels / "path/paths.cl", "-DKB_METHOD_PT=1"), "");
 }
 
 /// The check itself can fail.
 TEST(KernelSyntax, MistakesAreFound) {
-  const kiloband::test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const fs::path file =
       folder.write("mistake.cl", "__kernel void f(__global float* x) { x[0] = undeclared; }\n");
-  EXPECT_NE(compile(file, "").find("undeclared"), std::string::npos);
+  EXPECT_NE(kernel_syntax(file).find("undeclared"), std::string::npos);
 }
 
 }  // namespace
+}  // namespace kiloband::test

@@ -125,7 +125,7 @@ TEST_F(Sensor, TheRendersOwnBandKeepsItsVariance) {
 TEST_F(Sensor, WrongResponses) {
   const Cube cube = cube_of({40, 30, 40, 7});
   const auto error = [&](const std::vector<NamedResponse>& responses) {
-    return error_of<InputError>([&] { apply_responses(open(cube), responses); });
+    return error_of([&] { apply_responses(open(cube), responses); });
   };
   EXPECT_EQ(error({{"far", Spectrum::tabulated({800, 900}, {1, 1})}}),
             "response 'far': is 0 in all channels of the cube");
@@ -150,7 +150,7 @@ TEST_F(Sensor, Pictures) {
   infrared.mean = {1, 2, 3};
   EXPECT_EQ(picture(infrared, PictureColours::kFalse), (std::vector<float>{3, 2, 1}));
   EXPECT_EQ(picture(infrared, PictureColours::kSensor), (std::vector<float>{1, 2, 3}));
-  EXPECT_EQ(error_of<InputError>([&] { picture(infrared, PictureColours::kNatural); }),
+  EXPECT_EQ(error_of([&] { picture(infrared, PictureColours::kNatural); }),
             "picture: no channel lies in 380-780 nm");
   infrared.info.quantity = Quantity::kDensity;
   EXPECT_EQ(picture(infrared, PictureColours::kFalse), (std::vector<float>{3, 2, 1}));

@@ -46,7 +46,7 @@ TEST(CameraGeometry, TextComesBack) {
   for (const char* text : {"fisheye", "", "orthographic pixel_area 0", "perspective film 4 4 crop 0 0",
                            "perspective film 4 4 crop 0 0 tan_half_fov_x 1 principal 0 inf"}) {
     info.metadata[kCameraKey] = text;
-    EXPECT_EQ(error_of<InputError>([&] { camera_of_cube(info, "a.exr"); }),
+    EXPECT_EQ(error_of([&] { camera_of_cube(info, "a.exr"); }),
               "a.exr: camera '" + std::string(text) + "': not understood");
   }
 }
@@ -172,7 +172,7 @@ TEST_F(Signatures, BackgroundCubesArePaired) {
   Cube wrong = make_cube(4, 2, equal_bands(400, 600, 2));
   write_cube_file(wrong, folder / "w.hdr", 2);
   other.mean = open_cube(folder / "w.hdr");
-  EXPECT_EQ(error_of<InputError>([&] { measured(file, false, &other); }),
+  EXPECT_EQ(error_of([&] { measured(file, false, &other); }),
             "background: must have the size and the channels of the cube");
 }
 
@@ -214,13 +214,8 @@ TEST_F(Signatures, Tables) {
 
 TEST_F(Signatures, ReplicatesMustBeThoseOfTheCube) {
   const auto file = write("a.hdr", 8, 2, 0.5f);
-  const auto error = [&] {
-    std::string text = error_of<InputError>([&] { open_replicated_cube(file); });
-    const std::string place = folder.path().string() + "/";
-    for (std::size_t at; (at = text.find(place)) != std::string::npos;) text.erase(at, place.size());
-    return text;
-  };
-  EXPECT_EQ(error(), "no error");
+  const auto error = [&] { return error_of(folder, [&] { open_replicated_cube(file); }); };
+  EXPECT_EQ(error(), "accepted");
   write("b.hdr", 9, 2, 0.5f);  // the scene was changed, the replicates are those of before
   for (const char* end : {".hdr", ".img"})
     std::filesystem::copy_file(folder / (std::string("b") + end), folder / (std::string("a") + end),
@@ -244,7 +239,7 @@ TEST_F(Signatures, ReplicatesGiveErrorsToSumsAndRegions) {
   CubeSelection selection;
   selection.rebin = ChannelList{{400, 500, ""}};
   convert_cube(file, folder / "s.hdr", selection);
-  const Cube sum = read_cube_file(folder / "s.hdr");
+  const Cube sum = read_cube(folder / "s.hdr");
   ASSERT_TRUE(sum.info.variance);
   EXPECT_NEAR(sum.mean[0], 24, 1e-5);
   EXPECT_NEAR(sum.variance[0], 1.5 * 1.5, 1e-5);

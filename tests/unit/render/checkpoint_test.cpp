@@ -9,9 +9,8 @@
 #include <cstring>
 #include <limits>
 
-#include "base/error.hpp"
 #include "base/hash.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband {
 namespace {
@@ -61,14 +60,10 @@ class Checkpoint : public testing::Test {
     folder_.write("render.ck", bytes);
     const std::string name = "checkpoint " + file_.string() + " ";
     SpectralFilm film = film_of();
-    try {
-      read_checkpoint(file_, film, kFingerprint);
-    } catch (const InputError& error) {
-      const std::string text = error.what();
-      EXPECT_TRUE(text.starts_with(name)) << text;
-      return text.substr(name.size());
-    }
-    return "accepted";
+    const std::string text = test::error_of([&] { read_checkpoint(file_, film, kFingerprint); });
+    if (text == "accepted") return text;
+    EXPECT_TRUE(text.starts_with(name)) << text;
+    return text.substr(name.size());
   }
 
   test::TemporaryFolder folder_;
@@ -126,13 +121,8 @@ TEST_F(Checkpoint, KeepsSumsAndCountsBitByBit) {
 
 TEST_F(Checkpoint, OfAnotherRenderIsRefused) {
   bytes_of(filled());
-  const auto said = [&](SpectralFilm film, uint64_t fingerprint) -> std::string {
-    try {
-      read_checkpoint(file_, film, fingerprint);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
+  const auto said = [&](SpectralFilm film, uint64_t fingerprint) {
+    return test::error_of([&] { read_checkpoint(file_, film, fingerprint); });
   };
   const std::string name = "checkpoint " + file_.string();
   EXPECT_EQ(said(film_of(), kFingerprint + 1), name +
@@ -199,32 +189,24 @@ TEST_F(Checkpoint, OverflowedSumsAreStated) {
 
 TEST_F(Checkpoint, OnlyRegularFilesAreOpened) {
   ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
-  const auto said = [](const auto& work) -> std::string {
-    try {
-      work();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
-  EXPECT_EQ(said([&] { checkpoint_outline(file_); }),
+  EXPECT_EQ(test::error_of([&] { checkpoint_outline(file_); }),
             "checkpoint " + file_.string() + " is a named pipe: must be a regular file");
-  EXPECT_EQ(said([&] { checkpoint_outline(folder_.path()); }),
+  EXPECT_EQ(test::error_of([&] { checkpoint_outline(folder_.path()); }),
             "checkpoint " + folder_.path().string() + " is a folder: must be a regular file");
-  EXPECT_EQ(said([&] { checkpoint_outline("/dev/null"); }),
+  EXPECT_EQ(test::error_of([&] { checkpoint_outline("/dev/null"); }),
             "checkpoint /dev/null is a device: must be a regular file");
-  EXPECT_EQ(said([&] { checkpoint_outline(folder_ / "none"); }),
+  EXPECT_EQ(test::error_of([&] { checkpoint_outline(folder_ / "none"); }),
             "checkpoint " + (folder_ / "none").string() + " cannot be opened: No such file or directory");
   for (const bool resume : {false, true}) {
     EXPECT_EQ(
-        said([&] { check_checkpoint_file(file_, resume); }),
+        test::error_of([&] { check_checkpoint_file(file_, resume); }),
         "--checkpoint " + file_.string() + ": is a named pipe: must be a regular file, or not be there yet");
   }
   folder_.write("old.ck", "old");
-  EXPECT_EQ(said([&] { check_checkpoint_file(folder_ / "old.ck", false); }),
+  EXPECT_EQ(test::error_of([&] { check_checkpoint_file(folder_ / "old.ck", false); }),
             "--checkpoint " + (folder_ / "old.ck").string() +
                 ": exists: --resume goes on from it; remove it to render anew");
-  EXPECT_EQ(said([&] { check_checkpoint_file(folder_ / "old.ck", true); }), "accepted");
+  EXPECT_EQ(test::error_of([&] { check_checkpoint_file(folder_ / "old.ck", true); }), "accepted");
   EXPECT_THROW(check_checkpoint_file(folder_ / "none" / "new.ck", false), DeviceError);
 }
 

@@ -21,7 +21,7 @@ TEST_F(SessionTest, InterruptedAndResumedHasTheBitsOfUninterrupted) {
   EXPECT_GT(second.resumed_samples, 0u);
   EXPECT_EQ(second.resumed_samples + fresh->statistics().paths, std::size_t{kSize} * kSize * 40);
   EXPECT_EQ(second.samples_per_pixel, 40u);
-  const Values a = read("once.hdr"), b = read("resumed.hdr");
+  const test::Cube a = read("once.hdr"), b = read("resumed.hdr");
   expect_same(a.mean, b.mean, 0);
   expect_same(a.variance, b.variance, 0);
   EXPECT_EQ(once.image_mean, second.image_mean);
@@ -83,8 +83,9 @@ TEST_F(SessionTest, ACheckpointThatCannotBeWrittenIsAWarning) {
   const std::filesystem::path gone = folder_ / "gone";
   settings_.checkpoint = gone / "render.ck";
   settings_.checkpoint_interval_seconds = 0.002;
-  std::vector<std::string> said;
-  settings_.sink = [&](const Diagnostic& d) { said.push_back(d.to_string()); };
+  test::Messages messages;
+  const std::vector<std::string>& said = messages.texts;
+  settings_.sink = messages.lines();
   const RenderReport report = run(*backend(), "image.hdr");
   EXPECT_EQ(report.samples_per_pixel, 96u);
   const std::string reason = "warning: checkpoint: cannot write '" + settings_.checkpoint->string() +
@@ -92,7 +93,7 @@ TEST_F(SessionTest, ACheckpointThatCannotBeWrittenIsAWarning) {
   ASSERT_EQ(said.size(), 2u) << testing::PrintToString(said);
   EXPECT_EQ(said[0], reason + "the render goes on, the next attempt follows in 0.002 s");
   EXPECT_EQ(said[1], reason + "this render has none, only its image");
-  said.clear();
+  messages.texts.clear();
   run(*backend(), "again.hdr", false, [&](const Progress& p) {
     if (p.fraction > 0.5) std::filesystem::create_directories(gone);
   });

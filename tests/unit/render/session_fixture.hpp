@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/temporary_folder.hpp"
-#include "cube/cube_io.hpp"
 #include "render/session.hpp"
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
+#include "tests/support/cube_files.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/support/render_harness.hpp"
 
 namespace kiloband {
@@ -20,7 +20,6 @@ inline constexpr uint32_t kSize = 72;  // more than two blocks, the last clipped
 class SessionTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = make_temporary_folder("kiloband_session");
     const std::string xml =
         "<scene version=\"3.0.0\">" + test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSize) +
         "<shape type=\"sphere\"/><emitter type=\"point\"><spectrum name=\"intensity\" value=\"400:1, "
@@ -31,7 +30,6 @@ class SessionTest : public ::testing::Test {
     settings_.stop.samples_per_pixel = 40;
     settings_.variance = true;
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::unique_ptr<Backend> backend(uint64_t seed = 3) const {
     SamplingSettings sampling;
@@ -40,10 +38,6 @@ class SessionTest : public ::testing::Test {
     return cpu::make_backend(std::make_shared<const FlatScene>(scene_), {}, sampling, {});
   }
 
-  struct Values {
-    std::vector<float> mean, variance;
-  };
-
   RenderReport run(Backend& backend, const std::string& name, const std::atomic<bool>& stop = false,
                    const std::function<void(const Progress&)>& progress = {}) {
     SessionSettings settings = settings_;
@@ -51,15 +45,9 @@ class SessionTest : public ::testing::Test {
     return run_session(scene_, {}, backend, settings, stop, progress);
   }
 
-  Values read(const std::string& name) const {
-    const auto cube = open_cube(folder_ / name);
-    const std::size_t size = std::size_t{kSize} * kSize * cube->info().bands.size();
-    Values values{std::vector<float>(size), std::vector<float>(size)};
-    cube->read_rows(0, kSize, values.mean, values.variance);
-    return values;
-  }
+  test::Cube read(const std::string& name) const { return test::read_cube(folder_ / name); }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
   FlatScene scene_;
   SessionSettings settings_;
 };

@@ -12,7 +12,7 @@ TEST_F(SessionTest, StreamedStripsGiveTheBitsOfTheWholeImage) {
   settings_.memory_budget_bytes = 100000;
   const RenderReport strips = run(*backend(), "strips.hdr");
   EXPECT_TRUE(strips.streamed);
-  const Values a = read("whole.hdr"), b = read("strips.hdr");
+  const test::Cube a = read("whole.hdr"), b = read("strips.hdr");
   expect_same(a.mean, b.mean, 0);
   expect_same(a.variance, b.variance, 0);
   EXPECT_EQ(whole.image_mean.size(), 5u);
@@ -28,7 +28,7 @@ TEST_F(SessionTest, StripsGiveTheBitsOfTheWholeImageWithReplicatesInParts) {
   EXPECT_FALSE(run(*backend(), "whole.hdr").streamed);
   settings_.memory_budget_bytes = 100000;
   EXPECT_TRUE(run(*backend(), "strips.hdr").streamed);
-  const Values a = read("whole.hdr"), b = read("strips.hdr");
+  const test::Cube a = read("whole.hdr"), b = read("strips.hdr");
   expect_same(a.mean, b.mean, 0);
   expect_same(a.variance, b.variance, 0);
   settings_.keep_replicates = true;  // held, in the same parts
@@ -67,7 +67,7 @@ TEST_F(SessionTest, HeldReplicatesInAScratchFileChangeNothing) {
   settings_.memory_budget_bytes = 1000;
   settings_.checkpoint = folder_ / "scratch.ck";
   run(*backend(), "scratch.hdr");
-  const Values a = read("memory.hdr"), b = read("scratch.hdr");
+  const test::Cube a = read("memory.hdr"), b = read("scratch.hdr");
   expect_same(a.mean, b.mean, 0);
   expect_same(a.variance, b.variance, 0);
 }
@@ -79,7 +79,7 @@ TEST_F(SessionTest, InterruptedStripsBecomeNan) {
       run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.5; });
   EXPECT_TRUE(report.interrupted);
   EXPECT_GT(report.pixels_without_sample, 0u);
-  const Values values = read("part.hdr");
+  const test::Cube values = read("part.hdr");
   EXPECT_TRUE(std::isfinite(values.mean.front()));
   EXPECT_TRUE(std::isnan(values.mean.back()));
   const auto missing = std::ranges::count_if(values.mean, [](float v) { return std::isnan(v); });

@@ -6,10 +6,10 @@
 
 #include <cmath>
 
-#include "base/error.hpp"
 #include "spectral/planck.hpp"
 #include "spectral/spectrum_files.hpp"
-#include "tests/support/render_harness.hpp"
+#include "tests/support/data_folder.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -17,12 +17,7 @@ namespace {
 constexpr double kStefanBoltzmann = 5.670374e-8;
 
 std::string error_of(const SkyParameters& sky) {
-  try {
-    check_sky(sky);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::error_of([&] { check_sky(sky); });
 }
 
 TEST(ClearSky, ParametersHaveTheirRanges) {
@@ -126,7 +121,7 @@ TEST(ClearSky, TheWindowIsCold) {
 /// includes the circumsolar light. Only where the file is at hand. Required: 3 % of the total, 6 % of the
 /// mean in 100 nm from 400 nm on outside water bands; seen: see docs/sky_model.md.
 TEST(ClearSky, AgreesWithTheReferenceSpectrum) {
-  const std::filesystem::path file = data_directory() / "spectra" / "solar" / "ASTMG173.csv";
+  const std::filesystem::path file = data_folder("spectra") / "solar" / "ASTMG173.csv";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no reference spectra at hand";
   std::optional<Spectrum> reference;
   for (const auto& [name, spectrum] : read_response_file(file))
@@ -154,7 +149,7 @@ TEST(ClearSky, AgreesWithTheReferenceSpectrum) {
 /// the infrared coefficients were fitted to; means over 1 um agree within 0.07.
 TEST(ClearSky, AgreesWithTransmissionsOfTheLowestKilometre) {
   const std::filesystem::path file =
-      data_directory() / "spectra" / "atmosphere" / "modtran_ihaze1_alt1000m_range0m.csv";
+      data_folder("spectra") / "atmosphere" / "modtran_ihaze1_alt1000m_range0m.csv";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no atmosphere at hand";
   const Spectrum reference = read_spectrum_file(file);
   const ClearSky gases({.water_cm = 10, .ozone_atm_cm = 0, .air_temperature_k = 294});

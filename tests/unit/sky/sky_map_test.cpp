@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.hpp"
 #include "src_cpu/light/environment.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 
@@ -142,13 +142,8 @@ TEST(SkyMap, DefaultBandsAreContiguous) {
 
 TEST(SkyMap, RefusesWhatItCannotDo) {
   const ClearSky sky({});
-  const auto error = [&](ChannelList bands, uint32_t width, uint32_t height) -> std::string {
-    try {
-      SkyMap(sky, std::move(bands), width, height);
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "accepted";
+  const auto error = [&](const ChannelList& bands, uint32_t width, uint32_t height) {
+    return error_of([&] { SkyMap(sky, bands, width, height); });
   };
   const ChannelList good{{500, 510, ""}};
   EXPECT_EQ(error(good, 16, 9), "accepted");

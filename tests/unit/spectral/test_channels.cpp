@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "spectral/channels.hpp"
-#include "support.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -67,7 +67,7 @@ TEST(Channels, EveryBrokenRuleHasItsMessage) {
       {"400-410\n", "bands '400-410?': '410?' is not a number"},
   };
   for (const auto& [text, message] : cases)
-    EXPECT_EQ(message_of([&, t = text] { parse_channels(t); }), message) << text;
+    EXPECT_EQ(error_of([&, t = text] { parse_channels(t); }), message) << text;
 }
 
 TEST(Channels, FileWithHeaderCommentsAndBlankLines) {
@@ -105,11 +105,11 @@ TEST(Channels, FileErrorsNameTheLine) {
   };
   for (const auto& [content, message] : cases) {
     const auto file = folder.write("f.csv", content);
-    EXPECT_EQ(message_of([&] { read_channels_file(file); }, folder.path().string()), message) << content;
+    EXPECT_EQ(error_of(folder, [&] { read_channels_file(file); }), message) << content;
   }
-  EXPECT_EQ(message_of([&] { read_channels_file(folder.path() / "no.csv"); }, folder.path().string()),
+  EXPECT_EQ(error_of(folder, [&] { read_channels_file(folder.path() / "no.csv"); }),
             "no.csv: cannot be opened: no such file");
-  EXPECT_EQ(message_of([&] { read_channels_file(folder.path()); }),
+  EXPECT_EQ(error_of([&] { read_channels_file(folder.path()); }),
             folder.path().string() + ": is not a regular file");
 }
 

@@ -9,7 +9,7 @@
 
 #include "spectral/materials/lorentz_drude.hpp"
 #include "spectral/materials/materials.hpp"
-#include "support.hpp"
+#include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -126,11 +126,11 @@ TEST(BuiltInDielectrics, AgreeWithDataSheets) {
 }
 
 OpticalConstants file(const std::string& name) {
-  return read_optical_constants(*real_spectra() / "refractiveindex.info" / name);
+  return read_optical_constants(data_folder("spectra") / "refractiveindex.info" / name);
 }
 
 TEST(BuiltInDielectrics, AgreeWithFiles) {
-  if (!real_spectra()) GTEST_SKIP() << "no public spectra at hand";
+  if (data_folder("spectra").empty()) GTEST_SKIP() << "no public spectra at hand";
   const std::pair<const char*, const char*> pairs[] = {{"air", "mixed-gases_air_nk_Ciddor.yml"},
                                                        {"air", "mixed-gases_air_nk_Mathar-1.3.yml"},
                                                        {"air", "mixed-gases_air_nk_Birch.yml"},
@@ -161,7 +161,7 @@ TEST(BuiltInDielectrics, AgreeWithFiles) {
 }
 
 TEST(BuiltInMetals, SilverAgreesWithTheFileOfItsModel) {
-  if (!real_spectra()) GTEST_SKIP() << "no public spectra at hand";
+  if (data_folder("spectra").empty()) GTEST_SKIP() << "no public spectra at hand";
   const OpticalConstants model = file("Ag_Rakic-LD.yml");
   const OpticalConstants ours = *find_metal("Ag");
   for (std::size_t i = 0; i < model.n.knots_nm().size(); ++i) {
@@ -205,7 +205,7 @@ double largest_deviation(const OpticalConstants& ours, const OpticalConstants& t
 /// The models are fits; measurements of one metal differ among themselves. What is asserted is what
 /// docs/materials.md states, per window and in reflectance.
 TEST(BuiltInMetals, ReflectanceAgainstMeasurements) {
-  if (!real_spectra()) GTEST_SKIP() << "no public spectra at hand";
+  if (data_folder("spectra").empty()) GTEST_SKIP() << "no public spectra at hand";
   struct Comparison {
     const char* metal;
     const char* file;

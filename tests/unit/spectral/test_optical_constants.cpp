@@ -4,7 +4,7 @@
 
 #include "spectral/dispersion_formula.hpp"
 #include "spectral/spectrum_files.hpp"
-#include "support.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -152,7 +152,7 @@ TEST(OpticalConstants, WrongFilesHaveTheirMessages) {
   };
   for (const auto& [content, message] : cases) {
     const auto file = folder.write("f.yml", content);
-    EXPECT_EQ(message_of([&] { read_optical_constants(file); }, folder.path().string()), message) << content;
+    EXPECT_EQ(error_of(folder, [&] { read_optical_constants(file); }), message) << content;
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "spectral/colour.hpp"
 #include "spectral/spectrum_files.hpp"
-#include "support.hpp"
+#include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -15,9 +15,9 @@ namespace {
 int for_each_file(const std::string& folder, const std::string& extension,
                   const std::function<void(const std::filesystem::path&)>& visit) {
   int count = 0;
-  const auto root = real_spectra();
-  if (!root || !std::filesystem::is_directory(*root / folder)) return 0;
-  for (const auto& entry : std::filesystem::directory_iterator(*root / folder)) {
+  const std::filesystem::path root = data_folder("spectra");
+  if (root.empty() || !std::filesystem::is_directory(root / folder)) return 0;
+  for (const auto& entry : std::filesystem::directory_iterator(root / folder)) {
     if (!extension.empty() && entry.path().extension() != extension) continue;
     EXPECT_NO_THROW(visit(entry.path())) << entry.path();
     ++count;
@@ -48,9 +48,9 @@ TEST(RealSpectra, OpticalConstants) {
     expect_resamples(constants.n, file);
     if (constants.k) expect_resamples(*constants.k, file);
   });
-  const auto root = real_spectra();
-  if (!root) return;
-  const auto folder = *root / "refractiveindex.info";
+  const std::filesystem::path root = data_folder("spectra");
+  if (root.empty()) return;
+  const auto folder = root / "refractiveindex.info";
   EXPECT_NEAR(read_optical_constants(folder / "N-BK7.yml").n(587.56), 1.5168, 1e-5);
   EXPECT_NEAR(read_optical_constants(folder / "SF11.yml").n(587.56), 1.78472, 1e-5);  // SCHOTT
   EXPECT_NEAR(read_optical_constants(folder / "SiO2_Malitson.yml").n(587.56), 1.45846, 1e-5);
@@ -72,9 +72,9 @@ TEST(RealSpectra, Cie) {
     EXPECT_GE(read_spectrum_file(file).knots_nm().size(), 81u) << file;
     EXPECT_GE(read_response_file(file).size(), 1u) << file;
   });
-  const auto root = real_spectra();
-  if (!root) return;
-  const auto matching = read_response_file(*root / "cie" / "cie1931_xyz_1nm.csv");
+  const std::filesystem::path root = data_folder("spectra");
+  if (root.empty()) return;
+  const auto matching = read_response_file(root / "cie" / "cie1931_xyz_1nm.csv");
   ASSERT_EQ(matching.size(), 3u);
   EXPECT_EQ(matching[1].first, "y");
   for (double lambda_nm = 360; lambda_nm <= 830; lambda_nm += 5)
@@ -98,22 +98,22 @@ TEST(RealSpectra, ModisBands) {
 }
 
 TEST(RealSpectra, SunAirAndGases) {
-  const auto root = real_spectra();
-  if (!root) return;
-  const Spectrum sun = read_spectrum_file(*root / "solar" / "ASTMG173.csv");
+  const std::filesystem::path root = data_folder("spectra");
+  if (root.empty()) return;
+  const Spectrum sun = read_spectrum_file(root / "solar" / "ASTMG173.csv");
   EXPECT_NEAR(sun.integral(280, 4000), 1347.9, 1);  // W/m^2, ASTM G173-03
   const std::pair<const char*, double> totals[] = {
       {"extraterrestrial", 1347.9}, {"global", 1000.4}, {"direct", 900.1}};
-  for (const auto& [name, spectrum] : read_response_file(*root / "solar" / "ASTMG173.csv"))
+  for (const auto& [name, spectrum] : read_response_file(root / "solar" / "ASTMG173.csv"))
     for (const auto& [column, total] : totals)
       if (name == column) {
         EXPECT_NEAR(spectrum.integral(280, 4000), total, 1) << name;
       }
-  EXPECT_NEAR(read_spectrum_file(*root / "atmosphere" / "modtran_ihaze1_alt1000m_range0m.csv")(300),
-              0.6700066, 1e-9);
-  const Spectrum co = read_spectrum_file(*root / "gas" / "CO_Tgas1500K_mole_fraction0.01.csv");
+  EXPECT_NEAR(read_spectrum_file(root / "atmosphere" / "modtran_ihaze1_alt1000m_range0m.csv")(300), 0.6700066,
+              1e-9);
+  const Spectrum co = read_spectrum_file(root / "gas" / "CO_Tgas1500K_mole_fraction0.01.csv");
   EXPECT_NEAR(co.data_range()->min_nm, 1e7 / 2272.1104, 1e-3);
-  const Spectrum co2 = read_spectrum_file(*root / "gas" / "CO2abscoeff_300K_4150_4400nm.txt");
+  const Spectrum co2 = read_spectrum_file(root / "gas" / "CO2abscoeff_300K_4150_4400nm.txt");
   EXPECT_NEAR(co2.data_range()->min_nm, 4148.888, 1e-3);
 }
 

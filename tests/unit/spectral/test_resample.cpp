@@ -4,7 +4,7 @@
 #include <random>
 
 #include "spectral/spectrum.hpp"
-#include "support.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -143,7 +143,7 @@ TEST(Resample, RequestBesideTheData) {
 
 TEST(Resample, AStepThatNeedsTooManyEntriesIsAnError) {
   const Spectrum s = Spectrum::tabulated({400, 500, 500.00001, 777.7}, {0, 0, 1, 1});
-  EXPECT_EQ(message_of([&] {
+  EXPECT_EQ(error_of([&] {
               resample(s, 380, 780, {1e-4, 1025});
             }).substr(0, 62),
             "spectrum: 1025 entries over 400 to 777.7 nm reach an error of ");

@@ -6,7 +6,7 @@
 
 #include "spectral/colour.hpp"
 #include "spectral/rgb.hpp"
-#include "support.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -101,14 +101,11 @@ TEST(Rgb, EmissionHasItsColourAtAnyBrightness) {
 }
 
 TEST(Rgb, ComponentsOutsideTheRuleAreRefused) {
-  EXPECT_EQ(message_of([] { rgb_reflectance({0.5, 1.2, 0}); }), "rgb: green 1.2: must be in [0, 1]");
-  EXPECT_EQ(message_of([] { rgb_reflectance({-0.1, 1, 0}); }), "rgb: red -0.1: must be in [0, 1]");
-  EXPECT_EQ(message_of([] { rgb_reflectance({0, 0, NAN}); }), "rgb: blue nan: must be in [0, 1]");
-  EXPECT_EQ(message_of([] {
-              rgb_emission({0, 0, INFINITY});
-            }),
-            "rgb: blue inf: must be finite and at least 0");
-  EXPECT_EQ(message_of([] { rgb_emission({0, -1, 1}); }), "rgb: green -1: must be finite and at least 0");
+  EXPECT_EQ(error_of([] { rgb_reflectance({0.5, 1.2, 0}); }), "rgb: green 1.2: must be in [0, 1]");
+  EXPECT_EQ(error_of([] { rgb_reflectance({-0.1, 1, 0}); }), "rgb: red -0.1: must be in [0, 1]");
+  EXPECT_EQ(error_of([] { rgb_reflectance({0, 0, NAN}); }), "rgb: blue nan: must be in [0, 1]");
+  EXPECT_EQ(error_of([] { rgb_emission({0, 0, INFINITY}); }), "rgb: blue inf: must be finite and at least 0");
+  EXPECT_EQ(error_of([] { rgb_emission({0, -1, 1}); }), "rgb: green -1: must be finite and at least 0");
   EXPECT_THROW(solve_sigmoid({0, 0, 2}), std::logic_error);
 }
 

@@ -6,7 +6,7 @@
 
 #include "spectral/planck.hpp"
 #include "spectral/spectrum.hpp"
-#include "support.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -280,7 +280,7 @@ TEST(Spectrum, WrongDataHaveTheirMessages) {
        },
        "planck: range 500 to 400 nm: must increase"},
   };
-  for (const auto& [action, message] : cases) EXPECT_EQ(message_of(action), message);
+  for (const auto& [action, message] : cases) EXPECT_EQ(error_of(action), message);
 }
 
 TEST(Spectrum, WrongIntervalsAreOurBug) {

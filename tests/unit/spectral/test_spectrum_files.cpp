@@ -2,7 +2,7 @@
 
 #include "spectral/spectrum_files.hpp"
 #include "spectral/spectrum_units.hpp"
-#include "support.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -132,11 +132,11 @@ TEST(SpectrumFile, WrongFilesHaveTheirMessages) {
   };
   for (const auto& [content, message] : cases) {
     const auto file = folder.write("f.txt", content);
-    EXPECT_EQ(message_of([&] { read_spectrum_file(file); }, folder.path().string()), message) << content;
+    EXPECT_EQ(error_of(folder, [&] { read_spectrum_file(file); }), message) << content;
   }
-  EXPECT_EQ(message_of([&] { read_spectrum_file(folder.path() / "none"); }, folder.path().string()),
+  EXPECT_EQ(error_of(folder, [&] { read_spectrum_file(folder.path() / "none"); }),
             "none: cannot be opened: no such file");
-  EXPECT_EQ(message_of([&] { read_spectrum_file("/dev/zero"); }), "/dev/zero: is not a regular file");
+  EXPECT_EQ(error_of([&] { read_spectrum_file("/dev/zero"); }), "/dev/zero: is not a regular file");
 }
 
 TEST(SpectrumFile, LongLinesAreNoTrouble) {
@@ -200,8 +200,7 @@ TEST(ResponseFile, WrongFilesHaveTheirMessages) {
   };
   for (const auto& [content, message] : cases) {
     const auto file = folder.write("f.csv", content);
-    EXPECT_EQ(message_of([&] { read_response_file(file); }, folder.path().string()), message)
-        << content.substr(0, 80);
+    EXPECT_EQ(error_of(folder, [&] { read_response_file(file); }), message) << content.substr(0, 80);
   }
 }
 

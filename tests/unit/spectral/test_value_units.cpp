@@ -4,7 +4,7 @@
 #include "spectral/spectrum_files.hpp"
 #include "spectral/text_table.hpp"
 #include "spectral/value_units.hpp"
-#include "support.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -174,8 +174,7 @@ TEST(ValueUnits, WrongOnesHaveTheirMessages) {
   for (const Case& c : cases) {
     const TemporaryFolder folder;
     const auto file = folder.write("f.csv", c.header + std::string("\n400,1\n500,2\n"));
-    EXPECT_EQ(message_of([&] { read_spectrum_file(file, c.kind); }, folder.path().string()), c.message)
-        << c.header;
+    EXPECT_EQ(error_of(folder, [&] { read_spectrum_file(file, c.kind); }), c.message) << c.header;
   }
 }
 
@@ -196,16 +195,14 @@ TEST(ValueUnits, OtherComments) {
 
 TEST(ValueUnits, OfResponses) {
   const TemporaryFolder folder;
-  std::vector<std::string> messages;
-  const auto responses =
-      read_response_file(folder.write("qe.csv", "wavelength_nm,red (%),gain (A/W)\n400,50,3\n500,60,4\n"),
-                         [&](const Diagnostic& d) { messages.push_back(d.message); });
+  Messages messages;
+  const auto responses = read_response_file(
+      folder.write("qe.csv", "wavelength_nm,red (%),gain (A/W)\n400,50,3\n500,60,4\n"), messages.sink());
   EXPECT_DOUBLE_EQ(responses[0].second(400), 0.5);
   EXPECT_EQ(responses[1].second(400), 3);
-  EXPECT_TRUE(messages.empty());
-  read_response_file(folder.write("raw.csv", "0.4,50\n0.5,60\n"),
-                     [&](const Diagnostic& d) { messages.push_back(d.message); });
-  EXPECT_EQ(messages,
+  EXPECT_TRUE(messages.texts.empty());
+  read_response_file(folder.write("raw.csv", "0.4,50\n0.5,60\n"), messages.sink());
+  EXPECT_EQ(messages.texts,
             std::vector<std::string>{"wavelengths up to 0.5 are read as nm: the file states no unit"});
 }
 

@@ -4,12 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "base/error.hpp"
-#include "validation/suite/hard_cases/trial.hpp"
+#include "tests/support/messages.hpp"
 #include "validation/suite/results.hpp"
 
 namespace kiloband::validation {
@@ -19,14 +17,15 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// An interpreter: $1 is the Python script, what follows its options.
-std::string interpreter(const ScratchFolder& folder, const std::string& name, const std::string& body) {
-  folder.write(name, "#!/bin/sh\n" + body + "\n");
-  fs::permissions(folder.path() / name, fs::perms::owner_all);
-  return (folder.path() / name).string();
+std::string interpreter(const test::TemporaryFolder& folder, const std::string& name,
+                        const std::string& body) {
+  const fs::path file = folder.write(name, "#!/bin/sh\n" + body + "\n");
+  fs::permissions(file, fs::perms::owner_all);
+  return file.string();
 }
 
 /// Has Mitsuba 9.8.7 and the scenes box and ball; otherwise does `body`.
-std::string with_mitsuba(const ScratchFolder& folder, const std::string& body = "exit 2") {
+std::string with_mitsuba(const test::TemporaryFolder& folder, const std::string& body = "exit 2") {
   return interpreter(
       folder, "with",
       "case $2 in --probe) echo warning >&2; echo 9.8.7;; --list) printf 'box\\nball\\n';; *) " + body +
@@ -62,17 +61,8 @@ ChildEnd ended(int code, const std::string& err = "") {
   return end;
 }
 
-std::string message(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
-
 TEST(FindMitsuba, TheFirstInterpreterThatHasIt) {
-  const ScratchFolder folder;
+  const test::TemporaryFolder folder;
   const std::string without = interpreter(folder, "without", "echo 1.0; exit 1"), with = with_mitsuba(folder);
   const auto driver = find_mitsuba({{"./no python", without, with}, "compare.py"}, {}, Effort::kStandard);
   ASSERT_TRUE(driver);
@@ -88,20 +78,20 @@ TEST(FindMitsuba, OnlyWhereARunWantsIt) {
   EXPECT_TRUE(wants_mitsuba({"mitsuba/box"}, Effort::kStandard));
   EXPECT_FALSE(wants_mitsuba({"cornell_box"}, Effort::kStandard));
   EXPECT_FALSE(wants_mitsuba({}, Effort::kQuick));
-  const ScratchFolder folder;
+  const test::TemporaryFolder folder;
   EXPECT_FALSE(find_mitsuba({{with_mitsuba(folder)}, "compare.py"}, {"cornell_box"}, Effort::kStandard));
 }
 
 TEST(FindMitsuba, ANameThatAsksForItIsAnErrorWithoutIt) {
-  const ScratchFolder folder;
+  const test::TemporaryFolder folder;
   const std::string without = interpreter(folder, "without", "exit 2");
   EXPECT_EQ(
-      message([&] {
+      test::error_of([&] {
         find_mitsuba({{without, "./python"}, "compare.py"}, {"hard/", "mitsuba/box"}, Effort::kStandard);
       }),
       "mitsuba/box: Mitsuba 3 is not there (pip install mitsuba scipy), looked for by " + without +
           " and ./python");
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(test::error_of([&] {
               find_mitsuba({{with_mitsuba(folder)}, "c.py"}, {"mitsuba/box"}, Effort::kQuick);
             }),
             "mitsuba/box: a quick run has no case against Mitsuba (leave out --quick)");
@@ -191,7 +181,7 @@ TEST(ReadMitsuba, AStoppedRunHasWhatItCameTo) {
 }
 
 TEST(RunMitsuba, RunsTheScriptAndReadsItsFile) {
-  const ScratchFolder folder;
+  const test::TemporaryFolder folder;
   folder.write("fresh.json", record({entry("box", "cpu", true), entry("box", "opencl:pt", true)}));
   folder.write("mitsuba.json", record({entry("ball", "cpu", false)}));
   const std::string at = "'" + folder.path().string() + "'";
@@ -205,9 +195,7 @@ TEST(RunMitsuba, RunsTheScriptAndReadsItsFile) {
   EXPECT_TRUE(result.passed());
   EXPECT_EQ(result.scenes.size(), 2u);
   EXPECT_EQ(progress, (std::vector<double>{0.5, 1}));
-  std::ostringstream arguments;
-  arguments << std::ifstream(folder.path() / "arguments").rdbuf();
-  EXPECT_EQ(arguments.str(),
+  EXPECT_EQ(folder.read("arguments"),
             "compare.py /bin/kiloband -o " + folder.path().string() +
                 " --backends cpu,opencl:pt --seed 7 --rate 1e-05 --effort 0.25 --scenes box\n");
 }
@@ -215,7 +203,7 @@ TEST(RunMitsuba, RunsTheScriptAndReadsItsFile) {
 /// What keeps the script from being run has failed, as what it could not do:
 /// an hour of other cases is not lost.
 TEST(RunMitsuba, AResultThatCannotBeReplacedIsAFailure) {
-  const ScratchFolder folder;
+  const test::TemporaryFolder folder;
   fs::create_directories(folder.path() / "mitsuba.json" / "not empty");
   MitsubaRun run = kRun;
   run.output = folder.path();

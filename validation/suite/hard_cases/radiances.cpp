@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/temporary_folder.hpp"
 #include "validation/suite/hard_cases/groups.hpp"
 #include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
-#include "base/temporary_folder.hpp"
 #include "scene/read/reader.hpp"
 #include "shared/sampler.h"
 #include "src_cpu/evaluate/evaluator.hpp"
@@ -212,17 +210,6 @@ std::vector<HardFigure> Trial::finish() {
   figure("samples that are not finite", "samples", static_cast<double>(invalid_ + not_finite_), 0, 0,
          fmt::format("of {}", samples_));
   return std::move(figures_);
-}
-
-ScratchFolder::ScratchFolder() : path_(make_temporary_folder("kiloband_hard")) {}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-void ScratchFolder::write(const std::string& name, const std::string& content) const {
-  std::ofstream(path_ / name, std::ios::binary) << content;
 }
 
 double planck_per_nm(double lambda_nm, double temperature_k) {

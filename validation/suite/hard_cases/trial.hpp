@@ -81,19 +81,6 @@ class Trial {
   uint64_t invalid_ = 0, not_finite_ = 0, samples_ = 0;
 };
 
-/// A folder that is removed with the object.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  void write(const std::string& name, const std::string& content) const;
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Planck's law in double, W m^-2 sr^-1 nm^-1, written down here once more.
 double planck_per_nm(double lambda_nm, double temperature_k);
 

@@ -13,16 +13,13 @@ const std::string kSky = "<emitter type='constant'/>";
 /// What flattening says: its warnings, or its error behind the position.
 std::string flattened(const std::string& body) {
   const ChannelList channels = parse_channels("500-510");
-  std::string said;
-  const DiagnosticSink sink = [&](const Diagnostic& d) { said += d.message; };
-  try {
+  Messages warnings;
+  const std::string error = error_of([&] {
     compile_scene(read_scene_text("<scene version='3.0.0'>" + body + "</scene>", "scene.xml", "."),
-                  {channels, channels, sink});
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    return message.substr(message.find("error: "));
-  }
-  return said;
+                  {channels, channels, warnings.sink()});
+  });
+  if (error != "accepted") return error.substr(error.find("error: "));
+  return warnings.texts.empty() ? "" : warnings.texts.front();
 }
 
 std::string moved(const std::string& shape, const std::string& steps) {

@@ -55,15 +55,14 @@ TEST(SpectralMessages, SlightlyNegativeValuesAreTakenAsZero) {
   write_cube(folder / "a.exr", 3, 2, kBands, [&](uint32_t x, uint32_t y, std::size_t b) {
     return x == 2 && b == 1 ? (y == 1 ? -2e-3 : -1e-6) : 0.5;
   });
-  std::vector<std::string> messages;
-  const SpectralImage image =
-      read_spectral_image(folder / "a.exr", [&](const Diagnostic& d) { messages.push_back(d.message); });
+  Messages messages;
+  const SpectralImage image = read_spectral_image(folder / "a.exr", messages.sink());
   const std::size_t bands = kBands.size();
   EXPECT_EQ((*image.values)[2 * bands + 1], 0);
   EXPECT_EQ((*image.values)[5 * bands + 1], 0);
   EXPECT_EQ((*image.values)[5 * bands], 0.5f);
-  ASSERT_EQ(messages.size(), 1u);
-  EXPECT_EQ(messages[0],
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_EQ(messages.texts[0],
             "2 texels have slightly negative values, which are taken as 0; the lowest: band 450-500 nm at "
             "pixel (2, "
             "1): -0.002");

@@ -1,14 +1,11 @@
 // Scenes with spectral images for the tests of this folder.
 #pragma once
 
-#include <filesystem>
-#include <fstream>
 #include <string>
-#include <vector>
 
 #include "scene/read/reader.hpp"
 #include "tests/support/cube_files.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 
@@ -23,21 +20,8 @@ inline std::string sphere_with(const std::string& reflectance) {
 }
 
 /// The message of reading, without the folder's name; "accepted" if there is none.
-inline std::string error_of(const std::string& body, const TemporaryFolder& folder,
-                            std::vector<std::string>* diagnostics = nullptr) {
-  try {
-    ReadOptions options;
-    options.sink = [&](const Diagnostic& d) {
-      if (diagnostics) diagnostics->push_back(d.to_string());
-    };
-    read_scene_text(scene_around(body), "scene.xml", folder.path(), options);
-  } catch (const InputError& error) {
-    std::string message = error.what();
-    const std::string prefix = folder.path().string() + "/";
-    for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());
-    return message;
-  }
-  return "accepted";
+inline std::string error_of(const std::string& body, const TemporaryFolder& folder) {
+  return error_of(folder, [&] { read_scene_text(scene_around(body), "scene.xml", folder.path(), {}); });
 }
 
 }  // namespace kiloband::test

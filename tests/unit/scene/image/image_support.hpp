@@ -3,11 +3,13 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "tests/unit/scene/mesh/support.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 
@@ -36,11 +38,6 @@ inline std::vector<float> ramp(size_t count) {
   std::vector<float> values(count);
   for (size_t i = 0; i < count; ++i) values[i] = static_cast<float>(i) / static_cast<float>(count);
   return values;
-}
-
-inline std::string slurp(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 inline const std::vector<std::string> kRgb = {"R", "G", "B"};

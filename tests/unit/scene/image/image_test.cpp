@@ -7,6 +7,7 @@
 
 #include "image_support.hpp"
 #include "scene/image/channels.hpp"
+#include "tests/support/data_folder.hpp"
 #include "tests/unit/scene/mesh/binary.hpp"
 
 namespace kiloband::test {
@@ -164,13 +165,13 @@ TEST_F(Images, ExrChannelsAreChosenByName) {
 }
 
 TEST_F(Images, RealFiles) {
-  const auto root = data_folder();
-  if (!root) return;
+  const std::filesystem::path root = data_folder();
+  if (root.empty()) return;
   for (const char* name : {"envmaps/museum.exr", "envmaps/kloppenheim_05_1k.hdr",
                            "envmaps/studio_small_03_1k.hdr", "loaders/bitmap/spot_0.exr",
                            "loaders/bitmap/spot_multi.exr", "scenes/mitsuba/matpreview/envmap.exr"}) {
-    if (!std::filesystem::exists(*root / name)) continue;
-    const Image image = read_image(*root / name, false);
+    if (!std::filesystem::exists(root / name)) continue;
+    const Image image = read_image(root / name, false);
     EXPECT_EQ(image.channels, 3u) << name;
     EXPECT_EQ(image.pixels.size(), size_t(image.width) * image.height * 3) << name;
   }

@@ -15,9 +15,9 @@ const std::string kQuadPositions = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 struct Obj : testing::Test {
   TemporaryFolder folder;
-  Collector collector;
+  Messages messages;
   Mesh read(const std::string& text, const MeshOptions& options = {}) {
-    return read_obj(folder.write("a.obj", text), options, collector.sink(folder));
+    return read_obj(folder.write("a.obj", text), options, messages.lines(folder));
   }
 };
 
@@ -76,7 +76,7 @@ TEST_F(Obj, IgnoresDocumentedLinesAndExtraNumbers) {
       "v +1.5e0 .5 -0. # \nvt 0 1 0\nl 1 2\np 1\nf 1 2 3");
   EXPECT_EQ(mesh.triangles.size(), 1u);
   EXPECT_EQ(mesh.positions[2], (Vec3f{1.5f, 0.5f, 0}));
-  EXPECT_TRUE(collector.texts.empty());
+  EXPECT_TRUE(messages.texts.empty());
 }
 
 TEST_F(Obj, TinyNumbersUnderflowToZero) {
@@ -85,14 +85,14 @@ TEST_F(Obj, TinyNumbersUnderflowToZero) {
 
 TEST_F(Obj, WarnsOfZeroAreaOnce) {
   read(kQuadPositions + "f 1 2 3\nf 1 1 2\nf 1 2 2\n");
-  EXPECT_EQ(collector.texts, (std::vector<std::string>{"a.obj: warning: 2 of 3 triangles have zero area"}));
+  EXPECT_EQ(messages.texts, (std::vector<std::string>{"a.obj: warning: 2 of 3 triangles have zero area"}));
 }
 
 TEST_F(Obj, FillsWhatSomeCornersLack) {
   const Mesh mesh = read(kQuadPositions + "vt 0.5 0.5\nvn 1 0 0\nf 1/1/1 2 3\n");
   EXPECT_EQ(mesh.normals, (std::vector<Vec3f>{{1, 0, 0}, {0, 0, 1}, {0, 0, 1}}));
   EXPECT_EQ(mesh.uvs, (std::vector<Vec2f>{{0.5f, 0.5f}, {0, 0}, {0, 0}}));
-  EXPECT_EQ(collector.texts,
+  EXPECT_EQ(messages.texts,
             (std::vector<std::string>{
                 "a.obj: warning: 2 of 3 vertices have no texture coordinates: (0, 0) is used",
                 "a.obj: warning: 2 of 3 vertex normals are missing or zero: computed from the triangles"}));

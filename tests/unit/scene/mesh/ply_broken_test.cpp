@@ -186,7 +186,7 @@ TEST(PlyBroken, EveryTruncatedBody) {
   const std::string whole = binary_file(kRawVertices + kRawFace);
   for (size_t size = 0; size < whole.size(); ++size) {
     const auto path = folder.write("a.ply", whole.substr(0, size));
-    EXPECT_NE(error_of(folder, [&] { read_ply(path, {}); }), "no error") << size;
+    EXPECT_NE(error_of(folder, [&] { read_ply(path, {}); }), "accepted") << size;
   }
 }
 

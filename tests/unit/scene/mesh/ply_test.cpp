@@ -14,9 +14,9 @@ const Triangles kQuad = {{0, 1, 2}, {0, 2, 3}};
 
 struct Ply : testing::Test {
   TemporaryFolder folder;
-  Collector collector;
+  Messages messages;
   Mesh read(const std::string& bytes, const MeshOptions& options = {}) {
-    return read_ply(folder.write("a.ply", bytes), options, collector.sink(folder));
+    return read_ply(folder.write("a.ply", bytes), options, messages.lines(folder));
   }
 };
 
@@ -33,7 +33,7 @@ TEST_F(Ply, ReadsText) {
   EXPECT_EQ(mesh.positions[2], (Vec3f{1, 1, 0}));
   EXPECT_EQ(mesh.normals, (std::vector<Vec3f>(4, {0, 0, 1})));
   EXPECT_TRUE(mesh.vertex_attributes.empty());
-  EXPECT_TRUE(collector.texts.empty());
+  EXPECT_TRUE(messages.texts.empty());
 }
 
 TEST_F(Ply, TextMayBreakLinesAnywhereAndEndInWindowsStyle) {
@@ -130,7 +130,7 @@ TEST_F(Ply, NormalsAreNormalisedOrDropped) {
   EXPECT_NEAR(mesh.normals[0][1], 0.6, 1e-6);
   EXPECT_NEAR(mesh.normals[0][2], 0.8, 1e-6);
   EXPECT_EQ(mesh.normals[3], (Vec3f{0, 0, 1}));
-  EXPECT_EQ(collector.texts,
+  EXPECT_EQ(messages.texts,
             (std::vector<std::string>{
                 "a.ply: warning: 1 of 4 vertex normals are missing or zero: computed from the triangles"}));
   MeshOptions options;
@@ -153,9 +153,9 @@ TEST_F(Ply, SkipsOtherElementsWhereverTheyStand) {
       raw(0.5f) + raw<uint8_t>(4) + raw<int32_t>({0, 1, 2, 3}) + raw<uint8_t>(1) + raw<uint8_t>(7);
   const Mesh mesh = read(header + camera + face + raw<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) + "c");
   EXPECT_EQ(mesh.triangles, kQuad);
-  EXPECT_EQ(collector.texts, (std::vector<std::string>{"a.ply:5: note: element 'camera' is skipped",
-                                                       "a.ply:16: note: element 'empty' is skipped",
-                                                       "a.ply:17: note: element 'tail' is skipped"}));
+  EXPECT_EQ(messages.texts, (std::vector<std::string>{"a.ply:5: note: element 'camera' is skipped",
+                                                      "a.ply:16: note: element 'empty' is skipped",
+                                                      "a.ply:17: note: element 'tail' is skipped"}));
 }
 
 }  // namespace

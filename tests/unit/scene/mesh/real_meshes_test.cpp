@@ -6,20 +6,21 @@
 
 #include "scene/mesh/mesh.hpp"
 #include "support.hpp"
+#include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {
 namespace {
 
 struct RealMeshes : testing::Test {
   TemporaryFolder folder;
-  Collector collector;
+  Messages messages;
   /// Path of a data file, empty if it is not there.
   static std::filesystem::path data(const std::string& name) {
-    const auto root = data_folder();
-    return root && std::filesystem::exists(*root / name) ? *root / name : std::filesystem::path();
+    const std::filesystem::path file = data_folder() / name;
+    return std::filesystem::exists(file) ? file : std::filesystem::path();
   }
   Mesh read(const std::filesystem::path& path, const MeshOptions& options = {}) {
-    const auto sink = collector.sink(folder);
+    const auto sink = messages.lines(folder);
     if (path.extension() == ".ply") return read_ply(path, options, sink);
     if (path.extension() == ".serialized") return read_serialized(path, options, sink);
     return read_obj(path, options, sink);
@@ -59,8 +60,8 @@ TEST_F(RealMeshes, HaveTheirCounts) {
 }
 
 TEST_F(RealMeshes, EveryFileLoads) {
-  if (!data_folder()) return;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(*data_folder())) {
+  if (data_folder().empty()) return;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(data_folder())) {
     const auto extension = entry.path().extension();
     if (extension != ".obj" && extension != ".ply") continue;
     EXPECT_NO_THROW(read(entry.path())) << entry.path();
@@ -71,9 +72,9 @@ TEST_F(RealMeshes, ConferenceHasManyFlatTriangles) {
   const auto path = data("meshes/conference.ply");
   if (path.empty()) return;
   const Mesh mesh = read(path);
-  ASSERT_EQ(collector.texts.size(), 1u);
-  EXPECT_TRUE(collector.texts[0].ends_with(": warning: 53627 of 331179 triangles have zero area"))
-      << collector.texts[0];
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_TRUE(messages.texts[0].ends_with(": warning: 53627 of 331179 triangles have zero area"))
+      << messages.texts[0];
   // 52,670 of them use a vertex twice, 957 have three different ones on a line.
   const auto repeats = [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
   EXPECT_EQ(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), repeats), 52670);

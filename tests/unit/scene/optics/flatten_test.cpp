@@ -3,6 +3,7 @@
 
 #include "scene/compile/flat_scene.hpp"
 #include "scene/read/reader.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -27,12 +28,7 @@ FlatScene flat_scene(const std::string& body, const std::string& bands = "8000-9
 }
 
 std::string error_of(const std::string& body) {
-  try {
-    flat_scene(body);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::error_of([&] { flat_scene(body); });
 }
 
 TEST(FlattenThermal, DiffuseSurfacesAreOneRow) {

@@ -13,25 +13,19 @@ std::string complete_scene(const std::string& body) {
 }
 
 SceneDescription read(const std::string& text, const std::filesystem::path& folder, const Defines& defines,
-                      std::vector<std::string>* diagnostics) {
+                      const DiagnosticSink& sink) {
   ReadOptions options;
   options.defines = defines;
-  options.sink = [&](const Diagnostic& diagnostic) {
-    if (diagnostics) diagnostics->push_back(diagnostic.to_string());
-  };
+  options.sink = sink;
   return read_scene_text(text, "scene.xml", folder, options);
 }
 
 std::string error_of(const std::string& text, const std::filesystem::path& folder, const Defines& defines) {
-  try {
-    read(text, folder, defines);
-  } catch (const InputError& error) {
-    std::string message = error.what();
-    const std::string prefix = folder.string() + "/";
-    for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());
-    return message;
-  }
-  return "accepted";
+  return error_of([&] { read(text, folder, defines); });
+}
+
+std::string error_of(const std::string& text, const TemporaryFolder& folder) {
+  return folder.strip(error_of(text, folder.path()));
 }
 
 Spectrum reflectance(const std::string& parameter) {
@@ -46,7 +40,7 @@ Spectrum radiance(const std::string& parameter) {
   return std::get<ConstantEmitter>(result.emitters.at(0).model).radiance;
 }
 
-void expect_messages(const std::vector<BrokenScene>& scenes, const std::filesystem::path& folder) {
+void expect_messages(const std::vector<BrokenScene>& scenes, const TemporaryFolder& folder) {
   for (const BrokenScene& broken : scenes) {
     EXPECT_EQ(error_of(broken.text, folder), broken.message) << broken.name;
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scene/read/reader.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/messages.hpp"
 
 namespace kiloband::test {
 
@@ -23,14 +23,15 @@ std::string complete_scene(const std::string& body);
 
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
-/// Reads text named "scene.xml" with files from `folder`; `diagnostics` receives what is reported.
+/// Reads text named "scene.xml" with files from `folder`.
 SceneDescription read(const std::string& text, const std::filesystem::path& folder = "/nonexistent",
-                      const Defines& defines = {}, std::vector<std::string>* diagnostics = nullptr);
+                      const Defines& defines = {}, const DiagnosticSink& sink = {});
 
-/// The message of the InputError that reading throws; "accepted" if there is none. The folder's name and '/'
-/// are removed from the message.
+/// The message of the InputError that reading throws; "accepted" if there is none.
 std::string error_of(const std::string& text, const std::filesystem::path& folder = "/nonexistent",
                      const Defines& defines = {});
+/// The same without the folder in front of file names.
+std::string error_of(const std::string& text, const TemporaryFolder& folder);
 
 /// The reflectance of the first shape of a complete scene whose diffuse bsdf holds `parameter`.
 Spectrum reflectance(const std::string& parameter);
@@ -43,7 +44,8 @@ struct BrokenScene {
   std::string message;
 };
 
-/// Each scene gives exactly its message.
-void expect_messages(const std::vector<BrokenScene>& scenes, const std::filesystem::path& folder);
+/// Each scene gives exactly its message. folder: of the files that it names
+void expect_messages(const std::vector<BrokenScene>& scenes,
+                     const TemporaryFolder& folder = TemporaryFolder());
 
 }  // namespace kiloband::test

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support.hpp"
+#include "tests/support/picture_files.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -56,6 +57,10 @@ std::vector<BrokenScene> table() {
            R"xml(<bsdf type="diffuse"><spectrum name="reflectance" value="500:0.1, 400:0.2"/></bsdf>)xml"),
        "scene.xml:2:58: error: diffuse bsdf: reflectance: wavelength 400 nm after 500 nm: must increase "
        "strictly"},
+      {"wavelength repeated",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum name="reflectance" value="500:0.5, 500:0.6"/></bsdf>)xml"),
+       "scene.xml:2:58: error: diffuse bsdf: reflectance: wavelength 500 nm after 500 nm: must increase strictly"},
       {"blank after the colon",
        complete_scene(R"xml(<bsdf type="diffuse"><spectrum name="reflectance" value="500: 0.1"/></bsdf>)xml"),
        "scene.xml:2:58: error: diffuse bsdf: reflectance: '500:' is not a pair wavelength:value (no blanks "
@@ -72,6 +77,14 @@ std::vector<BrokenScene> table() {
        complete_scene(
            R"xml(<bsdf type="diffuse"><spectrum name="reflectance" filename="none.spd"/></bsdf>)xml"),
        "scene.xml:2:61: error: file 'none.spd' not found"},
+      {"spectrum file with a word",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum name="reflectance" filename="word.spd"/></bsdf>)xml"),
+       "scene.xml:2:61: error: word.spd:2: 'high' is not a number"},
+      {"spectrum file above 1",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum name="reflectance" filename="bright.spd"/></bsdf>)xml"),
+       "scene.xml:2:61: error: diffuse bsdf: reflectance 1.2 at 500 nm: must be in [0, 1]"},
       {"irregular lists of different lengths",
        complete_scene(
            R"xml(<bsdf type="diffuse"><spectrum type="irregular" name="reflectance"><string name="wavelengths" value="1 2 3"/><string name="values" value="0 0"/></spectrum></bsdf>)xml"),
@@ -168,6 +181,10 @@ std::vector<BrokenScene> table() {
        complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="mithril"/></bsdf>)xml"),
        "scene.xml:2:52: error: conductor bsdf: metal: 'mithril' is neither a built-in metal nor a file; "
        "there are Ag, Al, Au, Be, Cr, Cu, Ni, Pd, Pt, Ti, W"},
+      {"metal with a similar name",
+       complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="Auu"/></bsdf>)xml"),
+       "scene.xml:2:52: error: conductor bsdf: metal: 'Auu' is neither a built-in metal nor a file; "
+       "did you mean 'Au'?"},
       {"glass as metal",
        complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="n-bk7"/></bsdf>)xml"),
        "scene.xml:2:52: error: conductor bsdf: metal: 'n-bk7' is a transparent material, not a metal"},
@@ -218,6 +235,9 @@ std::vector<BrokenScene> table() {
       {"missing mesh",
        complete_scene(R"xml(<shape type="ply"><string name="filename" value="none.ply"/></shape>)xml"),
        "scene.xml:2:50: error: file 'none.ply' not found"},
+      {"mesh without triangles",
+       complete_scene(R"xml(<shape type="obj"><string name="filename" value="a.obj"/></shape>)xml"),
+       "scene.xml:2:50: error: a.obj: the mesh has no triangles"},
       {"negative radius",
        complete_scene(R"xml(<shape type="sphere" id="ball"><float name="radius" value="-1"/></shape>)xml"),
        "scene.xml:2:60: error: shape 'ball': radius -1: must be > 0"},
@@ -274,6 +294,10 @@ std::vector<BrokenScene> table() {
       {"missing environment map",
        complete_scene(R"xml(<emitter type="envmap"><string name="filename" value="none.exr"/></emitter>)xml"),
        "scene.xml:2:55: error: file 'none.exr' not found"},
+      {"environment map of one pixel",
+       complete_scene(R"xml(<emitter type="envmap"><string name="filename" value="one.pfm"/></emitter>)xml"),
+       "scene.xml:2:55: error: envmap emitter: an environment map needs at least 2 x 2 pixels, "
+       "'one.pfm' has 1 x 1"},
       {"beam wider than the cutoff",
        complete_scene(R"xml(<emitter type="spot"><float name="beam_width" value="30"/></emitter>)xml"),
        "scene.xml:2:54: error: spot emitter: beam_width 30: must be from 0 to cutoff_angle"},
@@ -291,8 +315,11 @@ TEST(BrokenScenes, Entities) {
   const TemporaryFolder folder;
   folder.write("a.obj", "v 0 0 0\n");
   folder.write("glass.txt", "400 1.6\n800 1.5\n");
+  folder.write("word.spd", "400 0.1\n500 high\n");
+  folder.write("bright.spd", "400 0.1\n500 1.2\n");
+  folder.write("one.pfm", pfm_image(1, 1, 1, {0.5f}));
   folder.write("negative.txt", "400 1.6\n800 -1.5\n");
-  expect_messages(table(), folder.path());
+  expect_messages(table(), folder);
 }
 
 }  // namespace

@@ -31,6 +31,8 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:58: error: perspective sensor: far_clip 0.001: must be larger than near_clip"},
       {"lens without aperture", scene(R"xml(<sensor type="thinlens"/>)xml"),
        "scene.xml:2:2: error: thinlens sensor: parameter 'aperture_radius' is missing"},
+      {"unknown film", scene(R"xml(<sensor type="perspective"><film type="ldrfilm"/></sensor>)xml"),
+       "scene.xml:2:40: error: film type 'ldrfilm' is not supported; did you mean 'hdrfilm'?"},
       {"film of width 0",
        scene(
            R"xml(<sensor type="perspective"><film type="hdrfilm"><integer name="width" value="0"/></film></sensor>)xml"),
@@ -60,6 +62,14 @@ std::vector<BrokenScene> table() {
        scene(
            R"xml(<sensor type="perspective"><film type="bandfilm"><string name="bands" value="380:780:0"/></film></sensor>)xml"),
        "scene.xml:2:78: error: bands '380:780:0': count '0': must be a whole number from 1"},
+      {"interval of a list reversed",
+       scene(
+           R"xml(<sensor type="perspective"><film type="bandfilm"><string name="bands" value="400-500, 600-550"/></film></sensor>)xml"),
+       "scene.xml:2:78: error: bands '400-500, 600-550': '600-550': the interval is reversed: 600 nm is above 550 nm"},
+      {"file of bands reversed",
+       scene(
+           R"xml(<sensor type="perspective"><film type="bandfilm"><string name="bands_file" value="reversed.csv"/></film></sensor>)xml"),
+       "scene.xml:2:83: error: reversed.csv:3: the interval is reversed: 500 nm is above 450 nm"},
       {"bandfilm without bands",
        scene(R"xml(<sensor type="perspective"><film type="bandfilm"/></sensor>)xml"),
        "scene.xml:2:29: error: bandfilm film: needs either 'bands' or 'bands_file'"},
@@ -96,7 +106,8 @@ std::vector<BrokenScene> table() {
 
 TEST(BrokenScenes, Sensors) {
   const TemporaryFolder folder;
-  expect_messages(table(), folder.path());
+  folder.write("reversed.csv", "min_nm,max_nm\n400,450\n500,450\n");
+  expect_messages(table(), folder);
 }
 
 }  // namespace

@@ -48,6 +48,11 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:6: error: not valid UTF-8"},
       {"NUL byte", std::string("<scene\0version=\"3.0.0\"/>", 24),
        "scene.xml:1:7: error: control character with code 0 is not allowed in XML"},
+      {"control character", "\x01",
+       "scene.xml:1:1: error: control character with code 1 is not allowed in XML"},
+      {"text in front", "hello", "scene.xml:1:1: error: text between elements is not allowed"},
+      {"unquoted attribute", complete_scene(R"xml(<bsdf type=diffuse/>)xml"),
+       "scene.xml:2:12: error: not well-formed XML: Error parsing element attribute"},
       {"duplicate attribute", complete_scene(R"xml(<bsdf type="diffuse" id="a" type="plastic"/>)xml"),
        "scene.xml:2:29: error: attribute 'type' is given twice"},
       {"undefined entity", complete_scene(R"xml(<bsdf type="&glossy;"/>)xml"),
@@ -56,6 +61,11 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:14: error: '<' in an attribute value: write &lt;"},
       {"unknown element", complete_scene(R"xml(<bsfd type="diffuse"/>)xml"),
        "scene.xml:2:2: error: unknown element <bsfd>; did you mean 'bsdf'?"},
+      {"unknown element like no other", complete_scene(R"xml(<material type="diffuse"/>)xml"),
+       "scene.xml:2:2: error: unknown element <material>"},
+      {"unknown attribute of a value",
+       complete_scene(R"xml(<bsdf type="diffuse"><float name="reflectance" val="0.1"/></bsdf>)xml"),
+       "scene.xml:2:48: error: <float>: unknown attribute 'val'"},
       {"unknown attribute", complete_scene(R"xml(<bsdf type="diffuse" idd="a"/>)xml"),
        "scene.xml:2:22: error: <bsdf>: unknown attribute 'idd'; did you mean 'id'?"},
       {"missing attribute", complete_scene(R"xml(<bsdf id="a"/>)xml"),
@@ -85,6 +95,8 @@ std::vector<BrokenScene> table() {
        complete_scene(R"xml(<default name="width" value="8"/><bsdf type="$widht"/>)xml"),
        "scene.xml:2:46: error: parameter '$widht' is not defined (neither by <default> nor by -D); did you "
        "mean 'width'?"},
+      {"undefined parameter like no other", complete_scene(R"xml(<bsdf type="$grey"/>)xml"),
+       "scene.xml:2:13: error: parameter '$grey' is not defined (neither by <default> nor by -D)"},
       {"dollar without name", complete_scene(R"xml(<bsdf type="5$"/>)xml"),
        "scene.xml:2:13: error: '$' without a parameter name: write \\$ for the sign itself"},
       {"default without a proper name", complete_scene(R"xml(<default name="a-b" value="8"/>)xml"),
@@ -158,6 +170,14 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:56: error: roughconductor bsdf: alpha: 'nan' is not finite"},
       {"infinity", complete_scene(R"xml(<shape type="sphere"><float name="radius" value="inf"/></shape>)xml"),
        "scene.xml:2:50: error: sphere shape: radius: 'inf' is not finite"},
+      {"infinite translation",
+       complete_scene(
+           R"xml(<shape type="cube"><transform name="to_world"><translate x="inf"/></transform></shape>)xml"),
+       "scene.xml:2:61: error: 'inf' is not finite"},
+      {"NaN in a spectrum",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum name="reflectance" value="400:0.1, 500:nan"/></bsdf>)xml"),
+       "scene.xml:2:58: error: diffuse bsdf: reflectance: 'nan' is not finite"},
       {"number out of range",
        complete_scene(R"xml(<shape type="sphere"><float name="radius" value="1e999"/></shape>)xml"),
        "scene.xml:2:50: error: sphere shape: radius: '1e999' is outside the range of numbers"},
@@ -189,7 +209,7 @@ TEST(BrokenScenes, Syntax) {
   const TemporaryFolder folder;
   folder.write("loop.xml", "<scene version=\"3.0.0\"><include filename=\"loop.xml\"/></scene>");
   folder.write("bad.xml", "<scene version=\"3.0.0\">\n<bsdf typ=\"x\"/>\n</scene>");
-  expect_messages(table(), folder.path());
+  expect_messages(table(), folder);
 }
 
 }  // namespace

@@ -58,12 +58,12 @@ TEST(SceneEmitter, EnvironmentMapIsLoaded) {
 }
 
 TEST(SceneEmitter, SamplingWeightIsNoted) {
-  std::vector<std::string> diagnostics;
+  Messages messages;
   read(scene(R"(<emitter type="point"><float name="sampling_weight" value="2"/></emitter>)" + kSensor +
              kSphere),
-       "/nonexistent", {}, &diagnostics);
-  ASSERT_EQ(diagnostics.size(), 1u);
-  EXPECT_EQ(diagnostics[0],
+       "/nonexistent", {}, messages.lines());
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_EQ(messages.texts[0],
             "scene.xml:2:60: note: point emitter: 'sampling_weight' has no meaning here: lights are chosen "
             "by their power");
 }

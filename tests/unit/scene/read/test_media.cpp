@@ -183,22 +183,23 @@ TEST(SceneMedium, WrongInputIsNamed) {
            medium(R"(type="plume")", grid + R"(<string name="filename" value="minus.txt"/>)"),
            "scene.xml:2:183: error: minus.txt:6: scale -6: must be >= 0"},
       },
-      folder.path());
+      folder);
 }
 
 TEST(SceneMedium, WhatHasNoEffectIsReported) {
-  std::vector<std::string> diagnostics;
+  Messages messages;
   read(complete_scene("<medium type=\"absorbing\" id=\"gas\">" + kAbsorption + "</medium>"), "/nonexistent",
-       {}, &diagnostics);
-  ASSERT_EQ(diagnostics.size(), 1u);
-  EXPECT_EQ(diagnostics[0], "scene.xml:2:2: warning: medium 'gas': is not part of a shape and has no effect");
-  diagnostics.clear();
+       {}, messages.lines());
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_EQ(messages.texts[0],
+            "scene.xml:2:2: warning: medium 'gas': is not part of a shape and has no effect");
+  messages.texts.clear();
   read(complete_scene("<shape type=\"sphere\"><medium type=\"absorbing\" name=\"interior\">" + kAbsorption +
                       "</medium></shape>"),
-       "/nonexistent", {}, &diagnostics);
-  ASSERT_EQ(diagnostics.size(), 1u);
+       "/nonexistent", {}, messages.lines());
+  ASSERT_EQ(messages.texts.size(), 1u);
   EXPECT_EQ(
-      diagnostics[0],
+      messages.texts[0],
       "scene.xml:2:2: warning: sphere shape: its bsdf is opaque, so that its interior medium has no effect");
 }
 
@@ -207,14 +208,14 @@ TEST(SceneMedium, NormalsAgainstTheWindingAreReported) {
   folder.write(
       "mesh.obj",
       "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 -1\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n");
-  std::vector<std::string> diagnostics;
+  Messages messages;
   for (const std::string bsdf : {"dielectric", "null"})
     read(complete_scene("<shape type=\"obj\"><string name=\"filename\" value=\"mesh.obj\"/><bsdf type=\"" +
                         bsdf + "\"/><medium type=\"absorbing\" name=\"interior\">" + kAbsorption +
                         "</medium></shape>"),
-         folder.path(), {}, &diagnostics);
-  ASSERT_EQ(diagnostics.size(), 1u);  // a null boundary has no inside of its own
-  EXPECT_EQ(diagnostics[0],
+         folder.path(), {}, messages.lines());
+  ASSERT_EQ(messages.texts.size(), 1u);  // a null boundary has no inside of its own
+  EXPECT_EQ(messages.texts[0],
             "scene.xml:2:2: warning: obj shape: the vertex normals of 1 of 2 triangles point against their "
             "winding: "
             "the winding says where its interior medium is, the normals say what is inside for its bsdf");

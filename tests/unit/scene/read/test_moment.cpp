@@ -11,15 +11,15 @@ std::string moment(const std::string& inside) {
 }
 
 TEST(MomentIntegrator, IsReadAsTheIntegratorInIt) {
-  std::vector<std::string> diagnostics;
+  Messages messages;
   const SceneDescription result = read(
       moment(
           R"(<integrator type="path" name="image"><integer name="max_depth" value="4"/><boolean name="hide_emitters" value="true"/></integrator>)"),
-      "/nonexistent", {}, &diagnostics);
+      "/nonexistent", {}, messages.lines());
   EXPECT_EQ(result.integrator.max_depth, 4);
   EXPECT_TRUE(result.integrator.hide_emitters);
-  ASSERT_EQ(diagnostics.size(), 1u);
-  EXPECT_EQ(diagnostics[0],
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_EQ(messages.texts[0],
             "scene.xml:2:19: note: moment integrator: read as the integrator in it: second moments are not "
             "written, --variance writes the variance of the mean");
   const SceneDescription direct = read(moment(
@@ -38,8 +38,7 @@ TEST(MomentIntegrator, RefusesWhatTheNestedOneWouldBeRefusedFor) {
        {"wrong value", moment(R"(<integrator type="path"><integer name="rr_depth" value="0"/></integrator>)"),
         "scene.xml:2:83: error: path integrator: rr_depth 0: must be >= 1"},
        {"parameter", moment(R"(<integrator type="path"/><integer name="max_depth" value="3"/>)"),
-        "scene.xml:2:67: error: moment integrator: unknown parameter 'max_depth'"}},
-      "/nonexistent");
+        "scene.xml:2:67: error: moment integrator: unknown parameter 'max_depth'"}});
 }
 
 }  // namespace

@@ -1,25 +1,19 @@
 // Scenes that others wrote: read where the data folder is present.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "spectral/colour.hpp"
 #include "support.hpp"
+#include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {
 namespace {
-
-std::filesystem::path scenes() {
-  const char* data = std::getenv("KILOBAND_DATA");
-  return std::filesystem::path(data ? data : KILOBAND_SOURCE_DIR "/../shared/data") / "scenes";
-}
 
 double value(const Texture& texture, double lambda_nm) {
   return std::get<Spectrum>(texture)(lambda_nm);
 }
 
 TEST(RealScenes, SpectralCornellBox) {
-  const auto file = scenes() / "mitsuba/cbox/cbox-spectral.xml";
+  const auto file = data_folder("scenes") / "mitsuba/cbox/cbox-spectral.xml";
   if (!std::filesystem::exists(file)) return;
   const SceneDescription box = read_scene(file);
   ASSERT_EQ(box.shapes.size(), 8u);
@@ -39,7 +33,7 @@ TEST(RealScenes, SpectralCornellBox) {
 }
 
 TEST(RealScenes, MaterialPreview) {
-  const auto file = scenes() / "mitsuba/matpreview/matpreview.xml";
+  const auto file = data_folder("scenes") / "mitsuba/matpreview/matpreview.xml";
   if (!std::filesystem::exists(file)) return;
   const SceneDescription preview = read_scene(file);
   ASSERT_EQ(preview.shapes.size(), 3u);
@@ -55,7 +49,7 @@ TEST(RealScenes, MaterialPreview) {
 }
 
 TEST(RealScenes, VeachMisInTheOldFormat) {
-  const auto file = scenes() / "veach_mi/mi.xml";
+  const auto file = data_folder("scenes") / "veach_mi/mi.xml";
   if (!std::filesystem::exists(file)) return;
   std::vector<std::string> warnings;
   ReadOptions options;

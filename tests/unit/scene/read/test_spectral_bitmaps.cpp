@@ -26,8 +26,8 @@ TEST(SpectralBitmaps, NumberedEndmembersAreReadAndRemembered) {
   const TemporaryFolder folder;
   write_weights(folder);
   const std::string three = endmember("endmember_0") + endmember("endmember_1") + endmember("endmember_2");
-  EXPECT_EQ(error_of(wall(three), folder.path()), "accepted");
-  EXPECT_EQ(error_of(wall(three + endmember("endmembr_12")), folder.path()),
+  EXPECT_EQ(error_of(wall(three), folder), "accepted");
+  EXPECT_EQ(error_of(wall(three + endmember("endmembr_12")), folder),
             "scene.xml:2:268: error: spectral_bitmap texture: unknown parameter 'endmembr_12'; did you mean "
             "'endmember_1'?");
 }
@@ -38,9 +38,9 @@ TEST(SpectralBitmaps, EndmembersAndWeightsAreEqualInNumber) {
   std::string many;
   for (int i = 0; i < 5; ++i) many += endmember("endmember_" + std::to_string(i));
   const std::string rule = " endmembers (endmember_0 ...) for 3 weights of 'w.ppm'";
-  EXPECT_EQ(error_of(wall(endmember("endmember_0")), folder.path()),
+  EXPECT_EQ(error_of(wall(endmember("endmember_0")), folder),
             "scene.xml:2:127: error: spectral_bitmap texture: 1" + rule);
-  EXPECT_EQ(error_of(wall(many), folder.path()), "scene.xml:2:127: error: spectral_bitmap texture: 5" + rule);
+  EXPECT_EQ(error_of(wall(many), folder), "scene.xml:2:127: error: spectral_bitmap texture: 5" + rule);
 }
 
 }  // namespace

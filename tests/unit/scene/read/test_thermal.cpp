@@ -136,7 +136,7 @@ TEST(SceneThermal, WrongInput) {
                  std::string(kSensor) + kSphere),
            "scene.xml:3:2: error: scene: a second ambient temperature"},
       },
-      folder.path());
+      folder);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::string spectrum(const std::string& name, const std::string& value) {
 
 /// What stands behind the position.
 std::string rule_of(const std::string& text, const TemporaryFolder& folder) {
-  const std::string message = error_of(text, folder.path());
+  const std::string message = error_of(text, folder);
   const std::size_t at = message.find("error: ");
   return at == std::string::npos ? message : message.substr(at + 7);
 }

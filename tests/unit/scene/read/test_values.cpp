@@ -23,8 +23,8 @@ std::string textured_scene(const std::string& steps) {
       steps + "</transform></texture></bsdf></shape>" + kSensor + kLight);
 }
 
-glm::dmat3 uv_transform_of(const std::string& steps, std::vector<std::string>* diagnostics = nullptr) {
-  const SceneDescription result = read(textured_scene(steps), "/nonexistent", {}, diagnostics);
+glm::dmat3 uv_transform_of(const std::string& steps, const DiagnosticSink& sink = {}) {
+  const SceneDescription result = read(textured_scene(steps), "/nonexistent", {}, sink);
   const auto& diffuse = std::get<DiffuseBsdf>(result.shapes.at(0).bsdf->model);
   return std::get<std::shared_ptr<const CheckerboardTexture>>(diffuse.reflectance)->to_uv;
 }
@@ -85,28 +85,28 @@ TEST(SceneTransform, TextureMatricesOfSixteenNumbersActAsInMitsuba) {
 }
 
 TEST(SceneTransform, TexturesHaveNoThirdCoordinate) {
-  std::vector<std::string> diagnostics;
+  Messages messages;
   const std::string warning =
       "warning: a texture has no third coordinate: of the matrix only the first two rows count, without "
       "their "
       "third column (translations stand in the fourth)";
   const glm::dmat3 m =
-      uv_transform_of(R"(<matrix value=".7 .1 .5 0, .2 .8 .6 0, 0 0 1 0, 0 0 0 1"/>)", &diagnostics);
+      uv_transform_of(R"(<matrix value=".7 .1 .5 0, .2 .8 .6 0, 0 0 1 0, 0 0 0 1"/>)", messages.lines());
   EXPECT_EQ(m * glm::dvec3(1, 1, 1), glm::dvec3(.7 + .1, .2 + .8, 1));
-  ASSERT_EQ(diagnostics.size(), 1u);
-  EXPECT_EQ(diagnostics[0], "scene.xml:2:133: " + warning);
-  uv_transform_of(R"(<matrix value="1 0 0 0, 0 1 0 0, 0 .5 1 0, 0 0 0 1"/>)", &diagnostics);
-  ASSERT_EQ(diagnostics.size(), 2u);
-  EXPECT_EQ(diagnostics[1], "scene.xml:2:133: " + warning);
-  uv_transform_of(R"(<matrix value="1 0 .5 0 1 0 0 0 1"/>)", &diagnostics);
-  ASSERT_EQ(diagnostics.size(), 3u);
-  EXPECT_EQ(diagnostics[2],
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_EQ(messages.texts[0], "scene.xml:2:133: " + warning);
+  uv_transform_of(R"(<matrix value="1 0 0 0, 0 1 0 0, 0 .5 1 0, 0 0 0 1"/>)", messages.lines());
+  ASSERT_EQ(messages.texts.size(), 2u);
+  EXPECT_EQ(messages.texts[1], "scene.xml:2:133: " + warning);
+  uv_transform_of(R"(<matrix value="1 0 .5 0 1 0 0 0 1"/>)", messages.lines());
+  ASSERT_EQ(messages.texts.size(), 3u);
+  EXPECT_EQ(messages.texts[2],
             "scene.xml:2:133: note: a texture transform's <matrix> of 9 numbers: its third column is the "
             "translation, which Mitsuba 3 ignores (16 numbers mean the same to both)");
   uv_transform_of(
       R"(<matrix value="4 0 0 0 4 0 0 0 1"/><matrix value="2 0 0 1, 0 1 0 2, 0 0 3 0, 0 0 0 1"/>)",
-      &diagnostics);
-  EXPECT_EQ(diagnostics.size(), 3u);
+      messages.lines());
+  EXPECT_EQ(messages.texts.size(), 3u);
 }
 
 TEST(SceneTransform, OldTexturesHaveScalesAndOffsets) {

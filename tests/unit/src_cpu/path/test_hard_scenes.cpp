@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
-#include "base/temporary_folder.hpp"
 #include "tests/support/render_harness.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -15,14 +14,11 @@ namespace {
 class HardScenes : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = make_temporary_folder("kiloband_hard");
-    const char texels[] = "P6\n2 2\n255\n\x20\x20\x60\x60\x20\x20\x20\x60\x20\xff\xff\xff";
-    std::ofstream(folder_ / "picture.ppm", std::ios::binary).write(texels, sizeof texels - 1);
-    spec_.directory = folder_;
+    folder_.write("picture.ppm", "P6\n2 2\n255\n\x20\x20\x60\x60\x20\x20\x20\x60\x20\xff\xff\xff");
+    spec_.directory = folder_.path();
     spec_.spp = 32;
     spec_.bands = "450:650:4";
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// A closed cube around the camera with a small lamp in it, unlimited depth.
   RenderResult render_cavity(const std::string& bsdf) {
@@ -36,7 +32,7 @@ class HardScenes : public ::testing::Test {
     return render(spec_);
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   RenderSpec spec_;
 };
 
@@ -93,8 +89,7 @@ TEST_F(HardScenes, NarrowLineOverPlanckAt200KStaysFinite) {
 
 // A coloured opacity picture counts by the mean of its colour, not by the scale of its upsampled spectrum.
 TEST_F(HardScenes, ColouredOpacityIsItsMean) {
-  const char red[] = "P6\n1 1\n255\n\xff\x00\x00";
-  std::ofstream(folder_ / "red.ppm", std::ios::binary).write(red, sizeof red - 1);
+  folder_.write("red.ppm", std::string("P6\n1 1\n255\n\xff\0\0", 14));
   spec_.spp = 256;
   spec_.xml =
       "<scene version=\"3.0.0\">" + perspective_sensor("0, 0, 3", "0, 0, 0", 10, 16) +

@@ -2,13 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
-#include "base/temporary_folder.hpp"
 #include "room_scene.hpp"
 #include "src_cpu/evaluate/evaluator.hpp"
 #include "src_cpu/path/path_tracer.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
 
@@ -106,8 +104,8 @@ TEST(SavedPaths, SumToTheFilm) {
 }
 
 TEST(SavedPaths, SumToTheFilmWithDispersion) {
-  const auto directory = make_temporary_folder("kiloband_renderer");
-  std::ofstream(directory / "flint.txt") << "500 1.80\n550 1.79\n600 1.78\n";
+  const TemporaryFolder folder;
+  folder.write("flint.txt", "500 1.80\n550 1.79\n600 1.78\n");
   const auto ball = [](const char* type, const char* x) {
     return std::string("<shape type=\"sphere\"><point name=\"center\" x=\"") + x +
            "\" y=\"-0.2\" z=\"1\"/>"
@@ -118,9 +116,8 @@ TEST(SavedPaths, SumToTheFilmWithDispersion) {
   };
   RenderSpec spec =
       small_spec(room_without_rough_plastic() + ball("dielectric", "0.4") + ball("roughdielectric", "-0.4"));
-  spec.directory = directory;
+  spec.directory = folder.path();
   expect_film_equals_paths(spec);
-  std::filesystem::remove_all(directory);
 }
 
 /// Image means of all modes, by t-tests of their differences (15 degrees of freedom, conservative; seeds

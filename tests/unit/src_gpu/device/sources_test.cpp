@@ -1,10 +1,9 @@
 // Includes put in place, and what was embedded.
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 #include "src_gpu/device/kernel_sources.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
 namespace kiloband::opencl::test {
@@ -53,12 +52,6 @@ TEST(AssembleSource, NamesTheLineOfAMissingFile) {
             "no source 'kernels/b.cl'");
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 /// Every byte of every file, so that a stale or cut embedding shows.
 TEST(EmbeddedSources, AreTheFiles) {
   const std::filesystem::path root = KILOBAND_SOURCE_DIR;
@@ -69,7 +62,8 @@ TEST(EmbeddedSources, AreTheFiles) {
       if (extension != ".cl" && extension != ".clh" && extension != ".h") continue;
       const std::string path = entry.path().lexically_relative(root).string();
       ASSERT_TRUE(embedded_sources().contains(path)) << path;
-      EXPECT_TRUE(embedded_sources().at(path) == text_of(entry.path())) << path << " differs";
+      EXPECT_TRUE(embedded_sources().at(path) == kiloband::test::read_file(entry.path()))
+          << path << " differs";
       ++files;
     }
   }

@@ -1,12 +1,13 @@
 // The table of planted faults and their selection (a build with KILOBAND_FAULTS).
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <set>
 #include <stdexcept>
 #include <string>
 
 #include "shared/planted_faults.h"
+#include "tests/support/messages.hpp"
+#include "tests/support/opencl_syntax.hpp"
 #include "tests/support/scene_zoo.hpp"
 #include "validation/faults/selection.hpp"
 #include "validation/faults/table.hpp"
@@ -49,12 +50,7 @@ TEST(FaultSelection, SelectsOnePlaceAndRestores) {
 }
 
 std::string message_of(const std::string& text) {
-  try {
-    select_fault(text);
-  } catch (const std::invalid_argument& e) {
-    return e.what();
-  }
-  return "";
+  return test::error_of<std::invalid_argument>([&] { select_fault(text); });
 }
 
 TEST(FaultSelection, RefusesWhatThereIsNot) {
@@ -74,13 +70,10 @@ TEST(FaultKernels, CompileWithEachFault) {
   for (const PlantedFault& fault : planted_faults()) {
     for (const std::string kernel :
          {"path/paths", "evaluate/evaluate", "evaluate/pt", "evaluate/resample", "film/film"}) {
-      const std::string command =
-          std::string(KILOBAND_CLANG) +
-          " -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -Wall -Wextra -Werror"
-          " -Wno-unused-function -Wno-unused-parameter -fsyntax-only '-I" KILOBAND_SOURCE_DIR
-          "/kernels' '-I" KILOBAND_SOURCE_DIR "/src' -DKB_PLANTED_SELECTED=" +
-          std::to_string(fault.number) + " '" KILOBAND_SOURCE_DIR "/kernels/" + kernel + ".cl'";
-      EXPECT_EQ(std::system(command.c_str()), 0) << kernel << " with " << fault.name;
+      EXPECT_EQ(test::kernel_syntax(KILOBAND_SOURCE_DIR "/kernels/" + kernel + ".cl",
+                                    "-DKB_PLANTED_SELECTED=" + std::to_string(fault.number)),
+                "")
+          << kernel << " with " << fault.name;
     }
   }
 }
