@@ -70,32 +70,19 @@ TEST(Sky, WritesEnviDensities) {
 
 TEST(Sky, RefusesWrongOptions) {
   const TemporaryFolder folder;
-  expect_refused(folder,
-                 std::vector<WrongCommand>{
-                     {"format",
-                      {"sky", "sky.png"},
-                      "'sky.png': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)"},
-                     {"elevation",
-                      {"sky", "a.exr", "--elevation", "100"},
-                      "sun elevation 100: must be from -90 to 90 degrees"},
-                     {"size",
-                      {"sky", "a.exr", "--size", "16x10"},
-                      "sky height 10: must be odd and from 5 to 65535, so that a row lies on the horizon"},
-                     {"no size",
-                      {"sky", "a.exr", "--size", "16"},
-                      "--size 16: must be WIDTHxHEIGHT, for example 640x480"},
-                     {"bands",
-                      {"sky", "a.exr", "--bands", "200:300:4"},
-                      "sky band 200-225 nm: the model goes from 300 to 100000 nm"},
-                     {"preview over the map",
-                      {"sky", "a.hdr", "--preview", "a.img"},
-                      "--preview a.img: another output has this name"},
-                     {"preview of another format",
-                      {"sky", "a.hdr", "--preview", "a.jpg"},
-                      "--preview a.jpg: must end in .png"},
-                     {"two bands",
-                      {"sky", "a.exr", "--bands", "400:500:4", "--bands-file", "b.csv"},
-                      "--bands together with --bands-file"}});
+  expect_refused(
+      folder, {"sky"},
+      {
+          {{"sky.png"}, "'sky.png': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)"},
+          {{"a.exr", "--elevation", "100"}, "sun elevation 100: must be from -90 to 90 degrees"},
+          {{"a.exr", "--size", "16x10"},
+           "sky height 10: must be odd and from 5 to 65535, so that a row lies on the horizon"},
+          {{"a.exr", "--size", "16"}, "--size 16: must be WIDTHxHEIGHT, for example 640x480"},
+          {{"a.exr", "--bands", "200:300:4"}, "sky band 200-225 nm: the model goes from 300 to 100000 nm"},
+          {{"a.hdr", "--preview", "a.img"}, "--preview a.img: another output has this name"},
+          {{"a.hdr", "--preview", "a.jpg"}, "--preview a.jpg: must end in .png"},
+          {{"a.exr", "--bands", "400:500:4", "--bands-file", "b.csv"}, "--bands together with --bands-file"},
+      });
 }
 
 }  // namespace

@@ -81,12 +81,11 @@ TEST(Trace, WrongPixels) {
   const TemporaryFolder folder;
   std::vector<WrongCommand> cases;
   for (const std::string pixel : {"5", "5,", ",5", "5,6,7", "5;6", "-1,2", "1.5,2", "a,b", "4294967296,0"})
-    cases.push_back({"--pixel " + pixel, trace({"--pixel=" + pixel}),
-                     "--pixel " + pixel + ": must be X,Y with whole numbers from 0"});
-  cases.push_back({"outside", trace({"--pixel", "16,0"}), "--pixel 16,0: the film has 16 x 16 pixels"});
-  cases.push_back({"below", trace({"--pixel", "0,16"}), "--pixel 0,16: the film has 16 x 16 pixels"});
-  cases.push_back({"no pixel", trace({}), "--pixel is required (see kiloband trace --help)"});
-  expect_refused(folder, cases);
+    cases.push_back({{"--pixel=" + pixel}, "--pixel " + pixel + ": must be X,Y with whole numbers from 0"});
+  for (const std::string pixel : {"16,0", "0,16"})
+    cases.push_back({{"--pixel", pixel}, "--pixel " + pixel + ": the film has 16 x 16 pixels"});
+  cases.push_back({{}, "--pixel is required (see kiloband trace --help)"});
+  expect_refused(folder, trace({}), cases);
 }
 
 TEST(Device, ChosenByNumberOrName) {

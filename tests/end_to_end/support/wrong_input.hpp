@@ -10,20 +10,12 @@
 namespace kiloband::test {
 
 struct WrongCommand {
-  std::string name;
   std::vector<std::string> arguments;
   std::string message;  // without "kiloband: " and the line's end
 };
 
-struct WrongScene {
-  std::string name;
-  std::string text;  // of broken.xml
-  std::string message;
-};
-
-/// Runs each case in the folder.
-void expect_refused(const TemporaryFolder& folder, const std::vector<WrongCommand>& cases);
-/// Each scene as broken.xml through `render`; every third through `info`, which must say the same.
-void expect_refused(const TemporaryFolder& folder, const std::vector<WrongScene>& cases);
+/// Runs each case in the folder. command: what all arguments begin with, such as {"render", "scene.xml"}
+void expect_refused(const TemporaryFolder& folder, const std::vector<std::string>& command,
+                    const std::vector<WrongCommand>& cases);
 
 }  // namespace kiloband::test
