@@ -7,14 +7,10 @@
 #include <set>
 #include <vector>
 
-#include "tests/unit/shared/chi_square.hpp"
+#include "tests/support/chi_square.hpp"
 
+namespace kiloband::test {
 namespace {
-
-using kiloband::testing_tools::chi_square_test;
-using kiloband::testing_tools::kMaxZ;
-using kiloband::testing_tools::kTestLevel;
-using kiloband::testing_tools::z_score;
 
 constexpr uint64_t kSeed = 0x0123456789abcdefull;
 
@@ -110,12 +106,12 @@ TEST(Sampler, SharedAndPathMuAreStratified) {
 // RMS errors of the cells from 4.6 % on are found.
 TEST(Sampler, MuIsUniformAndIndependentAmongItsKeys) {
   const auto test = [](const char* name, const auto& pair) {
-    std::vector<double> observed(256), expected(256, 256.0);
+    SquareCounts counts(16);
     for (uint32_t i = 0; i < 65536; ++i) {
       const auto [a, b] = pair(i);
-      observed[16 * static_cast<int>(a * 16) + static_cast<int>(b * 16)] += 1;
+      counts.add(a, b);
     }
-    EXPECT_GT(chi_square_test(observed, expected).p_value, kTestLevel) << name;
+    EXPECT_GT(counts.p_value(), kTestLevel) << name;
   };
   const auto mu = [](uint64_t seed, uint32_t replicate, uint32_t x, uint32_t y) {
     return kb_shared_mu(seed, replicate, x, y, 3);
@@ -164,3 +160,4 @@ TEST(Sampler, SobolReplicatesGiveHonestErrorBars) {
 }
 
 }  // namespace
+}  // namespace kiloband::test

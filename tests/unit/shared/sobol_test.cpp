@@ -9,14 +9,11 @@
 #include <set>
 #include <vector>
 
-#include "tests/unit/shared/chi_square.hpp"
+#include "tests/support/chi_square.hpp"
 
+namespace kiloband::test {
 namespace {
 
-using kiloband::testing_tools::chi_square_test;
-using kiloband::testing_tools::kMaxZ;
-using kiloband::testing_tools::kTestLevel;
-using kiloband::testing_tools::z_score;
 using Point = std::array<uint32_t, 4>;
 
 Point to_point(kb_u32x4 x) {
@@ -203,10 +200,10 @@ TEST(Sobol, MeansOfPointSetsAreUnbiasedAndFarTighter) {
 // RMS errors of the cells from 3.1 % on are found.
 void expect_independent(uint32_t index, const auto& key_a, const auto& key_b) {
   for (int d = 0; d < 4; ++d) {
-    std::vector<double> observed(64), expected(64, 1024.0);
+    SquareCounts counts(8);
     for (uint32_t i = 0; i < 65536; ++i)
-      observed[8 * (key_a(i, index)[d] >> 29) + (key_b(i, index)[(d + index) % 4] >> 29)] += 1;
-    EXPECT_GT(chi_square_test(observed, expected).p_value, kTestLevel) << "index " << index << " dim " << d;
+      counts.add(key_a(i, index)[d] * 0x1p-32, key_b(i, index)[(d + index) % 4] * 0x1p-32);
+    EXPECT_GT(counts.p_value(), kTestLevel) << "index " << index << " dim " << d;
   }
 }
 
@@ -247,3 +244,4 @@ TEST(Sobol, BlocksAreUncorrelatedOverTheIndex) {
 }
 
 }  // namespace
+}  // namespace kiloband::test

@@ -45,7 +45,7 @@ KbCamera make_camera(uint32_t type, uint32_t filter, uint32_t width, uint32_t he
   camera.far_clip = 1000;
   camera.aperture_radius = 0.05f;
   camera.focus_distance = 3;
-  testing::set_matrix(camera.to_world, testing::placed({1, -2, 3}, 0.9, {-1, 1, 1}));
+  set_matrix(camera.to_world, placed({1, -2, 3}, 0.9, {-1, 1, 1}));
   return camera;
 }
 
@@ -95,7 +95,7 @@ TEST(GpuCamera, EveryTypeAndFilter) {
 TEST(GpuCamera, WideFilms) {
   KbCamera camera = make_camera(KB_CAMERA_PERSPECTIVE, KB_FILTER_GAUSSIAN, 16384, 9001, 0.01);
   expect_rays(camera, 2e-7);
-  testing::set_matrix(camera.to_world, testing::identity());
+  set_matrix(camera.to_world, identity());
   camera.principal_x = camera.principal_y = 0;
   FlatScene scene;
   scene.camera = camera;

@@ -12,12 +12,6 @@ namespace kiloband::test {
 using namespace cpu;
 namespace {
 
-using testing::identity;
-using testing::make_emitter;
-using testing::make_shape;
-using testing::placed;
-using testing::scene_with_light;
-
 const char* const kSource = R"(
 #include "light/emitter.clh"
 __kernel void light(ARGS) {
@@ -119,8 +113,7 @@ void expect_densities(const FlatScene& scene, const std::vector<ItemIn>& points,
   const std::vector<ItemOut> out = run_items(probe(), "density", scene, in);
   std::size_t parted = 0;
   for (std::size_t i = 0; i < in.size(); ++i) {
-    const float expected =
-        area_light_pdf(scene, testing::facing_hit(get3(in[i], 3), get3(in[i], 6)), get3(in[i], 0));
+    const float expected = area_light_pdf(scene, facing_hit(get3(in[i], 3), get3(in[i], 6)), get3(in[i], 0));
     if ((expected > 0) != (out[i].f[0] > 0)) {
       ++parted;
       continue;
@@ -184,16 +177,16 @@ TEST(GpuLights, DisksAndCylinders) {
 /// Meshes with uvs, a bitmap on them, normals all over the place,
 /// triangles of very different areas and a sliver.
 FlatScene mesh_light(uint32_t flags) {
-  FlatScene scene = testing::scene_with_mesh({{0, 0, 0},
-                                              {1, 0, 0},
-                                              {0, 1, 0.2f},
-                                              {1, 1, 0},
-                                              {1e-3f, 1e-3f, 2},
-                                              {2e-3f, 1e-3f, 2},
-                                              {1e-3f, 3e-3f, 2.001f},
-                                              {3, 3, 1},
-                                              {4, 4.00001f, 1}},
-                                             {0, 1, 2, 1, 3, 2, 4, 5, 6, 3, 7, 8}, flags);
+  FlatScene scene = scene_with_mesh({{0, 0, 0},
+                                     {1, 0, 0},
+                                     {0, 1, 0.2f},
+                                     {1, 1, 0},
+                                     {1e-3f, 1e-3f, 2},
+                                     {2e-3f, 1e-3f, 2},
+                                     {1e-3f, 3e-3f, 2.001f},
+                                     {3, 3, 1},
+                                     {4, 4.00001f, 1}},
+                                    {0, 1, 2, 1, 3, 2, 4, 5, 6, 3, 7, 8}, flags);
   Random random(18);
   std::vector<double> areas;
   for (std::size_t i = 1; i < scene.area_cdf.size(); ++i)
@@ -240,7 +233,7 @@ TEST(GpuLights, PointsSpotsAndDirections) {
     emitter.ref = 5;
     emitter.cutoff_angle = 1.2f;
     emitter.beam_width = 0.6f;
-    const FlatScene scene = testing::scene_with(emitter);
+    const FlatScene scene = scene_with(emitter);
     std::vector<ItemIn> in = points_around({1, 2, 3}, 10, 20000, 20);
     put(in[0], 0, {1, 2, 3});  // the light itself
     // The falloff is linear in the angle: relative errors grow towards the cutoff.

@@ -40,9 +40,9 @@ OpenclProbe& probe() {
 }
 
 FlatScene envmap_scene(uint32_t width, uint32_t height, const glm::dmat4& to_world, uint32_t seed) {
-  KbEmitter emitter = testing::make_emitter(KB_EMITTER_ENVMAP, to_world);
+  KbEmitter emitter = make_emitter(KB_EMITTER_ENVMAP, to_world);
   emitter.ref = KB_REF_BITMAP | 0u;
-  FlatScene scene = testing::scene_with(emitter);
+  FlatScene scene = scene_with(emitter);
   KbTexture texture{};
   texture.width = width;
   texture.height = height;
@@ -64,8 +64,7 @@ const uint32_t kSizes[][2] = {{16, 9}, {3, 2}, {1024, 513}, {2, 2}};
 /// cell's border rounding of the direction may name the neighbour.
 TEST(GpuEnvironment, SamplesOfMaps) {
   for (const auto& size : kSizes) {
-    const FlatScene scene =
-        envmap_scene(size[0], size[1], testing::placed({7, 8, 9}, 1.1, glm::dvec3(2)), size[0]);
+    const FlatScene scene = envmap_scene(size[0], size[1], placed({7, 8, 9}, 1.1, glm::dvec3(2)), size[0]);
     Random random(25);
     std::vector<ItemIn> in(30000);
     for (ItemIn& item : in) item = {{random.unit(), random.unit()}, {}};
@@ -88,7 +87,7 @@ TEST(GpuEnvironment, SamplesOfMaps) {
       const double tolerance =
           1e-6 * size[0] /
           std::sqrt(1 - std::pow(std::fmin(std::fabs(glm::dot(glm::dvec3(expected.direction),
-                                                              glm::normalize(glm::dvec3(testing::placed(
+                                                              glm::normalize(glm::dvec3(placed(
                                                                   {0, 0, 0}, 1.1, glm::dvec3(1))[1])))),
                                            1 - 1e-9),
                                  2));
@@ -106,7 +105,7 @@ TEST(GpuEnvironment, DirectionsPolesAndSeam) {
   for (const auto& size : kSizes) {
     for (const double angle : {0.0, 2.0}) {
       const FlatScene scene =
-          envmap_scene(size[0], size[1], testing::placed({0, 0, 0}, angle, glm::dvec3(1)), size[1]);
+          envmap_scene(size[0], size[1], placed({0, 0, 0}, angle, glm::dvec3(1)), size[1]);
       Random random(26);
       std::vector<ItemIn> in(20000);
       for (std::size_t i = 0; i < in.size(); ++i) {
@@ -144,10 +143,10 @@ TEST(GpuEnvironment, DirectionsPolesAndSeam) {
 }
 
 TEST(GpuEnvironment, Constant) {
-  KbEmitter emitter = testing::make_emitter(KB_EMITTER_CONSTANT);
+  KbEmitter emitter = make_emitter(KB_EMITTER_CONSTANT);
   emitter.ref = 4;
   emitter.select_pdf = 0.25f;
-  FlatScene scene = testing::scene_with(emitter);
+  FlatScene scene = scene_with(emitter);
   Random random(27);
   std::vector<ItemIn> in(10000);
   for (ItemIn& item : in) item = {{random.unit(), random.unit(), random.unit()}, {}};

@@ -10,9 +10,6 @@ namespace kiloband::test {
 using namespace cpu;
 namespace {
 
-using testing::make_shape;
-using testing::placed;
-
 const char* const kSource = R"(
 #include "geometry/surface.clh"
 __kernel void intersect(ARGS) {

@@ -68,8 +68,7 @@ FlatScene surface_scene() {
   }
   for (const uint32_t type : {KB_SHAPE_SPHERE, KB_SHAPE_DISK, KB_SHAPE_CYLINDER}) {
     for (const uint32_t flags : {0u, KB_SHAPE_FLIP_NORMALS})
-      scene.shapes.push_back(
-          testing::make_shape(type, testing::placed({1, 2, 3}, 0.7, glm::dvec3(0.5)), flags));
+      scene.shapes.push_back(make_shape(type, placed({1, 2, 3}, 0.7, glm::dvec3(0.5)), flags));
   }
   return scene;
 }

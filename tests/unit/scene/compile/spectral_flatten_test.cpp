@@ -2,7 +2,6 @@
 // and directions, channel scales.
 #include <gtest/gtest.h>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <random>
 
@@ -10,6 +9,7 @@
 #include "src_cpu/light/emitter.hpp"
 #include "src_cpu/light/environment.hpp"
 #include "support.hpp"
+#include "tests/support/chi_square.hpp"
 
 namespace kiloband::test {
 
@@ -17,11 +17,8 @@ using namespace cpu;
 namespace {
 
 FlatScene flat(const std::string& body, const TemporaryFolder& folder, const std::string& bands,
-               std::vector<std::string>* diagnostics = nullptr) {
+               const DiagnosticSink& sink = {}) {
   const SceneDescription description = read_scene_text(scene_around(body), "scene.xml", folder.path(), {});
-  const DiagnosticSink sink = [&](const Diagnostic& d) {
-    if (diagnostics) diagnostics->push_back(d.to_string());
-  };
   return *compile_scene(description, {parse_channels(bands), {}, sink});
 }
 
@@ -92,17 +89,17 @@ TEST(SpectralFlatten, ThePowerOfAMapDoesNotDependOnItsRows) {
 TEST(SpectralFlatten, DataThatDoNotCoverTheChannelsAreAWarning) {
   const TemporaryFolder folder;
   write_cube(folder / "a.exr", 1, 1, kBands, [](uint32_t, uint32_t, std::size_t) { return 0.5; });
-  std::vector<std::string> diagnostics;
-  flat(bitmap("a.exr"), folder, "500:700:2", &diagnostics);
-  ASSERT_EQ(diagnostics.size(), 1u);
-  EXPECT_EQ(diagnostics[0],
+  Messages messages;
+  flat(bitmap("a.exr"), folder, "500:700:2", messages.lines());
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_EQ(messages.texts[0],
             "scene.xml:2:23: warning: bsdf: reflectance: data from 400 to 600 nm do not cover 500 to 700 nm; "
             "outside, the "
             "value is 0");
-  diagnostics.clear();
-  flat(bitmap("a.exr", "<boolean name='extrapolate' value='true'/>"), folder, "500:700:2", &diagnostics);
-  ASSERT_EQ(diagnostics.size(), 1u);
-  EXPECT_NE(diagnostics[0].find("outside, the end values are continued"), std::string::npos);
+  messages.texts.clear();
+  flat(bitmap("a.exr", "<boolean name='extrapolate' value='true'/>"), folder, "500:700:2", messages.lines());
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_NE(messages.texts[0].find("outside, the end values are continued"), std::string::npos);
 }
 
 TEST(SpectralFlatten, EndmembersAreConsecutiveRows) {
@@ -167,32 +164,26 @@ TEST(SpectralFlatten, SampledDirectionsFollowTheirDensity) {
   const EnvmapSampling& sampling = voting.scene.envmap;
   const KbEmitter& emitter = voting.scene.emitters.at(voting.scene.environment);
   constexpr int kSamples = 200000;
-  std::vector<double> observed(sampling.width * sampling.height, 0.0);
-  std::mt19937 random(17);
-  const auto unit = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
+  std::vector<double> observed(sampling.width * sampling.height), expected;
+  Uniform uniform(17);
   for (int i = 0; i < kSamples; ++i) {
-    const float u = unit();
-    const LightSample sample = sample_light(voting.scene, glm::vec3(0), {0, 0}, {u, unit()});
+    const LightSample sample = sample_light(voting.scene, glm::vec3(0), {0, 0}, uniform.pair());
     const glm::vec2 uv = envmap_coordinates(emitter, sample.direction);
     EXPECT_EQ(sample.pdf, envmap_density(sampling, uv));
     const auto row = std::min(static_cast<uint32_t>(uv.y * sampling.height), sampling.height - 1);
     const auto column = static_cast<uint32_t>(uv.x * sampling.width - 0.5f + sampling.width) % sampling.width;
     ++observed[row * sampling.width + column];
   }
-  double statistic = 0;
   for (uint32_t row = 0; row < sampling.height; ++row) {
     for (uint32_t column = 0; column < sampling.width; ++column) {
       const float* cdf = &sampling.row_cdf[row * (sampling.width + 1)];
-      const double expected =
-          kSamples * static_cast<double>(sampling.marginal_cdf[row + 1] - sampling.marginal_cdf[row]) *
-          (cdf[column + 1] - cdf[column]);
-      const double difference = observed[row * sampling.width + column] - expected;
-      ASSERT_GT(expected, 5);
-      statistic += difference * difference / expected;
+      expected.push_back(kSamples *
+                         static_cast<double>(sampling.marginal_cdf[row + 1] - sampling.marginal_cdf[row]) *
+                         (cdf[column + 1] - cdf[column]));
+      ASSERT_GT(expected.back(), 5);
     }
   }
-  const boost::math::chi_squared distribution(static_cast<double>(observed.size() - 1));
-  EXPECT_GT(boost::math::cdf(boost::math::complement(distribution, statistic)), 1e-5);
+  EXPECT_GT(chi_square(observed, expected).p_value, kTestLevel);
 }
 
 /// Lights are chosen by what they emit in each channel: a map with the same power in each

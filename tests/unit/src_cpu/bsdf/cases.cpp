@@ -8,13 +8,6 @@
 
 namespace kiloband::test {
 
-float Uniform::operator()() {
-  uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<float>((z ^ (z >> 31)) >> 40) * 0x1p-24f;
-}
-
 KbMaterial material_of(KbMaterialType type) {
   KbMaterial m{};
   m.type = type;

@@ -6,6 +6,7 @@
 
 #include "scene/optics/coating.hpp"
 #include "src_cpu/bsdf/bsdf.hpp"
+#include "tests/support/chi_square.hpp"
 
 namespace kiloband::test {
 
@@ -32,19 +33,5 @@ const Coating& coating_of(const KbMaterial& material);
 MaterialContext context_of(const Case& c);
 /// Every BSDF with a non-delta lobe, over roughness, distribution, sampling and incident angle.
 const std::vector<Case>& scattering_cases();
-
-/// Deterministic uniform numbers in [0,1): SplitMix64 (Steele, Lea, Flood 2014).
-class Uniform {
- public:
-  explicit Uniform(uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 1) {}
-  float operator()();
-  glm::vec2 pair() {
-    const float x = (*this)();
-    return {x, (*this)()};
-  }
-
- private:
-  uint64_t state_;
-};
 
 }  // namespace kiloband::test

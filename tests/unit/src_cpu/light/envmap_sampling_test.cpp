@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace kiloband::testing {
+namespace kiloband::test {
 namespace {
 
 constexpr double kPi = 3.141592653589793238463;
@@ -97,4 +97,4 @@ TEST(EnvmapSampling, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace kiloband::testing
+}  // namespace kiloband::test

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace kiloband::testing {
+namespace kiloband::test {
 namespace {
 
 /// Tail probability of a distance x, by the midpoint rule: the definition, without the closed form.
@@ -66,4 +66,4 @@ TEST(FilterTable, AnyRatio) {
 }
 
 }  // namespace
-}  // namespace kiloband::testing
+}  // namespace kiloband::test

@@ -4,13 +4,13 @@
 // errors, which every test asserts to be below 1 % of the result.
 #include <gtest/gtest.h>
 
-#include "chi_square.hpp"
 #include "scene/compile/envmap_sampling.hpp"
 #include "src_cpu/geometry/texture_lookup.hpp"
 #include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
+#include "tests/support/chi_square.hpp"
 
-namespace kiloband::testing {
+namespace kiloband::test {
 
 using namespace cpu;
 namespace {
@@ -34,7 +34,7 @@ void expect_irradiance(const FlatScene& scene, glm::vec3 point, glm::vec3 normal
   }
   const double mean = sum / kSamples;
   const double error = std::sqrt(std::max(sum2 / kSamples - mean * mean, 0.0) / kSamples) + 1e-6 * expected;
-  EXPECT_LT(std::fabs(mean - expected) / error, kZLimit) << mean << " instead of " << expected;
+  EXPECT_LT(std::fabs(mean - expected) / error, kMaxZ) << mean << " instead of " << expected;
   EXPECT_LT(6.1 * error, 1e-2 * expected);
 }
 
@@ -119,24 +119,15 @@ TEST(Irradiance, RotatedEnvironmentMap) {
     texels.push_back(0.1f + static_cast<float>((i * 37) % 11) * 0.2f);
   texels[2 * kWidth + 11] = 60;
   const glm::dmat4 to_world = placed({0, 0, 0}, 0.8, glm::dvec3(1));
-  KbEmitter emitter = make_emitter(KB_EMITTER_ENVMAP, to_world);
-  emitter.ref = KB_REF_BITMAP;
-  FlatScene scene = scene_with(emitter);
-  KbTexture texture{};
-  texture.width = kWidth;
-  texture.height = kHeight;
-  texture.flags = KB_TEXTURE_ENVMAP;
-  scene.textures = {texture};
-  for (const float t : texels) scene.texels.push_back({0, 0, 1e10f, t});
-  scene.envmap = build_envmap_sampling(kWidth, kHeight, texels);
+  const FlatScene scene = envmap_scene(kWidth, kHeight, texels, to_world);
 
   const glm::dvec3 normal = glm::normalize(glm::dvec3(-0.3, 1, 0.2));
   const glm::dmat3 to_map = glm::transpose(glm::dmat3(to_world));
-  const auto integrand = [&](glm::dvec3 d) {
-    return map_radiance(texels, kWidth, kHeight, to_map * d) * glm::dot(d, normal);
-  };
-  double expected = 0;
-  for (const double part : DirectionBins(normal, 0, 40, 40).integrate(integrand, 10)) expected += part;
+  Uniform uniform(9);
+  const auto draw = [&] { return Draw{glm::vec3(random_direction(uniform))}; };
+  const double expected = integral_over_sphere(draw, [&](glm::dvec3 d) {
+    return map_radiance(texels, kWidth, kHeight, to_map * d) * std::max(glm::dot(d, normal), 0.0);
+  });
   expect_irradiance(scene, glm::vec3(0), glm::vec3(normal), expected, 8);
 }
 
@@ -188,4 +179,4 @@ TEST(DeltaLights, DirectionalComesFromBehindItsAxis) {
 }
 
 }  // namespace
-}  // namespace kiloband::testing
+}  // namespace kiloband::test

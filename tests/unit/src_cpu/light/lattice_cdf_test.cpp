@@ -5,14 +5,14 @@
 
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "scene/compile/flattener.hpp"
 #include "spectral/channels.hpp"
 #include "src_cpu/light/area.hpp"
 #include "test_scene.hpp"
+#include "tests/support/messages.hpp"
 
-namespace kiloband::testing {
+namespace kiloband::test {
 
 using namespace cpu;
 namespace {
@@ -92,15 +92,10 @@ TEST(EmitterSelection, DimEmittersAmongManyAreSelected) {
 
 TEST(LatticeCdf, MoreItemsThanStepsAllowAreRefused) {
   EXPECT_NO_THROW(check_lattice_items(kMaxLatticeItems, {"scene.xml"}, "emitters of the scene"));
-  try {
-    check_lattice_items(kMaxLatticeItems + 1, {"scene.xml"}, "emitters of the scene");
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_STREQ(
-        e.what(),
-        "scene.xml: error: emitters of the scene: 4194305 are too many to choose one of by chance: at most "
-        "4194304");
-  }
+  EXPECT_EQ(
+      error_of([&] { check_lattice_items(kMaxLatticeItems + 1, {"scene.xml"}, "emitters of the scene"); }),
+      "scene.xml: error: emitters of the scene: 4194305 are too many to choose one of by chance: at most "
+      "4194304");
 }
 
 /// The density is that of the whole mesh, so that MIS weights sum to 1; over `factor` it is the real one, the
@@ -129,16 +124,11 @@ TEST(Texels, IndicesBeyond32BitsAreRefused) {
   constexpr std::size_t kMost = std::size_t{1} << 32;
   EXPECT_EQ(first_texel_index(0, 16, position, "leaf"), 0u);
   EXPECT_EQ(first_texel_index(kMost - 16, 16, position, "leaf"), 0xfffffff0u);
-  try {
-    first_texel_index(kMost - 15, 16, position, "leaf");
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_STREQ(
-        e.what(),
-        "scene.xml:3:5: error: texture 'leaf': 16 texels after 4294967281 of other textures: all textures "
-        "of a scene may have 4294967296 texels together");
-  }
+  EXPECT_EQ(
+      error_of([&] { first_texel_index(kMost - 15, 16, position, "leaf"); }),
+      "scene.xml:3:5: error: texture 'leaf': 16 texels after 4294967281 of other textures: all textures "
+      "of a scene may have 4294967296 texels together");
 }
 
 }  // namespace
-}  // namespace kiloband::testing
+}  // namespace kiloband::test

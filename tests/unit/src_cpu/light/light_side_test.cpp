@@ -4,7 +4,7 @@
 #include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 
-namespace kiloband::testing {
+namespace kiloband::test {
 
 using namespace cpu;
 namespace {
@@ -33,4 +33,4 @@ TEST(MeshLight, VertexNormalsDecideTheSideThatShines) {
 }
 
 }  // namespace
-}  // namespace kiloband::testing
+}  // namespace kiloband::test

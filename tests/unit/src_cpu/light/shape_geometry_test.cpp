@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "chi_square.hpp"
 #include "test_scene.hpp"
+#include "tests/support/chi_square.hpp"
 
-namespace kiloband::testing {
+namespace kiloband::test {
 
 using namespace cpu;
 namespace {
@@ -182,4 +182,4 @@ TEST(Intersection, DiskAndCylinderAgainstLongDouble) {
 }
 
 }  // namespace
-}  // namespace kiloband::testing
+}  // namespace kiloband::test

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "chi_square.hpp"
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "test_scene.hpp"
+#include "tests/support/chi_square.hpp"
 
-namespace kiloband::testing {
+namespace kiloband::test {
 
 using namespace cpu;
 namespace {
@@ -91,7 +91,7 @@ TEST(AreaSampling, UniformOnEveryShape) {
     const KbShape shape =
         make_shape(type, placed({1, 2, 3}, 0.8, {0.5, 0.5, type == KB_SHAPE_CYLINDER ? 3 : 0.5}));
     Uniform uniform(5);
-    std::vector<double> observed(256), expected(256, 1e5 / 256);
+    SquareCounts counts(16);
     for (int i = 0; i < 100000; ++i) {
       const AreaPoint point = sample_analytic_area(shape, uniform.pair());
       const SurfacePoint surface = analytic_surface(shape, glm::dvec3(point.position));
@@ -100,9 +100,9 @@ TEST(AreaSampling, UniformOnEveryShape) {
       double a = surface.uv.x, b = surface.uv.y;
       if (type == KB_SHAPE_SPHERE) b = (1 - std::cos(3.14159265358979 * b)) / 2;
       if (type == KB_SHAPE_DISK) a = a * a;
-      ++observed[16 * std::min(static_cast<int>(16 * a), 15) + std::min(static_cast<int>(16 * b), 15)];
+      counts.add(a, b);
     }
-    EXPECT_GT(chi_square_p_value(observed, expected), kErrorRate) << "shape type " << type;
+    EXPECT_GT(counts.p_value(), kTestLevel) << "shape type " << type;
   }
 }
 
@@ -181,4 +181,4 @@ TEST(RayOffset, NoSelfIntersectionOnSpheres) {
 }
 
 }  // namespace
-}  // namespace kiloband::testing
+}  // namespace kiloband::test

@@ -4,12 +4,23 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <vector>
 
+#include "scene/compile/envmap_sampling.hpp"
 #include "scene/compile/flat_scene.hpp"
 #include "scene/compile/shape_bounds.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
+#include "tests/support/chi_square.hpp"
 
-namespace kiloband::testing {
+namespace kiloband::test {
+
+/// A uniformly distributed unit vector, by rejection.
+inline glm::dvec3 random_direction(Uniform& uniform) {
+  for (;;) {
+    const glm::dvec3 v(2.0 * uniform() - 1, 2.0 * uniform() - 1, 2.0 * uniform() - 1);
+    const double length = glm::length(v);
+    if (length > 0.01 && length < 1) return v / length;
+  }
+}
 
 using namespace cpu;
 
@@ -163,4 +174,20 @@ inline SurfaceHit facing_hit(glm::vec3 point, glm::vec3 normal) {
   return hit;
 }
 
-}  // namespace kiloband::testing
+/// An environment map of grey texels.
+inline FlatScene envmap_scene(uint32_t width, uint32_t height, const std::vector<float>& texels,
+                              const glm::dmat4& to_world) {
+  KbEmitter emitter = make_emitter(KB_EMITTER_ENVMAP, to_world);
+  emitter.ref = KB_REF_BITMAP | 0u;
+  FlatScene scene = scene_with(emitter);
+  KbTexture texture{};
+  texture.width = width;
+  texture.height = height;
+  texture.flags = KB_TEXTURE_ENVMAP;
+  scene.textures = {texture};
+  for (const float t : texels) scene.texels.push_back({0, 0, 1e10f, t});
+  scene.envmap = build_envmap_sampling(width, height, texels);
+  return scene;
+}
+
+}  // namespace kiloband::test

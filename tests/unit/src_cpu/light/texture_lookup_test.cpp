@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "chi_square.hpp"
 #include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
+#include "tests/support/chi_square.hpp"
 
-namespace kiloband::testing {
+namespace kiloband::test {
 
 using namespace cpu;
 namespace {
@@ -150,4 +150,4 @@ TEST(EnvironmentMap, AxesAndBorders) {
 }
 
 }  // namespace
-}  // namespace kiloband::testing
+}  // namespace kiloband::test
