@@ -6,7 +6,7 @@
 #include "src_gpu/device/launch_pace.hpp"
 #include "src_gpu/device_state.hpp"
 #include "src_gpu/opencl_backend.hpp"
-#include "tests/support/render_harness.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -50,14 +50,13 @@ TEST(LaunchPace, StaysWithinItsBounds) {
 
 /// The inside of a bright ball with a lamp: roulette alone ends paths.
 FlatScene closed_room(uint32_t size, int rr_depth, const std::string& bands) {
+  using namespace scene_text;
   const std::string xml =
-      "<scene version='3.0.0'><integrator type='path'><integer name='max_depth' value='-1'/>"
-      "<integer name='rr_depth' value='" +
-      std::to_string(rr_depth) + "'/></integrator>" + perspective_sensor("0, 0, 0.5", "0, 0, -1", 60, size) +
-      "<shape type='sphere'><bsdf type='twosided'><bsdf type='diffuse'><spectrum name='reflectance' "
-      "value='0.999'/></bsdf></bsdf></shape><shape type='sphere'><transform name='to_world'><scale "
-      "value='0.1'/></transform><emitter type='area'><spectrum name='radiance' value='400:1, "
-      "700:3'/></emitter></shape></scene>";
+      scene(-1,
+            perspective(lookat("0, 0, 0.5", "0, 0, -1"), 60, film(static_cast<int>(size))) +
+                shape("sphere", bsdf("twosided", diffuse(0.999))) +
+                shape("sphere", to_world(scale("0.1")) + lamp("400:1, 700:3")),
+            integer("rr_depth", rr_depth));
   const ChannelList channels = parse_channels(bands);
   return *compile_scene(read_scene_text(xml, "room.xml", ".", {}),
                         {channels, parse_channels("400:700:4"), {}});

@@ -14,9 +14,10 @@ using namespace scene_text;
 // ---- the scenes' parts ----
 
 Text boxes() {
-  return shape("cube", step("scale", "x='0.3' y='0.55' z='0.3'") + turn("y", "20") + move("-0.35 -0.45 -0.3"),
+  return shape("cube",
+               step("scale", "x='0.3' y='0.55' z='0.3'") + turn("y", "20") + translate("-0.35 -0.45 -0.3"),
                diffuse("0.6")) +
-         mesh("gem.obj", scale("0.45") + move("0.4 -0.5 0.3"), diffuse("450:0.7, 650:0.3"));
+         mesh("gem.obj", scale("0.45") + translate("0.4 -0.5 0.3"), diffuse("450:0.7, 650:0.3"));
 }
 
 Text metals() {
@@ -26,7 +27,7 @@ Text metals() {
          ball("-0.6 -0.5 0.1", "0.3", metal("roughconductor", roughness("ggx", "0.1", "0.4"))) +
          ball("0 -0.5 0.1", "0.3", metal("roughconductor", roughness("beckmann", "0.4", "0.15"))) +
          mesh(
-             "gem.obj", scale("0.3") + move("0.6 -0.5 0.1"),
+             "gem.obj", scale("0.3") + translate("0.6 -0.5 0.1"),
              metal("roughconductor", roughness("ggx", "0.3") + number("boolean", "sample_visible", "false")));
 }
 
@@ -36,7 +37,7 @@ Text glasses() {
          ball("0.4 0.4 -0.2", "0.35", bsdf("roughdielectric", roughness("ggx", "0.3"))) +
          ball("-0.5 -0.5 0.1", "0.35",
               bsdf("roughdielectric", roughness("beckmann", "0.2") + real("int_ior", "1.8"))) +
-         shape("cube", scale("0.3") + turn("y", "30") + move("0.4 -0.65 0.1"),
+         shape("cube", scale("0.3") + turn("y", "30") + translate("0.4 -0.65 0.1"),
                bsdf("roughdielectric", roughness("ggx", "0.2", "0.5")));
 }
 
@@ -54,13 +55,13 @@ Text plastics() {
 Text sheets() {
   const Text two = bsdf("twosided", diffuse("450:0.8, 650:0.2") + bsdf("plastic"));
   const Text holes = bitmap("opacity", "grey.pgm", "repeat", "nearest", scale("2"));
-  return rectangle(scale("0.4") + turn("y", "150") + move("-0.5 0.4 0"), two) +
-         rectangle(scale("0.4") + turn("x", "-30") + move("0.5 0.4 0"), bsdf("mask", holes + two)) +
-         shape("disk", scale("0.4") + move("-0.5 -0.5 0.2"),
+  return rectangle(scale("0.4") + turn("y", "150") + translate("-0.5 0.4 0"), two) +
+         rectangle(scale("0.4") + turn("x", "-30") + translate("0.5 0.4 0"), bsdf("mask", holes + two)) +
+         shape("disk", scale("0.4") + translate("-0.5 -0.5 0.2"),
                bsdf("mask", real("opacity", "0.6") + diffuse("0.7"))) +
          ball("0.5 -0.5 0", "0.4", bsdf("mask", real("opacity", "0.7") + bsdf("dielectric"))) +
-         shape("rectangle", scale("0.3") + move("0 0 0.3"), yes("flip_normals") + diffuse("0.8")) +
-         mesh("gem.obj", scale("0.3") + move("0 -0.2 -0.5"),
+         shape("rectangle", scale("0.3") + translate("0 0 0.3"), yes("flip_normals") + diffuse("0.8")) +
+         mesh("gem.obj", scale("0.3") + translate("0 -0.2 -0.5"),
               yes("flip_normals") + bsdf("twosided", metal("conductor")));
 }
 
@@ -83,13 +84,14 @@ Text pictures() {
 Text glowing_shapes() {
   const Text black = diffuse("0.1");
   return ball("-0.6 0.5 0", "0.2", black + lamp("450:2, 650:5")) +
-         shape("disk", scale("0.25") + turn("x", "40") + move("0 0.6 0"), black + lamp("450:6, 650:3")) +
-         shape("cylinder", step("scale", "x='0.1' y='0.1' z='0.8'") + turn("y", "90") + move("0.1 -0.2 0.2"),
+         shape("disk", scale("0.25") + turn("x", "40") + translate("0 0.6 0"), black + lamp("450:6, 650:3")) +
+         shape("cylinder",
+               step("scale", "x='0.1' y='0.1' z='0.8'") + turn("y", "90") + translate("0.1 -0.2 0.2"),
                black + lamp("4")) +
-         mesh("gem.obj", scale("0.25") + move("0.6 0.3 0"), black + lamp("450:5, 550:1, 650:5")) +
-         rectangle(scale("0.4") + turn("x", "-60") + move("-0.4 -0.6 0.3"),
-                   black + "<emitter type='area'>" +
-                       bitmap("radiance", "colours.ppm", "repeat", "bilinear", scale("1.5")) + "</emitter>");
+         mesh("gem.obj", scale("0.25") + translate("0.6 0.3 0"), black + lamp("450:5, 550:1, 650:5")) +
+         rectangle(
+             scale("0.4") + turn("x", "-60") + translate("-0.4 -0.6 0.3"),
+             black + emitter("area", bitmap("radiance", "colours.ppm", "repeat", "bilinear", scale("1.5"))));
 }
 
 /// Bands of reflectance, mixtures, and a lamp of bands.
@@ -110,30 +112,28 @@ Text spectral_pictures() {
               bsdf("roughconductor",
                    roughness("ggx", "0.3") +
                        spectral_bitmap("specular_reflectance", bands, "mirror", "bilinear", scale("2")))) +
-         rectangle(scale("0.4") + turn("x", "60") + move("-0.3 0.7 0.3"),
-                   diffuse("0.1") + "<emitter type='area'>" +
-                       spectral_bitmap("radiance", text("filename", "glow.hdr"), "repeat", "bilinear",
-                                       scale("1.5")) +
-                       "</emitter>");
+         rectangle(scale("0.4") + turn("x", "60") + translate("-0.3 0.7 0.3"),
+                   diffuse("0.1") + emitter("area", spectral_bitmap("radiance", text("filename", "glow.hdr"),
+                                                                    "repeat", "bilinear", scale("1.5"))));
 }
 
 Text delta_lights() {
-  return "<emitter type='point'><point name='position' x='-0.5' y='0.6' z='0.3'/>" +
-         spectrum("intensity", "450:0.4, 650:0.9") + "</emitter><emitter type='spot'>" +
-         real("cutoff_angle", "35") + real("beam_width", "20") + spectrum("intensity", "450:3, 650:1") +
-         "<transform name='to_world'>" +
-         step("lookat", "origin='0.6, 0.8, 0.8' target='0.2, -0.6, -0.2' up='0, 1, 0'") +
-         "</transform></emitter><emitter type='directional'><vector name='direction' x='0.3' y='-1' "
-         "z='-0.6'/>" +
-         spectrum("irradiance", "450:0.5, 650:0.8") + "</emitter>";
+  return emitter("point", "<point name='position' x='-0.5' y='0.6' z='0.3'/>" +
+                              spectrum("intensity", "450:0.4, 650:0.9")) +
+         emitter("spot", real("cutoff_angle", "35") + real("beam_width", "20") +
+                             spectrum("intensity", "450:3, 650:1") +
+                             to_world(lookat("0.6, 0.8, 0.8", "0.2, -0.6, -0.2"))) +
+         emitter("directional", "<vector name='direction' x='0.3' y='-1' z='-0.6'/>" +
+                                    spectrum("irradiance", "450:0.5, 650:0.8"));
 }
 
 Text analytic_shapes() {
-  return shape("cylinder", step("scale", "x='0.3' y='0.3' z='0.9'") + turn("x", "-70") + move("-0.5 -0.5 0"),
+  return shape("cylinder",
+               step("scale", "x='0.3' y='0.3' z='0.9'") + turn("x", "-70") + translate("-0.5 -0.5 0"),
                bsdf("twosided", bsdf("plastic"))) +
-         shape("disk", scale("0.5") + turn("y", "-30") + move("0.5 0.4 -0.3"), metal("roughconductor")) +
+         shape("disk", scale("0.5") + turn("y", "-30") + translate("0.5 0.4 -0.3"), metal("roughconductor")) +
          ball("0.4 -0.5 0.2", "0.35", bsdf("dielectric")) +
-         shape("sphere", scale("0.3") + move("-0.4 0.5 0"),
+         shape("sphere", scale("0.3") + translate("-0.4 0.5 0"),
                yes("flip_normals") + bsdf("twosided", diffuse("0.8")));
 }
 
@@ -161,10 +161,11 @@ Text lenses() {
 /// Panes one behind the other, coloured, dispersive, masked.
 Text panes() {
   const Text window = scale("0.5"), coloured = spectrum("specular_transmittance", "450:0.9, 650:0.5");
-  return rectangle(window + turn("y", "25") + move("-0.4 0.3 0.4"), bsdf("thindielectric", coloured)) +
-         rectangle(window + turn("y", "-155") + move("-0.3 0.2 0"),
+  return rectangle(window + turn("y", "25") + translate("-0.4 0.3 0.4"), bsdf("thindielectric", coloured)) +
+         rectangle(window + turn("y", "-155") + translate("-0.3 0.2 0"),
                    bsdf("thindielectric", real("int_ior", "1.9"))) +
-         rectangle(window + turn("y", "-35") + move("0.5 0.1 0.4"), dispersive("thindielectric", coloured)) +
+         rectangle(window + turn("y", "-35") + translate("0.5 0.1 0.4"),
+                   dispersive("thindielectric", coloured)) +
          ball("0.5 -0.5 0", "0.35", dispersive("thindielectric")) +
          ball("-0.5 -0.6 0.2", "0.3", bsdf("mask", real("opacity", "0.6") + bsdf("thindielectric")));
 }
@@ -179,7 +180,7 @@ Text blends() {
   return ball("-0.6 0.4 -0.2", "0.35", blend(picture, red + gold)) +
          ball("0.1 0.4 -0.2", "0.35", blend(quarter, bsdf("dielectric") + red)) +
          ball("0.7 0.4 -0.2", "0.3", blend(half, coat + blend(picture, metal("conductor") + red))) +
-         rectangle(scale("0.35") + turn("y", "150") + move("-0.5 -0.5 0.2"),
+         rectangle(scale("0.35") + turn("y", "150") + translate("-0.5 -0.5 0.2"),
                    bsdf("twosided", blend(picture, red + gold) + blend(quarter, coat + red))) +
          ball("0.3 -0.5 0.2", "0.3", bsdf("mask", real("opacity", "0.7") + blend(half, red + gold))) +
          ball("0.8 -0.6 0", "0.25",
@@ -191,61 +192,53 @@ Text blends() {
 Text mirrors() {
   const Text mirror = bsdf("conductor", spectrum("specular_reflectance", "450:0.95, 650:0.9"));
   return floor(diffuse("0.5")) + back(mirror) + left(mirror) + right(mirror) + ceiling(mirror) +
-         rectangle(scale("1.1") + turn("y", "180") + move("0 0 4.5"), mirror) +
+         rectangle(scale("1.1") + turn("y", "180") + translate("0 0 4.5"), mirror) +
          ball("0.3 -0.5 0", "0.45", metal("conductor")) +
          ball("-0.5 0.3 0.2", "0.15", diffuse("0") + lamp("450:8, 650:5"));
-}
-
-Text thermal(const Text& temperature) {
-  return "<emitter type='thermal'>" + temperature + "</emitter>";
-}
-Text hot(const Text& kelvin) {
-  return thermal(real("temperature", kelvin));
 }
 
 /// Hot and warm things of all materials, in a warm room.
 Text hot_things() {
   const Text base = spectrum("diffuse_reflectance", "450:0.3, 650:0.6");
   return ball("-0.1 0 0.3", "0.15",
-              bsdf("blendbsdf", real("weight", "0.3") + diffuse("0.3") + metal("conductor")) + hot("2350")) +
-         rectangle(scale("0.2") + move("0.4 0 0.4"),
-                   bsdf("thindielectric", spectrum("specular_transmittance", "0.7")) + hot("2250")) +
-         ball("-0.6 0.4 -0.2", "0.3", metal("roughconductor", roughness("ggx", "0.3")) + hot("2400")) +
+              bsdf("blendbsdf", real("weight", "0.3") + diffuse("0.3") + metal("conductor")) +
+                  thermal("2350")) +
+         rectangle(scale("0.2") + translate("0.4 0 0.4"),
+                   bsdf("thindielectric", spectrum("specular_transmittance", "0.7")) + thermal("2250")) +
+         ball("-0.6 0.4 -0.2", "0.3", metal("roughconductor", roughness("ggx", "0.3")) + thermal("2400")) +
          ball("0 0.4 -0.2", "0.3", metal("roughconductor", roughness("beckmann", "0.1", "0.4"))) +
-         ball("0.6 0.4 -0.2", "0.3", metal("conductor") + hot("2200")) +
+         ball("0.6 0.4 -0.2", "0.3", metal("conductor") + thermal("2200")) +
          ball("-0.6 -0.5 0.1", "0.3", bsdf("roughplastic", base + roughness("ggx", "0.2"))) +
          ball("0 -0.5 0.1", "0.3",
               bsdf("roughdielectric", roughness("ggx", "0.3") + spectrum("specular_transmittance", "0.8"))) +
-         rectangle(scale("0.3") + turn("y", "30") + move("0.6 -0.5 0.1"),
-                   bsdf("twosided", bsdf("plastic", base) + diffuse("0.4")) + hot("2300"));
+         rectangle(scale("0.3") + turn("y", "30") + translate("0.6 -0.5 0.1"),
+                   bsdf("twosided", bsdf("plastic", base) + diffuse("0.4")) + thermal("2300"));
 }
 
 /// Temperatures by image and by vertex, on pictures and on metal.
 Text heated_shapes() {
-  const Text by_vertex = thermal(text("temperature_attribute", "kelvin"));
-  const Text by_image = thermal(bitmap("temperature", "kelvin.pfm", "clamp", "bilinear", scale("1")));
+  const Text by_vertex = emitter("thermal", text("temperature_attribute", "kelvin"));
+  const Text by_image =
+      emitter("thermal", bitmap("temperature", "kelvin.pfm", "clamp", "bilinear", scale("1")));
   const Text picture =
       bsdf("diffuse", bitmap("reflectance", "colours.ppm", "repeat", "bilinear", scale("2")));
-  return rectangle(scale("0.45") + turn("y", "20") + move("-0.5 0.4 0"), picture + by_image) +
-         rectangle(scale("0.4") + turn("x", "-40") + move("0.5 -0.5 0.2"),
+  return rectangle(scale("0.45") + turn("y", "20") + translate("-0.5 0.4 0"), picture + by_image) +
+         rectangle(scale("0.4") + turn("x", "-40") + translate("0.5 -0.5 0.2"),
                    bsdf("mask", real("opacity", "0.7") + diffuse("0.2")) + by_image) +
-         shape("ply", scale("0.4") + move("0.5 0.4 -0.2"),
+         shape("ply", scale("0.4") + translate("0.5 0.4 -0.2"),
                text("filename", "hot.ply") + metal("roughconductor", roughness("ggx", "0.3")) + by_vertex) +
-         shape("ply", scale("0.4") + turn("x", "-60") + move("-0.4 -0.5 0.2"),
+         shape("ply", scale("0.4") + turn("x", "-60") + translate("-0.4 -0.5 0.2"),
                text("filename", "hot.ply") + bsdf("twosided", picture) + by_vertex);
 }
 
-const Text kEnvmap = "<emitter type='envmap'>" + text("filename", "sky.pfm") + real("scale", "0.8") +
-                     "<transform name='to_world'>" + turn("y", "70") + turn("x", "15") +
-                     "</transform></emitter>";
+const Text kEnvmap = emitter("envmap", text("filename", "sky.pfm") + real("scale", "0.8") +
+                                           to_world(turn("y", "70") + turn("x", "15")));
 
-const Text kSpectralSky = "<emitter type='spectral_envmap'>" + text("filename", "bright.exr") +
-                          real("scale", "0.8") + "<transform name='to_world'>" + turn("y", "70") +
-                          turn("x", "15") + "</transform></emitter>";
+const Text kSpectralSky = emitter("spectral_envmap", text("filename", "bright.exr") + real("scale", "0.8") +
+                                                         to_world(turn("y", "70") + turn("x", "15")));
 
 Text crop_window() {
-  return integer("width", 70) + integer("height", 56) + integer("crop_offset_x", 18) +
-         integer("crop_offset_y", 11) + integer("crop_width", 32) + integer("crop_height", 32);
+  return size(70, 56) + crop(18, 11, 32, 32);
 }
 
 std::vector<ZooScene> make_scenes() {
@@ -253,45 +246,52 @@ std::vector<ZooScene> make_scenes() {
   const Text objects = floor(diffuse("0.6")) + analytic_shapes();
   constexpr Chains kLong = Chains::kSpecular, kCurved = Chains::kCurved;
   return {
-      {"diffuse_room", scene(8, perspective(film("gaussian")), lit_room + boxes())},
-      {"metals", scene(6, perspective(film("tent")), lit_room + metals()), kCurved},
-      {"glasses", scene(10, perspective(film("box")), lit_room + glasses() + sky("0.5")), kCurved},
-      {"plastics", scene(6, perspective(film("gaussian")), lit_room + plastics()), kCurved},
-      {"sheets", scene(8, perspective(film("tent")), lit_room + sheets()), kCurved},
-      {"pictures", scene(6, perspective(film("gaussian")), pictures() + ceiling_lamp())},
-      {"spectral_pictures", scene(6, perspective(film("gaussian")), spectral_pictures() + ceiling_lamp())},
-      {"spectral_sky", scene(6, thinlens(film("gaussian")), objects + kSpectralSky)},
-      {"glowing_shapes", scene(5, perspective(film("box")), room() + glowing_shapes())},
-      {"constant_sky", scene(6, thinlens(film("tent")), objects + sky("450:0.8, 650:1.2"))},
-      {"envmap", scene(6, thinlens(film("gaussian")), objects + kEnvmap)},
-      {"delta_lights", scene(5, orthographic(film("box")), room() + boxes() + delta_lights())},
-      {"analytic_shapes", scene(8, orthographic(film("tent")), lit_room + analytic_shapes()), kCurved},
+      {"diffuse_room", scene(8, perspective(small_film("gaussian")) + lit_room + boxes())},
+      {"metals", scene(6, perspective(small_film("tent")) + lit_room + metals()), kCurved},
+      {"glasses", scene(10, perspective(small_film("box")) + lit_room + glasses() + sky("0.5")), kCurved},
+      {"plastics", scene(6, perspective(small_film("gaussian")) + lit_room + plastics()), kCurved},
+      {"sheets", scene(8, perspective(small_film("tent")) + lit_room + sheets()), kCurved},
+      {"pictures", scene(6, perspective(small_film("gaussian")) + pictures() + ceiling_lamp())},
+      {"spectral_pictures",
+       scene(6, perspective(small_film("gaussian")) + spectral_pictures() + ceiling_lamp())},
+      {"spectral_sky", scene(6, thinlens(small_film("gaussian")) + objects + kSpectralSky)},
+      {"glowing_shapes", scene(5, perspective(small_film("box")) + room() + glowing_shapes())},
+      {"constant_sky", scene(6, thinlens(small_film("tent")) + objects + sky("450:0.8, 650:1.2"))},
+      {"envmap", scene(6, thinlens(small_film("gaussian")) + objects + kEnvmap)},
+      {"delta_lights", scene(5, orthographic(small_film("box")) + room() + boxes() + delta_lights())},
+      {"analytic_shapes", scene(8, orthographic(small_film("tent")) + lit_room + analytic_shapes()), kCurved},
       {"prism",
-       scene(10, perspective(film("gaussian")),
-             lit_room + mesh("prism.obj", scale("0.7"), dispersive("dielectric")), ""),
+       scene(10,
+             perspective(small_film("gaussian")) + lit_room +
+                 mesh("prism.obj", scale("0.7"), dispersive("dielectric")),
+             ""),
        kCurved},
       {"rough_dispersion",
-       scene(10, perspective(film("gaussian")),
-             lit_room + ball("0 -0.2 0", "0.6", dispersive("roughdielectric", roughness("ggx", "0.2")))),
+       scene(10, perspective(small_film("gaussian")) + lit_room +
+                     ball("0 -0.2 0", "0.6", dispersive("roughdielectric", roughness("ggx", "0.2")))),
        kCurved},
-      {"panes", scene(10, perspective(film("gaussian")), lit_room + panes()), kCurved},
-      {"blends", scene(8, perspective(film("gaussian")), lit_room + blends() + sky("0.3")), kCurved},
-      {"named_materials", scene(8, perspective(film("gaussian")), lit_room + named_materials()), kCurved},
-      {"gases", scene(8, thinlens(film("tent")), lit_room + gases() + delta_lights() + sky("0.5")), kCurved},
-      {"plumes", scene(4, perspective(film("box")), lit_room + plumes() + sky("0.3")), Chains::kPlume},
-      {"mirror_box", scene(50, perspective(film("box")), mirrors()), kLong},
-      {"lenses", scene(50, perspective(film("gaussian")), lit_room + lenses()), kLong},
+      {"panes", scene(10, perspective(small_film("gaussian")) + lit_room + panes()), kCurved},
+      {"blends", scene(8, perspective(small_film("gaussian")) + lit_room + blends() + sky("0.3")), kCurved},
+      {"named_materials", scene(8, perspective(small_film("gaussian")) + lit_room + named_materials()),
+       kCurved},
+      {"gases", scene(8, thinlens(small_film("tent")) + lit_room + gases() + delta_lights() + sky("0.5")),
+       kCurved},
+      {"plumes", scene(4, perspective(small_film("box")) + lit_room + plumes() + sky("0.3")), Chains::kPlume},
+      {"mirror_box", scene(50, perspective(small_film("box")) + mirrors()), kLong},
+      {"lenses", scene(50, perspective(small_film("gaussian")) + lit_room + lenses()), kLong},
       {"unlimited_depth",
-       scene(-1, perspective(film("gaussian")),
-             floor(diffuse("0.95")) + back(diffuse("0.95")) + left(diffuse("0.9")) + right(diffuse("0.95")) +
-                 ceiling(diffuse("0.95")) + boxes() + sky("0.7"))},
-      {"crop_window", scene(6, perspective(film("gaussian", crop_window())), lit_room + metals() + glasses()),
+       scene(-1, perspective(small_film("gaussian")) + floor(diffuse("0.95")) + back(diffuse("0.95")) +
+                     left(diffuse("0.9")) + right(diffuse("0.95")) + ceiling(diffuse("0.95")) + boxes() +
+                     sky("0.7"))},
+      {"crop_window",
+       scene(6, perspective(small_film("gaussian", crop_window())) + lit_room + metals() + glasses()),
        kCurved},
-      {"thermal", scene(6, perspective(film("gaussian")), room() + hot_things() + hot("1900")), kCurved},
+      {"thermal", scene(6, perspective(small_film("gaussian")) + room() + hot_things() + thermal("1900")),
+       kCurved},
       {"temperature_field",
-       scene(6, perspective(film("gaussian")), room() + ceiling_lamp() + heated_shapes())},
+       scene(6, perspective(small_film("gaussian")) + room() + ceiling_lamp() + heated_shapes())},
       {"hidden_emitters",
-       scene(6, thinlens(film("box")), objects + glowing_shapes() + kEnvmap, yes("hide_emitters"))},
+       scene(6, thinlens(small_film("box")) + objects + glowing_shapes() + kEnvmap, yes("hide_emitters"))},
   };
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace kiloband::test {
 namespace {
@@ -49,13 +48,10 @@ double Knots::operator()(double lambda_nm) const {
 }
 
 std::string Knots::text(const std::string& name) const {
-  std::ostringstream out;
-  out.precision(17);
-  out << "<spectrum name=\"" << name << "\" value=\"";
-  for (std::size_t i = 0; i < points.size(); ++i)
-    out << (i ? ", " : "") << points[i].first << ":" << points[i].second;
-  out << "\"/>";
-  return out.str();
+  std::string pairs;
+  for (const auto& [nm, value] : points)
+    pairs += (pairs.empty() ? "" : ", ") + exact(nm) + ":" + exact(value);
+  return spectrum(name, pairs);
 }
 
 double channel_integral(const Function& f, const Channel& channel) {
@@ -75,63 +71,8 @@ std::vector<double> channel_integrals(const Function& f, const RenderResult& res
   return integrals;
 }
 
-std::string number(const std::string& tag, const std::string& name, double value) {
-  std::ostringstream out;
-  out.precision(17);
-  out << "<" << tag << " name=\"" << name << "\" value=\"" << value << "\"/>";
-  return out.str();
-}
-
-std::string scene(int max_depth, const std::string& body) {
-  return "<scene version=\"3.0.0\"><integrator type=\"path\">" + number("integer", "max_depth", max_depth) +
-         "</integrator>" + body + "</scene>";
-}
-
-std::string to_world(const std::string& steps) {
-  return "<transform name=\"to_world\">" + steps + "</transform>";
-}
-std::string shape(const std::string& type, const std::string& content) {
-  return "<shape type=\"" + type + "\">" + content + "</shape>";
-}
-std::string bsdf(const std::string& type, const std::string& content) {
-  return "<bsdf type=\"" + type + "\">" + content + "</bsdf>";
-}
-std::string area_light(const std::string& radiance) {
-  return "<emitter type=\"area\">" + radiance + "</emitter>";
-}
-std::string flat(const std::string& name, double value) {
-  return number("spectrum", name, value);
-}
-std::string constant_environment(double radiance) {
-  return "<emitter type=\"constant\">" + flat("radiance", radiance) + "</emitter>";
-}
-std::string lookat(const std::string& origin, const std::string& target, const std::string& up) {
-  return "<lookat origin=\"" + origin + "\" target=\"" + target + "\" up=\"" + up + "\"/>";
-}
-
-std::string vec(double x, double y, double z) {
-  std::ostringstream out;
-  out.precision(17);
-  out << x << ", " << y << ", " << z;
-  return out.str();
-}
-
-namespace {
-std::string film(uint32_t width, uint32_t height) {
-  return "<film type=\"hdrfilm\">" + number("integer", "width", width) + number("integer", "height", height) +
-         "<rfilter type=\"box\"/></film>";
-}
-}  // namespace
-
-std::string wide_sensor(const std::string& steps, double fov_degrees, uint32_t width, uint32_t height) {
-  return "<sensor type=\"perspective\">" + number("float", "fov", fov_degrees) +
-         number("float", "near_clip", 1e-4) + number("float", "far_clip", 1e5) + to_world(steps) +
-         film(width, height) + "</sensor>";
-}
-
-std::string plane_sensor(uint32_t size) {
-  return "<sensor type=\"orthographic\">" + to_world(lookat("0, 0, 5", "0, 0, 0")) + film(size, size) +
-         "</sensor>";
+std::string plane_sensor(uint32_t side) {
+  return orthographic(lookat("0, 0, 5", "0, 0, 0"), 1, film(static_cast<int>(side)));
 }
 
 RenderResult render_valid(const std::string& xml, const std::string& bands, const Mode& mode,

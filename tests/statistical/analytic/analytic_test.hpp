@@ -25,8 +25,11 @@
 #include "tests/support/picture_files.hpp"
 #include "tests/support/render_harness.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::test {
+
+using namespace scene_text;
 
 inline constexpr double kFamilyErrorRate = 1e-4;
 /// Upper bound of the comparisons in this program; checked while they are made.
@@ -67,24 +70,8 @@ double channel_integral(const Function& f, const Channel& channel);
 /// The same for every channel of a render.
 std::vector<double> channel_integrals(const Function& f, const RenderResult& result);
 
-// ---- scenes ----
-
-/// A whole scene with a path integrator; max_depth -1: unlimited.
-std::string scene(int max_depth, const std::string& body);
-std::string number(const std::string& tag, const std::string& name, double value);
-/// <transform name="to_world"> of the steps
-std::string to_world(const std::string& steps);
-std::string shape(const std::string& type, const std::string& content);
-std::string bsdf(const std::string& type, const std::string& content);
-std::string area_light(const std::string& radiance);
-std::string flat(const std::string& name, double value);
-std::string constant_environment(double radiance);
-std::string lookat(const std::string& origin, const std::string& target, const std::string& up = "0, 1, 0");
-/// Perspective camera with such a film, whose field of view goes across the width.
-std::string wide_sensor(const std::string& steps, double fov_degrees, uint32_t width, uint32_t height);
 /// Views [-1, 1]^2 of the plane z = 0 from above.
-std::string plane_sensor(uint32_t size);
-std::string vec(double x, double y, double z);
+std::string plane_sensor(uint32_t side);
 
 // ---- renders and comparisons ----
 

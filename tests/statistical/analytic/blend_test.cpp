@@ -19,14 +19,15 @@ constexpr double kA = 0.5, kB = 0.8, kWeight = 0.3;
 /// A large square seen at `degrees` from its normal; on: what is on it, around: what is about it.
 std::string plane(const std::string& on, double degrees, const std::string& around) {
   const double theta = degrees * std::numbers::pi / 180;
-  const std::string eye = vec(5 * std::sin(theta), 0, 5 * std::cos(theta));
-  return scene(-1, wide_sensor(lookat(eye, "0, 0, 0", "0, 1, 0"), 0.05, 8, 8) +
-                       shape("rectangle", to_world("<scale value=\"10, 10, 1\"/>") + on) + around);
+  const std::string eye = point(5 * std::sin(theta), 0, 5 * std::cos(theta));
+  return scene(-1, perspective(lookat(eye, "0, 0, 0"), 0.05, film(8)) +
+                       shape("rectangle", to_world(scale("10, 10, 1")) + on) + around);
 }
 
 std::string pane(double index) {
-  return bsdf("thindielectric", number("float", "int_ior", index) + number("float", "ext_ior", 1) +
-                                    flat("specular_reflectance", kA) + flat("specular_transmittance", kB));
+  return bsdf("thindielectric", real("int_ior", index) + real("ext_ior", 1) +
+                                    spectrum("specular_reflectance", kA) +
+                                    spectrum("specular_transmittance", kB));
 }
 
 double pane_albedo(double index, double degrees) {
@@ -35,12 +36,8 @@ double pane_albedo(double index, double degrees) {
   return kA * r + kB * (1 - r);
 }
 
-std::string diffuse(double reflectance) {
-  return bsdf("diffuse", flat("reflectance", reflectance));
-}
-
 std::string blend(double weight, const std::string& parts) {
-  return bsdf("blendbsdf", number("float", "weight", weight) + parts);
+  return bsdf("blendbsdf", real("weight", weight) + parts);
 }
 
 std::vector<double> widths(const RenderResult& result, double radiance) {
@@ -52,8 +49,7 @@ TEST(PaneFurnace, ReflectsAndTransmits) {
   for (const double index : {1.5, 2.4}) {
     for (const double degrees : {0.0, 50.0, 80.0, 130.0}) {
       SCOPED_TRACE(degrees);
-      const RenderResult result =
-          render_valid(plane(pane(index), degrees, constant_environment(1)), kBands, {}, {64, 51});
+      const RenderResult result = render_valid(plane(pane(index), degrees, sky(1)), kBands, {}, {64, 51});
       expect_image_mean(result, widths(result, pane_albedo(index, degrees)), 0.005);
     }
   }
@@ -66,14 +62,13 @@ INSTANTIATE_TEST_SUITE_P(Modes, PaneTest, ::testing::ValuesIn(all_modes()), mode
 TEST_P(PaneTest, EveryChannelHasItsIndex) {
   const TemporaryFolder folder;
   folder.write("glass.txt", "400 1.5\n550 1.5\n551 1.8\n800 1.8\n");
-  const std::string glass =
-      bsdf("thindielectric", "<string name=\"int_material\" value=\"glass.txt\"/>" +
-                                 number("float", "ext_ior", 1) + flat("specular_reflectance", kA) +
-                                 flat("specular_transmittance", kB));
+  const std::string glass = bsdf("thindielectric", text("int_material", "glass.txt") + real("ext_ior", 1) +
+                                                       spectrum("specular_reflectance", kA) +
+                                                       spectrum("specular_transmittance", kB));
   for (const double degrees : {10.0, 70.0}) {
     SCOPED_TRACE(degrees);
-    const RenderResult result = render_valid(plane(glass, degrees, constant_environment(1)), kBands,
-                                             GetParam(), {96, 52}, folder.path());
+    const RenderResult result =
+        render_valid(plane(glass, degrees, sky(1)), kBands, GetParam(), {96, 52}, folder.path());
     const auto radiance = [&](double lambda) { return pane_albedo(lambda < 550.5 ? 1.5 : 1.8, degrees); };
     expect_image_mean(result, channel_integrals(radiance, result), 0.008);
   }
@@ -81,7 +76,7 @@ TEST_P(PaneTest, EveryChannelHasItsIndex) {
 
 /// What is neither reflected nor transmitted is emitted, on both sides. Detectable bias: 0.5 %.
 TEST(PaneEmission, IsWhatIsMissing) {
-  const std::string hot = "<emitter type=\"thermal\">" + number("float", "temperature", 2000) + "</emitter>";
+  const std::string hot = thermal(2000);
   for (const double degrees : {0.0, 70.0, 110.0}) {
     SCOPED_TRACE(degrees);
     const RenderResult result = render_valid(plane(pane(1.5) + hot, degrees, ""), kBands, {}, {160, 53});
@@ -109,17 +104,16 @@ TEST(BlendFurnace, IsTheMeanOfItsParts) {
       {"two sides", bsdf("twosided", painted), 120, grey},
       {"two sides, two blends", bsdf("twosided", painted + blend(0.5, diffuse(0.1) + diffuse(0.6))), 120,
        0.35},
-      {"in a mask", bsdf("mask", number("float", "opacity", 0.6) + painted), 60, 0.6 * grey + 0.4},
-      {"of a mask", blend(0.5, diffuse(0.4) + bsdf("mask", number("float", "opacity", 0.6) + diffuse(0.2))),
-       60, 0.5 * 0.4 + 0.5 * (0.6 * 0.2 + 0.4)},
+      {"in a mask", bsdf("mask", real("opacity", 0.6) + painted), 60, 0.6 * grey + 0.4},
+      {"of a mask", blend(0.5, diffuse(0.4) + bsdf("mask", real("opacity", 0.6) + diffuse(0.2))), 60,
+       0.5 * 0.4 + 0.5 * (0.6 * 0.2 + 0.4)},
       {"mirror and diffuse", blend(0.5, bsdf("conductor", "") + diffuse(0.2)), 60, 0.6},
       {"weight 0", blend(0, diffuse(0.2) + diffuse(0.9)), 60, 0.2},
       {"weight 1", blend(1, diffuse(0.2) + diffuse(0.9)), 60, 0.9},
   };
   for (const auto& c : cases) {
     SCOPED_TRACE(c.name);
-    const RenderResult result =
-        render_valid(plane(c.material, c.degrees, constant_environment(1)), kBands, {}, {128, 54});
+    const RenderResult result = render_valid(plane(c.material, c.degrees, sky(1)), kBands, {}, {128, 54});
     expect_image_mean(result, widths(result, c.expected), 0.01);
   }
 }
@@ -132,7 +126,7 @@ TEST(BlendFurnace, TheWeightIsThatOfThePlace) {
       "<texture type=\"bitmap\" name=\"weight\"><string name=\"filename\" value=\"weight.pfm\"/><boolean name=\"raw\" "
       "value=\"true\"/><string name=\"filter_type\" value=\"nearest\"/></texture>";
   const std::string two = bsdf("blendbsdf", weight + diffuse(0.2) + diffuse(0.9));
-  const std::string xml = scene(-1, plane_sensor(8) + shape("rectangle", two) + constant_environment(1));
+  const std::string xml = scene(-1, plane_sensor(8) + shape("rectangle", two) + sky(1));
   const RenderResult result = render_valid(xml, kBands, {}, {16, 55}, folder.path());
   expect_pixel(result, 1, 4, widths(result, 0.2));
   expect_pixel(result, 6, 4, widths(result, 0.9));
@@ -140,14 +134,14 @@ TEST(BlendFurnace, TheWeightIsThatOfThePlace) {
 
 /// The light of a small lamp, sampled and hit, and thermal emission, sampled as a light. Detectable bias: 1.5 %.
 TEST(BlendLight, EmissionAndLightSamplesAreMeans) {
-  const std::string lamp = "<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0\" z=\"2\"/>" +
-                           flat("intensity", 8) + "</emitter>";
+  const std::string lamp =
+      emitter("point", number("point", "position", "0, 0, 2") + spectrum("intensity", 8));
   const RenderResult lit =
       render_valid(plane(blend(kWeight, diffuse(0.2) + diffuse(0.9)), 45, lamp), kBands, {}, {128, 56});
   const double grey = (1 - kWeight) * 0.2 + kWeight * 0.9;
   expect_image_mean(lit, widths(lit, grey * 8 / 4 / std::numbers::pi), 0.015);
 
-  const std::string hot = "<emitter type=\"thermal\">" + number("float", "temperature", 2000) + "</emitter>";
+  const std::string hot = thermal(2000);
   const RenderResult glowing =
       render_valid(plane(blend(kWeight, diffuse(0.2) + diffuse(0.9)) + hot, 45, ""), kBands, {}, {128, 57});
   expect_image_mean(

@@ -42,17 +42,8 @@ Vec cross(const Vec& a, const Vec& b) {
 double length(const Vec& a) {
   return std::sqrt(dot(a, a));
 }
-std::string text(const Vec& a) {
-  return vec(a[0], a[1], a[2]);
-}
-std::string translate(const Vec& a) {
-  return "<translate value=\"" + text(a) + "\"/>";
-}
-std::string scale(const Vec& a) {
-  return "<scale value=\"" + text(a) + "\"/>";
-}
-std::string rotate(char axis, double degrees) {
-  return std::string("<rotate ") + axis + "=\"1\" angle=\"" + std::to_string(degrees) + "\"/>";
+std::string xyz(const Vec& a) {
+  return point(a[0], a[1], a[2]);
 }
 
 /// A light and the irradiance at the origin that its radiance 1 causes.
@@ -63,14 +54,12 @@ struct Light {
 };
 
 std::string emission() {
-  return area_light(kRadiance.text("radiance"));
+  return emitter("area", kRadiance.text("radiance"));
 }
 
 Light sphere(const std::string& name, const Vec& centre, double radius) {
   const double d = length(centre);
-  return {name,
-          shape("sphere", "<point name=\"center\" value=\"" + text(centre) + "\"/>" +
-                              number("float", "radius", radius) + emission()),
+  return {name, shape("sphere", number("point", "center", xyz(centre)) + real("radius", radius) + emission()),
           kPi * radius * radius / (d * d) * (centre[1] / d)};
 }
 
@@ -78,11 +67,11 @@ Light sphere(const std::string& name, const Vec& centre, double radius) {
 Light disk(const std::string& name, double lateral, double height, double radius) {
   const double a2 = lateral * lateral, h2 = height * height, r2 = radius * radius;
   const double root = std::sqrt((a2 + h2 + r2) * (a2 + h2 + r2) - 4 * a2 * r2);
-  return {name,
-          shape("disk", to_world(scale({radius, radius, radius}) + rotate('x', 90) +
-                                 translate({lateral, height, 0})) +
-                            emission()),
-          kPi / 2 * (1 - (a2 + h2 - r2) / root)};
+  return {
+      name,
+      shape("disk", to_world(scale(radius, radius, radius) + turn("x", 90) + translate(lateral, height, 0)) +
+                        emission()),
+      kPi / 2 * (1 - (a2 + h2 - r2) / root)};
 }
 
 double polygon_irradiance(const std::vector<Vec>& corners) {
@@ -103,11 +92,11 @@ Light rectangle(const std::string& name, double a, double b, double tilt, const 
   for (const auto& [x, z] : {std::pair{-a, -b}, {a, -b}, {a, b}, {-a, b}}) {
     corners.push_back({x * std::cos(angle) + centre[0], x * std::sin(angle) + centre[1], z + centre[2]});
   }
-  return {name,
-          shape("rectangle",
-                to_world(scale({a, b, 1}) + rotate('x', 90) + rotate('z', tilt) + translate(centre)) +
-                    emission()),
-          polygon_irradiance(corners)};
+  return {
+      name,
+      shape("rectangle",
+            to_world(scale(a, b, 1) + turn("x", 90) + turn("z", tilt) + translate(xyz(centre))) + emission()),
+      polygon_irradiance(corners)};
 }
 
 std::vector<Light> lights() {
@@ -126,12 +115,12 @@ std::vector<Light> lights() {
 
 /// The camera's ray ends at the origin from a direction in which no light of lights() stands.
 std::string receiver() {
-  return shape("rectangle", to_world(rotate('x', -90)) + bsdf("diffuse", kReflectance.text("reflectance")));
+  return shape("rectangle", to_world(turn("x", -90)) + bsdf("diffuse", kReflectance.text("reflectance")));
 }
 
 /// Cameras start below large lights: at 0.29 m height.
 std::string camera() {
-  return wide_sensor(lookat("0.02, 0.29, -0.7", "0, 0, 0"), 0.05, 8, 8);
+  return perspective(lookat("0.02, 0.29, -0.7", "0, 0, 0"), 0.05, film(8));
 }
 
 std::vector<double> reflected(const RenderResult& result, double irradiance) {
@@ -155,9 +144,9 @@ INSTANTIATE_TEST_SUITE_P(Modes, DirectAreaTest, ::testing::ValuesIn(all_modes())
 
 /// Transparent sheets a little before the large lights; paths reach the light by BSDF samples only.
 TEST(DirectArea, BsdfSamplesAlone) {
-  const std::string sheet_bsdf = bsdf("mask", flat("opacity", 0) + bsdf("diffuse", ""));
-  const std::string sheet = shape(
-      "rectangle", to_world(scale({50, 50, 1}) + rotate('x', 90) + translate({0, 0.35, 0})) + sheet_bsdf);
+  const std::string sheet_bsdf = bsdf("mask", spectrum("opacity", 0) + bsdf("diffuse", ""));
+  const std::string sheet =
+      shape("rectangle", to_world(scale(50, 50, 1) + turn("x", 90) + translate(0, 0.35, 0)) + sheet_bsdf);
   for (const Light& light : lights()) {
     if (light.name.find("large") == std::string::npos && light.name.find("on axis") == std::string::npos)
       continue;
@@ -171,8 +160,8 @@ TEST(DirectArea, BsdfSamplesAlone) {
 /// Emission leaves on the side of the normal only: turned away, the light gives exactly nothing;
 /// flip_normals turns back.
 TEST(DirectArea, LightsShineOnTheSideOfTheirNormal) {
-  const std::string up = rotate('x', -90) + translate({0, 1, 0});
-  const std::string flip = "<boolean name=\"flip_normals\" value=\"true\"/>";
+  const std::string up = turn("x", -90) + translate(0, 1, 0);
+  const std::string flip = yes("flip_normals");
   for (const char* type : {"rectangle", "disk"}) {
     SCOPED_TRACE(type);
     const std::string rest = camera() + receiver();
@@ -191,12 +180,11 @@ TEST(DirectArea, LightsShineOnTheSideOfTheirNormal) {
 /// Two lights together give the sum, whatever their shares of the light samples. Their spectra are disjoint.
 TEST(DirectArea, SeveralLightsAddUp) {
   const Knots red{{{600, 0}, {650, 4}, {900, 4}}}, blue{{{300, 50}, {450, 50}, {480, 0}}};
-  const std::string ball =
-      shape("sphere", "<point name=\"center\" value=\"0.9, 1.2, 0.3\"/>" + number("float", "radius", 0.4) +
-                          area_light(red.text("radiance")));
+  const std::string ball = shape("sphere", number("point", "center", "0.9, 1.2, 0.3") + real("radius", 0.4) +
+                                               emitter("area", red.text("radiance")));
   const std::string plate =
-      shape("rectangle", to_world(scale({0.2, 0.2, 1}) + rotate('x', 90) + translate({-0.5, 1.5, 0})) +
-                             area_light(blue.text("radiance")));
+      shape("rectangle", to_world(scale(0.2, 0.2, 1) + turn("x", 90) + translate(-0.5, 1.5, 0)) +
+                             emitter("area", blue.text("radiance")));
   const double from_ball = sphere("", {0.9, 1.2, 0.3}, 0.4).irradiance;
   const double from_plate = rectangle("", 0.2, 0.2, 0, {-0.5, 1.5, 0}).irradiance;
   const RenderResult result = render_valid(scene(2, camera() + receiver() + ball + plate),

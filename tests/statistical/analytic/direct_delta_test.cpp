@@ -29,14 +29,10 @@ const Knots kIntensity{{{400, 5}, {500, 1}, {600, 2}, {800, 3}}};
 const Knots kReflectance{{{400, 0.2}, {600, 0.9}, {800, 0.5}}};
 
 std::string receiver() {
-  return shape("rectangle", to_world("<rotate x=\"1\" angle=\"-90\"/>") +
-                                bsdf("diffuse", kReflectance.text("reflectance")));
+  return shape("rectangle", to_world(turn("x", "-90")) + bsdf("diffuse", kReflectance.text("reflectance")));
 }
 std::string camera() {
-  return wide_sensor(lookat("0.02, 0.29, -0.7", "0, 0, 0"), 0.05, 8, 8);
-}
-std::string emitter(const std::string& type, const std::string& content) {
-  return "<emitter type=\"" + type + "\">" + content + "</emitter>";
+  return perspective(lookat("0.02, 0.29, -0.7", "0, 0, 0"), 0.05, film(8));
 }
 
 /// Renders the plane under the light and compares with `irradiance` per unit of kIntensity.
@@ -56,11 +52,10 @@ TEST_P(DirectDeltaTest, PointLight) {
     double x, y, z;
   } positions[] = {{0, 2, 0}, {1, 0.5, -0.3}, {-3, 0.05, 4}, {300, 400, 0}};
   for (const auto& p : positions) {
-    SCOPED_TRACE(vec(p.x, p.y, p.z));
+    SCOPED_TRACE(point(p.x, p.y, p.z));
     const double d2 = p.x * p.x + p.y * p.y + p.z * p.z;
     const std::string light =
-        emitter("point", kIntensity.text("intensity") + "<point name=\"position\" value=\"" +
-                             vec(p.x, p.y, p.z) + "\"/>");
+        emitter("point", kIntensity.text("intensity") + number("point", "position", point(p.x, p.y, p.z)));
     expect_irradiance(light, p.y / std::sqrt(d2) / d2, GetParam(), 0.002);
   }
 }
@@ -74,10 +69,9 @@ TEST_P(DirectDeltaTest, SpotOnItsAxisAndInItsFalloff) {
     // The axis is turned in the plane z = 0: towards the origin it has the angle 180 + 53.13 degrees.
     const double angle = kPi + std::atan2(0.8, 0.6) + aside * kPi / 180;
     const std::string light = emitter(
-        "spot",
-        kIntensity.text("intensity") + number("float", "cutoff_angle", kCutoff) +
-            number("float", "beam_width", kBeam) +
-            to_world(lookat("0.6, 0.8, 0", vec(0.6 + std::cos(angle), 0.8 + std::sin(angle), 0), "0, 0, 1")));
+        "spot", kIntensity.text("intensity") + real("cutoff_angle", kCutoff) + real("beam_width", kBeam) +
+                    to_world(lookat("0.6, 0.8, 0", point(0.6 + std::cos(angle), 0.8 + std::sin(angle), 0),
+                                    "0, 0, 1")));
     const double ramp = std::clamp((kCutoff - aside) / (kCutoff - kBeam), 0.0, 1.0);
     expect_irradiance(light, 0.8 * ramp, GetParam(), 0.002);
   }
@@ -88,8 +82,9 @@ TEST_P(DirectDeltaTest, DirectionalLight) {
     SCOPED_TRACE(degrees);
     const double a = degrees * kPi / 180;
     const std::string light =
-        emitter("directional", kIntensity.text("irradiance") + "<vector name=\"direction\" value=\"" +
-                                   vec(std::sin(a) * 0.6, -std::cos(a), std::sin(a) * 0.8) + "\"/>");
+        emitter("directional",
+                kIntensity.text("irradiance") +
+                    number("vector", "direction", point(std::sin(a) * 0.6, -std::cos(a), std::sin(a) * 0.8)));
     expect_irradiance(light, std::max(0.0, std::cos(a)), GetParam(), 0.002);
   }
 }
@@ -140,8 +135,7 @@ TEST(DirectDelta, EnvironmentMapWithOneBrightTexel) {
     std::vector<float> image(kWidth * kHeight, 0.01f);
     image[row * kWidth + column] = 20;
     folder.write("map.pfm", pfm_image(kWidth, kHeight, 1, image));
-    const std::string light =
-        emitter("envmap", "<string name=\"filename\" value=\"map.pfm\"/>" + number("float", "scale", 2));
+    const std::string light = emitter("envmap", text("filename", "map.pfm") + real("scale", 2));
     const RenderResult result =
         render_valid(scene(2, camera() + receiver() + light), kBands, {}, {128, 23}, folder.path());
     const double irradiance = 2 * environment_irradiance(image, {0, 1, 0});
@@ -159,8 +153,7 @@ TEST(DirectDelta, EnvironmentMapTurned) {
   image[2 * kWidth + 0] = 10;
   image[3 * kWidth + 6] = 5;
   folder.write("map.pfm", pfm_image(kWidth, kHeight, 1, image));
-  const std::string light = emitter(
-      "envmap", "<string name=\"filename\" value=\"map.pfm\"/>" + to_world("<rotate x=\"1\" angle=\"90\"/>"));
+  const std::string light = emitter("envmap", text("filename", "map.pfm") + to_world(turn("x", "90")));
   const RenderResult result =
       render_valid(scene(2, camera() + receiver() + light), kBands, {}, {128, 24}, folder.path());
   const double irradiance = environment_irradiance(image, {0, 0, -1});
@@ -177,12 +170,12 @@ TEST(DirectDelta, EnvironmentMapSeenDirectly) {
   std::vector<float> image;
   for (uint32_t i = 0; i < kWidth * kHeight; ++i) image.push_back(0.25f + static_cast<float>((i * 7) % 11));
   folder.write("map.pfm", pfm_image(kWidth, kHeight, 1, image));
-  const std::string light = emitter("envmap", "<string name=\"filename\" value=\"map.pfm\"/>");
+  const std::string light = emitter("envmap", text("filename", "map.pfm"));
   for (const auto& [phi, theta] : {std::pair{0.3, 0.8}, {2.0, 1.6}, {4.4, 2.9}, {6.2, 0.2}}) {
     SCOPED_TRACE(phi);
     const std::string target =
-        vec(std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta));
-    const std::string sensor = wide_sensor(lookat("0, 0, 0", target), 0.02, 4, 4);
+        point(std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta));
+    const std::string sensor = perspective(lookat("0, 0, 0", target), 0.02, film(4));
     const RenderResult result = render_valid(scene(1, sensor + light), kBands, {}, {8, 25}, folder.path());
     const double value = lookup(image, phi / (2 * kPi), theta / kPi);
     expect_image_mean(

@@ -25,14 +25,13 @@ TEST(Dispersion, PlaneBoundaryPerWavelength) {
   folder.write("glass.txt", index_columns());
   const double theta = 70 * kPi / 180;
   const std::string camera =
-      wide_sensor(lookat(vec(-4 * std::sin(theta), 0, 4 * std::cos(theta)), "0, 0, 0"), 0.05, 8, 8);
-  const std::string plane = shape("rectangle", to_world("<scale value=\"3, 3, 1\"/>") + glass("dielectric"));
+      perspective(lookat(point(-4 * std::sin(theta), 0, 4 * std::cos(theta)), "0, 0, 0"), 0.05, film(8));
+  const std::string plane = shape("rectangle", to_world(scale("3, 3, 1")) + glass("dielectric"));
   for (const bool above : {true, false}) {
     SCOPED_TRACE(above ? "reflected" : "transmitted");
-    const std::string turn =
-        above ? "<rotate x=\"1\" angle=\"180\"/><translate z=\"5\"/>" : "<translate z=\"-5\"/>";
-    const std::string light =
-        shape("rectangle", to_world("<scale value=\"60, 60, 1\"/>" + turn) + area_light(flat("radiance", 2)));
+    const std::string way =
+        above ? turn("x", "180") + step("translate", "z='5'") : step("translate", "z='-5'");
+    const std::string light = shape("rectangle", to_world(scale("60, 60, 1") + way) + lamp(2));
     const RenderResult result =
         render_valid(scene(-1, camera + plane + light), kDispersionBands, {}, {512, 62}, folder.path());
     const Function expected = [=](double nm) {
@@ -46,11 +45,10 @@ TEST(Dispersion, PlaneBoundaryPerWavelength) {
 /// A ball of glass before a coloured square and a dim sky. `material`: the ball's; more: of the scene.
 std::string ball_scene(const std::string& material, const std::string& more = "") {
   const Knots colour{{{380, 2}, {500, 4}, {600, 2}, {720, 3}}};
-  const std::string square =
-      shape("rectangle", to_world("<scale value=\"1, 1, 1\"/>" + lookat("0.5, 1, -4", "0, 0, 0")) +
-                             area_light(colour.text("radiance")));
-  return scene(-1, perspective_sensor("0, 0, 4", "0, 0, 0", 30, 16) + shape("sphere", material) + square +
-                       constant_environment(1) + more);
+  const std::string square = shape("rectangle", to_world(scale("1, 1, 1") + lookat("0.5, 1, -4", "0, 0, 0")) +
+                                                    emitter("area", colour.text("radiance")));
+  return scene(-1, perspective(lookat("0, 0, 4", "0, 0, 0"), 30, film(16)) + shape("sphere", material) +
+                       square + sky(1) + more);
 }
 
 /// Image means of all channels together against each channel alone (other seeds). Detectable bias: 2 %.
@@ -90,7 +88,7 @@ TEST_P(DegradationTest, ColouredBall) {
 TEST_P(DegradationTest, RoughBall) {
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());
-  const std::string xml = ball_scene(glass("roughdielectric", number("float", "alpha", 0.2)));
+  const std::string xml = ball_scene(glass("roughdielectric", real("alpha", 0.2)));
   for (const RoughDispersion how : {RoughDispersion::kDegrade, RoughDispersion::kSpectralMis}) {
     SCOPED_TRACE(how == RoughDispersion::kDegrade ? "degradation" : "spectral MIS");
     Mode mode = GetParam();
@@ -104,8 +102,8 @@ TEST_P(DegradationTest, RoughBallOfGas) {
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());
   const Knots smoke{{{380, 0.2}, {500, 0.9}, {600, 0.3}, {720, 0.1}}}, haze{{{380, 0.1}, {720, 0.02}}};
-  const std::string ball = glass("roughdielectric", number("float", "alpha", 0.2)) +
-                           gas("interior", smoke.text("absorption"), 2500);
+  const std::string ball =
+      glass("roughdielectric", real("alpha", 0.2)) + gas("interior", smoke.text("absorption"), 2500);
   expect_channels_as_alone(ball_scene(ball, gas("atmosphere", haze.text("absorption"))), GetParam(),
                            folder.path());
 }
@@ -115,7 +113,7 @@ TEST_P(DegradationTest, RoughBallOfGas) {
 TEST(Dispersion, NarrowLobeByHeroes) {
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());
-  const std::string xml = ball_scene(glass("roughdielectric", number("float", "alpha", 0.01)));
+  const std::string xml = ball_scene(glass("roughdielectric", real("alpha", 0.01)));
   const RenderResult together = render_valid(xml, "400:700:32", {}, {48, 80}, folder.path());
   for (const std::size_t c : {0, 13, 31}) {
     const Channel& channel = together.scene.channels[c];
@@ -132,7 +130,7 @@ TEST(Dispersion, NarrowLobeByHeroes) {
 TEST(Dispersion, HeroesHaveLessVariance) {
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());
-  const std::string xml = ball_scene(glass("roughdielectric", number("float", "alpha", 0.1)));
+  const std::string xml = ball_scene(glass("roughdielectric", real("alpha", 0.1)));
   double variance[2] = {0, 0};
   for (const RoughDispersion how : {RoughDispersion::kDegrade, RoughDispersion::kSpectralMis}) {
     Mode mode;
@@ -149,8 +147,8 @@ TEST(Dispersion, HeroesHaveLessVariance) {
 TEST(Dispersion, GlassBallVanishesInTheFurnace) {
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());
-  const std::string xml = scene(-1, perspective_sensor("0, 0, 4", "0, 0, 0", 30, 16) +
-                                        shape("sphere", glass("dielectric")) + constant_environment(1));
+  const std::string xml = scene(-1, perspective(lookat("0, 0, 4", "0, 0, 0"), 30, film(16)) +
+                                        shape("sphere", glass("dielectric")) + sky(1));
   const RenderResult result = render_valid(xml, kDispersionBands, {}, {128, 70}, folder.path());
   expect_image_mean(result, {10, 10, 10, 10, 10}, 0.01);
 }

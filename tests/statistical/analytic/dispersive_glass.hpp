@@ -17,8 +17,7 @@ inline std::string index_columns() {
 
 /// A BSDF made of the file glass.txt in air of index 1.
 inline std::string glass(const std::string& type, const std::string& more = "") {
-  return bsdf(type,
-              "<string name=\"int_material\" value=\"glass.txt\"/>" + number("float", "ext_ior", 1.0) + more);
+  return bsdf(type, text("int_material", "glass.txt") + real("ext_ior", 1.0) + more);
 }
 
 }  // namespace kiloband::test

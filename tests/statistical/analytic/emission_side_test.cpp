@@ -22,7 +22,7 @@ constexpr double kSize = 5, kDim = 0.0325, kDimClosed = 0.047;
 constexpr uint32_t kPixelsOfACell = 12, kLightAt = 5, kLowerAt = 3, kUpperAt = 7;
 const char* const kBand = "500-501";
 
-constexpr const char* kMirrors[] = {"", "<scale x=\"-1\"/>", "<scale z=\"-1\"/>", "<scale value=\"-1\"/>"};
+const std::string kMirrors[] = {"", step("scale", "x='-1'"), step("scale", "z='-1'"), scale("-1")};
 
 /// front: towards +Z or outwards (1), or the other way (-1), under the transforms of kMirrors.
 struct Row {
@@ -105,11 +105,11 @@ struct Cell {
         "<boolean name=\"flip_normals\" value=\"" + std::string(flipped ? "true" : "false") + "\"/>";
     if (*row.file)
       parameters += "<string name=\"filename\" value=\"" + std::string(row.file) + "." + row.type + "\"/>";
-    if (row.face_normals) parameters += "<boolean name=\"face_normals\" value=\"true\"/>";
+    if (row.face_normals) parameters += yes("face_normals");
     if (row.type == std::string("cylinder"))
       parameters += "<point name=\"p0\" value=\"0 -1 0\"/><point name=\"p1\" value=\"0 1 0\"/>";
     const std::string place =
-        "<scale value=\"" + vec(size, size, size) + "\"/><translate value=\"" + vec(x, 0, 0) + "\"/>";
+        "<scale value=\"" + point(size, size, size) + "\"/><translate value=\"" + point(x, 0, 0) + "\"/>";
     return shape(row.type, parameters + to_world(kMirrors[mirror] + place) + content);
   }
 };
@@ -134,11 +134,11 @@ RenderResult EmissionSide::render_row(int max_depth, const std::string& body, st
                                       const char* band) const {
   const auto width = static_cast<double>(kPixelsOfACell * cells);
   const double middle = kPixel * (width - 1) / 2, z = from_above ? 100 : -100;
-  const std::string zoom = "<scale value=\"" + vec(width * kPixel / 2, width * kPixel / 2, 1) + "\"/>";
-  const std::string sensor = "<sensor type=\"orthographic\">" + number("float", "near_clip", near_clip) +
-                             to_world(zoom + lookat(vec(middle, 0, z), vec(middle, 0, 0))) +
-                             "<film type=\"hdrfilm\">" + number("integer", "width", width) +
-                             number("integer", "height", 1) + "<rfilter type=\"box\"/></film></sensor>";
+  const std::string zoom = scale(point(width * kPixel / 2, width * kPixel / 2, 1));
+  const std::string sensor = object("sensor", "orthographic",
+                                    real("near_clip", near_clip) +
+                                        to_world(zoom + lookat(point(middle, 0, z), point(middle, 0, 0))) +
+                                        film(scene_text::size(static_cast<int>(width), 1)));
   return render_valid(scene(max_depth, sensor + body), band, {}, {samples / 2, 5, 2}, folder_.path());
 }
 
@@ -148,14 +148,12 @@ double seen(const RenderResult& result, std::size_t cell, uint32_t pixel, bool f
   return result.at(from_above ? x : result.width - 1 - x, 0, 0);
 }
 
-std::string receiver(double x, double z, const char* turn) {
-  return shape("rectangle", to_world(std::string(turn) + "<scale value=\"4\"/><translate value=\"" +
-                                     vec(x, 0, z) + "\"/>") +
-                                bsdf("diffuse", flat("reflectance", 1)));
+std::string receiver(double x, double z, const std::string& way) {
+  return shape("rectangle", to_world(way + scale("4") + translate(x, 0, z)) + diffuse(1));
 }
 
 std::string receivers(double x) {
-  return receiver(x + 2 * kPixel, 4, "<rotate x=\"1\" angle=\"180\"/>") + receiver(x - 2 * kPixel, -4, "");
+  return receiver(x + 2 * kPixel, 4, turn("x", "180")) + receiver(x - 2 * kPixel, -4, "");
 }
 
 void expect_lit(double value, bool lit, double dim, const std::string& what) {
@@ -173,8 +171,7 @@ void check_lights(const std::vector<Cell>& cells, bool outside, double dim,
     const std::size_t count = std::min(kGroup, cells.size() - first);
     std::string body;
     for (std::size_t i = 0; i < count; ++i)
-      body += cells[first + i].xml(centre_of(i), kSize, area_light(flat("radiance", 1))) +
-              receivers(centre_of(i));
+      body += cells[first + i].xml(centre_of(i), kSize, lamp(1)) + receivers(centre_of(i));
     for (const int max_depth : {2, 3}) {
       for (const bool above : {true, false}) {
         const RenderResult result = render(max_depth, body, count, above);
@@ -211,8 +208,7 @@ TEST_F(EmissionSide, OfClosedShapesFromInside) {
   const std::vector<Cell> cells = cells_of(kClosed);
   std::string body;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    for (const uint32_t pixel : {0u, 6u})
-      body += cells[i].xml(centre_of(i) + kPixel * pixel, 6, area_light(flat("radiance", 1)));
+    for (const uint32_t pixel : {0u, 6u}) body += cells[i].xml(centre_of(i) + kPixel * pixel, 6, lamp(1));
     body += receiver(centre_of(i) + kPixel * 6, -1, "");
   }
   for (const int max_depth : {2, 3}) {
@@ -228,8 +224,7 @@ TEST_F(EmissionSide, OfClosedShapesFromInside) {
 /// Vertex normals up and down in one mesh: it shines up where they interpolate to up, and down elsewhere.
 TEST_F(EmissionSide, OfNormalsThatDifferWithinAMesh) {
   const Cell cell{{"obj", "halves", false, {}}, 0, false};
-  const std::string body =
-      cell.xml(centre_of(0), kSize, area_light(flat("radiance", 1))) + receivers(centre_of(0));
+  const std::string body = cell.xml(centre_of(0), kSize, lamp(1)) + receivers(centre_of(0));
   for (const bool above : {true, false}) {
     const RenderResult result = render_row(2, body, 1, above, 0.01, 4096);
     EXPECT_NEAR(seen(result, 0, kLightAt, above), 0.5, 0.03);
@@ -241,8 +236,8 @@ TEST_F(EmissionSide, OfNormalsThatDifferWithinAMesh) {
 /// by Kirchhoff's law it then emits all, in front half.
 TEST_F(EmissionSide, IsThatOfBsdfAndThermalEmission) {
   std::vector<Cell> cells = cells_of(kFlat);
-  const std::string grey = bsdf("diffuse", flat("reflectance", 0.5));
-  const std::string hot = "<emitter type=\"thermal\">" + number("float", "temperature", 600) + "</emitter>";
+  const std::string grey = diffuse(0.5);
+  const std::string hot = thermal(600);
   std::string surfaces, emitters;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     surfaces += cells[i].xml(centre_of(i), kSize, grey);
@@ -250,8 +245,7 @@ TEST_F(EmissionSide, IsThatOfBsdfAndThermalEmission) {
   }
   const double black = planck_integral(10000, 10001, 600);
   for (const bool above : {true, false}) {
-    const RenderResult lit =
-        render_row(2, surfaces + constant_environment(1), cells.size(), above, 0.01, 256);
+    const RenderResult lit = render_row(2, surfaces + sky(1), cells.size(), above, 0.01, 256);
     const RenderResult thermal = render_row(1, emitters, cells.size(), above, 0.01, 16, "10000-10001");
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const bool front = above == (cells[i].front() > 0);

@@ -19,10 +19,9 @@ namespace {
 const char* const kBands = "400-420, 500-520, 600-620, 780-800";
 const Knots kRadiance{{{400, 1}, {500, 2}, {600, 3}, {640, 2.7}, {800, 10}}};
 const Knots kReflectance{{{400, 0.1}, {500, 0.4}, {600, 0.6}, {640, 0.55}, {800, 0.3}}};
-const char* const kInwards = "<boolean name=\"flip_normals\" value=\"true\"/>";
 
 std::string wall() {
-  return bsdf("diffuse", kReflectance.text("reflectance")) + area_light(kRadiance.text("radiance"));
+  return bsdf("diffuse", kReflectance.text("reflectance")) + emitter("area", kRadiance.text("radiance"));
 }
 
 /// Six rectangles that face the centre: x, y and z = +-1.
@@ -44,11 +43,11 @@ struct Enclosure {
 std::vector<Enclosure> enclosures() {
   return {{"cube", shape("cube", kInwards + wall())},
           {"rectangles", six_rectangles()},
-          {"sphere", shape("sphere", kInwards + number("float", "radius", 2) + wall())}};
+          {"sphere", shape("sphere", kInwards + real("radius", 2) + wall())}};
 }
 
 std::string camera(uint32_t size) {
-  return perspective_sensor("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9", 60, size);
+  return perspective(lookat("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9"), 60, film(size));
 }
 
 Function series(int depth) {
@@ -95,11 +94,10 @@ TEST(Enclosure, DepthZeroIsBlack) {
 /// Walls of 300 K that reflect nothing show Planck's law integrated over each channel; there is no variance
 /// but that of the wavelength. With reflectance 0.5 the enclosure is twice as bright. Detectable bias: 0.2 %.
 TEST(Enclosure, ThermalBoxShowsPlancksLaw) {
-  const std::string light = area_light("<spectrum name=\"radiance\" type=\"planck\">" +
-                                       number("float", "temperature", 300) + "</spectrum>");
+  const std::string light = emitter(
+      "area", "<spectrum name=\"radiance\" type=\"planck\">" + real("temperature", 300) + "</spectrum>");
   for (const double reflectance : {0.0, 0.5}) {
-    const std::string box =
-        shape("cube", kInwards + bsdf("diffuse", flat("reflectance", reflectance)) + light);
+    const std::string box = shape("cube", kInwards + diffuse(reflectance) + light);
     for (const Mode& mode : all_modes()) {
       SCOPED_TRACE(name_of(mode));
       const RenderResult result = render_valid(scene(-1, camera(16) + box), "8000:12000:8", mode, {8, 5});
@@ -125,9 +123,9 @@ TEST(Enclosure, ExtremesOfPlancksLawNeitherVanishNorOverflow) {
   for (const auto& [temperature, bands] : {std::pair{200.0, "299.5-300.5, 300-301, 10000-10010"},
                                            std::pair{6000.0, "300-301, 500-501, 19990-20000"}}) {
     SCOPED_TRACE(temperature);
-    const std::string light = area_light("<spectrum name=\"radiance\" type=\"planck\">" +
-                                         number("float", "temperature", temperature) + "</spectrum>");
-    const std::string box = shape("cube", kInwards + bsdf("diffuse", flat("reflectance", 0.5)) + light);
+    const std::string light = emitter("area", "<spectrum name=\"radiance\" type=\"planck\">" +
+                                                  real("temperature", temperature) + "</spectrum>");
+    const std::string box = shape("cube", kInwards + diffuse(0.5) + light);
     const RenderResult result = render_valid(scene(-1, camera(16) + box), bands, {}, {16, 6});
     const double t = temperature;
     const std::vector<double> expected =

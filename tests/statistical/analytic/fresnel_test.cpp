@@ -29,18 +29,17 @@ constexpr double kWidth = 10, kUpper = 2, kLower = 3;  // channel width, nm; rad
 
 /// A point in the plane of incidence (x, z).
 std::string in_plane(double angle_from_z, double distance) {
-  return vec(distance * std::sin(angle_from_z), 0, distance * std::cos(angle_from_z));
+  return point(distance * std::sin(angle_from_z), 0, distance * std::cos(angle_from_z));
 }
 
 /// A square of half side 1.5 that faces the origin.
 std::string light_at(const std::string& place, const std::string& radiance) {
-  return shape("rectangle",
-               to_world("<scale value=\"1.5, 1.5, 1\"/>" + lookat(place, "0, 0, 0", "0, 1, 0.01")) +
-                   area_light(radiance));
+  return shape("rectangle", to_world(scale("1.5, 1.5, 1") + lookat(place, "0, 0, 0", "0, 1, 0.01")) +
+                                emitter("area", radiance));
 }
 
 std::string view(double theta) {
-  return wide_sensor(lookat(in_plane(-theta, 4), "0, 0, 0"), 0.05, 8, 8);
+  return perspective(lookat(in_plane(-theta, 4), "0, 0, 0"), 0.05, film(8));
 }
 
 const Knots kFirst{{{390, kUpper}, {500, kUpper}, {501, 0}, {710, 0}}};
@@ -53,11 +52,11 @@ std::string two_lights(double theta, double theta_out) {
 }
 
 std::string plate(const std::string& transform, const std::string& material) {
-  return shape("rectangle", to_world("<scale value=\"3, 3, 1\"/>" + transform) + material);
+  return shape("rectangle", to_world(scale("3, 3, 1") + transform) + material);
 }
 
 std::string glass(double index) {
-  return bsdf("dielectric", number("float", "int_ior", index) + number("float", "ext_ior", 1.0));
+  return bsdf("dielectric", real("int_ior", index) + real("ext_ior", 1.0));
 }
 
 constexpr double kAngles[] = {0, 30, 56.31, 80};  // the third is Brewster's for 1.5
@@ -72,7 +71,7 @@ TEST(Fresnel, DielectricBoundary) {
         const double theta = degrees * kPi / 180, eta = inside ? 1 / index : index;
         const double reflectance = dielectric_reflectance(std::cos(theta), eta);
         const double sin_out = std::sin(theta) / eta;
-        const std::string surface = plate(inside ? "<rotate x=\"1\" angle=\"180\"/>" : "", glass(index));
+        const std::string surface = plate(inside ? turn("x", "180") : "", glass(index));
         const RenderResult result = render_valid(
             scene(-1, view(theta) + surface + two_lights(theta, sin_out < 1 ? std::asin(sin_out) : 0)),
             kBands, {}, {192, 51});
@@ -91,7 +90,7 @@ TEST(Fresnel, ParallelSlab) {
       const double theta = degrees * kPi / 180, r = dielectric_reflectance(std::cos(theta), 1.5);
       const uint64_t samples = mode.sampler == SamplerType::kSobol ? 96 : 256;
       const std::string slab =
-          shape("cube", to_world("<scale value=\"3, 3, 0.005\"/><translate z=\"-0.005\"/>") + glass(1.5));
+          shape("cube", to_world(scale("3, 3, 0.005") + step("translate", "z='-0.005'")) + glass(1.5));
       const RenderResult result =
           render_valid(scene(-1, view(theta) + slab + two_lights(theta, theta)), kBands, mode, {samples, 52});
       expect_image_mean(result, {2 * r / (1 + r) * kUpper * kWidth, (1 - r) / (1 + r) * kLower * kWidth},
@@ -104,8 +103,8 @@ TEST(Fresnel, ParallelSlab) {
 TEST(Fresnel, SpecularFactors) {
   const double theta = kPi / 3, r = dielectric_reflectance(0.5, 1.5);
   const std::string tinted =
-      bsdf("dielectric", number("float", "int_ior", 1.5) + number("float", "ext_ior", 1.0) +
-                             flat("specular_reflectance", 0.7) + flat("specular_transmittance", 0.4));
+      bsdf("dielectric", real("int_ior", 1.5) + real("ext_ior", 1.0) + spectrum("specular_reflectance", 0.7) +
+                             spectrum("specular_transmittance", 0.4));
   const RenderResult result = render_valid(
       scene(-1, view(theta) + plate("", tinted) + two_lights(theta, std::asin(std::sin(theta) / 1.5))),
       kBands, {}, {192, 53});
@@ -119,8 +118,8 @@ const Knots kIndex{{{390, 1.6}, {450, 1.5}, {550, 0.4}, {720, 0.2}}};
 const Knots kExtinction{{{390, 1.9}, {450, 1.85}, {600, 2.9}, {720, 4.2}}};
 
 std::string mirror_scene(double theta, const std::string& material) {
-  return scene(-1,
-               view(theta) + plate("", material) + light_at(in_plane(theta, 6), flat("radiance", kUpper)));
+  return scene(
+      -1, view(theta) + plate("", material) + light_at(in_plane(theta, 6), spectrum("radiance", kUpper)));
 }
 
 double metal_reflectance(double theta, double nm) {
@@ -135,7 +134,7 @@ TEST_P(FresnelMirrorTest, ConductorPerWavelength) {
     SCOPED_TRACE(degrees);
     const double theta = degrees * kPi / 180;
     const std::string metal =
-        bsdf("conductor", kIndex.text("eta") + kExtinction.text("k") + flat("specular_reflectance", 0.9));
+        bsdf("conductor", kIndex.text("eta") + kExtinction.text("k") + spectrum("specular_reflectance", 0.9));
     const RenderResult result = render_valid(mirror_scene(theta, metal), kMetalBands, GetParam(), {32, 54});
     const auto expected =
         channel_integrals([=](double nm) { return 0.9 * kUpper * metal_reflectance(theta, nm); }, result);
@@ -153,7 +152,7 @@ TEST(Fresnel, ConductorFromFile) {
   }
   folder.write("metal.txt", rows);
   const double theta = kPi / 4;
-  const std::string metal = bsdf("conductor", "<string name=\"metal\" value=\"metal.txt\"/>");
+  const std::string metal = bsdf("conductor", text("metal", "metal.txt"));
   const RenderResult result =
       render_valid(mirror_scene(theta, metal), kMetalBands, {}, {32, 55}, folder.path());
   const auto expected =

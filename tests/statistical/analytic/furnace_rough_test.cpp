@@ -37,10 +37,9 @@ std::vector<double> widths(const RenderResult& result, double radiance) {
 
 std::string plane_furnace(const std::string& material, double theta) {
   const std::string eye =
-      vec(5 * std::sin(theta) * std::cos(kPhi), 5 * std::sin(theta) * std::sin(kPhi), 5 * std::cos(theta));
-  return scene(-1, wide_sensor(lookat(eye, "0, 0, 0", "0.1, 0.2, 0.9"), 0.05, 8, 8) +
-                       shape("rectangle", to_world("<scale value=\"10, 10, 1\"/>") + material) +
-                       constant_environment(1));
+      point(5 * std::sin(theta) * std::cos(kPhi), 5 * std::sin(theta) * std::sin(kPhi), 5 * std::cos(theta));
+  return scene(-1, perspective(lookat(eye, "0, 0, 0", "0.1, 0.2, 0.9"), 0.05, film(8)) +
+                       shape("rectangle", to_world(scale("10, 10, 1")) + material) + sky(1));
 }
 
 struct Facets {
@@ -49,8 +48,8 @@ struct Facets {
 
   std::string text() const {
     return std::string("<string name=\"distribution\" value=\"") + (ggx ? "ggx" : "beckmann") + "\"/>" +
-           (alpha_u == alpha_v ? number("float", "alpha", alpha_u)
-                               : number("float", "alpha_u", alpha_u) + number("float", "alpha_v", alpha_v));
+           (alpha_u == alpha_v ? real("alpha", alpha_u)
+                               : real("alpha_u", alpha_u) + real("alpha_v", alpha_v));
   }
 };
 
@@ -145,7 +144,7 @@ TEST_P(RoughMetalTest, AlbedoWithFresnel) {
     for (const Facets& f : {facets()[2], facets()[5]}) {
       SCOPED_TRACE(label(f, 60));
       const std::string material =
-          bsdf("roughconductor", f.text() + flat("eta", metal.n) + flat("k", metal.k));
+          bsdf("roughconductor", f.text() + spectrum("eta", metal.n) + spectrum("k", metal.k));
       const RenderResult result =
           render_valid(plane_furnace(material, kPi / 3), kBands, GetParam(), {96, 42});
       expect_image_mean(result, widths(result, albedo(f, kPi / 3, {metal.n, -metal.k}, false)), 0.008);
@@ -161,9 +160,8 @@ TEST(RoughFurnace, DielectricBoundary) {
       for (const double degrees : {20.0, 65.0}) {
         SCOPED_TRACE(label(f, degrees) + " eta " + std::to_string(eta));
         const double theta = degrees * kPi / 180;
-        const std::string material =
-            bsdf("roughdielectric", f.text() + number("float", "int_ior", eta > 1 ? 1.5 : 1.0) +
-                                        number("float", "ext_ior", eta > 1 ? 1.0 : 1.5));
+        const std::string material = bsdf("roughdielectric", f.text() + real("int_ior", eta > 1 ? 1.5 : 1.0) +
+                                                                 real("ext_ior", eta > 1 ? 1.0 : 1.5));
         const RenderResult result = render_valid(plane_furnace(material, theta), kBands, {}, {64, 43});
         expect_image_mean(result, widths(result, albedo(f, theta, eta, true)), 0.01);
       }
@@ -202,11 +200,11 @@ TEST(RoughFurnace, RoughPlastic) {
         for (const double degrees : {15.0, 70.0}) {
           SCOPED_TRACE(std::string(distribution) + " " + std::to_string(rho) + " " + std::to_string(degrees) +
                        (nonlinear ? " nonlinear" : ""));
-          const std::string material = bsdf(
-              "roughplastic", flat("diffuse_reflectance", rho) + flat("specular_reflectance", 0.9) +
-                                  number("float", "alpha", 0.25) + "<string name=\"distribution\" value=\"" +
-                                  distribution + "\"/><boolean name=\"nonlinear\" value=\"" +
-                                  (nonlinear ? "true" : "false") + "\"/>");
+          const std::string material =
+              bsdf("roughplastic",
+                   spectrum("diffuse_reflectance", rho) + spectrum("specular_reflectance", 0.9) +
+                       real("alpha", 0.25) + "<string name=\"distribution\" value=\"" + distribution +
+                       "\"/><boolean name=\"nonlinear\" value=\"" + (nonlinear ? "true" : "false") + "\"/>");
           const RenderResult result =
               render_valid(plane_furnace(material, degrees * kPi / 180), kBands, {}, {32, 44});
           const double expected = plastic_albedo(result.scene, degrees * kPi / 180, 0.9, rho);

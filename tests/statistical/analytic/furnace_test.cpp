@@ -31,18 +31,17 @@ std::vector<double> widths(const RenderResult& result, double radiance = 1) {
 
 /// A sphere with the sky around it.
 std::string furnace(const std::string& material) {
-  return scene(-1, perspective_sensor("0, 0, 3", "0, 0, 0", 50, 16) + shape("sphere", material) +
-                       constant_environment(1));
+  return scene(-1,
+               perspective(lookat("0, 0, 3", "0, 0, 0"), 50, film(16)) + shape("sphere", material) + sky(1));
 }
 
 /// A plane z = 0 seen under the angle theta to its normal, in a plane that makes the angle
 /// phi with its x axis.
 std::string plane_furnace(const std::string& material, double theta, double phi = 0.4) {
   const std::string eye =
-      vec(5 * std::sin(theta) * std::cos(phi), 5 * std::sin(theta) * std::sin(phi), 5 * std::cos(theta));
-  return scene(-1, wide_sensor(lookat(eye, "0, 0, 0", "0.1, 0.2, 0.9"), 0.05, 8, 8) +
-                       shape("rectangle", to_world("<scale value=\"10, 10, 1\"/>") + material) +
-                       constant_environment(1));
+      point(5 * std::sin(theta) * std::cos(phi), 5 * std::sin(theta) * std::sin(phi), 5 * std::cos(theta));
+  return scene(-1, perspective(lookat(eye, "0, 0, 0", "0.1, 0.2, 0.9"), 0.05, film(8)) +
+                       shape("rectangle", to_world(scale("10, 10, 1")) + material) + sky(1));
 }
 
 struct Material {
@@ -50,25 +49,19 @@ struct Material {
   std::string text;
 };
 
-std::string named(const std::string& name, const std::string& value) {
-  return "<string name=\"" + name + "\" value=\"" + value + "\"/>";
-}
-
 // ---- lossless, without variance ----
 
 TEST(Furnace, LosslessDeltaMaterialsVanish) {
-  const std::string diffuse = bsdf("diffuse", flat("reflectance", 0.3));
+  const std::string grey = diffuse(0.3);
   const std::vector<Material> materials = {
       {"mirror", bsdf("conductor", "")},
       {"two-sided mirror", bsdf("twosided", bsdf("conductor", ""))},
       {"dielectric", bsdf("dielectric", "")},
-      {"dielectric, dense outside",
-       bsdf("dielectric", number("float", "int_ior", 1.0) + number("float", "ext_ior", 1.5))},
-      {"diamond", bsdf("dielectric", named("int_ior", "diamond"))},
-      {"dielectric without boundary",
-       bsdf("dielectric", number("float", "int_ior", 1.3) + number("float", "ext_ior", 1.3))},
-      {"transparent mask", bsdf("mask", flat("opacity", 0) + diffuse)},
-      {"half mirror", bsdf("mask", flat("opacity", 0.3) + bsdf("twosided", bsdf("conductor", "")))}};
+      {"dielectric, dense outside", bsdf("dielectric", real("int_ior", 1.0) + real("ext_ior", 1.5))},
+      {"diamond", bsdf("dielectric", text("int_ior", "diamond"))},
+      {"dielectric without boundary", bsdf("dielectric", real("int_ior", 1.3) + real("ext_ior", 1.3))},
+      {"transparent mask", bsdf("mask", spectrum("opacity", 0) + grey)},
+      {"half mirror", bsdf("mask", spectrum("opacity", 0.3) + bsdf("twosided", bsdf("conductor", "")))}};
   for (const Material& material : materials) {
     for (const Mode& mode : all_modes()) {
       SCOPED_TRACE(material.name + std::string(" ") + name_of(mode));
@@ -84,16 +77,16 @@ class LosslessTest : public ::testing::TestWithParam<Mode> {};
 INSTANTIATE_TEST_SUITE_P(Modes, LosslessTest, ::testing::ValuesIn(all_modes()), mode_name);
 
 TEST_P(LosslessTest, DiffuseAndPlasticVanish) {
-  const std::string white = bsdf("diffuse", flat("reflectance", 1));
-  const std::string nonlinear = "<boolean name=\"nonlinear\" value=\"true\"/>";
+  const std::string white = diffuse(1);
+  const std::string nonlinear = yes("nonlinear");
   const std::vector<Material> materials = {
       {"diffuse", white},
       {"two-sided diffuse", bsdf("twosided", white)},
-      {"half transparent diffuse", bsdf("mask", flat("opacity", 0.4) + bsdf("twosided", white))},
-      {"plastic", bsdf("plastic", flat("diffuse_reflectance", 1))},
-      {"nonlinear plastic", bsdf("plastic", flat("diffuse_reflectance", 1) + nonlinear)},
+      {"half transparent diffuse", bsdf("mask", spectrum("opacity", 0.4) + bsdf("twosided", white))},
+      {"plastic", bsdf("plastic", spectrum("diffuse_reflectance", 1))},
+      {"nonlinear plastic", bsdf("plastic", spectrum("diffuse_reflectance", 1) + nonlinear)},
       {"two-sided plastic",
-       bsdf("twosided", bsdf("plastic", flat("diffuse_reflectance", 1) + number("float", "int_ior", 1.9)))}};
+       bsdf("twosided", bsdf("plastic", spectrum("diffuse_reflectance", 1) + real("int_ior", 1.9)))}};
   for (const Material& material : materials) {
     SCOPED_TRACE(material.name);
     const RenderResult result = render_valid(furnace(material.text), kBands, GetParam(), {40, 32});
@@ -107,11 +100,10 @@ TEST_P(LosslessTest, DiffuseAndPlasticVanish) {
 /// and the sky seen through a transparent part of the wall, L_n -> 1.
 /// Walls: white where opaque, half open everywhere.
 TEST(Furnace, InsideOfAHalfOpenWhiteSphere) {
-  const std::string wall =
-      bsdf("mask", flat("opacity", 0.5) + bsdf("twosided", bsdf("diffuse", flat("reflectance", 1))));
-  const RenderResult result = render_valid(scene(-1, perspective_sensor("0, 0.1, 0", "0, 0, -1", 70, 16) +
-                                                         shape("sphere", wall) + constant_environment(1)),
-                                           kBands, {}, {16, 33});
+  const std::string wall = bsdf("mask", spectrum("opacity", 0.5) + bsdf("twosided", diffuse(1)));
+  const RenderResult result = render_valid(
+      scene(-1, perspective(lookat("0, 0.1, 0", "0, 0, -1"), 70, film(16)) + shape("sphere", wall) + sky(1)),
+      kBands, {}, {16, 33});
   expect_image_mean(result, widths(result), 0.005);
 }
 
@@ -121,10 +113,9 @@ TEST(Furnace, SmoothPlasticHasItsAlbedo) {
   constexpr double kEta = 1.5;
   for (const bool nonlinear : {false, true}) {
     for (const double rho : {0.0, 0.3, 0.8}) {
-      const std::string material =
-          bsdf("plastic", flat("diffuse_reflectance", rho) + number("float", "int_ior", kEta) +
-                              number("float", "ext_ior", 1.0) + "<boolean name=\"nonlinear\" value=\"" +
-                              (nonlinear ? "true" : "false") + "\"/>");
+      const std::string material = bsdf(
+          "plastic", spectrum("diffuse_reflectance", rho) + real("int_ior", kEta) + real("ext_ior", 1.0) +
+                         "<boolean name=\"nonlinear\" value=\"" + (nonlinear ? "true" : "false") + "\"/>");
       const double external = diffuse_reflectance(kEta);
       const double internal = 1 - (1 - external) / (kEta * kEta);
       for (const double degrees : {10.0, 50.0, 75.0}) {

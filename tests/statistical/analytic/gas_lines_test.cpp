@@ -51,14 +51,14 @@ TEST_P(GasLines, MeasuredSpectraOfCoAndCo2) {
         Lines{"CO2abscoeff_300K_4150_4400nm.txt", "4200-4300, 4250-4251, 4255.1-4255.2", 0.001, 300, 0.06}}) {
     SCOPED_TRACE(lines.file);
     const std::filesystem::path file = data / "spectra" / "gas" / lines.file;
-    const std::string box = slab(0.5, 1.5,
-                                 kNull + medium("absorbing", "interior",
-                                                "<spectrum name=\"absorption\" filename=\"" + file.string() +
-                                                    "\"/>" + number("float", "scale", lines.metres) +
-                                                    number("float", "temperature", lines.temperature_k)));
+    const std::string box =
+        slab(0.5, 1.5,
+             kNull + medium("absorbing", "interior",
+                            "<spectrum name=\"absorption\" filename=\"" + file.string() + "\"/>" +
+                                real("scale", lines.metres) + real("temperature", lines.temperature_k)));
     const RenderResult result =
-        render_valid(scene(4, straight_camera(2) + black_lamp(flat("radiance", kLamp)) + box), lines.bands,
-                     GetParam(), {512, 43});
+        render_valid(scene(4, straight_camera(2) + black_lamp(spectrum("radiance", kLamp)) + box),
+                     lines.bands, GetParam(), {512, 43});
     const Spectrum kappa = read_spectrum_file(file, ValueKind::kAbsorption);
     std::vector<double> expected;
     for (const Channel& channel : result.scene.channels)

@@ -75,26 +75,24 @@ inline std::string medium(const std::string& type, const std::string& name, cons
 /// Gas that absorbs, and emits at a temperature above 0.
 inline std::string gas(const std::string& name, const std::string& absorption, double temperature_k = 0) {
   return medium("absorbing", name,
-                absorption + (temperature_k > 0 ? number("float", "temperature", temperature_k) : ""));
+                absorption + (temperature_k > 0 ? real("temperature", temperature_k) : ""));
 }
-inline const std::string kNull = "<bsdf type=\"null\"/>";
+inline const std::string kNull = bsdf("null");
 
 /// A rectangle at z = 0 that faces +z and radiates without reflecting.
 inline std::string black_lamp(const std::string& radiance) {
-  return shape("rectangle", bsdf("diffuse", flat("reflectance", 0)) + area_light(radiance));
+  return shape("rectangle", diffuse(0) + emitter("area", radiance));
 }
 inline std::string black_wall() {
-  return shape("rectangle", bsdf("diffuse", flat("reflectance", 0)));
+  return shape("rectangle", diffuse(0));
 }
 /// A box [-1, 1]^2 across, from z0 to z1.
 inline std::string slab(double z0, double z1, const std::string& content) {
-  return shape("cube", to_world("<scale x=\"1\" y=\"1\" z=\"" + std::to_string((z1 - z0) / 2) +
-                                "\"/><translate z=\"" + std::to_string((z1 + z0) / 2) + "\"/>") +
-                           content);
+  return shape("cube", to_world(scale(1, 1, (z1 - z0) / 2) + translate(0, 0, (z1 + z0) / 2)) + content);
 }
 /// Looks down on the origin from z = 2.0001: rays begin at z = 2 and arrive perpendicularly within 1e-6.
 inline std::string straight_camera(uint32_t size) {
-  return wide_sensor(lookat("0.0123, 0.0057, 2.0001", "0.0123, 0.0057, 0"), 0.05, size, size);
+  return perspective(lookat("0.0123, 0.0057, 2.0001", "0.0123, 0.0057, 0"), 0.05, film(size));
 }
 
 }  // namespace kiloband::test

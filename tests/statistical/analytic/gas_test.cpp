@@ -44,7 +44,7 @@ TEST_P(GasTest, SlabInFrontOfALamp) {
     SCOPED_TRACE(temperature);
     const std::string box = slab(0.5, 1.5, kNull + gas("interior", comb.text(), temperature));
     const RenderResult result =
-        render_valid(scene(4, straight_camera(4) + black_lamp(flat("radiance", kLamp)) + box), kBands,
+        render_valid(scene(4, straight_camera(4) + black_lamp(spectrum("radiance", kLamp)) + box), kBands,
                      GetParam(), {64, 31});
     expect_image_mean(result, expected(result, comb, kLamp, 1, temperature), 0.07);
   }
@@ -54,13 +54,13 @@ TEST_P(GasTest, SlabInFrontOfALamp) {
 /// over a diffuse plane shows rho I / (pi h^2) exp(-kappa d) beside the camera's own way.
 TEST_P(GasTest, ShadowRayThroughASlab) {
   const LineComb comb(2);
-  const std::string plane = shape("rectangle", bsdf("diffuse", flat("reflectance", 0.8)));
-  const std::string light = "<emitter type=\"point\">" + flat("intensity", kLamp) +
-                            "<point name=\"position\" value=\"3.0123, 0.0057, 4\"/></emitter>";
+  const std::string plane = shape("rectangle", diffuse(0.8));
+  const std::string light =
+      emitter("point", spectrum("intensity", kLamp) + number("point", "position", "3.0123, 0.0057, 4"));
   // The box stands beside the camera's view: from z = 1 to 3, x from 0.5 to 2.9.
   const std::string box =
-      shape("cube", to_world("<scale x=\"1.2\" y=\"1\" z=\"1\"/><translate x=\"1.7\" z=\"2\"/>") + kNull +
-                        gas("interior", comb.text()));
+      shape("cube", to_world(step("scale", "x='1.2' y='1' z='1'") + step("translate", "x='1.7' z='2'")) +
+                        kNull + gas("interior", comb.text()));
   const RenderResult result =
       render_valid(scene(2, straight_camera(4) + plane + light + box), kBands, GetParam(), {64, 32});
   // From (0.0123, 0) to (3.0123, 4): a straight line of length 5; z from 1 to 3 is its middle half.
@@ -76,9 +76,9 @@ double atmosphere_bias(const Mode& mode) {
 /// and its emission along the camera ray.
 TEST_P(GasTest, PointLightThroughAnAtmosphere) {
   const LineComb comb(0.3);
-  const std::string plane = shape("rectangle", bsdf("diffuse", flat("reflectance", 0.8)));
-  const std::string light = "<emitter type=\"point\">" + flat("intensity", 10 * kLamp) +
-                            "<point name=\"position\" value=\"3.0123, 0.0057, 4\"/></emitter>";
+  const std::string plane = shape("rectangle", diffuse(0.8));
+  const std::string light =
+      emitter("point", spectrum("intensity", 10 * kLamp) + number("point", "position", "3.0123, 0.0057, 4"));
   const RenderResult result =
       render_valid(scene(2, straight_camera(4) + plane + light + gas("atmosphere", comb.text(), 300)), kBands,
                    GetParam(), {64, 33});
@@ -97,14 +97,12 @@ TEST_P(GasTest, PointLightThroughAnAtmosphere) {
 /// kappa is flat here. Detectable bias: 0.5 %.
 TEST(Gas, AreaLightThroughAnAtmosphere) {
   constexpr double kKappa = 0.7;
-  const std::string plane =
-      shape("rectangle", to_world("<scale value=\"0.01\"/>") + bsdf("diffuse", flat("reflectance", 0.8)));
-  const std::string lamp =
-      shape("rectangle", to_world("<rotate x=\"1\" angle=\"180\"/><translate z=\"1\"/>") +
-                             bsdf("diffuse", flat("reflectance", 0)) + area_light(flat("radiance", 5)));
-  const std::string view = wide_sensor(lookat("0.3, 0, 0.4", "0, 0, 0"), 0.05, 8, 8);
+  const std::string plane = shape("rectangle", to_world(scale("0.01")) + diffuse(0.8));
+  const std::string light =
+      shape("rectangle", to_world(turn("x", "180") + step("translate", "z='1'")) + diffuse(0) + lamp(5));
+  const std::string view = perspective(lookat("0.3, 0, 0.4", "0, 0, 0"), 0.05, film(8));
   const RenderResult result =
-      render_valid(scene(2, view + plane + lamp + gas("atmosphere", flat("absorption", kKappa))),
+      render_valid(scene(2, view + plane + light + gas("atmosphere", spectrum("absorption", kKappa))),
                    "500-510, 600-610", {}, {64, 34});
   double irradiance = 0;
   constexpr int kParts = 100;
@@ -125,7 +123,7 @@ TEST(Gas, OpticalDepthsFromEmptyToBlack) {
   for (const double depth : {1e-8, 1e-4, 1e-2, 1.0, 30.0, 1e4}) {
     for (const Mode& mode : all_modes()) {
       SCOPED_TRACE(std::to_string(depth) + " " + name_of(mode));
-      const std::string box = slab(0.5, 1.5, kNull + gas("interior", flat("absorption", depth), 1000));
+      const std::string box = slab(0.5, 1.5, kNull + gas("interior", spectrum("absorption", depth), 1000));
       const RenderResult result = render_valid(scene(2, straight_camera(2) + black_wall() + box),
                                                "4500-4500.001, 9000-9000.001", mode, {2, 35});
       std::vector<double> values;
@@ -143,12 +141,11 @@ TEST_P(GasTest, IsothermalEnclosureShowsPlancksLaw) {
   for (const double reflectance : {0.0, 0.4}) {
     SCOPED_TRACE(reflectance);
     const std::string walls =
-        shape("cube", "<boolean name=\"flip_normals\" value=\"true\"/>" +
-                          bsdf("diffuse", flat("reflectance", reflectance)) +
-                          area_light("<spectrum name=\"radiance\" type=\"planck\">" +
-                                     number("float", "temperature", 400) +
-                                     number("float", "scale", 1 - reflectance) + "</spectrum>"));
-    const std::string view = perspective_sensor("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9", 60, 8);
+        shape("cube",
+              yes("flip_normals") + diffuse(reflectance) +
+                  emitter("area", "<spectrum name=\"radiance\" type=\"planck\">" + real("temperature", 400) +
+                                      real("scale", 1 - reflectance) + "</spectrum>"));
+    const std::string view = perspective(lookat("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9"), 60, film(8));
     const RenderResult result = render_valid(scene(-1, view + walls + gas("atmosphere", comb.text(), 400)),
                                              kBands, GetParam(), {16, 36});
     std::vector<double> values;
@@ -162,14 +159,14 @@ TEST_P(GasTest, IsothermalEnclosureShowsPlancksLaw) {
 ///   E = 2 pi L int exp(-kappa d / c) c dc = 2 pi L E_3(kappa d)
 /// Detectable bias: 0.5 %.
 TEST(Gas, EnvironmentThroughABox) {
-  const std::string plane = shape("rectangle", bsdf("diffuse", flat("reflectance", 0.7)));
+  const std::string plane = shape("rectangle", diffuse(0.7));
   const std::string box =
-      shape("cube", to_world("<scale x=\"200\" y=\"200\" z=\"0.5\"/><translate z=\"0.6\"/>") + kNull +
-                        gas("interior", flat("absorption", 0.5)));
-  const std::string view = wide_sensor(lookat("0.05, 0, 0.09", "0, 0, 0"), 0.05, 8, 8);
-  const RenderResult result = render_valid(
-      scene(2, view + plane + constant_environment(3) + box + gas("atmosphere", flat("absorption", 1e-3))),
-      "500-510, 600-610", {}, {64, 39});
+      shape("cube", to_world(step("scale", "x='200' y='200' z='0.5'") + step("translate", "z='0.6'")) +
+                        kNull + gas("interior", spectrum("absorption", 0.5)));
+  const std::string view = perspective(lookat("0.05, 0, 0.09", "0, 0, 0"), 0.05, film(8));
+  const RenderResult result =
+      render_valid(scene(2, view + plane + sky(3) + box + gas("atmosphere", spectrum("absorption", 1e-3))),
+                   "500-510, 600-610", {}, {64, 39});
   double transmitted = 0;  // 2 E_3(0.5)
   constexpr int kSteps = 20000;
   for (int i = 0; i < kSteps; ++i) {
@@ -185,12 +182,12 @@ TEST(Gas, EnvironmentThroughABox) {
 /// Detectable bias: 0.4 %, with independent offsets per path 3 %.
 TEST_P(GasTest, CorrelatedKOfOneGas) {
   const LineComb comb(2);
-  const std::string choice = "<string name=\"spectral\" value=\"correlated_k\"/>";
+  const std::string choice = text("spectral", "correlated_k");
   const std::string box = slab(
-      0.5, 1.5,
-      kNull + medium("absorbing", "interior", comb.text() + number("float", "temperature", 643.2) + choice));
-  const RenderResult result = render_valid(
-      scene(4, straight_camera(4) + black_lamp(flat("radiance", kLamp)) + box), kBands, GetParam(), {64, 40});
+      0.5, 1.5, kNull + medium("absorbing", "interior", comb.text() + real("temperature", 643.2) + choice));
+  const RenderResult result =
+      render_valid(scene(4, straight_camera(4) + black_lamp(spectrum("radiance", kLamp)) + box), kBands,
+                   GetParam(), {64, 40});
   const Mode mode = GetParam();
   const bool random =
       mode.wavelengths == WavelengthMode::kPerPath && mode.sampler == SamplerType::kIndependent;
@@ -199,8 +196,8 @@ TEST_P(GasTest, CorrelatedKOfOneGas) {
 
 /// A scene without gas is what it was: the same vertices, and no array for gas.
 TEST(Gas, ASceneWithoutGasHasNothingOfIt) {
-  const RenderResult result =
-      render_valid(scene(4, straight_camera(2) + black_lamp(flat("radiance", 5))), "500-510", {}, {2, 41});
+  const RenderResult result = render_valid(scene(4, straight_camera(2) + black_lamp(spectrum("radiance", 5))),
+                                           "500-510", {}, {2, 41});
   EXPECT_FALSE(result.scene.features.gas);
   EXPECT_TRUE(result.scene.media.empty());
   EXPECT_TRUE(result.scene.interiors.empty());

@@ -65,7 +65,7 @@ void expect_plume(const std::string& xml, const Field& field, double metres, dou
 }
 
 std::string view(const std::string& origin, const std::string& target) {
-  return wide_sensor(lookat(origin, target, "0.1, 1, 0.2"), 1e-4, 1, 1);
+  return perspective(lookat(origin, target, "0.1, 1, 0.2"), 1e-4, film(1));
 }
 
 struct Ray {
@@ -85,9 +85,8 @@ void expect_along(const Ray& ray, Point (*field)(double x, double y, double z), 
     const double t = s / length;
     return field(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2]));
   };
-  expect_plume(
-      scene(4, view(vec(a[0], a[1], a[2]), vec(b[0], b[1], b[2])) + constant_environment(kLamp) + cube),
-      along, length, kappa, hot, folder);
+  expect_plume(scene(4, view(point(a[0], a[1], a[2]), point(b[0], b[1], b[2])) + sky(kLamp) + cube), along,
+               length, kappa, hot, folder);
 }
 
 constexpr double kHot = 1800, kCold = 290, kRadius = 0.3, kSpread = 0.12, kLength = 6;
@@ -100,9 +99,8 @@ Point jet(double x, double y, double z) {
 
 std::string jet_medium(double kappa) {
   return medium("plume", "interior",
-                flat("absorption", kappa) + number("float", "temperature", kHot) +
-                    number("float", "ambient", kCold) + number("float", "radius", kRadius) +
-                    number("float", "spread", kSpread) + number("float", "length", kLength));
+                spectrum("absorption", kappa) + real("temperature", kHot) + real("ambient", kCold) +
+                    real("radius", kRadius) + real("spread", kSpread) + real("length", kLength));
 }
 
 /// Across the jet near its nozzle and far from it, and along it, thin to thick.
@@ -112,7 +110,7 @@ TEST(Plume, JetAgainstFineQuadrature) {
       {{5, 0.1, 0.5}, {-5, 0.1, 0.5}}, {{5, -0.2, 4.5}, {-5, 0.3, 4.2}}, {{0.1, 0.05, 9}, {-0.02, 0, -3}}};
   for (const double kappa : {1e-3, 0.3, 3.0, 300.0}) {
     const std::string cube =
-        shape("cube", to_world("<scale value=\"4\"/><translate z=\"3\"/>") + kNull + jet_medium(kappa));
+        shape("cube", to_world(scale("4") + step("translate", "z='3'")) + kNull + jet_medium(kappa));
     for (const Ray& ray : rays) expect_along(ray, jet, cube, kappa, kHot);
   }
 }
@@ -174,14 +172,11 @@ TEST(Plume, GridAgainstFineQuadrature) {
                       {{0.5, -0.2, 3}, {0.5, -0.2, -3}}};
   for (const double kappa : {1e-3, 0.5, 50.0}) {
     const std::string cube =
-        shape("cube",
-              to_world("<scale value=\"1.5\"/>") + kNull +
-                  medium("plume", "interior",
-                         flat("absorption", kappa) +
-                             "<string name=\"field\" value=\"grid\"/>"
-                             "<string name=\"nodes\" value=\"5, 4, 6\"/>"
-                             "<string name=\"filename\" value=\"plume.txt\"/>" +
-                             to_world("<translate x=\"-0.5\" y=\"-0.5\" z=\"-0.5\"/><scale value=\"2\"/>")));
+        shape("cube", to_world(scale("1.5")) + kNull +
+                          medium("plume", "interior",
+                                 spectrum("absorption", kappa) + text("field", "grid") +
+                                     text("nodes", "5, 4, 6") + text("filename", "plume.txt") +
+                                     to_world(step("translate", "x='-0.5' y='-0.5' z='-0.5'") + scale("2"))));
     for (const Ray& ray : rays) expect_along(ray, lattice, cube, kappa, hottest, folder.path());
   }
 }
@@ -190,18 +185,17 @@ TEST(Plume, GridAgainstFineQuadrature) {
 TEST(Plume, ShadowRayTakesTheColumn) {
   constexpr double kKappa = 0.8;
   const std::string plane =
-      shape("rectangle", to_world("<rotate y=\"1\" angle=\"90\"/><translate x=\"-3\" z=\"2\"/>") +
-                             bsdf("diffuse", flat("reflectance", 0.5)));
+      shape("rectangle", to_world(turn("y", "90") + step("translate", "x='-3' z='2'")) + diffuse(0.5));
   // So cold that it emits nothing here.
   const std::string cold =
       medium("plume", "interior",
-             flat("absorption", kKappa) + number("float", "temperature", 2) + number("float", "ambient", 1) +
-                 number("float", "radius", kRadius) + number("float", "spread", kSpread) +
-                 number("float", "length", kLength));
-  const std::string box = shape(
-      "cube", to_world("<scale x=\"2\" y=\"4\" z=\"4\"/><translate x=\"0.5\" z=\"3\"/>") + kNull + cold);
-  const std::string light = "<emitter type=\"point\">" + flat("intensity", 1) +
-                            "<point name=\"position\" value=\"4, 0.1, 2\"/></emitter>";
+             spectrum("absorption", kKappa) + real("temperature", 2) + real("ambient", 1) +
+                 real("radius", kRadius) + real("spread", kSpread) + real("length", kLength));
+  const std::string box =
+      shape("cube",
+            to_world(step("scale", "x='2' y='4' z='4'") + step("translate", "x='0.5' z='3'")) + kNull + cold);
+  const std::string light =
+      emitter("point", spectrum("intensity", 1) + number("point", "position", "4, 0.1, 2"));
   const std::string camera = view("-2, 0.1, 2", "-3, 0.1, 2");
   const RenderResult result = render_valid(scene(2, camera + plane + light + box), "500-500.01", {}, {2, 52});
   const Integrated along = integrate(

@@ -138,16 +138,14 @@ f 4 6 5
 )";
 
 std::string prism_scene() {
-  const std::string camera =
-      wide_sensor(lookat(vec(kCamera.x, 0, kCamera.z), vec(kEntry.x, 0, kEntry.z)), kFieldOfView, kPixels, 1);
+  const std::string camera = perspective(lookat(point(kCamera.x, 0, kCamera.z), point(kEntry.x, 0, kEntry.z)),
+                                         kFieldOfView, film(size(kPixels, 1)));
   const std::string prism =
-      shape("obj",
-            "<string name=\"filename\" value=\"prism.obj\"/><boolean name=\"face_normals\" value=\"true\"/>" +
-                glass("dielectric"));
+      shape("obj", text("filename", "prism.obj") + yes("face_normals") + glass("dielectric"));
   const std::string slit =
-      shape("rectangle", to_world("<scale value=\"" + vec(kHalfSlit, 100, 1) + "\"/>" +
-                                  lookat(vec(kSlit.x, 0, kSlit.z), vec(kExit.x, 0, kExit.z))) +
-                             area_light(flat("radiance", kRadiance)));
+      shape("rectangle", to_world(scale(point(kHalfSlit, 100, 1)) +
+                                  lookat(point(kSlit.x, 0, kSlit.z), point(kExit.x, 0, kExit.z))) +
+                             lamp(kRadiance));
   return scene(3, camera + prism + slit);  // entry, exit, slit: no inner reflections
 }
 

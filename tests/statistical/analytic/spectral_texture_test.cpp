@@ -37,22 +37,16 @@ Knots knots(const std::vector<double>& values) {
 const std::vector<double> kFirst{0.1, 0.9, 0.3, 0.7};
 const std::vector<double> kSecond{0.8, 0.2, 0.6, 0.1};
 
-std::string text_parameter(const std::string& name, const std::string& value) {
-  return "<string name=\"" + name + "\" value=\"" + value + "\"/>";
-}
-
 std::string spectral(const std::string& name, const std::string& content) {
   return "<texture name=\"" + name + "\" type=\"spectral_bitmap\">" + content + "</texture>";
 }
 
 std::string spectral_sky(const std::string& file, const std::string& more = "") {
-  return "<emitter type=\"spectral_envmap\">" + text_parameter("filename", file) + more +
-         to_world("<rotate x=\"1\" angle=\"90\"/>") + "</emitter>";
+  return emitter("spectral_envmap", text("filename", file) + more + to_world(turn("x", "90")));
 }
 
 std::string sun() {
-  return "<emitter type=\"directional\"><vector name=\"direction\" value=\"0, 0, -1\"/>" +
-         flat("irradiance", kPi) + "</emitter>";
+  return emitter("directional", number("vector", "direction", "0, 0, -1") + spectrum("irradiance", kPi));
 }
 
 std::string square(const std::string& reflectance, const std::string& light, int depth = 2) {
@@ -69,11 +63,11 @@ TEST_P(SpectralTextureTest, ConstantEnvironmentEqualsTheConstantEmitter) {
     return std::vector<double>{2, 5, 1, 3}[b];
   });
   const Effort effort{16, 91};
-  const std::string emitter = "<emitter type=\"constant\">" + radiance.text("radiance") + "</emitter>";
+  const std::string light = emitter("constant", radiance.text("radiance"));
   const RenderResult map = render_valid(square(reflectance.text("reflectance"), spectral_sky("sky.exr")),
                                         kBands, GetParam(), effort, folder.path());
   const RenderResult constant =
-      render_valid(square(reflectance.text("reflectance"), emitter), kBands, GetParam(), effort);
+      render_valid(square(reflectance.text("reflectance"), light), kBands, GetParam(), effort);
   const auto expected = channel_integrals([&](double nm) { return reflectance(nm) * radiance(nm); }, map);
   expect_image_mean(map, expected, 0.005);
   expect_image_mean(constant, expected, 0.005);
@@ -89,8 +83,8 @@ TEST_P(SpectralTextureTest, OneBrightTexelOfAnEnvironment) {
         [](uint32_t x, uint32_t y, std::size_t b) { return x == 2 && y == 1 ? 10 * kFirst[b] : 0; },
         Quantity::kIntegral);
     const RenderResult result =
-        render_valid(square(flat("reflectance", 0.6), spectral_sky(file, number("float", "scale", 3))),
-                     kBands, GetParam(), {16, 92}, folder.path());
+        render_valid(square(spectrum("reflectance", 0.6), spectral_sky(file, real("scale", 3))), kBands,
+                     GetParam(), {16, 92}, folder.path());
     expect_image_mean(
         result, channel_integrals([&](double nm) { return 0.6 / kPi * 30 * radiance(nm) * 2 / 8; }, result),
         0.01);
@@ -104,9 +98,9 @@ TEST_P(SpectralTextureTest, MeanOfAnImageIsTheMeanOfItsSpectra) {
   const Knots first = knots(kFirst), second = knots(kSecond);
   for (const char* filter : {"bilinear", "nearest"}) {
     SCOPED_TRACE(filter);
-    const std::string texture = spectral("reflectance", text_parameter("filename", "image.exr") +
-                                                            text_parameter("filter_type", filter) +
-                                                            text_parameter("wrap_mode", "mirror"));
+    const std::string texture =
+        spectral("reflectance",
+                 text("filename", "image.exr") + text("filter_type", filter) + text("wrap_mode", "mirror"));
     const RenderResult result =
         render_valid(square(texture, sun()), kBands, GetParam(), {4, 93}, folder.path());
     expect_image_mean(
@@ -120,16 +114,14 @@ TEST_P(SpectralTextureTest, OneTexelEqualsTheSameReflectanceInline) {
   write_cube(folder.path() / "one.exr", 1, 1, kImageBands,
              [](uint32_t, uint32_t, std::size_t b) { return kFirst[b]; });
   const auto room = [&](const std::string& reflectance) {
-    return square(
-        reflectance,
-        constant_environment(2) + shape("sphere", to_world("<scale value=\"0.4\"/><translate z=\"0.5\"/>") +
-                                                      bsdf("diffuse", reflectance)),
-        6);
+    return square(reflectance,
+                  sky(2) + shape("sphere", to_world(scale("0.4") + step("translate", "z='0.5'")) +
+                                               bsdf("diffuse", reflectance)),
+                  6);
   };
   const Effort effort{2, 94, 8};
-  const RenderResult texture =
-      render_valid(room(spectral("reflectance", text_parameter("filename", "one.exr"))), "400:660:26",
-                   GetParam(), effort, folder.path());
+  const RenderResult texture = render_valid(room(spectral("reflectance", text("filename", "one.exr"))),
+                                            "400:660:26", GetParam(), effort, folder.path());
   const RenderResult inline_spectrum =
       render_valid(room(knots(kFirst).text("reflectance")), "400:660:26", GetParam(), effort);
   ASSERT_EQ(texture.mean.size(), inline_spectrum.mean.size());
@@ -147,8 +139,8 @@ TEST_P(SpectralTextureTest, EndmembersMixByTheirWeights) {
   for (const char* file : {"weights.pfm", "weights.hdr"}) {
     SCOPED_TRACE(file);
     const std::string texture =
-        spectral("reflectance", text_parameter("weights", file) + first.text("endmember_0") +
-                                    second.text("endmember_1") + flat("endmember_2", 0.5));
+        spectral("reflectance", text("weights", file) + first.text("endmember_0") +
+                                    second.text("endmember_1") + spectrum("endmember_2", 0.5));
     const RenderResult result =
         render_valid(square(texture, sun()), kBands, GetParam(), {4, 95}, folder.path());
     expect_image_mean(
@@ -165,13 +157,13 @@ TEST_P(SpectralTextureTest, EmissionOfAnAreaLight) {
   write_cube(folder.path() / "one.exr", 1, 1, kImageBands,
              [&](uint32_t, uint32_t, std::size_t b) { return glow[b]; });
   folder.write("two.pfm", pfm_image(1, 1, 1, {2.0f}));
-  const std::string textures[] = {spectral("radiance", text_parameter("filename", "one.exr")),
-                                  spectral("radiance", text_parameter("weights", "two.pfm") +
-                                                           knots({10, 0.25, 3.5, 1.5}).text("endmember_0"))};
+  const std::string textures[] = {
+      spectral("radiance", text("filename", "one.exr")),
+      spectral("radiance", text("weights", "two.pfm") + knots({10, 0.25, 3.5, 1.5}).text("endmember_0"))};
   for (const std::string& texture : textures) {
     const RenderResult result =
-        render_valid(scene(1, plane_sensor(8) + shape("rectangle", area_light(texture))), kBands, GetParam(),
-                     {4, 96}, folder.path());
+        render_valid(scene(1, plane_sensor(8) + shape("rectangle", emitter("area", texture))), kBands,
+                     GetParam(), {4, 96}, folder.path());
     const Knots radiance = knots(glow);
     expect_image_mean(result, channel_integrals([&](double nm) { return radiance(nm); }, result), 0.05);
   }
@@ -184,11 +176,11 @@ TEST(SpectralTextures, BeyondTheBands) {
              [](uint32_t, uint32_t, std::size_t b) { return kFirst[b]; });
   const auto value = [&](const std::string& more) {
     const RenderResult result =
-        render_valid(square(spectral("reflectance", text_parameter("filename", "one.exr") + more), sun()),
+        render_valid(square(spectral("reflectance", text("filename", "one.exr") + more), sun()),
                      "380-390, 396-400, 700-715, 730-740", {}, {2, 97, 2}, folder.path());
     return result.image_mean;
   };
-  const auto zero = value(""), continued = value("<boolean name=\"extrapolate\" value=\"true\"/>");
+  const auto zero = value(""), continued = value(yes("extrapolate"));
   const double expected[] = {0, 4 * 0.1, 15 * 0.7, 0}, more[] = {10 * 0.1, 4 * 0.1, 15 * 0.7, 10 * 0.7};
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_NEAR(zero[k], expected[k], kRounding * expected[k]) << k;

@@ -24,8 +24,7 @@ constexpr double kPi = std::numbers::pi;
 const char* const kBands = "400-420, 500-510, 690-700";
 
 std::string sun(const std::string& spectrum) {
-  return "<emitter type=\"directional\"><vector name=\"direction\" value=\"0, 0, -1\"/>" + spectrum +
-         "</emitter>";
+  return emitter("directional", number("vector", "direction", "0, 0, -1") + spectrum);
 }
 
 std::string square_scene(const std::string& reflectance, const std::string& light) {
@@ -54,8 +53,9 @@ TEST_P(BitmapTest, MeanOfAGreyImageIsTheMeanOfItsTexels) {
       SCOPED_TRACE(filter + std::string(" ") + wrap);
       const std::string options = std::string("<string name=\"filter_type\" value=\"") + filter +
                                   "\"/><string name=\"wrap_mode\" value=\"" + wrap + "\"/>";
-      const RenderResult result = render_valid(square_scene(bitmap(options), sun(flat("irradiance", kPi))),
-                                               kBands, GetParam(), {4, 81}, folder.path());
+      const RenderResult result =
+          render_valid(square_scene(bitmap(options), sun(spectrum("irradiance", kPi))), kBands, GetParam(),
+                       {4, 81}, folder.path());
       expect_image_mean(result, channel_integrals([=](double) { return mean; }, result), 0.005);
     }
   }
@@ -66,9 +66,9 @@ TEST_P(BitmapTest, MeanOfAGreyImageIsTheMeanOfItsTexels) {
 TEST(Textures, RowsOfABitmapLieAlongV) {
   const TemporaryFolder folder;
   folder.write("image.pfm", pfm_image(2, 2, 1, {0.9f, 0.7f, 0.3f, 0.1f}));
-  const RenderResult result = render_valid(
-      square_scene(bitmap("<string name=\"filter_type\" value=\"nearest\"/>"), sun(flat("irradiance", kPi))),
-      kBands, {}, {4, 82}, folder.path());
+  const RenderResult result =
+      render_valid(square_scene(bitmap(text("filter_type", "nearest")), sun(spectrum("irradiance", kPi))),
+                   kBands, {}, {4, 82}, folder.path());
   // The camera looks down with +y up and +x to the right. The rectangle has v = (y + 1) / 2, so the film's
   // top row, y = +1, shows the image's bottom row.
   const auto expect_at = [&](uint32_t x, uint32_t y, double value) {
@@ -90,7 +90,7 @@ TEST(Textures, CheckerboardMean) {
                               std::to_string(repeat) + "\" y=\"" + std::to_string(repeat) +
                               "\"/></transform></texture>";
     const RenderResult result =
-        render_valid(square_scene(board, sun(flat("irradiance", kPi))), kBands, {}, {16, 83});
+        render_valid(square_scene(board, sun(spectrum("irradiance", kPi))), kBands, {}, {16, 83});
     const auto expected = channel_integrals([&](double nm) { return (first(nm) + second(nm)) / 2; }, result);
     expect_image_mean(result, expected, 0.005);
   }
@@ -118,8 +118,8 @@ std::vector<std::pair<std::string, Spectrum>> colour_responses() {
 void expect_colour(const std::string& reflectance, const Rgb& colour, double residual,
                    const std::filesystem::path& folder = ".") {
   RenderSpec spec;
-  spec.xml = square_scene(reflectance, sun("<spectrum name=\"irradiance\" type=\"d65\">" +
-                                           number("float", "scale", kPi) + "</spectrum>"));
+  spec.xml = square_scene(
+      reflectance, sun("<spectrum name=\"irradiance\" type=\"d65\">" + real("scale", kPi) + "</spectrum>"));
   spec.bands = "360:830:94";
   spec.directory = folder;
   spec.threads = 1;
@@ -146,8 +146,8 @@ TEST(Colours, RgbReflectanceUnderD65GivesBackTheColour) {
                             {0.5, 0.5, 0.5},
                             {1, 1, 1},
                             {0.3, 0.7, 0.9}}) {
-    SCOPED_TRACE(vec(colour[0], colour[1], colour[2]));
-    expect_colour("<rgb name=\"reflectance\" value=\"" + vec(colour[0], colour[1], colour[2]) + "\"/>",
+    SCOPED_TRACE(point(colour[0], colour[1], colour[2]));
+    expect_colour("<rgb name=\"reflectance\" value=\"" + point(colour[0], colour[1], colour[2]) + "\"/>",
                   colour, 3e-4);
   }
 }

@@ -66,22 +66,19 @@ double emissivity(const Plate& p, double theta, std::complex<double> index) {
 }
 
 std::string material(const Plate& p, double n, double k) {
-  const std::string index = flat("eta", n) + flat("k", k);
+  const std::string index = spectrum("eta", n) + spectrum("k", k);
   if (p.alpha_u == 0) return bsdf("conductor", index);
-  const std::string alpha =
-      p.alpha_u == p.alpha_v ? number("float", "alpha", p.alpha_u)
-                             : number("float", "alpha_u", p.alpha_u) + number("float", "alpha_v", p.alpha_v);
+  const std::string alpha = p.alpha_u == p.alpha_v ? real("alpha", p.alpha_u)
+                                                   : real("alpha_u", p.alpha_u) + real("alpha_v", p.alpha_v);
   return bsdf("roughconductor", std::string("<string name=\"distribution\" value=\"") +
                                     (p.ggx ? "ggx" : "beckmann") + "\"/>" + alpha + index);
 }
 
 std::string view(double theta, const std::string& bsdf_text) {
   const std::string eye =
-      vec(5 * std::sin(theta) * std::cos(kPhi), 5 * std::sin(theta) * std::sin(kPhi), 5 * std::cos(theta));
-  return scene(-1, wide_sensor(lookat(eye, "0, 0, 0", "0.1, 0.2, 0.9"), 0.01, 4, 4) +
-                       shape("rectangle", to_world("<scale value=\"10, 10, 1\"/>") + bsdf_text +
-                                              "<emitter type=\"thermal\">" +
-                                              number("float", "temperature", 300) + "</emitter>"));
+      point(5 * std::sin(theta) * std::cos(kPhi), 5 * std::sin(theta) * std::sin(kPhi), 5 * std::cos(theta));
+  return scene(-1, perspective(lookat(eye, "0, 0, 0", "0.1, 0.2, 0.9"), 0.01, film(4)) +
+                       shape("rectangle", to_world(scale("10, 10, 1")) + bsdf_text + thermal(300)));
 }
 
 /// n, k of aluminium at 10 um (Rakic 1995: 25, 90) and in the visible (0.96, 6.7). Far below 1 at 10 um,
@@ -121,9 +118,7 @@ TEST(Emissivity, RoughMirrorsReflectEverything) {
       SCOPED_TRACE(std::to_string(plate.alpha_u) + " x " + std::to_string(plate.alpha_v) + " at " +
                    std::to_string(degrees));
       std::string text = view(degrees * kPi / 180, material(plate, 0, 1));
-      const std::string sky =
-          "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"1\"/></emitter></scene>";
-      text.replace(text.find("</scene>"), 8, sky);
+      text.replace(text.find("</scene>"), 8, sky(1) + "</scene>");
       const RenderResult result = render_valid(text, "10000-10001", {}, {256, 62});
       expect_image_mean(result, {1.0}, 0.003);
     }

@@ -19,34 +19,27 @@ namespace {
 const char* const kBands = "400-402, 1000-1010, 4000-4050, 10000-10200, 19700-20000";
 constexpr double kTemperature = 700;
 
-const char* const kInwards = "<boolean name=\"flip_normals\" value=\"true\"/>";
 /// A metal that absorbs some: tungsten-like in the visible, towards aluminium in the infrared.
-const char* const kMetal =
-    "<spectrum name=\"eta\" value=\"380:3.5, 1000:3, 4000:3, 20000:40\"/>"
-    "<spectrum name=\"k\" value=\"380:2.8, 1000:3.6, 4000:16, 20000:80\"/>";
-const char* const kGrey = "<spectrum name=\"reflectance\" value=\"380:0.2, 4000:0.7, 20000:0.4\"/>";
+const std::string kMetal = spectrum("eta", "380:3.5, 1000:3, 4000:3, 20000:40") +
+                           spectrum("k", "380:2.8, 1000:3.6, 4000:16, 20000:80");
+const std::string kGrey = spectrum("reflectance", "380:0.2, 4000:0.7, 20000:0.4");
 
 std::string rough(const std::string& type, const std::string& distribution, double alpha_u, double alpha_v,
                   const std::string& more = "") {
-  const std::string alpha = alpha_u == alpha_v
-                                ? number("float", "alpha", alpha_u)
-                                : number("float", "alpha_u", alpha_u) + number("float", "alpha_v", alpha_v);
-  return bsdf(type, "<string name=\"distribution\" value=\"" + distribution + "\"/>" + alpha + more);
-}
-
-std::string thermal(double temperature_k) {
-  return "<emitter type=\"thermal\">" + number("float", "temperature", temperature_k) + "</emitter>";
+  const std::string alpha =
+      alpha_u == alpha_v ? real("alpha", alpha_u) : real("alpha_u", alpha_u) + real("alpha_v", alpha_v);
+  return bsdf(type, text("distribution", distribution) + alpha + more);
 }
 
 std::string ball(const std::string& content) {
-  return shape("sphere", "<point name=\"center\" x=\"0\" y=\"0\" z=\"-0.4\"/>" +
-                             number("float", "radius", 0.4) + content);
+  return shape("sphere",
+               "<point name=\"center\" x=\"0\" y=\"0\" z=\"-0.4\"/>" + real("radius", 0.4) + content);
 }
 std::string box(const std::string& content) {
   return shape("cube", kInwards + content);
 }
 std::string sheet(const std::string& content) {
-  return shape("rectangle", to_world("<scale value=\"0.5\"/><rotate y=\"1\" angle=\"140\"/>") + content);
+  return shape("rectangle", to_world(scale("0.5") + turn("y", "140")) + content);
 }
 
 struct Enclosure {
@@ -57,10 +50,9 @@ struct Enclosure {
 
 std::vector<Enclosure> enclosures() {
   const std::string grey = bsdf("diffuse", kGrey);
-  const std::string tinted = "<spectrum name=\"specular_reflectance\" value=\"380:0.9, 20000:0.6\"/>";
-  const std::string colour =
-      "<spectrum name=\"diffuse_reflectance\" value=\"380:0.8, 4000:0.3, 20000:0.6\"/>";
-  const std::string nonlinear = "<boolean name=\"nonlinear\" value=\"true\"/>";
+  const std::string tinted = spectrum("specular_reflectance", "380:0.9, 20000:0.6");
+  const std::string colour = spectrum("diffuse_reflectance", "380:0.8, 4000:0.3, 20000:0.6");
+  const std::string nonlinear = yes("nonlinear");
   const std::string board =
       bsdf("diffuse",
            "<texture type=\"checkerboard\" name=\"reflectance\"><transform name=\"to_uv\"><scale "
@@ -79,12 +71,12 @@ std::vector<Enclosure> enclosures() {
       {"rough plastic", rough("roughplastic", "ggx", 0.3, 0.3, colour), ""},
       {"nonlinear rough plastic", rough("roughplastic", "beckmann", 0.2, 0.2, colour + nonlinear), ""},
       {"glass", grey, bsdf("dielectric", "")},
-      {"absorbing glass", grey, bsdf("dielectric", tinted + flat("specular_transmittance", 0.7))},
+      {"absorbing glass", grey, bsdf("dielectric", tinted + spectrum("specular_transmittance", 0.7))},
       {"rough glass", grey, rough("roughdielectric", "ggx", 0.4, 0.4)},
       {"absorbing rough glass", grey,
-       rough("roughdielectric", "beckmann", 0.3, 0.3, flat("specular_transmittance", 0.7))},
+       rough("roughdielectric", "beckmann", 0.3, 0.3, spectrum("specular_transmittance", 0.7))},
       {"anisotropic rough glass", grey, rough("roughdielectric", "ggx", 0.1, 0.4)},
-      {"mask", grey, bsdf("mask", number("float", "opacity", 0.6) + bsdf("twosided", grey))},
+      {"mask", grey, bsdf("mask", real("opacity", 0.6) + bsdf("twosided", grey))},
       {"two sides", grey,
        bsdf("twosided", bsdf("plastic", colour) + rough("roughconductor", "ggx", 0.3, 0.3, kMetal)), true},
       {"black back", grey, rough("roughplastic", "ggx", 0.2, 0.2, colour), true},
@@ -99,7 +91,7 @@ std::vector<double> planck_integrals(const RenderResult& result, double temperat
 }
 
 std::string camera() {
-  return perspective_sensor("0.3, -0.2, 0.9", "-0.2, 0.1, -0.9", 60, 8);
+  return perspective(lookat("0.3, -0.2, 0.9", "-0.2, 0.1, -0.9"), 60, film(8));
 }
 
 /// interior: what is in the object, which has none if it is a sheet.
@@ -130,8 +122,8 @@ TEST_P(Isothermal, LightsGivePlancksLaw) {
 /// The same full of gas, and another gas in the object: nothing changes. Detectable bias: 2 %.
 TEST_P(Isothermal, GasGivesPlancksLaw) {
   const Enclosure e = enclosures()[GetParam()];
-  const std::string air = "<spectrum name=\"absorption\" value=\"380:0.1, 4000:3, 10000:0.01, 20000:0.5\"/>";
-  const std::string inside = "<spectrum name=\"absorption\" value=\"380:2, 4000:0.1, 20000:8\"/>";
+  const std::string air = spectrum("absorption", "380:0.1, 4000:3, 10000:0.01, 20000:0.5");
+  const std::string inside = spectrum("absorption", "380:2, 4000:0.1, 20000:8");
   const bool lets_light_in = e.object.find("dielectric") != std::string::npos;
   const std::string xml =
       isothermal(e, true, lets_light_in ? gas("interior", inside, kTemperature) : std::string());
@@ -179,9 +171,8 @@ TEST(IsothermalModes, PicturesGivePlancksLaw) {
 TEST(IsothermalModes, ColdEnclosuresDoNotUnderflow) {
   for (const double temperature : {200.0, 6000.0}) {
     SCOPED_TRACE(temperature);
-    const RenderResult result = render_valid(
-        scene(-1, camera() + box(bsdf("diffuse", flat("reflectance", 0.4))) + thermal(temperature)),
-        "299.9-300.1, 10000-10010, 19990-20000", {}, {24, 55});
+    const RenderResult result = render_valid(scene(-1, camera() + box(diffuse(0.4)) + thermal(temperature)),
+                                             "299.9-300.1, 10000-10010, 19990-20000", {}, {24, 55});
     expect_image_mean(result, planck_integrals(result, temperature), 0.01);
     EXPECT_GT(result.image_mean[0], 0);
   }
@@ -203,12 +194,10 @@ TEST(IsothermalFields, GivePlancksLaw) {
   const std::string by_image =
       "<emitter type=\"thermal\"><texture type=\"bitmap\" name=\"temperature\"><string name=\"filename\" "
       "value=\"kelvin.pfm\"/></texture></emitter>";
-  const std::string by_vertex =
-      "<emitter type=\"thermal\"><string name=\"temperature_attribute\" value=\"kelvin\"/></emitter>";
-  const std::string file =
-      "<string name=\"filename\" value=\"box.ply\"/><boolean name=\"face_normals\" value=\"true\"/>";
+  const std::string by_vertex = emitter("thermal", text("temperature_attribute", "kelvin"));
+  const std::string file = text("filename", "box.ply") + yes("face_normals");
   const std::string metal =
-      rough("roughconductor", "ggx", 0.3, 0.3, kMetal + flat("specular_reflectance", 0.6));
+      rough("roughconductor", "ggx", 0.3, 0.3, kMetal + spectrum("specular_reflectance", 0.6));
   const std::string shapes[] = {box(bsdf("diffuse", kGrey) + by_image),
                                 shape("ply", kInwards + file + bsdf("diffuse", kGrey) + by_vertex),
                                 shape("ply", kInwards + file + metal + by_vertex)};

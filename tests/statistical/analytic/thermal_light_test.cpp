@@ -22,18 +22,14 @@ namespace {
 const char* const kBands = "4000-4010, 10000-10020";
 constexpr double kHot = 800, kRho = 0.6, kEmissivity = 0.7;
 
-std::string thermal(double temperature_k) {
-  return "<emitter type=\"thermal\">" + number("float", "temperature", temperature_k) + "</emitter>";
-}
-
 std::string grey(double reflectance) {
-  return bsdf("diffuse", flat("reflectance", reflectance));
+  return diffuse(reflectance);
 }
 
 /// Looks at the origin of a plane z = 0 from below the light, at a slant.
 std::string receiver() {
-  return wide_sensor(lookat("3, 0, 1.5", "0, 0, 0", "0, 0, 1"), 0.05, 4, 4) +
-         shape("rectangle", to_world("<scale value=\"3\"/>") + grey(kRho) + thermal(0));
+  return perspective(lookat("3, 0, 1.5", "0, 0, 0", "0, 0, 1"), 0.05, film(4)) +
+         shape("rectangle", to_world(scale("3")) + grey(kRho) + thermal(0));
 }
 
 std::vector<double> reflected(const RenderResult& result, double view_factor, double emissivity) {
@@ -47,17 +43,15 @@ std::vector<double> reflected(const RenderResult& result, double view_factor, do
 /// be seen past it). Detectable bias: 1 %, by BSDF samples alone 3 %.
 TEST(ThermalLight, SphereAboveALambertianReceiver) {
   const double r = 0.5, h = 1.5;
-  const std::string sphere =
-      "<point name=\"center\" x=\"0\" y=\"0\" z=\"1.5\"/>" + number("float", "radius", r);
+  const std::string sphere = number("point", "center", "0, 0, 1.5") + real("radius", r);
   const double factor = r * r / (h * h);
   const RenderResult light =
       render_valid(scene(2, receiver() + shape("sphere", sphere + grey(1 - kEmissivity) + thermal(kHot))),
                    kBands, {}, {64, 71});
   expect_image_mean(light, reflected(light, factor, kEmissivity), 0.01);
-  const RenderResult ambient =
-      render_valid(scene(2, receiver() + shape("sphere", sphere + grey(1 - kEmissivity)) + thermal(kHot) +
-                                constant_environment(0)),
-                   kBands, {}, {256, 72});
+  const RenderResult ambient = render_valid(
+      scene(2, receiver() + shape("sphere", sphere + grey(1 - kEmissivity)) + thermal(kHot) + sky(0)), kBands,
+      {}, {256, 72});
   EXPECT_EQ(ambient.scene.emitters.size(), 1u);  // the dark environment; the sphere is no light
   expect_image_mean(ambient, reflected(ambient, factor, kEmissivity), 0.03);
 }
@@ -68,10 +62,9 @@ TEST(ThermalLight, DiskShowsItsFrontOrItsBlackBack) {
   const double r = 0.8, h = 1.2;
   for (const bool front : {true, false}) {
     SCOPED_TRACE(front);
-    const std::string turn = front ? "<rotate x=\"1\" angle=\"180\"/>" : "";
-    const std::string disk =
-        shape("disk", to_world("<scale value=\"0.8\"/>" + turn + "<translate z=\"1.2\"/>") +
-                          grey(1 - kEmissivity) + thermal(kHot));
+    const std::string way = front ? turn("x", "180") : "";
+    const std::string disk = shape("disk", to_world(scale("0.8") + way + step("translate", "z='1.2'")) +
+                                               grey(1 - kEmissivity) + thermal(kHot));
     const RenderResult result = render_valid(scene(2, receiver() + disk), kBands, {}, {64, 73});
     expect_image_mean(result, reflected(result, r * r / (r * r + h * h), front ? kEmissivity : 1), 0.01);
   }
@@ -83,7 +76,7 @@ TEST(ThermalLight, DiskShowsItsFrontOrItsBlackBack) {
 TEST(ThermalLight, MeshAboveALambertianReceiver) {
   const double x = 0.7 / 1.3, root = std::sqrt(1 + x * x);
   const double factor = 4 / std::numbers::pi * x / root * std::atan(x / root);
-  const std::string square = shape("rectangle", to_world("<scale value=\"0.7\"/><translate z=\"1.3\"/>") +
+  const std::string square = shape("rectangle", to_world(scale("0.7") + step("translate", "z='1.3'")) +
                                                     bsdf("twosided", grey(1 - kEmissivity)) + thermal(kHot));
   const RenderResult result = render_valid(scene(2, receiver() + square), kBands, {}, {64, 74});
   expect_image_mean(result, reflected(result, factor, kEmissivity), 0.01);
@@ -93,24 +86,21 @@ TEST(ThermalLight, MeshAboveALambertianReceiver) {
 /// the ambient background, an environment, is not.
 TEST(ThermalLight, HideEmitters) {
   const auto image_of = [](const std::string& body) {
-    std::string text = scene(1, perspective_sensor("0, 0, 3", "0, 0, 0", 20, 4) + body);
-    const std::string path = "<integrator type=\"path\">";
-    text.replace(text.find(path), path.size(), path + "<boolean name=\"hide_emitters\" value=\"true\"/>");
-    return render_valid(text, kBands, {}, {4, 75});
+    const std::string view = perspective(lookat("0, 0, 3", "0, 0, 0"), 20, film(4));
+    return render_valid(scene(1, view + body, yes("hide_emitters")), kBands, {}, {4, 75});
   };
   const std::string plate = grey(0.5);
   EXPECT_EQ(image_of(shape("rectangle", plate + thermal(kHot))).image_mean[0], 0);
   const RenderResult ambient = image_of(shape("rectangle", plate) + thermal(kHot));
   EXPECT_NEAR(ambient.image_mean[0], 0.5 * planck_integral(4000, 4010, kHot), 1e-3 * ambient.image_mean[0]);
-  EXPECT_EQ(image_of(shape("sphere", "<point name=\"center\" x=\"50\" y=\"0\" z=\"0\"/>") + thermal(kHot))
-                .image_mean[0],
+  EXPECT_EQ(image_of(shape("sphere", number("point", "center", "50, 0, 0")) + thermal(kHot)).image_mean[0],
             0);
 }
 
 /// Past all shapes a black body of the ambient temperature is seen. Detectable bias: 0.2 %.
 TEST(ThermalLight, AmbientTemperatureIsTheBackground) {
   const RenderResult result = render_valid(
-      scene(-1, perspective_sensor("0, 0, 3", "0, 0, 9", 20, 4) + shape("sphere", "") + thermal(kHot)),
+      scene(-1, perspective(lookat("0, 0, 3", "0, 0, 9"), 20, film(4)) + shape("sphere", "") + thermal(kHot)),
       kBands, {}, {16, 76});
   std::vector<double> expected;
   for (const Channel& c : result.scene.channels)
@@ -130,14 +120,12 @@ TEST(ThermalLight, TemperatureFieldsFollowThePlace) {
       "property float kelvin\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
       "-1 -1 0 300\n1 -1 0 500\n1 1 0 500\n-1 1 0 300\n3 0 1 2\n3 0 2 3\n");
   const std::string by_image = shape(
-      "rectangle", to_world("<scale x=\"2\" y=\"2\" z=\"1\"/>") + grey(0.2) +
+      "rectangle", to_world(step("scale", "x='2' y='2' z='1'")) + grey(0.2) +
                        "<emitter type=\"thermal\"><texture type=\"bitmap\" name=\"temperature\"><string "
                        "name=\"filename\" value=\"kelvin.pfm\"/><string name=\"wrap_mode\" value=\"clamp\"/>"
                        "</texture></emitter>");
-  const std::string by_vertex = shape(
-      "ply",
-      "<string name=\"filename\" value=\"plate.ply\"/>" + grey(0.2) +
-          "<emitter type=\"thermal\"><string name=\"temperature_attribute\" value=\"kelvin\"/></emitter>");
+  const std::string by_vertex = shape("ply", text("filename", "plate.ply") + grey(0.2) +
+                                                 emitter("thermal", text("temperature_attribute", "kelvin")));
   for (const std::string& plate : {by_image, by_vertex}) {
     SCOPED_TRACE(plate);
     const RenderResult result =

@@ -3,15 +3,16 @@
 
 #include <string>
 
+#include "tests/support/scene_text.hpp"
+
 namespace kiloband::test {
+
+using namespace scene_text;
 
 /// The part of the film that is rendered. full: edge of the whole film, pixels.
 struct Crop {
-  unsigned full, x, y, width, height;
+  int full, x, y, width, height;
 };
-
-/// A rectangle of the box, [-1, 1] on a side before `steps` (transform steps); contents: BSDF and emitter.
-std::string rectangle(const std::string& steps, const std::string& contents);
 
 /// The sensor in front of the box.
 std::string box_sensor(const Crop& crop);
@@ -21,8 +22,6 @@ std::string box_walls();
 std::string box_light(const std::string& radiance);
 /// A diffuse block on the floor.
 std::string box_block();
-/// <scene> around the parts. max_depth as in the scene format
-std::string scene(int max_depth, const std::string& parts);
 
 /// A triangle wave: low at first_nm + i period_nm, high in the middle between. On channels of one period
 /// each, the wavelength offset changes all of them together and strongly.

@@ -26,22 +26,19 @@ constexpr const char* kSpikes = "400:1, 450:4, 470:0.5, 552:3, 560:8, 568:3, 640
 /// Spectra of every kind, coupled with direction (conductor) or not, and lights of two colours.
 std::string spectral_parts() {
   const std::string ball =
-      "<shape type=\"sphere\"><point name=\"center\" x=\"0.45\" y=\"-0.6\" z=\"0.2\"/>"
-      "<float name=\"radius\" value=\"0.38\"/><bsdf type=\"roughconductor\">"
-      "<float name=\"alpha\" value=\"0.2\"/><spectrum name=\"eta\" value=\"400:1.5, 500:0.9, 700:0.15\"/>"
-      "<spectrum name=\"k\" value=\"400:1.9, 500:2.1, 700:3.8\"/></bsdf></shape>";
-  const std::string glass =
-      "<shape type=\"sphere\"><point name=\"center\" x=\"-0.45\" y=\"0.35\" z=\"0.1\"/>"
-      "<float name=\"radius\" value=\"0.3\"/><bsdf type=\"dielectric\"/></shape>";
+      shape("sphere",
+            number("point", "center", "0.45, -0.6, 0.2") + real("radius", "0.38") +
+                bsdf("roughconductor", real("alpha", "0.2") + spectrum("eta", "400:1.5, 500:0.9, 700:0.15") +
+                                           spectrum("k", "400:1.9, 500:2.1, 700:3.8")));
+  const std::string glass = shape(
+      "sphere", number("point", "center", "-0.45, 0.35, 0.1") + real("radius", "0.3") + bsdf("dielectric"));
   const std::string coat =
-      rectangle("<scale value=\"0.4\"/><translate x=\"0.3\" y=\"0.3\" z=\"-0.98\"/>",
-                "<bsdf type=\"plastic\"><rgb name=\"diffuse_reflectance\" value=\"0.7, 0.2, 0.1\"/>"
-                "<boolean name=\"nonlinear\" value=\"true\"/></bsdf>");
-  const std::string lamp =
-      "<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0.2\" z=\"0.9\"/>"
-      "<spectrum type=\"blackbody\" name=\"intensity\"><float name=\"temperature\" value=\"3200\"/>"
-      "</spectrum></emitter>";
-  return box_walls() + box_block() + box_light(kSpikes) + ball + glass + coat + lamp;
+      rectangle(scale("0.4") + step("translate", "x='0.3' y='0.3' z='-0.98'"),
+                bsdf("plastic", number("rgb", "diffuse_reflectance", "0.7, 0.2, 0.1") + yes("nonlinear")));
+  const std::string light = emitter("point", number("point", "position", "0, 0.2, 0.9") +
+                                                 "<spectrum type='blackbody' name='intensity'>" +
+                                                 real("temperature", 3200) + "</spectrum>");
+  return box_walls() + box_block() + box_light(kSpikes) + ball + glass + coat + light;
 }
 
 RenderSpec base_spec(const std::string& parts, const std::string& bands) {
@@ -152,11 +149,8 @@ class DispersiveChannels : public ::testing::Test {
 
   RenderSpec spec(const std::string& type) const {
     const std::string ball =
-        "<shape type=\"sphere\"><point name=\"center\" x=\"0\" y=\"-0.4\" z=\"0.3\"/>"
-        "<float name=\"radius\" value=\"0.55\"/><bsdf type=\"" +
-        type +
-        "\">"
-        "<string name=\"int_material\" value=\"flint.txt\"/></bsdf></shape>";
+        shape("sphere", number("point", "center", "0, -0.4, 0.3") + real("radius", 0.55) +
+                            bsdf(type, text("int_material", "flint.txt")));
     RenderSpec spec = base_spec(box_walls() + box_light(kSpikes) + ball, "");
     spec.directory = folder_.path();
     spec.guide = "400:700:30";

@@ -31,16 +31,10 @@ constexpr double kRadiance = 0.5;  // W m^-2 sr^-1 nm^-1
 RenderSpec closed_box() {
   RenderSpec spec;
   spec.xml = scene(
-      -1,
-      "<sensor type=\"perspective\"><float name=\"fov\" value=\"60\"/><transform name=\"to_world\">"
-      "<lookat origin=\"0.1, 0.2, 0.3\" target=\"1, 0.3, 0.4\" up=\"0, 1, 0\"/></transform>"
-      "<film type=\"hdrfilm\"><integer name=\"width\" value=\"4\"/><integer name=\"height\" value=\"2\"/>"
-      "<rfilter type=\"box\"/></film></sensor><shape type=\"cube\"><boolean name=\"flip_normals\" "
-      "value=\"true\"/>"
-      "<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"500:0.1, 549:0.1, 549.5:0.98, "
-      "551.5:0.98, 552:0.1, 600:0.1\"/></bsdf><emitter type=\"area\"><spectrum name=\"radiance\" "
-      "value=\"0.5\"/>"
-      "</emitter></shape>");
+      -1, object("sensor", "perspective",
+                 real("fov", 60) + to_world(lookat("0.1, 0.2, 0.3", "1, 0.3, 0.4")) + film(size(4, 2))) +
+              shape("cube", kInwards + diffuse("500:0.1, 549:0.1, 549.5:0.98, 551.5:0.98, 552:0.1, 600:0.1") +
+                                lamp(kRadiance)));
   spec.bands = "510-540, 550-551, 560-565";
   spec.spp = 32;
   spec.threads = 1;

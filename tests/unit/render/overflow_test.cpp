@@ -9,8 +9,8 @@
 #include "render/session.hpp"
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
-#include "tests/support/render_harness.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband {
 namespace {
@@ -24,9 +24,9 @@ uint64_t count_infinite(const std::vector<float>& values) {
 
 TEST(Overflow, IsCounted) {
   const test::TemporaryFolder folder;
-  const std::string xml = "<scene version=\"3.0.0\">" +
-                          test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSide) +
-                          "<shape type=\"sphere\"/><emitter type=\"constant\"/></scene>";
+  using namespace scene_text;
+  const std::string xml = scene(-1, perspective(lookat("0, 0, 3", "0, 0, 0"), 50, film(kSide)) +
+                                        shape("sphere", "") + emitter("constant", ""));
   SceneDescription description = read_scene_text(xml, "test.xml", ".");
   // Beyond what the reader lets through: 2e37 per nm are 1.2e39 in a band of 60 nm.
   std::get<ConstantEmitter>(description.emitters.at(0).model).radiance = Spectrum::constant(2e37);

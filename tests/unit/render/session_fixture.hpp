@@ -11,7 +11,7 @@
 #include "src_cpu/cpu_backend.hpp"
 #include "tests/support/cube_files.hpp"
 #include "tests/support/messages.hpp"
-#include "tests/support/render_harness.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband {
 
@@ -20,12 +20,12 @@ inline constexpr uint32_t kSize = 72;  // more than two blocks, the last clipped
 class SessionTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string xml =
-        "<scene version=\"3.0.0\">" + test::perspective_sensor("0, 0, 3", "0, 0, 0", 50, kSize) +
-        "<shape type=\"sphere\"/><emitter type=\"point\"><spectrum name=\"intensity\" value=\"400:1, "
-        "700:9\"/>"
-        "<point name=\"position\" x=\"3\" y=\"2\" z=\"4\"/></emitter>"
-        "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0.5\"/></emitter></scene>";
+    using namespace scene_text;
+    const std::string xml = scene(
+        -1,
+        perspective(lookat("0, 0, 3", "0, 0, 0"), 50, film(kSize)) + shape("sphere", "") +
+            emitter("point", spectrum("intensity", "400:1, 700:9") + number("point", "position", "3, 2, 4")) +
+            sky(0.5));
     scene_ = *compile_scene(read_scene_text(xml, "test.xml", "."), {parse_channels("400:700:5"), {}, {}});
     settings_.stop.samples_per_pixel = 40;
     settings_.variance = true;

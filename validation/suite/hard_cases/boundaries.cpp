@@ -5,18 +5,20 @@
 #include <numbers>
 
 #include "validation/suite/hard_cases/groups.hpp"
-#include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::validation {
 namespace {
+
+using namespace scene_text;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kIndex = 1.5;
 
 std::string glass(double inside, double outside, const std::string& type = "dielectric",
                   const std::string& more = "") {
-  return bsdf_element(type, float_element("int_ior", inside) + float_element("ext_ior", outside) + more);
+  return bsdf(type, real("int_ior", inside) + real("ext_ior", outside) + more);
 }
 
 /// Unpolarised Fresnel reflectance towards the relative index eta; 1 beyond the critical angle.
@@ -36,13 +38,11 @@ double reflectance(double cosine, double eta) {
 std::vector<HardFigure> total_reflection(const HardCaseContext& context) {
   Trial trial(context);
   const double critical = std::asin(1 / kIndex);
-  const std::string surface =
-      shape_element("rectangle", to_world_element(scale_step(10, 10, 1)) + glass(kIndex, 1.0));
+  const std::string surface = shape("rectangle", to_world(scale(10, 10, 1)) + glass(kIndex, 1.0));
   const auto scene = [&](double theta) {
-    const std::string view = orthographic_element(
-        lookat_step(point_text(-2 * std::sin(theta), 0, -2 * std::cos(theta)), "0, 0, 0", "0, 1, 0"), 0.5, 16,
-        1e-3);
-    return scene_text(-1, view + surface + environment_element(1));
+    const std::string view = orthographic(
+        lookat(point(-2 * std::sin(theta), 0, -2 * std::cos(theta)), "0, 0, 0"), 0.5, film(16), 1e-3);
+    return scene_text::scene(-1, view + surface + sky(1));
   };
   const TrialSettings fixed{.samples = static_cast<uint32_t>(trial.by_effort(4, 64, 1024))};
   for (const double beyond : {1e-5, 1e-3, 0.3, kPi / 2 - critical - 1e-4}) {
@@ -65,15 +65,13 @@ std::vector<HardFigure> total_reflection(const HardCaseContext& context) {
 /// nothing is lost.
 std::vector<HardFigure> light_pipe(const HardCaseContext& context) {
   Trial trial(context);
-  const std::string wall = scale_step(2000, 10, 1) + rotate_step(0, 1, 0, 90);
+  const std::string wall = scale(2000, 10, 1) + rotate(0, 1, 0, 90);
   const std::string walls =
-      shape_element("rectangle", to_world_element(wall + translate_step(1, 0, 0)) + glass(kIndex, 1.0)) +
-      shape_element(
-          "rectangle",
-          to_world_element(wall + rotate_step(0, 0, 1, 180) + translate_step(-1, 0, 0)) + glass(kIndex, 1.0));
-  const std::string view = orthographic_element(lookat_step("0, 0, 0", "1, 0, 1", "0, 1, 0"), 0.1, 8, 1e-3);
+      shape("rectangle", to_world(wall + translate(1, 0, 0)) + glass(kIndex, 1.0)) +
+      shape("rectangle", to_world(wall + rotate(0, 0, 1, 180) + translate(-1, 0, 0)) + glass(kIndex, 1.0));
+  const std::string view = orthographic(lookat("0, 0, 0", "1, 0, 1"), 0.1, film(8), 1e-3);
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(1, 8, 64))};
-  const TrialImage image = trial.render(scene_text(-1, view + walls + environment_element(1)), settings);
+  const TrialImage image = trial.render(scene_text::scene(-1, view + walls + sky(1)), settings);
   trial.exact("after 1000 total reflections", image, 0, 1, 1e-6, "every factor is 1");
   trial.figure("rays per path", "rays", static_cast<double>(image.rays) / static_cast<double>(image.paths),
                1001, 1, "a path has 1000 bounces and leaves");
@@ -88,10 +86,9 @@ std::vector<HardFigure> nested_glass(const HardCaseContext& context) {
   const double indices[] = {1.0, 1.5, 1.33, 2.4, 1.0}, radii[] = {1, 0.8, 0.5, 0.2};
   std::string bodies;
   for (int i = 0; i < 4; ++i)
-    bodies += shape_element("sphere", float_element("radius", radii[i]) + glass(indices[i + 1], indices[i]));
-  const std::string view =
-      orthographic_element(lookat_step("0.3, 0.2, 5", "0, 0, 0", "0, 1, 0"), 1.1, 32, 1e-3);
-  const std::string scene = scene_text(-1, view + bodies + environment_element(1));
+    bodies += shape("sphere", real("radius", radii[i]) + glass(indices[i + 1], indices[i]));
+  const std::string view = orthographic(lookat("0.3, 0.2, 5", "0, 0, 0"), 1.1, film(32), 1e-3);
+  const std::string scene = scene_text::scene(-1, view + bodies + sky(1));
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(8, 128, 2048))};
   const TrialImage image = trial.render(scene, settings);
   trial.exact("four bodies in a furnace", image, 0, 1, 5e-6, "sums of rounding, about 80 boundaries at most");
@@ -108,22 +105,18 @@ std::vector<HardFigure> smallest_roughness(const HardCaseContext& context) {
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(8, 64, 512)),
                                .replicates = 32};
   for (const char* distribution : {"ggx", "beckmann"}) {
-    const std::string rough =
-        value_element("string", "distribution", distribution) + float_element("alpha", 1e-4);
+    const std::string rough = text("distribution", distribution) + real("alpha", 1e-4);
     const struct {
       std::string name, bsdf;
-    } surfaces[] = {{"mirror", bsdf_element("roughconductor", rough)},
+    } surfaces[] = {{"mirror", bsdf("roughconductor", rough)},
                     {"glass", glass(kIndex, 1.0, "roughdielectric", rough)}};
     for (const auto& surface : surfaces) {
       for (const double degrees : {0.0, 60.0, 89.0}) {
         const double theta = degrees * kPi / 180;
-        const std::string plate =
-            shape_element("rectangle", to_world_element(scale_step(1e3, 1e3, 1)) + surface.bsdf);
-        const std::string view = orthographic_element(
-            lookat_step(point_text(-2 * std::sin(theta), 0, 2 * std::cos(theta)), "0, 0, 0", "0, 1, 0"), 0.01,
-            8, 1e-3);
-        const TrialImage image =
-            trial.render(scene_text(-1, view + plate + environment_element(1)), settings);
+        const std::string plate = shape("rectangle", to_world(scale(1e3, 1e3, 1)) + surface.bsdf);
+        const std::string view = orthographic(
+            lookat(point(-2 * std::sin(theta), 0, 2 * std::cos(theta)), "0, 0, 0"), 0.01, film(8), 1e-3);
+        const TrialImage image = trial.render(scene_text::scene(-1, view + plate + sky(1)), settings);
         // Into the glass radiance grows by n^2: L = R + (1 - R) / n^2 seen from outside.
         const double r = surface.name == "mirror" ? 1 : reflectance(std::cos(theta), kIndex);
         trial.statistical(

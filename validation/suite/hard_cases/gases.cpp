@@ -5,35 +5,35 @@
 #include <cmath>
 
 #include "validation/suite/hard_cases/groups.hpp"
-#include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::validation {
 namespace {
 
+using namespace scene_text;
+
 std::string column(double depth, double kelvin) {
-  const std::string gas = "<medium type=\"absorbing\" name=\"interior\">" +
-                          spectrum_element("absorption", depth) +
-                          (kelvin > 0 ? float_element("temperature", kelvin) : "") + "</medium>";
-  return shape_element(
-      "cube", to_world_element(scale_step(1, 1, 0.5) + translate_step(0, 0, 1)) + bsdf_element("null") + gas);
+  const std::string gas = "<medium type=\"absorbing\" name=\"interior\">" + spectrum("absorption", depth) +
+                          (kelvin > 0 ? real("temperature", kelvin) : "") + "</medium>";
+  return shape("cube", to_world(scale(1, 1, 0.5) + translate(0, 0, 1)) + bsdf("null") + gas);
 }
 
 std::vector<HardFigure> optical_depths(const HardCaseContext& context) {
   Trial trial(context);
-  const std::string view = orthographic_element(lookat_step("0, 0, 2", "0, 0, 0", "0, 1, 0"), 0.5, 8, 1e-3);
+  const std::string view = orthographic(lookat("0, 0, 2", "0, 0, 0"), 0.5, film(8), 1e-3);
   const double planck = planck_per_nm(10000.0005, 1000);
   for (const auto mode : {WavelengthMode::kShared, WavelengthMode::kPerPath}) {
     const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(2, 16, 128)),
                                  .wavelengths = mode};
     const std::string name = mode == WavelengthMode::kShared ? ", shared" : ", per path";
     for (const double depth : {1e-8, 1e-4, 1.0, 80.0, 1e4}) {
-      const std::string wall = shape_element("rectangle", diffuse(0));
-      const TrialImage glow = trial.render(scene_text(2, view + wall + column(depth, 1000)), settings);
+      const std::string wall = shape("rectangle", diffuse(0));
+      const TrialImage glow = trial.render(scene_text::scene(2, view + wall + column(depth, 1000)), settings);
       trial.exact("emission at depth " + short_text(depth) + name, glow, 0, -std::expm1(-depth) * planck,
                   3e-6, "a few roundings, and Planck's law as float");
-      const std::string lamp = shape_element("rectangle", diffuse(0) + area_element(1));
-      const TrialImage dim = trial.render(scene_text(2, view + lamp + column(depth, 0)), settings);
+      const std::string light = shape("rectangle", diffuse(0) + lamp(1));
+      const TrialImage dim = trial.render(scene_text::scene(2, view + light + column(depth, 0)), settings);
       // exp(-x) of a rounded x: 6e-8 x; below 1e-38 floats hold nothing.
       if (depth < 100)
         trial.exact("transmission at depth " + short_text(depth) + name, dim, 0, std::exp(-depth),

@@ -10,11 +10,13 @@
 #include <numbers>
 
 #include "validation/suite/hard_cases/groups.hpp"
-#include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::validation {
 namespace {
+
+using namespace scene_text;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kKelvin = 300, kReflectance = 0.5;
@@ -26,20 +28,20 @@ constexpr double kFurnaceLimit = 5e-6;
 double furnace_radiance() {
   return planck_per_nm(10000.0005, kKelvin) * (1 - std::pow(kReflectance, kDepth));
 }
-const std::string kTilt = rotate_step(0.3, 1, 0.2, 33);
+const std::string kTilt = rotate(0.3, 1, 0.2, 33);
 
 std::string furnace_scene(const std::string& walls, const std::string& view) {
-  return scene_text(kDepth, view + walls + ambient_element(kKelvin) + environment_element(kOutside),
-                    kNoRoulette);
+  return scene_text::scene(kDepth, view + walls + thermal(kKelvin) + sky(kOutside),
+                           integer("rr_depth", kNoRoulette));
 }
 /// A tilted cube of half side `half` about a place, seen from inside.
 std::string furnace_cube(double half, double x, double y, double z) {
-  const std::string cube = shape_element(
-      "cube", kInwards + to_world_element(scale_step(half, half, half) + kTilt + translate_step(x, y, z)) +
-                  diffuse(kReflectance));
-  const std::string look = lookat_step(point_text(x + 0.3 * half, y - 0.2 * half, z + 0.1 * half),
-                                       point_text(x - half, y + 0.3 * half, z - 0.7 * half), "0, 1, 0");
-  return furnace_scene(cube, perspective_element(look, 90, 32, 1e-3 * half));
+  const std::string cube =
+      shape("cube", kInwards + to_world(scale(half, half, half) + kTilt + translate(x, y, z)) +
+                        diffuse(kReflectance));
+  const std::string look = lookat(point(x + 0.3 * half, y - 0.2 * half, z + 0.1 * half),
+                                  point(x - half, y + 0.3 * half, z - 0.7 * half));
+  return furnace_scene(cube, perspective(look, 90, film(32), 1e-3 * half));
 }
 
 std::vector<HardFigure> far_from_the_origin(const HardCaseContext& context) {
@@ -56,14 +58,11 @@ std::vector<HardFigure> far_from_the_origin(const HardCaseContext& context) {
   // pixel's finite size cos^3(theta) of that: 2 mm at 10 m, 3e-8.
   const double height = 10;
   const std::string ground =
-      shape_element("rectangle", to_world_element(scale_step(100, 100, 1) + translate_step(far, far, 0)) +
-                                     diffuse(kReflectance));
-  const std::string light = object("emitter", "point",
-                                   spectrum_element("intensity", 7) + "<point name=\"position\" value=\"" +
-                                       point_text(far, far, height) + "\"/>");
-  const std::string view = orthographic_element(
-      lookat_step(point_text(far, far, 50), point_text(far, far, 0), "0, 1, 0"), 1e-3, 4, 1e-3);
-  const TrialImage lit = trial.render(scene_text(2, view + ground + light), settings);
+      shape("rectangle", to_world(scale(100, 100, 1) + translate(far, far, 0)) + diffuse(kReflectance));
+  const std::string light = emitter("point", spectrum("intensity", 7) + "<point name=\"position\" value=\"" +
+                                                 point(far, far, height) + "\"/>");
+  const std::string view = orthographic(lookat(point(far, far, 50), point(far, far, 0)), 1e-3, film(4), 1e-3);
+  const TrialImage lit = trial.render(scene_text::scene(2, view + ground + light), settings);
   trial.exact("point light 10 m above ground", lit, 0, kReflectance * 7 / (kPi * height * height), 1e-5,
               "the light's place to 2^-24 of 10 m and the offset of its shadow ray");
   return trial.finish();
@@ -79,30 +78,27 @@ std::vector<HardFigure> all_sizes(const HardCaseContext& context) {
   }
   // Both in one scene: the small box stands in the large one, whose lamp would shine into it.
   const std::string large =
-      shape_element("cube", kInwards + to_world_element(scale_step(1e4, 1e4, 1e4) + kTilt) + diffuse(0) +
-                                area_element(kOutside));
-  const std::string small =
-      shape_element("cube", kInwards + to_world_element(scale_step(1e-6, 1e-6, 1e-6) + kTilt) +
-                                bsdf_element("twosided", diffuse(kReflectance)));
-  const std::string look = lookat_step("3e-7, -2e-7, 1e-7", "-1e-6, 3e-7, -7e-7", "0, 1, 0");
-  const std::string inside = perspective_element(look, 90, 32, 1e-9);
+      shape("cube", kInwards + to_world(scale(1e4, 1e4, 1e4) + kTilt) + diffuse(0) + lamp(kOutside));
+  const std::string small = shape(
+      "cube", kInwards + to_world(scale(1e-6, 1e-6, 1e-6) + kTilt) + bsdf("twosided", diffuse(kReflectance)));
+  const std::string look = lookat("3e-7, -2e-7, 1e-7", "-1e-6, 3e-7, -7e-7");
+  const std::string inside = perspective(look, 90, film(32), 1e-9);
   const TrialImage both = trial.render(
-      scene_text(kDepth, inside + small + large + ambient_element(kKelvin), kNoRoulette), settings);
+      scene_text::scene(kDepth, inside + small + large + thermal(kKelvin), integer("rr_depth", kNoRoulette)),
+      settings);
   trial.exact("2e-6 m box within a 2e4 m lamp", both, 0, furnace_radiance(), kFurnaceLimit,
               "no light of the lamp comes in");
   // A point light at height h over a tilted square of 2e4 m, seen at its foot:
   // rho I cos / (pi h^2) with cos = 1.
   const std::string ground =
-      shape_element("rectangle", to_world_element(scale_step(1e4, 1e4, 1) + rotate_step(1, 0.4, 0, 30)) +
-                                     diffuse(kReflectance));
+      shape("rectangle", to_world(scale(1e4, 1e4, 1) + rotate(1, 0.4, 0, 30)) + diffuse(kReflectance));
   const double norm = std::hypot(1, 0.4), s = std::sin(kPi / 6), c = std::cos(kPi / 6);
   const double n[3] = {0.4 / norm * s, -1 / norm * s, c};
-  const std::string light = object("emitter", "point",
-                                   spectrum_element("intensity", 7) + "<point name=\"position\" value=\"" +
-                                       point_text(n[0], n[1], n[2]) + "\"/>");
-  const std::string view = orthographic_element(
-      lookat_step(point_text(2 * n[0], 2 * n[1], 2 * n[2]), "0, 0, 0", "0, 1, 0"), 1e-4, 16, 1e-4);
-  const TrialImage lit = trial.render(scene_text(2, view + ground + light), settings);
+  const std::string light = emitter("point", spectrum("intensity", 7) + "<point name=\"position\" value=\"" +
+                                                 point(n[0], n[1], n[2]) + "\"/>");
+  const std::string view =
+      orthographic(lookat(point(2 * n[0], 2 * n[1], 2 * n[2]), "0, 0, 0"), 1e-4, film(16), 1e-4);
+  const TrialImage lit = trial.render(scene_text::scene(2, view + ground + light), settings);
   trial.exact("point light 1 m above a tilted square of 2e4 m", lit, 0, kReflectance * 7 / kPi, 1e-2,
               "a corner is 2^-11 m off: 5e-4 of the height, 1e-3 of the irradiance");
   return trial.finish();
@@ -113,16 +109,13 @@ std::vector<HardFigure> all_sizes(const HardCaseContext& context) {
 std::string sunlit_square(double half, double degrees, double sine) {
   const double angle = degrees * kPi / 180, y = -std::sqrt(1 - sine * sine), z = -sine;
   const std::string way =
-      point_text(0, y * std::cos(angle) - z * std::sin(angle), y * std::sin(angle) + z * std::cos(angle));
+      point(0, y * std::cos(angle) - z * std::sin(angle), y * std::sin(angle) + z * std::cos(angle));
   const std::string ground =
-      shape_element("rectangle", to_world_element(scale_step(half, half, 1) + rotate_step(1, 0, 0, degrees)) +
-                                     diffuse(kReflectance));
-  const std::string sun =
-      object("emitter", "directional",
-             spectrum_element("irradiance", 5) + "<vector name=\"direction\" value=\"" + way + "\"/>");
-  const std::string view =
-      orthographic_element(lookat_step(point_text(0, 0, half), "0, 0, 0", "0, 1, 0"), half / 2, 16, 1e-3);
-  return scene_text(2, view + ground + sun);
+      shape("rectangle", to_world(scale(half, half, 1) + rotate(1, 0, 0, degrees)) + diffuse(kReflectance));
+  const std::string sun = emitter(
+      "directional", spectrum("irradiance", 5) + "<vector name=\"direction\" value=\"" + way + "\"/>");
+  const std::string view = orthographic(lookat(point(0, 0, half), "0, 0, 0"), half / 2, film(16), 1e-3);
+  return scene_text::scene(2, view + ground + sun);
 }
 
 /// A directional light of irradiance E under elevation e over a diffuse square: L = rho E sin(e) / pi. A
@@ -142,20 +135,18 @@ std::vector<HardFigure> grazing_angles(const HardCaseContext& context) {
     }
   }
   // Seen under sine 1e-4: the same everywhere, the square's own emission.
-  const std::string lamp = shape_element(
-      "rectangle", to_world_element(scale_step(100, 100, 1) + kTilt) + diffuse(0) + area_element(3));
+  const std::string light = shape("rectangle", to_world(scale(100, 100, 1) + kTilt) + diffuse(0) + lamp(3));
   const double c = std::cos(33 * kPi / 180), s = std::sin(33 * kPi / 180), norm = std::sqrt(0.09 + 1 + 0.04);
   const double a[3] = {0.3 / norm, 1 / norm, 0.2 / norm};
   const auto turned = [&](double x, double y, double z) {
     const double d = (a[0] * x + a[1] * y + a[2] * z) * (1 - c);
-    return point_text(x * c + (a[1] * z - a[2] * y) * s + a[0] * d,
-                      y * c + (a[2] * x - a[0] * z) * s + a[1] * d,
-                      z * c + (a[0] * y - a[1] * x) * s + a[2] * d);
+    return point(x * c + (a[1] * z - a[2] * y) * s + a[0] * d, y * c + (a[2] * x - a[0] * z) * s + a[1] * d,
+                 z * c + (a[0] * y - a[1] * x) * s + a[2] * d);
   };
-  const std::string along = orthographic_element(
-      lookat_step(turned(50, 0, 50e-4), turned(0, 0, 0), turned(0, 0, 1)), 1e-4, 16, 1e-3);
-  const TrialImage seen = trial.render(scene_text(1, along + lamp), settings);
-  trial.exact("lamp seen under sine 1e-4", seen, 0, 3, 1e-6, "emission does not depend on the angle");
+  const std::string along =
+      orthographic(lookat(turned(50, 0, 50e-4), turned(0, 0, 0), turned(0, 0, 1)), 1e-4, film(16), 1e-3);
+  const TrialImage seen = trial.render(scene_text::scene(1, along + light), settings);
+  trial.exact("light seen under sine 1e-4", seen, 0, 3, 1e-6, "emission does not depend on the angle");
   return trial.finish();
 }
 
@@ -169,32 +160,29 @@ std::vector<HardFigure> small_lights(const HardCaseContext& context) {
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(32, 256, 4096)),
                                .replicates = 64};
   constexpr double kArea = 1e-6, kRadiance = 1e6;
-  const std::string ground = shape_element("rectangle", diffuse(kReflectance));
+  const std::string ground = shape("rectangle", diffuse(kReflectance));
   for (const double height : {1.0, 1000.0}) {
     const double a = std::sqrt(kArea) / 2, x = a / height, r2 = kArea / kPi;
     const double corner = x / std::sqrt(1 + x * x) * std::atan(x / std::sqrt(1 + x * x));
-    const std::string down = rotate_step(1, 0, 0, 180) + translate_step(0, 0, height);
+    const std::string down = rotate(1, 0, 0, 180) + translate(0, 0, height);
     const struct {
       const char* name;
       std::string shape;
       double irradiance;
-    } lamps[] = {{"square",
-                  shape_element("rectangle", to_world_element(scale_step(a, a, 1) + down) + diffuse(0) +
-                                                 area_element(kRadiance)),
-                  4 * kRadiance * corner},
-                 {"disk",
-                  shape_element("disk", to_world_element(scale_step(std::sqrt(r2), std::sqrt(r2), 1) + down) +
-                                            diffuse(0) + area_element(kRadiance)),
-                  kPi * kRadiance * r2 / (height * height + r2)},
-                 {"sphere",
-                  shape_element("sphere", "<point name=\"center\" value=\"" + point_text(0, 0, height) +
-                                              "\"/>" + float_element("radius", std::sqrt(r2 / 4)) +
-                                              diffuse(0) + area_element(kRadiance)),
-                  kPi * kRadiance * r2 / 4 / (height * height)}};
+    } lamps[] = {
+        {"square", shape("rectangle", to_world(scale(a, a, 1) + down) + diffuse(0) + lamp(kRadiance)),
+         4 * kRadiance * corner},
+        {"disk",
+         shape("disk",
+               to_world(scale(std::sqrt(r2), std::sqrt(r2), 1) + down) + diffuse(0) + lamp(kRadiance)),
+         kPi * kRadiance * r2 / (height * height + r2)},
+        {"sphere",
+         shape("sphere", "<point name=\"center\" value=\"" + point(0, 0, height) + "\"/>" +
+                             real("radius", std::sqrt(r2 / 4)) + diffuse(0) + lamp(kRadiance)),
+         kPi * kRadiance * r2 / 4 / (height * height)}};
     for (const auto& lamp : lamps) {
-      const std::string view =
-          orthographic_element(lookat_step("0.3, 0, 0.4", "0, 0, 0", "0, 1, 0"), 1e-5, 8, 1e-3);
-      const TrialImage image = trial.render(scene_text(2, view + ground + lamp.shape), settings);
+      const std::string view = orthographic(lookat("0.3, 0, 0.4", "0, 0, 0"), 1e-5, film(8), 1e-3);
+      const TrialImage image = trial.render(scene_text::scene(2, view + ground + lamp.shape), settings);
       trial.statistical(std::string(lamp.name) + " at " + short_text(height) + " m", image, 0,
                         kReflectance * lamp.irradiance / kPi, 2e-5);
     }

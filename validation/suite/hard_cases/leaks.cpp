@@ -11,14 +11,16 @@
 
 #include "base/temporary_folder.hpp"
 #include "validation/suite/hard_cases/groups.hpp"
-#include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::validation {
 namespace {
 
+using namespace scene_text;
+
 constexpr double kPi = std::numbers::pi;
-const std::string kWall = bsdf_element("twosided", diffuse(0.97));
+const std::string kWall = bsdf("twosided", diffuse(0.97));
 
 /// A closed mesh around `centre`: a sphere of `rings` x 2 `rings` quadrilaterals, scaled differently along
 /// its axes and turned by irrational angles, as ASCII PLY. Vertices are shared.
@@ -30,8 +32,8 @@ std::string closed_mesh(int rings, const std::array<double, 3>& centre, double s
                  z = 1.3 * std::cos(theta);
     const double u = std::cos(1.0) * x - std::sin(1.0) * z, w = std::sin(1.0) * x + std::cos(1.0) * z;
     const double v = std::cos(2.0) * y - std::sin(2.0) * w, t = std::sin(2.0) * y + std::cos(2.0) * w;
-    vertices += exact_text(centre[0] + size * u) + " " + exact_text(centre[1] + size * v) + " " +
-                exact_text(centre[2] + size * t) + "\n";
+    vertices += exact(centre[0] + size * u) + " " + exact(centre[1] + size * v) + " " +
+                exact(centre[2] + size * t) + "\n";
   };
   const auto face = [&](int a, int b, int c) {
     faces += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
@@ -66,8 +68,7 @@ std::string tetrahedron() {
 }
 
 std::string ply_shape(const std::string& file) {
-  return shape_element("ply", value_element("string", "filename", file) +
-                                  "<boolean name=\"face_normals\" value=\"true\"/>" + kWall);
+  return shape("ply", text("filename", file) + "<boolean name=\"face_normals\" value=\"true\"/>" + kWall);
 }
 
 struct Body {
@@ -81,7 +82,7 @@ std::vector<Body> bodies(const ScratchFolder& folder) {
   folder.write("away.ply", closed_mesh(24, away, 1));
   folder.write("far.ply", closed_mesh(24, far, 100));
   folder.write("acute.ply", tetrahedron());
-  const std::string turned = rotate_step(0.31, 1, 0.17, 33.3);
+  const std::string turned = rotate(0.31, 1, 0.17, 33.3);
   std::string sides;
   for (const auto& [x, y, degrees] : {std::array{1.0, 0.0, 0.0},
                                       {1.0, 0.0, 90.0},
@@ -89,21 +90,19 @@ std::vector<Body> bodies(const ScratchFolder& folder) {
                                       {1.0, 0.0, 270.0},
                                       {0.0, 1.0, 90.0},
                                       {0.0, 1.0, 270.0}})
-    sides += shape_element(
-        "rectangle", to_world_element(translate_step(0, 0, -1) + rotate_step(x, y, 0, degrees)) + kWall);
-  return {{"mesh, 2208 triangles", ply_shape("near.ply"), origin},
-          {"mesh 268 m from the origin", ply_shape("away.ply"), away},
-          {"mesh 268 km from the origin", ply_shape("far.ply"), far},
-          {"tetrahedron", ply_shape("acute.ply"), origin},
-          {"cube, turned", shape_element("cube", to_world_element(turned) + kWall), origin},
-          {"six rectangles", sides, origin},
-          {"sphere", shape_element("sphere", kWall), origin},
-          {"sphere of 1 mm", shape_element("sphere", to_world_element(scale_step(1e-3, 1e-3, 1e-3)) + kWall),
-           origin},
-          {"cylinder and disks",
-           shape_element("cylinder", kWall) + shape_element("disk", kWall) +
-               shape_element("disk", to_world_element(translate_step(0, 0, 1)) + kWall),
-           {0.1, 0.1, 0.5}}};
+    sides += shape("rectangle", to_world(translate(0, 0, -1) + rotate(x, y, 0, degrees)) + kWall);
+  return {
+      {"mesh, 2208 triangles", ply_shape("near.ply"), origin},
+      {"mesh 268 m from the origin", ply_shape("away.ply"), away},
+      {"mesh 268 km from the origin", ply_shape("far.ply"), far},
+      {"tetrahedron", ply_shape("acute.ply"), origin},
+      {"cube, turned", shape("cube", to_world(turned) + kWall), origin},
+      {"six rectangles", sides, origin},
+      {"sphere", shape("sphere", kWall), origin},
+      {"sphere of 1 mm", shape("sphere", to_world(scale(1e-3, 1e-3, 1e-3)) + kWall), origin},
+      {"cylinder and disks",
+       shape("cylinder", kWall) + shape("disk", kWall) + shape("disk", to_world(translate(0, 0, 1)) + kWall),
+       {0.1, 0.1, 0.5}}};
 }
 
 std::vector<HardFigure> closed_bodies(const HardCaseContext& context) {
@@ -118,11 +117,9 @@ std::vector<HardFigure> closed_bodies(const HardCaseContext& context) {
   for (const Body& body : bodies(folder)) {
     const auto& c = body.centre;
     const double near = body.name == "sphere of 1 mm" ? 1e-5 : 1e-3;
-    const std::string look =
-        lookat_step(point_text(c[0], c[1], c[2]), point_text(c[0] + 1, c[1] + 0.3, c[2] - 0.2), "0, 1, 0");
+    const std::string look = lookat(point(c[0], c[1], c[2]), point(c[0] + 1, c[1] + 0.3, c[2] - 0.2));
     const TrialImage image = trial.render(
-        scene_text(50, perspective_element(look, 120, 32, near) + body.shapes + environment_element(1e6)),
-        settings);
+        scene_text::scene(50, perspective(look, 120, film(32), near) + body.shapes + sky(1e6)), settings);
     std::size_t bright = 0;
     double sum = 0;
     for (const double value : image.mean) bright += value != 0, sum += value;

@@ -3,21 +3,19 @@
 #include <cmath>
 
 #include "validation/suite/hard_cases/groups.hpp"
-#include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::validation {
 namespace {
 
+using namespace scene_text;
+
 constexpr int kNoRoulette = 1000000;
-const std::string kView =
-    perspective_element(lookat_step("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9", "0, 1, 0"), 60, 8, 1e-3);
+const std::string kView = perspective(lookat("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9"), 60, film(8), 1e-3);
 
 std::string box(const std::string& content) {
-  return shape_element("cube", kInwards + content);
-}
-std::string spectrum_text(const std::string& name, const std::string& points) {
-  return value_element("spectrum", name, points);
+  return shape("cube", kInwards + content);
 }
 
 /// (1 - rho^n) / (1 - rho), accurate for rho next to 1.
@@ -36,15 +34,16 @@ std::vector<HardFigure> albedo_next_to_one(const HardCaseContext& context) {
   Trial trial(context);
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(1, 8, 64))};
   const double rho = 1 - 1e-6, sum = partial_sum(rho, 1000), planck = planck_per_nm(10000.0005, 300);
-  const std::string flat = scene_text(1000, kView + box(diffuse(rho)) + ambient_element(300), kNoRoulette);
+  const std::string flat =
+      scene_text::scene(1000, kView + box(diffuse(rho)) + thermal(300), integer("rr_depth", kNoRoulette));
   const TrialImage image = trial.render(flat, settings);
   trial.exact("isothermal box, 1000 vertices", image, 0, 1e-6 * sum * planck, 3e-5, "1000 roundings of rho");
   trial.oracle("its evaluation", flat, settings);
   const std::string sloped =
-      bsdf_element("diffuse", spectrum_text("reflectance", "9000:0.999999, 10000:0.999998, 11000:0.999999"));
+      bsdf("diffuse", spectrum("reflectance", "9000:0.999999, 10000:0.999998, 11000:0.999999"));
   const TrialSettings wide{.bands = "9500-9500.001, 10000-10000.001", .samples = settings.samples};
-  const TrialImage table =
-      trial.render(scene_text(1000, kView + box(sloped) + ambient_element(300), kNoRoulette), wide);
+  const TrialImage table = trial.render(
+      scene_text::scene(1000, kView + box(sloped) + thermal(300), integer("rr_depth", kNoRoulette)), wide);
   trial.exact("reflectance as a table, 1 - 1.5e-6", table, 0,
               1.5e-6 * partial_sum(1 - 1.5e-6, 1000) * planck_per_nm(9500.0005, 300), 3e-5,
               "1000 roundings of rho");
@@ -52,8 +51,7 @@ std::vector<HardFigure> albedo_next_to_one(const HardCaseContext& context) {
               "1000 roundings of rho");
   const TrialSettings random{.samples = static_cast<uint32_t>(trial.by_effort(1, 8, 64)),
                              .replicates = static_cast<uint32_t>(trial.by_effort(12, 32, 32))};
-  const TrialImage lamps =
-      trial.render(scene_text(1000, kView + box(diffuse(rho) + area_element(2))), random);
+  const TrialImage lamps = trial.render(scene_text::scene(1000, kView + box(diffuse(rho) + lamp(2))), random);
   trial.statistical("emitting box, 1000 vertices, roulette", lamps, 0, 2 * sum, 3e-5);
   return trial.finish();
 }
@@ -67,17 +65,16 @@ std::vector<HardFigure> thousand_vertices(const HardCaseContext& context) {
   Trial trial(context);
   const TrialSettings settings{.samples = static_cast<uint32_t>(trial.by_effort(1, 8, 64))};
   const TrialImage image = trial.render(
-      scene_text(1000, kView + box(diffuse(0.999)) + ambient_element(300), kNoRoulette), settings);
+      scene_text::scene(1000, kView + box(diffuse(0.999)) + thermal(300), integer("rr_depth", kNoRoulette)),
+      settings);
   trial.exact("isothermal box", image, 0, 1e-3 * partial_sum(0.999, 1000) * planck_per_nm(10000.0005, 300),
               3.5e-5, "1000 roundings of rho");
-  const std::string mirror =
-      bsdf_element("twosided", bsdf_element("conductor", spectrum_element("specular_reflectance", 0.999)));
-  const std::string wall = scale_step(2000, 10, 1) + rotate_step(0, 1, 0, 90);
-  const std::string mirrors =
-      shape_element("rectangle", to_world_element(wall + translate_step(1, 0, 0)) + mirror) +
-      shape_element("rectangle", to_world_element(wall + translate_step(-1, 0, 0)) + mirror);
-  const std::string view = orthographic_element(lookat_step("0, 0, 0", "1, 0, 1", "0, 1, 0"), 0.1, 8, 1e-3);
-  const std::string scene = scene_text(-1, view + mirrors + environment_element(1), kNoRoulette);
+  const std::string mirror = bsdf("twosided", bsdf("conductor", spectrum("specular_reflectance", 0.999)));
+  const std::string wall = scale(2000, 10, 1) + rotate(0, 1, 0, 90);
+  const std::string mirrors = shape("rectangle", to_world(wall + translate(1, 0, 0)) + mirror) +
+                              shape("rectangle", to_world(wall + translate(-1, 0, 0)) + mirror);
+  const std::string view = orthographic(lookat("0, 0, 0", "1, 0, 1"), 0.1, film(8), 1e-3);
+  const std::string scene = scene_text::scene(-1, view + mirrors + sky(1), integer("rr_depth", kNoRoulette));
   trial.exact("two mirrors, 1000 reflections", trial.render(scene, settings), 0, std::pow(0.999, 1000),
               3.5e-5, "1000 roundings of rho");
   trial.oracle("evaluation between mirrors", scene, settings);
@@ -92,14 +89,13 @@ std::vector<HardFigure> million_samples(const HardCaseContext& context) {
   Trial trial(context);
   const uint32_t share = context.backend == "opencl:pt" ? 10 : 1;
   const auto count = static_cast<uint32_t>(trial.by_effort(100000, 1000000, 20000000)) / share;
-  const std::string pixel = perspective_element(lookat_step("0, 0, 0", "0, 0, 1", "0, 1, 0"), 60, 1, 1e-3);
+  const std::string pixel = perspective(lookat("0, 0, 0", "0, 0, 1"), 60, film(1), 1e-3);
   const TrialImage same =
-      trial.render(scene_text(1, pixel + environment_element(0.1)), {.samples = count, .replicates = 1});
+      trial.render(scene_text::scene(1, pixel + sky(0.1)), {.samples = count, .replicates = 1});
   trial.exact(short_text(count) + " equal samples in one replicate", same, 0, 0.1, 4e-6,
               "at most 64 samples are summed in float: 64 * 2^-24");
-  const std::string inside =
-      perspective_element(lookat_step("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9", "0, 1, 0"), 60, 1, 1e-3);
-  const TrialImage box_image = trial.render(scene_text(8, inside + box(diffuse(0.5) + area_element(2))),
+  const std::string inside = perspective(lookat("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9"), 60, film(1), 1e-3);
+  const TrialImage box_image = trial.render(scene_text::scene(8, inside + box(diffuse(0.5) + lamp(2))),
                                             {.samples = count / 40 + 1, .replicates = 40});
   trial.statistical(short_text(count) + " samples of an emitting box", box_image, 0, 2 * partial_sum(0.5, 8),
                     1e-6);

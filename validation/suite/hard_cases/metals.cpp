@@ -12,11 +12,13 @@
 #include <numbers>
 
 #include "validation/suite/hard_cases/groups.hpp"
-#include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::validation {
 namespace {
+
+using namespace scene_text;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -28,13 +30,11 @@ double reflectance(double cosine, std::complex<double> index) {
 }
 
 std::string metal_scene(double n, double k, double theta, const std::string& light) {
-  const std::string plate = shape_element(
-      "rectangle", to_world_element(scale_step(1e5, 1e5, 1)) +
-                       bsdf_element("conductor", spectrum_element("eta", n) + spectrum_element("k", k)));
-  const std::string view = orthographic_element(
-      lookat_step(point_text(-100 * std::sin(theta), 0, 100 * std::cos(theta)), "0, 0, 0", "0, 1, 0"), 1e-3,
-      4, 1e-4);
-  return scene_text(-1, view + plate + light);
+  const std::string plate = shape(
+      "rectangle", to_world(scale(1e5, 1e5, 1)) + bsdf("conductor", spectrum("eta", n) + spectrum("k", k)));
+  const std::string view = orthographic(
+      lookat(point(-100 * std::sin(theta), 0, 100 * std::cos(theta)), "0, 0, 0"), 1e-3, film(4), 1e-4);
+  return scene_text::scene(-1, view + plate + light);
 }
 
 std::vector<HardFigure> optical_constants(const HardCaseContext& context) {
@@ -49,7 +49,7 @@ std::vector<HardFigure> optical_constants(const HardCaseContext& context) {
                              {0.001, 100.0}}) {
     for (const double degrees : {0.0, 60.0, 89.99}) {
       const double theta = degrees * kPi / 180, expected = reflectance(std::cos(theta), {n, -k});
-      const TrialImage image = trial.render(metal_scene(n, k, theta, environment_element(1)), settings);
+      const TrialImage image = trial.render(metal_scene(n, k, theta, sky(1)), settings);
       double worst = expected;
       for (const double value : image.mean)
         if (!(std::abs(value / 1e-3 - expected) <= std::abs(worst - expected))) worst = value / 1e-3;
@@ -70,7 +70,7 @@ std::vector<HardFigure> hot_metals(const HardCaseContext& context) {
   for (const auto& [n, k] : {std::pair{1.5, 0.0}, {1.0, 100.0}, {0.001, 100.0}}) {
     for (const double degrees : {0.0, 80.0}) {
       const double theta = degrees * kPi / 180;
-      const TrialImage image = trial.render(metal_scene(n, k, theta, ambient_element(1000)), settings);
+      const TrialImage image = trial.render(metal_scene(n, k, theta, thermal(1000)), settings);
       trial.statistical(
           "n " + short_text(n) + ", k " + short_text(k) + ", " + short_text(degrees) + " degrees", image, 0,
           planck_per_nm(10000.0005, 1000), 1e-4);

@@ -6,11 +6,13 @@
 
 #include "base/temporary_folder.hpp"
 #include "validation/suite/hard_cases/groups.hpp"
-#include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::validation {
 namespace {
+
+using namespace scene_text;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDecades[] = {1e-20, 1e-10, 1, 1e10, 1e15};
@@ -20,11 +22,11 @@ const char* const kBands = "400-410, 500-510, 600-610, 700-710, 800-810";
 std::string decades(const std::string& name) {
   std::string text;
   for (int i = 0; i < 5; ++i) {
-    const std::string value = ":" + exact_text(kDecades[i]);
+    const std::string value = ":" + exact(kDecades[i]);
     text += (i ? ", " : "") + std::to_string(400 + 100 * i - 5) + value + ", " +
             std::to_string(400 + 100 * i + 15) + value;
   }
-  return value_element("spectrum", name, text);
+  return spectrum(name, text);
 }
 
 /// Five channels of one light over 35 decades: seen directly L, and from a point light of intensity I at 1 m
@@ -34,24 +36,23 @@ std::vector<HardFigure> range_of_radiance(const HardCaseContext& context) {
   Trial trial(context);
   const TrialSettings settings{.bands = kBands,
                                .samples = static_cast<uint32_t>(trial.by_effort(4, 64, 1024))};
-  const std::string view = orthographic_element(lookat_step("0, 0, 2", "0, 0, 0", "0, 1, 0"), 1e-5, 4, 1e-3);
+  const std::string view = orthographic(lookat("0, 0, 2", "0, 0, 0"), 1e-5, film(4), 1e-3);
   const std::string point =
-      object("emitter", "point", decades("intensity") + "<point name=\"position\" value=\"0, 0, 1\"/>");
+      emitter("point", decades("intensity") + "<point name=\"position\" value=\"0, 0, 1\"/>");
   const TrialImage lit =
-      trial.render(scene_text(2, view + shape_element("rectangle", diffuse(0.5)) + point), settings);
+      trial.render(scene_text::scene(2, view + shape("rectangle", diffuse(0.5)) + point), settings);
   for (std::size_t c = 0; c < 5; ++c)
     trial.exact("diffuse square, " + short_text(kDecades[c]), lit, c, 0.5 * kDecades[c] / kPi, 2e-6,
                 "rounding");
   const TrialImage sky =
-      trial.render(scene_text(1, view + object("emitter", "constant", decades("radiance"))), settings);
+      trial.render(scene_text::scene(1, view + emitter("constant", decades("radiance"))), settings);
   for (std::size_t c = 0; c < 5; ++c)
     trial.exact("seen directly, " + short_text(kDecades[c]), sky, c, kDecades[c], 5e-7, "rounding");
-  const std::string wide = orthographic_element(lookat_step("0, 0, 2", "0, 0, 0", "0, 1, 0"), 1, 2, 1e-3);
+  const std::string wide = orthographic(lookat("0, 0, 2", "0, 0, 0"), 1, film(2), 1e-3);
   std::string lamps;
   for (const auto& [x, radiance] : {std::pair{-1.0, 1e15}, {1.0, 1e-20}})
-    lamps += shape_element("rectangle",
-                           to_world_element(translate_step(x, 0, 0)) + diffuse(0) + area_element(radiance));
-  const TrialImage both = trial.render(scene_text(1, wide + lamps), {.samples = settings.samples});
+    lamps += shape("rectangle", to_world(translate(x, 0, 0)) + diffuse(0) + lamp(radiance));
+  const TrialImage both = trial.render(scene_text::scene(1, wide + lamps), {.samples = settings.samples});
   const double limit = 5e-7 + sum_rounding(both);
   const double left = both.at(0, 0, 0) / 1e-3, right = both.at(1, 0, 0) / 1e-3;
   trial.figure("1e15 beside 1e-20: the brighter, relative", "1", std::max(left, right) / 1e15, 1, limit,
@@ -83,11 +84,11 @@ std::vector<HardFigure> one_bright_pixel(const HardCaseContext& context) {
   const ScratchFolder folder;
   constexpr uint32_t kColumn = 11, kRow = 7;
   std::vector<float> map(kColumns * kRows, 1.0f);
-  const std::string light = object("emitter", "envmap", value_element("string", "filename", "map.pfm"));
+  const std::string light = emitter("envmap", text("filename", "map.pfm"));
   TrialSettings settings{.bands = "500-500.001", .samples = 1, .directory = folder.path()};
   folder.write("map.pfm", grey_pfm(map));
-  const std::string view = orthographic_element(lookat_step("0, 2, 0", "0, 0, 0", "1, 0, 0"), 1e-3, 8, 1e-3);
-  const TrialImage flat = trial.render(scene_text(1, view + light), settings);
+  const std::string view = orthographic(lookat("0, 2, 0", "0, 0, 0", "1, 0, 0"), 1e-3, film(8), 1e-3);
+  const TrialImage flat = trial.render(scene_text::scene(1, view + light), settings);
   map[kRow * kColumns + kColumn] = 1e6f;
   folder.write("map.pfm", grey_pfm(map));
   const double step = kPi / (kRows - 1);
@@ -101,9 +102,8 @@ std::vector<HardFigure> one_bright_pixel(const HardCaseContext& context) {
   const double expected = 0.5 * unit * (1 + (1e6 - 1) / kPi * 2 * kPi / kColumns * tent);
   settings.samples = static_cast<uint32_t>(trial.by_effort(64, 512, 8192));
   settings.replicates = 64;
-  const std::string ground =
-      shape_element("rectangle", to_world_element(rotate_step(1, 0, 0, -90)) + diffuse(0.5));
-  const TrialImage image = trial.render(scene_text(2, view + ground + light), settings);
+  const std::string ground = shape("rectangle", to_world(rotate(1, 0, 0, -90)) + diffuse(0.5));
+  const TrialImage image = trial.render(scene_text::scene(2, view + ground + light), settings);
   trial.statistical("diffuse square under one pixel of 1e6", image, 0, expected, 1e-5);
   return trial.finish();
 }

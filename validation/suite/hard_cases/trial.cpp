@@ -212,6 +212,10 @@ std::vector<HardFigure> Trial::finish() {
   return std::move(figures_);
 }
 
+std::string short_text(double x) {
+  return fmt::format("{:g}", x);
+}
+
 double planck_per_nm(double lambda_nm, double temperature_k) {
   constexpr double kH = 6.62607015e-34, kC = 299792458.0, kK = 1.380649e-23;
   const double metres = lambda_nm * 1e-9;

@@ -81,6 +81,9 @@ class Trial {
   uint64_t invalid_ = 0, not_finite_ = 0, samples_ = 0;
 };
 
+/// For names: six digits.
+std::string short_text(double x);
+
 /// Planck's law in double, W m^-2 sr^-1 nm^-1, written down here once more.
 double planck_per_nm(double lambda_nm, double temperature_k);
 

@@ -3,20 +3,15 @@
 #include <cmath>
 
 #include "validation/suite/hard_cases/groups.hpp"
-#include "validation/suite/hard_cases/scene_text.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::validation {
 namespace {
 
-const std::string kView = orthographic_element(lookat_step("0, 0, 2", "0, 0, 0", "0, 1, 0"), 1e-3, 8, 1e-3);
+using namespace scene_text;
 
-std::string sky(const std::string& spectrum) {
-  return object("emitter", "constant", spectrum);
-}
-std::string ramp(const std::string& name, const std::string& points) {
-  return value_element("spectrum", name, points);
-}
+const std::string kView = orthographic(lookat("0, 0, 2", "0, 0, 0"), 1e-3, film(8), 1e-3);
 
 struct Mode {
   WavelengthMode wavelengths;
@@ -36,18 +31,19 @@ std::vector<HardFigure> narrow_channels(const HardCaseContext& context) {
                                  .replicates = 32,
                                  .wavelengths = mode.wavelengths};
     const std::string within = "9999:0, 10000.001:0, 10000.002:1, 10001:1";
-    const TrialImage seen = trial.render(scene_text(1, kView + sky(ramp("radiance", within))), settings);
+    const TrialImage seen = trial.render(
+        scene_text::scene(1, kView + emitter("constant", spectrum("radiance", within))), settings);
     const std::string name = std::string(", ") + mode.name;
     trial.statistical("radiance rising within 1e-3 nm" + name, seen, 1, 0.5, 1e-5);
     trial.figure("the channel before it" + name, "W m^-2 sr^-1 nm^-1", seen.image_mean[0] / 1e-3, 0, 1e-5,
                  "absolute");
     trial.exact("the channel behind it" + name, seen, 2, 1, 1e-5, "rounding");
     // The square sees half a sphere of the sky and reflects rho of it.
-    const std::string ground = shape_element(
-        "rectangle", bsdf_element("conductor", ramp("specular_reflectance",
-                                                    "9999:0.2, 10000.001:0.2, 10000.002:0.8, 10001:0.8")));
-    const TrialImage product =
-        trial.render(scene_text(2, kView + ground + sky(ramp("radiance", within))), settings);
+    const std::string ground =
+        shape("rectangle", bsdf("conductor", spectrum("specular_reflectance",
+                                                      "9999:0.2, 10000.001:0.2, 10000.002:0.8, 10001:0.8")));
+    const TrialImage product = trial.render(
+        scene_text::scene(2, kView + ground + emitter("constant", spectrum("radiance", within))), settings);
     trial.statistical("radiance times reflectance" + name, product, 1, 0.2 / 2 + 0.6 / 3, 1e-5);
   }
   return trial.finish();
@@ -70,12 +66,13 @@ std::vector<HardFigure> wide_channels(const HardCaseContext& context) {
                                  .replicates = 32,
                                  .wavelengths = mode.wavelengths};
     const std::string name = std::string(", ") + mode.name;
-    const TrialImage seen =
-        trial.render(scene_text(1, kView + sky(ramp("radiance", "10000:0, 20000:1"))), settings);
+    const TrialImage seen = trial.render(
+        scene_text::scene(1, kView + emitter("constant", spectrum("radiance", "10000:0, 20000:1"))),
+        settings);
     trial.statistical("ramp over 1e4 nm" + name, seen, 0, 0.5, 1e-5);
     const std::string law =
-        "<spectrum name=\"radiance\" type=\"planck\">" + float_element("temperature", 300) + "</spectrum>";
-    const TrialImage hot = trial.render(scene_text(1, kView + sky(law)), settings);
+        "<spectrum name=\"radiance\" type=\"planck\">" + real("temperature", 300) + "</spectrum>";
+    const TrialImage hot = trial.render(scene_text::scene(1, kView + emitter("constant", law)), settings);
     trial.statistical("Planck's law over 1e4 nm" + name, hot, 0, planck, 1e-5);
   }
   return trial.finish();

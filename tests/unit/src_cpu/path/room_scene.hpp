@@ -4,20 +4,23 @@
 #include <string>
 
 #include "tests/support/render_harness.hpp"
+#include "tests/support/scene_text.hpp"
 
 namespace kiloband::test {
 
+using namespace scene_text;
+
 /// Full film and the part of it that is rendered, pixels.
 struct FilmSize {
-  unsigned width, height;
-  unsigned crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // crop_width 0: all
+  int width, height;
+  int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  // crop_width 0: all
 };
 
-/// <scene> around the parts. max_depth -1: no limit
-std::string scene_text(int max_depth, const std::string& parts, bool hide_emitters = false);
 std::string film_text(const FilmSize& size);
 /// Perspective camera at (0, 0, 4) looking along -z.
 std::string camera_text(const FilmSize& size);
+
+std::string rough_plastic();
 
 /// A lit room with meshes and analytic shapes and every kind of path vertex but dispersive ones: diffuse,
 /// checkerboard, plastics, conductors, glass, a mask; an area light, a point light and a constant sky

@@ -5,10 +5,13 @@
 #include <cmath>
 
 #include "tests/support/render_harness.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test {
 namespace {
+
+using namespace scene_text;
 
 /// A folder with a 2x2 picture of dark blue, red, green and one white texel.
 class HardScenes : public ::testing::Test {
@@ -21,14 +24,11 @@ class HardScenes : public ::testing::Test {
   }
 
   /// A closed cube around the camera with a small lamp in it, unlimited depth.
-  RenderResult render_cavity(const std::string& bsdf) {
-    spec_.xml =
-        "<scene version=\"3.0.0\">" + perspective_sensor("0, 0, 0.5", "0, 0, -1", 60, 16) +
-        "<shape type=\"cube\"><boolean name=\"flip_normals\" value=\"true\"/>" + bsdf +
-        "</shape><shape type=\"sphere\"><float name=\"radius\" value=\"0.2\"/><point name=\"center\" "
-        "x=\"0.3\" "
-        "y=\"0.6\" z=\"0\"/><bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"0\"/></bsdf>"
-        "<emitter type=\"area\"><spectrum name=\"radiance\" value=\"1\"/></emitter></shape></scene>";
+  RenderResult render_cavity(const std::string& walls) {
+    spec_.xml = scene(
+        -1, perspective(lookat("0, 0, 0.5", "0, 0, -1"), 60, film(16)) + shape("cube", kInwards + walls) +
+                shape("sphere",
+                      real("radius", 0.2) + number("point", "center", "0.3, 0.6, 0") + diffuse(0) + lamp(1)));
     return render(spec_);
   }
 
@@ -47,40 +47,35 @@ void expect_sound(const RenderResult& result, double longest_mean_path) {
 // no path would end.
 TEST_F(HardScenes, PathsEndBetweenTexturedWallsWithOneWhiteTexel) {
   expect_sound(
-      render_cavity(
-          "<bsdf type=\"diffuse\"><texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" "
-          "value=\"picture.ppm\"/><string name=\"filter_type\" value=\"nearest\"/></texture></bsdf>"),
+      render_cavity(bsdf("diffuse", bitmap("reflectance", "picture.ppm", "repeat", "nearest", scale("1")))),
       100);  // a quarter of the walls is white: paths are long, but far from the limit of 100000
 }
 
 TEST_F(HardScenes, PathsEndBetweenCheckerboards) {
-  expect_sound(render_cavity(
-                   "<bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\"><spectrum "
-                   "name=\"color0\" value=\"1\"/><spectrum name=\"color1\" value=\"0.1\"/></texture></bsdf>"),
-               40);
+  expect_sound(
+      render_cavity(bsdf("diffuse", texture("checkerboard", "reflectance",
+                                            spectrum("color0", 1) + spectrum("color1", 0.1), scale("1")))),
+      40);
 }
 
 // F is about 0.9 for n = 0.25, k = 3: roulette's bound must know it,
 // and long chains of cosines are no overflow.
 TEST_F(HardScenes, PathsEndInMetalCavities) {
-  const std::string metal =
-      "<spectrum name=\"eta\" value=\"0.25\"/><spectrum name=\"k\" value=\"3\"/></bsdf>";
-  expect_sound(render_cavity("<bsdf type=\"conductor\">" + metal), 200);
-  expect_sound(render_cavity("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.3\"/>" + metal),
-               200);
+  const std::string metal = spectrum("eta", 0.25) + spectrum("k", 3);
+  expect_sound(render_cavity(bsdf("conductor", metal)), 200);
+  expect_sound(render_cavity(bsdf("roughconductor", real("alpha", 0.3) + metal)), 200);
 }
 
 // A line 0.2 nm wide in a channel where everything else is 1e-96: channel scales follow the line.
 TEST_F(HardScenes, NarrowLineOverPlanckAt200KStaysFinite) {
   spec_.bands = "300-400";
   spec_.spp = 8192;  // one wavelength in 500 meets the line
-  spec_.xml =
-      "<scene version=\"3.0.0\">" + perspective_sensor("0, 0, 3", "0, 0, 0", 60, 8) +
-      "<shape type=\"sphere\"/><emitter type=\"constant\"><spectrum name=\"radiance\" type=\"planck\"><float "
-      "name=\"temperature\" value=\"200\"/></spectrum></emitter><emitter type=\"point\"><point "
-      "name=\"position\" "
-      "x=\"0\" y=\"0\" z=\"3\"/><spectrum name=\"intensity\" value=\"331:0, 331.1:1, "
-      "331.2:0\"/></emitter></scene>";
+  const std::string cold =
+      "<spectrum name='radiance' type='planck'>" + real("temperature", 200) + "</spectrum>";
+  spec_.xml = scene(-1, perspective(lookat("0, 0, 3", "0, 0, 0"), 60, film(8)) + shape("sphere", "") +
+                            emitter("constant", cold) +
+                            emitter("point", number("point", "position", "0, 0, 3") +
+                                                 spectrum("intensity", "331:0, 331.1:1, 331.2:0")));
   const RenderResult result = render(spec_);
   expect_sound(result, 10);
   EXPECT_GT(result.image_mean[0], 0);
@@ -91,13 +86,10 @@ TEST_F(HardScenes, NarrowLineOverPlanckAt200KStaysFinite) {
 TEST_F(HardScenes, ColouredOpacityIsItsMean) {
   folder_.write("red.ppm", std::string("P6\n1 1\n255\n\xff\0\0", 14));
   spec_.spp = 256;
-  spec_.xml =
-      "<scene version=\"3.0.0\">" + perspective_sensor("0, 0, 3", "0, 0, 0", 10, 16) +
-      "<shape type=\"rectangle\"><bsdf type=\"mask\"><texture type=\"bitmap\" name=\"opacity\"><string "
-      "name=\"filename\" value=\"red.ppm\"/></texture><bsdf type=\"diffuse\"><spectrum name=\"reflectance\" "
-      "value=\"0\"/></bsdf></bsdf></shape><emitter type=\"constant\"><spectrum name=\"radiance\" "
-      "value=\"1\"/>"
-      "</emitter></scene>";
+  const std::string holes =
+      "<texture type='bitmap' name='opacity'>" + text("filename", "red.ppm") + "</texture>";
+  spec_.xml = scene(-1, perspective(lookat("0, 0, 3", "0, 0, 0"), 10, film(16)) +
+                            shape("rectangle", bsdf("mask", holes + diffuse(0))) + sky(1));
   const RenderResult result = render(spec_);
   // One number per pixel sample decides: 65536 of them with probability 2/3; 5 standard errors are 0.009.
   EXPECT_NEAR(result.image_mean[0] / 50, 2.0 / 3.0, 0.01);  // channels are 50 nm wide

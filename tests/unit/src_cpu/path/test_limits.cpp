@@ -20,17 +20,16 @@ constexpr double kWidthNm = 25;  // of the channels of 500:600:4
 /// A lamp of radiance 3 that fills the left half of the view,
 /// a diffuse wall of reflectance 0.5 in the right half.
 std::string lamp_and_wall() {
-  return "<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"2\" y=\"4\"/>"
-         "<translate x=\"-2\"/></transform>"
-         "<emitter type=\"area\"><spectrum name=\"radiance\" value=\"3\"/></emitter></shape>"
-         "<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"2\" y=\"4\"/>"
-         "<rotate y=\"1\" angle=\"-60\"/><translate x=\"1\" z=\"1.7320508\"/></transform></shape>";
+  return shape("rectangle",
+               to_world(step("scale", "x='2' y='4'") + step("translate", "x='-2'")) + lamp("3")) +
+         shape("rectangle", to_world(step("scale", "x='2' y='4'") + turn("y", "-60") +
+                                     step("translate", "x='1' z='1.7320508'")));
 }
 
 RenderSpec limits_spec(int max_depth, bool hide_emitters) {
   RenderSpec spec;
-  spec.xml = scene_text(max_depth, perspective_sensor("0, 0, 4", "0, 0, 0", 30, 16) + lamp_and_wall(),
-                        hide_emitters);
+  spec.xml = scene(max_depth, perspective(lookat("0, 0, 4", "0, 0, 0"), 30, film(16)) + lamp_and_wall(),
+                   hide_emitters ? yes("hide_emitters") : "");
   spec.spp = 8;
   spec.threads = 1;
   return spec;
@@ -69,12 +68,10 @@ TEST(HiddenEmitters, AreInvisibleAndLight) {
 
 TEST(HiddenEmitters, HideTheSky) {
   RenderSpec spec;
-  const std::string parts =
-      perspective_sensor("0, 0, 4", "0, 0, 0", 30, 4) +
-      "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0.7\"/></emitter>";
-  spec.xml = scene_text(-1, parts, false);
+  const std::string parts = perspective(lookat("0, 0, 4", "0, 0, 0"), 30, film(4)) + sky("0.7");
+  spec.xml = scene(-1, parts);
   EXPECT_NEAR(render(spec).at(1, 1, 0), 0.7 * kWidthNm, 1e-5);
-  spec.xml = scene_text(-1, parts, true);
+  spec.xml = scene(-1, parts, yes("hide_emitters"));
   EXPECT_EQ(render(spec).at(1, 1, 0), 0);
 }
 
@@ -82,9 +79,7 @@ TEST(HiddenEmitters, HideTheSky) {
 /// them would be off by up to 2^17 x 6e-8 = 8e-3 relative.
 TEST(ManySamples, LoseNothing) {
   RenderSpec spec;
-  spec.xml =
-      scene_text(-1, perspective_sensor("0, 0, 4", "0, 0, 0", 30, 1) +
-                         "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"0.7\"/></emitter>");
+  spec.xml = scene(-1, perspective(lookat("0, 0, 4", "0, 0, 0"), 30, film(1)) + sky("0.7"));
   spec.bands = "500-510.1, 520-523.7, 540-540.3";
   spec.spp = 1u << 18;
   spec.sampling.replicates = 2;
@@ -107,17 +102,12 @@ class InvalidSamples : public ::testing::Test {
  protected:
   InvalidSamples() {
     const std::string parts =
-        "<sensor type=\"orthographic\"><transform name=\"to_world\"><scale value=\"1e-9\"/><lookat "
-        "origin=\"0, 0, 1\" "
-        "target=\"0, 0, 0\" up=\"0, 1, 0\"/></transform>" +
-        film_text({4, 4}) +
-        "</sensor>"
-        "<shape type=\"rectangle\"/>"
-        "<emitter type=\"point\"><point name=\"position\" x=\"0\" y=\"0\" z=\"1e-18\"/><spectrum "
-        "name=\"intensity\" value=\"1\"/></emitter>"
-        "<emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"0\" z=\"-1\"/><spectrum "
-        "name=\"irradiance\" value=\"2\"/></emitter>";
-    spec_.xml = scene_text(2, parts);
+        object("sensor", "orthographic",
+               to_world(scale("1e-9") + lookat("0, 0, 1", "0, 0, 0")) + film_text({4, 4})) +
+        shape("rectangle", "") +
+        emitter("point", number("point", "position", "0, 0, 1e-18") + spectrum("intensity", 1)) +
+        emitter("directional", number("vector", "direction", "0, 0, -1") + spectrum("irradiance", 2));
+    spec_.xml = scene(2, parts);
     spec_.spp = 64;
     spec_.threads = 1;
     spec_.sampling.sampler = SamplerType::kIndependent;
@@ -173,17 +163,11 @@ TEST(Stopping, DeliversWhatIsDone) {
 TEST(AuxiliaryImages, ShowTheNearestSurface) {
   // Orthographic: pixel centres at x = -0.75, -0.25, 0.25, 0.75 from right to left in the camera's frame.
   const std::string parts =
-      "<sensor type=\"orthographic\"><transform name=\"to_world\"><lookat origin=\"0, 0, 5\" target=\"0, 0, "
-      "0\" up=\"0, 1, 0\"/>"
-      "</transform>" +
-      film_text({4, 4}) +
-      "</sensor>"
-      "<shape type=\"sphere\"><point name=\"center\" x=\"-0.25\" y=\"0.25\" z=\"1\"/><float name=\"radius\" "
-      "value=\"0.2\"/></shape>"
-      "<shape type=\"rectangle\"><transform name=\"to_world\"><translate x=\"-1\"/></transform>"
-      "<bsdf type=\"twosided\"><bsdf type=\"diffuse\"/><bsdf type=\"plastic\"/></bsdf></shape>"
-      "<emitter type=\"constant\"/>";
-  const SceneDescription description = read_scene_text(scene_text(-1, parts), "test.xml", ".", {});
+      object("sensor", "orthographic", to_world(lookat("0, 0, 5", "0, 0, 0")) + film_text({4, 4})) +
+      shape("sphere", number("point", "center", "-0.25, 0.25, 1") + real("radius", 0.2)) +
+      shape("rectangle", translate(-1, 0, 0), bsdf("twosided", bsdf("diffuse") + bsdf("plastic"))) +
+      emitter("constant", "");
+  const SceneDescription description = read_scene_text(scene_text::scene(-1, parts), "test.xml", ".", {});
   const auto scene = compile_scene(description, {parse_channels("500:600:4"), {}, {}});
   const auto backend = cpu::make_backend(scene, {}, {}, {Isa::kAuto, 1});
   const std::vector<AuxiliaryPixel> pixels = backend->auxiliary({0, 0, 4, 4});

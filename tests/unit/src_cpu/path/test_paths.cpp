@@ -84,7 +84,7 @@ void expect_film_equals_paths(RenderSpec spec) {
 
 RenderSpec small_spec(const std::string& parts) {
   RenderSpec spec = room_spec({kSize, kSize});
-  spec.xml = scene_text(6, camera_text({kSize, kSize}) + parts);
+  spec.xml = scene(6, camera_text({kSize, kSize}) + parts);
   spec.bands = "500:600:9";
   return spec;
 }
@@ -92,8 +92,8 @@ RenderSpec small_spec(const std::string& parts) {
 /// Without its rough plastic, whose tables the backend adds to its own copy of the scene.
 std::string room_without_rough_plastic() {
   std::string parts = room_parts();
-  const std::string from = "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.2\"/></bsdf>";
-  return parts.replace(parts.find(from), from.size(), "<bsdf type=\"plastic\"/>");
+  const std::string from = rough_plastic();
+  return parts.replace(parts.find(from), from.size(), bsdf("plastic"));
 }
 
 TEST(SavedPaths, SumToTheFilm) {
@@ -106,16 +106,12 @@ TEST(SavedPaths, SumToTheFilm) {
 TEST(SavedPaths, SumToTheFilmWithDispersion) {
   const TemporaryFolder folder;
   folder.write("flint.txt", "500 1.80\n550 1.79\n600 1.78\n");
-  const auto ball = [](const char* type, const char* x) {
-    return std::string("<shape type=\"sphere\"><point name=\"center\" x=\"") + x +
-           "\" y=\"-0.2\" z=\"1\"/>"
-           "<float name=\"radius\" value=\"0.35\"/><bsdf type=\"" +
-           type +
-           "\"><string name=\"int_material\" value=\"flint.txt\"/>"
-           "</bsdf></shape>";
+  const auto ball = [](const char* type, double x) {
+    return shape("sphere", number("point", "center", point(x, -0.2, 1)) + real("radius", 0.35) +
+                               bsdf(type, text("int_material", "flint.txt")));
   };
   RenderSpec spec =
-      small_spec(room_without_rough_plastic() + ball("dielectric", "0.4") + ball("roughdielectric", "-0.4"));
+      small_spec(room_without_rough_plastic() + ball("dielectric", 0.4) + ball("roughdielectric", -0.4));
   spec.directory = folder.path();
   expect_film_equals_paths(spec);
 }
