@@ -62,7 +62,7 @@ function(kiloband_opencl_test name)
 endfunction()
 
 # kiloband_test_on(name backend [filter]): the tests of a program once more, on another backend
-# (tests/support/test_backend.hpp). filter: of GoogleTest, for those that are about one backend.
+# (tests/support/render_harness.hpp). filter: of GoogleTest, for those that are about one backend.
 function(kiloband_test_on name backend)
   set(filter "*")
   if(ARGC GREATER 2)

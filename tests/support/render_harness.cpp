@@ -2,11 +2,12 @@
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 
 #include "scene/read/reader.hpp"
-#include "tests/support/test_backend.hpp"
+#include "validation/suite/rendering.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -76,6 +77,11 @@ void collect_tiles(const SpectralFilm& film, const std::vector<double>& scale, R
 
 }  // namespace
 
+std::string test_backend_name() {
+  const char* name = std::getenv("KILOBAND_TEST_BACKEND");
+  return name && *name ? name : "cpu";
+}
+
 RenderResult render(const RenderSpec& spec) {
   RenderResult result;
   const DiagnosticSink sink = [&](const Diagnostic& d) { result.diagnostics.push_back(d.to_string()); };
@@ -90,14 +96,20 @@ RenderResult render(const RenderSpec& spec) {
   const ReplicatePlan plan = ReplicatePlan::deal(spec.spp, spec.sampling.replicates);
   SamplingSettings sampling = spec.sampling;
   sampling.replicates = result.replicates = plan.replicates;
-  const auto backend = make_test_backend(result.scene, derived, sampling, spec.isa, spec.threads);
+  // One OpenCL program for all tests; tests/statistical/backends compares it with the others.
+  BackendRequest request;
+  request.backend = test_backend_name();
+  request.isa = spec.isa;
+  request.threads = spec.threads;
+  request.specialised = false;
+  const auto backend = validation::backends().make(
+      request, {std::make_shared<const FlatScene>(result.scene), derived, sampling});
 
-  const Film& f = result.scene.film;
-  result.width = f.crop_width;
-  result.height = f.crop_height;
+  const PixelRect rect = validation::film_rect(result.scene);
+  result.width = rect.width;
+  result.height = rect.height;
   result.channels = channels.size() + derived.names.size();
-  SpectralFilm film({f.crop_x, f.crop_y, f.crop_width, f.crop_height},
-                    {result.channels, plan.replicates, true, spec.held});
+  SpectralFilm film(rect, {result.channels, plan.replicates, true, spec.held});
   std::vector<uint32_t> blocks(film.blocks().size());
   std::iota(blocks.begin(), blocks.end(), 0u);
   const std::atomic<bool> stop{false};
@@ -111,16 +123,6 @@ RenderResult render(const RenderSpec& spec) {
   result.vertices = done.vertices;
   result.paths = done.paths;
   return result;
-}
-
-std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees,
-                               uint32_t size) {
-  const std::string n = std::to_string(size);
-  return "<sensor type=\"perspective\"><float name=\"fov\" value=\"" + std::to_string(fov_degrees) +
-         "\"/><float name=\"near_clip\" value=\"1e-4\"/><transform name=\"to_world\"><lookat origin=\"" +
-         origin + "\" target=\"" + target +
-         "\" up=\"0, 1, 0\"/></transform><film type=\"hdrfilm\"><integer name=\"width\" value=\"" + n +
-         "\"/><integer name=\"height\" value=\"" + n + "\"/><rfilter type=\"box\"/></film></sensor>";
 }
 
 double z_score(double value, double expected, double variance) {

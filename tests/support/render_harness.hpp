@@ -1,5 +1,5 @@
 // Renders a scene given as text and hands back its statistics: what the statistical tests are written with.
-// Test bodies name no backend: they run on every backend that make_test_backend() knows.
+// Test bodies name no backend: their programs are registered once per backend.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct RenderSpec {
   std::string guide;  // empty: the bands
   uint64_t spp = 64;
   SamplingSettings sampling;  // replicates: wanted
-  std::string isa = "auto";   // auto, sse4, avx2, avx512
+  std::string isa = "auto";   // of the CPU backend, as the next: auto, sse4, avx2, avx512
   int threads = 0;
   std::vector<std::pair<std::string, Spectrum>> responses;
   bool held = false;
@@ -45,12 +45,12 @@ struct RenderResult {
   }
 };
 
+/// What KILOBAND_TEST_BACKEND says: "cpu" (also when it is not set), "opencl" (the method that the backend
+/// chooses), "opencl:pt", "opencl:dpept-path" or "opencl:dpept-batch".
+std::string test_backend_name();
+
 /// throws what reading, flattening and rendering throw
 RenderResult render(const RenderSpec& spec);
-
-/// A perspective sensor at `origin` looking at `target`, box filter, size x size pixels.
-std::string perspective_sensor(const std::string& origin, const std::string& target, double fov_degrees,
-                               uint32_t size);
 
 /// |value - expected| in standard errors; infinite if the error is 0 and they differ by more
 /// than 1e-5 relative.

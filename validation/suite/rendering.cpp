@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "film/spectral_film.hpp"
-#include "render/backend_registry.hpp"
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "src_gpu/opencl_backend.hpp"
@@ -17,22 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-stats::ReplicateImage image_of(const SpectralFilm& film, const PixelRect& rect, uint32_t replicates,
-                               const std::vector<double>& scale) {
-  stats::ReplicateImage image{rect.width, rect.height, scale.size(), replicates, {}, {}};
-  image.means.reserve(std::size_t{replicates} * rect.pixels() * scale.size());
-  std::vector<float> means(scale.size());
-  for (uint32_t r = 0; r < replicates; ++r) {
-    for (std::size_t pixel = 0; pixel < rect.pixels(); ++pixel) {
-      film.replicate_mean(r, pixel, means);
-      for (std::size_t c = 0; c < scale.size(); ++c)
-        image.means.push_back(static_cast<float>(means[c] * scale[c]));
-      image.samples.push_back(film.replicate_samples(r, pixel));
-    }
-  }
-  return image;
 }
 
 }  // namespace
@@ -57,14 +40,34 @@ std::shared_ptr<const FlatScene> load(const CaseScene& scene) {
   return compile_scene(description, {channels, channels, {}});
 }
 
+const BackendRegistry& backends() {
+  static const BackendRegistry kBackends({cpu::backend_entry(), opencl::backend_entry()});
+  return kBackends;
+}
+
 std::unique_ptr<Backend> make_backend(const Configuration& configuration,
                                       const std::shared_ptr<const FlatScene>& scene,
                                       const SamplingSettings& settings) {
-  static const BackendRegistry kBackends({cpu::backend_entry(), opencl::backend_entry()});
   BackendRequest request;
   request.backend = configuration.backend;
   request.specialised = configuration.specialised;
-  return kBackends.make(request, {scene, {}, settings});
+  return backends().make(request, {scene, {}, settings});
+}
+
+stats::ReplicateImage image_of(const SpectralFilm& film, const PixelRect& rect, uint32_t replicates,
+                               const std::vector<double>& scale) {
+  stats::ReplicateImage image{rect.width, rect.height, scale.size(), replicates, {}, {}};
+  image.means.reserve(std::size_t{replicates} * rect.pixels() * scale.size());
+  std::vector<float> means(scale.size());
+  for (uint32_t r = 0; r < replicates; ++r) {
+    for (std::size_t pixel = 0; pixel < rect.pixels(); ++pixel) {
+      film.replicate_mean(r, pixel, means);
+      for (std::size_t c = 0; c < scale.size(); ++c)
+        image.means.push_back(static_cast<float>(means[c] * scale[c]));
+      image.samples.push_back(film.replicate_samples(r, pixel));
+    }
+  }
+  return image;
 }
 
 PixelRect film_rect(const FlatScene& scene) {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/backend.hpp"
+#include "render/backend_registry.hpp"
 #include "scene/compile/flat_scene.hpp"
 #include "stats/replicate_image.hpp"
 
@@ -60,10 +60,15 @@ struct Watch {
 
 PixelRect film_rect(const FlatScene& scene);
 
+/// The means of a film's replicates, each channel times its scale.
+stats::ReplicateImage image_of(const SpectralFilm& film, const PixelRect& rect, uint32_t replicates,
+                               const std::vector<double>& scale);
+
 /// `samples` of each replicate into the film, until the watch stops it.
 void render_replicates(Backend& backend, SpectralFilm& film, uint32_t replicates, uint32_t samples,
                        const Watch& watch);
 
+const BackendRegistry& backends();
 /// "opencl": the method that the backend chooses. Throws what making the backend throws.
 std::unique_ptr<Backend> make_backend(const Configuration& configuration,
                                       const std::shared_ptr<const FlatScene>& scene,

@@ -1,7 +1,5 @@
 #include "backend_images.hpp"
 
-#include <numeric>
-
 #include "src_cpu/cpu_backend.hpp"
 
 namespace kiloband::test {
@@ -21,34 +19,13 @@ std::vector<std::string> zoo_names() {
   return names;
 }
 
-PixelRect film_rect(const FlatScene& scene) {
-  return {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height};
-}
-
 Image render_part(Backend& backend, const PixelRect& rect, uint32_t replicates, uint32_t samples) {
-  Image image;
-  image.width = rect.width;
-  image.height = rect.height;
-  image.replicates = replicates;
-  image.channels = backend.film_scale().size();
-  SpectralFilm film(rect, {image.channels, replicates, true, true});
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
-  const std::atomic<bool> stop{false};
-  for (uint32_t r = 0; r < replicates; ++r) backend.render(film, {r, 0, samples}, blocks, stop, {});
-  std::vector<float> means(image.channels);
-  for (uint32_t r = 0; r < replicates; ++r) {
-    for (std::size_t p = 0; p < image.pixels(); ++p) {
-      film.replicate_mean(r, p, means);
-      image.means.insert(image.means.end(), means.begin(), means.end());
-      image.samples.push_back(film.replicate_samples(r, p));
-    }
-  }
+  const std::vector<double> film_units(backend.film_scale().size(), 1);
+  SpectralFilm film(rect, {film_units.size(), replicates, true, true});
+  validation::render_replicates(backend, film, replicates, samples, {});
   const BackendStatistics done = backend.statistics();
-  image.invalid = done.first_invalid;
-  image.invalid_samples = done.invalid_samples;
-  image.paths = done.paths;
-  return image;
+  return {validation::image_of(film, rect, replicates, film_units), done.first_invalid, done.invalid_samples,
+          done.paths};
 }
 
 Image render_image(Backend& backend, const FlatScene& scene, uint32_t replicates, uint32_t samples) {

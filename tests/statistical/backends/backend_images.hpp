@@ -9,6 +9,7 @@
 #include "render/backend.hpp"
 #include "src_gpu/opencl_backend.hpp"
 #include "tests/support/scene_zoo.hpp"
+#include "validation/suite/rendering.hpp"
 
 namespace kiloband::test {
 
@@ -24,22 +25,12 @@ inline const std::vector<std::string> kOpenclMethods{"opencl:pt", "opencl:dpept-
 /// Names of all scenes, for parameterised tests.
 std::vector<std::string> zoo_names();
 
-/// The film's crop window.
-PixelRect film_rect(const FlatScene& scene);
+using validation::film_rect;
 
-/// An image by replicates, film units (equal on all backends).
-struct Image {
-  uint32_t width = 0, height = 0, replicates = 0;
-  std::size_t channels = 0;            // derived ones included
-  std::vector<float> means;            // [replicate][pixel][channel]
-  std::vector<uint64_t> samples;       // [replicate][pixel]
+/// In film units, which are equal on all backends; derived channels included.
+struct Image : stats::ReplicateImage {
   std::vector<InvalidSample> invalid;  // the first
   uint64_t invalid_samples = 0, paths = 0;
-
-  std::size_t pixels() const { return std::size_t{width} * height; }
-  float at(uint32_t replicate, std::size_t pixel, std::size_t channel) const {
-    return means[(replicate * pixels() + pixel) * channels + channel];
-  }
 };
 
 /// Renders `samples` samples of every replicate in every pixel.

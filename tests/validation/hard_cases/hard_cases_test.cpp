@@ -9,7 +9,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "tests/support/test_backend.hpp"
+#include "tests/support/render_harness.hpp"
 
 namespace kiloband::test {
 namespace {
