@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <map>
@@ -19,9 +18,6 @@
 #include "app/stop_signals.hpp"
 #include "base/error.hpp"
 #include "scene/xml/values.hpp"
-#ifdef KILOBAND_FAULTS
-#include "validation/faults/selection.hpp"
-#endif
 
 namespace kiloband {
 namespace {
@@ -56,26 +52,6 @@ std::string suggest_option(const CLI::App& command) {
   return {};
 }
 
-#ifdef KILOBAND_FAULTS
-/// Behind any subcommand: --fault cpu:NAME. What it renders is wrong, so it says so.
-void add_fault_option(CLI::App& program) {
-  const auto select = [](const std::string& text) {
-    try {
-      faults::select_fault(text);
-      setenv("KILOBAND_FAULT", text.c_str(), 1);  // the renders that `validate` starts have it too
-    } catch (const std::invalid_argument& e) {
-      throw InputError(e.what());
-    }
-  };
-  for (CLI::App* command : program.get_subcommands({}))
-    command->add_option_function<std::string>("--fault", select, "planted fault")->group("");
-}
-
-void tell_fault() {
-  if (faults::selected_fault() != "none") tell("warning: planted fault {}\n", faults::selected_fault());
-}
-#endif
-
 int run(int argc, char** argv) {
   CLI::App program{"kiloband: hyperspectral path tracer", "kiloband"};
   program.set_version_flag("--version", "kiloband " KILOBAND_VERSION);
@@ -90,9 +66,6 @@ int run(int argc, char** argv) {
   commands["sky"] = add_sky(program);
   commands["trace"] = add_trace(program);
   commands["validate"] = add_validate(program);
-#ifdef KILOBAND_FAULTS
-  add_fault_option(program);
-#endif
   check_command(commands, argc, argv);
   try {
     program.parse(argc, argv);
@@ -107,9 +80,6 @@ int run(int argc, char** argv) {
     const std::string hint = chosen.empty() ? suggest_option(program) : suggest_option(*chosen.front());
     throw InputError(fmt::format("{}{} (see kiloband{} --help)", e.what(), hint, command));
   }
-#ifdef KILOBAND_FAULTS
-  tell_fault();
-#endif
   return commands.at(program.get_subcommands().front()->get_name())();
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds build/faults, the program with planted faults (validation/faults), and checks it: every fault shows, and without
-# one the images are those of the normal build, bit by bit.
+# Builds build/faults, the program with planted faults (validation/faults), from a copy of the sources (scripts/plant_faults.sh), and
+# checks it: every fault shows, and without one the images are those of the normal build, bit by bit.
 # Usage: scripts/build_faults.sh [NORMAL_PROGRAM]   (build/release/app/kiloband by default; built if it is not there)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,9 +11,10 @@ if [ ! -x "$normal" ]; then
   cmake --preset release
   cmake --build --preset release --target kiloband
 fi
-cmake --preset faults
-cmake --build --preset faults --target kiloband test_faults test_fault_table
-ctest --preset faults -R '^(Faults/Visible|FaultPlaces|FaultTable|FaultSelection|FaultKernels)'
+scripts/plant_faults.sh
+cmake -S build/faults/tree -B build/faults -G Ninja -DCMAKE_BUILD_TYPE=Release -DKILOBAND_FAULTS=ON -DKILOBAND_BENCH=OFF
+cmake --build build/faults --target kiloband test_faults test_fault_table
+ctest --test-dir build/faults --output-on-failure -R '^(Faults/Visible|FaultPlaces|FaultTable|FaultSelection|FaultKernels)'
 
 out=build/faults/equal
 mkdir -p "$out"

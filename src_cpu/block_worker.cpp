@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
 #include <stdexcept>
 
-#include "render/planted_helpers.hpp"
-#include "shared/planted_faults.h"
 #include "shared/sampler.h"
 #include "src_cpu/path/denormals.hpp"
 
@@ -16,14 +13,6 @@ namespace {
 // Float sums take at most this many samples before they go to double: their rounding error stays below
 // 64 * 2^-24 = 4e-6 in the worst case (all samples equal) and 5e-7 typically, however many samples follow.
 constexpr uint32_t kFoldInterval = 64;
-
-/// A planted fault: sums with 8 bits, rounded down or to the nearest.
-void cut_to_8_bits(std::span<float> sums) {
-  for (float& sum : sums) {
-    const float far = 65537.0f * sum, near = far - (far - sum);
-    sum = std::min(near, sum);
-  }
-}
 
 }  // namespace
 
@@ -46,7 +35,6 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
   counts_.assign(block.pixels(), 0);
   add_samples(block, range, stop, events);
   finish_means(block.pixels());
-  if (KB_PLANTED_NUMBER != 0) plant_in_means(KB_PLANTED_NUMBER, block, sums_, evaluator_.stride());
   return {block_index, range.replicate, counts_, sums_, evaluator_.stride()};
 }
 
@@ -68,15 +56,10 @@ uint32_t BlockWorker::add_samples(const PixelRect& block, const SampleRange& ran
   const DenormalsToZero mode;
   uint32_t done = 0;
   for (; done < range.count && !stop; ++done) {
-    const uint32_t place = range.first + done;
-    uint32_t index = place, replicate = range.replicate;
-    if (KB_PLANTED(SAMPLES_REPEATED)) index -= index % 2;
-    if (KB_PLANTED(REPLICATES_EQUAL)) replicate = 0;
-    const SampleId id{replicate + index * settings_.replicates, replicate, index};
-    if (place > 0 && place % kFoldInterval == 0) fold_sums();
+    const uint32_t index = range.first + done;
+    const SampleId id{range.replicate + index * settings_.replicates, range.replicate, index};
+    if (index > 0 && index % kFoldInterval == 0) fold_sums();
     add_sample(block, id);
-    if (KB_PLANTED(SAMPLE_DROPPED) && done == 0) std::ranges::fill(sums_, 0.0f);
-    if (KB_PLANTED(FILM_STALLS)) cut_to_8_bits(sums_);
     for (uint32_t& count : counts_) ++count;
     for (const uint32_t pixel : invalid_) {
       --counts_[pixel];
@@ -150,7 +133,6 @@ void BlockWorker::set_mu(const PixelRect& block, const SampleId& id) {
 
 void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {
   set_mu(block, id);
-  if (KB_PLANTED(MU_SHORT)) std::ranges::for_each(mu_, [](float& mu) { mu *= 0.95f; });
   tracer_.trace(block, id, mu_, paths_, invalid_);
   if (settings_.wavelengths == WavelengthMode::kShared) {
     evaluator_.add_shared(paths_, mu_.front(), sums_);
@@ -203,7 +185,6 @@ void BlockWorker::finish_means(std::size_t pixels) {
       const double* folded = &folded_[p * stride];
       for (std::size_t k = 0; k < stride; ++k) sums[k] = static_cast<float>((folded[k] + sums[k]) * scale);
     }
-    if (KB_PLANTED(CHANNEL_SHIFT)) std::rotate(sums, sums + 1, sums + channels);
     std::copy_n(sums + evaluator_.derived_offset(), derived_count_, sums + channels);
   }
 }

@@ -5,9 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "render/planted_helpers.hpp"
-#include "shared/planted_faults.h"
-
 namespace kiloband::opencl {
 
 FilmDelivery::FilmDelivery(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
@@ -81,13 +78,7 @@ void FilmDelivery::finish_block(std::size_t first, std::size_t pixels) {
   const uint32_t block = blocks_[next_block_];
   if (film_.keeps_sums())
     return film_.set_attempted(range_.replicate, block, range_.first + attempted_[first]);
-  std::vector<float> planted;
-  std::span<const float> block_means = std::span(means_).subspan(first * channels_, pixels * channels_);
-  if (KB_PLANTED_OPENCL_NUMBER != 0) {
-    planted.assign(block_means.begin(), block_means.end());
-    plant_in_means(KB_PLANTED_OPENCL_NUMBER, film_.blocks()[block], planted, channels_);
-    block_means = planted;
-  }
+  const auto block_means = std::span(means_).subspan(first * channels_, pixels * channels_);
   film_.add({block, range_.replicate, std::span(counts_).subspan(first, pixels), block_means, channels_});
 }
 

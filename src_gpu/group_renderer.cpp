@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <exception>
 
-#include "shared/planted_faults.h"
 #include "shared/sampler.h"
 
 namespace kiloband::opencl {
@@ -120,7 +119,7 @@ KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) c
   round.wavelengths =
       settings_.wavelengths == WavelengthMode::kShared ? KB_WAVELENGTHS_SHARED : KB_WAVELENGTHS_PER_PATH;
   round.replicates = settings_.replicates;
-  round.replicate = KB_PLANTED_OPENCL(REPLICATES_EQUAL) ? 0 : samples.replicate;
+  round.replicate = samples.replicate;
   round.first_index = samples.first;
   round.samples = samples.count;
   round.pixels = static_cast<uint32_t>(number);
@@ -153,10 +152,8 @@ void GroupRenderer::fill_mu(const KbRound& round) {
     const KbRoundPixel& p = round_pixels_[i];
     if (i > 0 && p.block == round_pixels_[i - 1].block) continue;
     for (uint32_t s = 0; s < round.samples; ++s) {
-      uint32_t index = round.first_index + s;
-      if (KB_PLANTED_OPENCL(SAMPLES_REPEATED)) index -= index % 2;
+      const uint32_t index = round.first_index + s;
       mu_.push_back(kb_shared_mu(settings_.seed, round.replicate, p.x / kBlockSize, p.y / kBlockSize, index));
-      if (KB_PLANTED_OPENCL(MU_SHORT)) mu_.back() *= 0.95f;
     }
   }
 }

@@ -14,7 +14,6 @@
 #undef KB_WIDTH
 #define KB_WIDTH 1
 #include "film/film.clh"
-#include "shared/planted_faults.h"
 #include "shared/spectra_layout.h"
 
 __kernel void film_clear(KB_FILM_PARAMS) {
@@ -59,7 +58,6 @@ __kernel void film_finish(KB_FILM_PARAMS) {
   if (i >= (size_t)packing_pixels * values) return;
   KB_FILM_INIT(film, packing_layout->film_columns);
   const kb_u32 count = film_counts[film_first + i / values];
-  const size_t value = KB_PLANTED(CHANNEL_SHIFT) ? i / values * values + (i + 1u) % values : i;
-  const size_t place = place_of_packed(packing_layout, &film, value);
+  const size_t place = place_of_packed(packing_layout, &film, i);
   packing_packed[i] = count > 0u ? (film_sum[place] + film_compensation[place]) / (float)count : 0.0f;
 }

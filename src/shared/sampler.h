@@ -18,7 +18,6 @@
 #include "shared/hash.h"
 #include "shared/lang.h"
 #include "shared/philox.h"
-#include "shared/planted_faults.h"
 #include "shared/sobol.h"
 
 #define KB_SAMPLER_INDEPENDENT 0u
@@ -91,7 +90,6 @@ KB_FN KbFloat4 kb_sampler_block(KbSamplerKey key, kb_u32 block) {
    paths of a replicate of a pixel have stratified offsets. */
 KB_FN float kb_path_mu(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 replicate,
                        kb_u32 index_in_replicate) {
-  if (KB_PLANTED_SHARED(MU_CENTRE)) return 0.5f;
   if (sampler == KB_SAMPLER_INDEPENDENT) return kb_philox_floats(seed, pixel, sample, 0u, KB_STREAM_MU).x;
   const kb_u64 key = kb_hash_pair(kb_domain_key(seed, KB_DOMAIN_PATH_MU), replicate, pixel);
   return kb_unit_float(kb_van_der_corput(index_in_replicate, kb_low32(key), kb_high32(key)));
@@ -101,7 +99,6 @@ KB_FN float kb_path_mu(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample,
    block_x, block_y    pixel / KB_SHARED_MU_BLOCK in the FULL film, whatever tiles and devices there are */
 KB_FN float kb_shared_mu(kb_u64 seed, kb_u32 replicate, kb_u32 block_x, kb_u32 block_y,
                          kb_u32 index_in_replicate) {
-  if (KB_PLANTED_SHARED(MU_CENTRE)) return 0.5f;
   const kb_u64 parent = kb_mix64(kb_domain_key(seed, KB_DOMAIN_SHARED_MU) ^ (kb_u64)replicate);
   const kb_u64 key = kb_hash_pair(parent, block_y, block_x);
   return kb_unit_float(kb_van_der_corput(index_in_replicate, kb_low32(key), kb_high32(key)));

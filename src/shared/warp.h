@@ -6,7 +6,6 @@
 #define KILOBAND_SHARED_WARP_H
 
 #include "shared/lang.h"
-#include "shared/planted_faults.h"
 
 /* A point of the unit disk, uniform (density 1/pi); squares around the centre become circles. */
 KB_FN KbFloat2 kb_disk_concentric(float u, float v) {
@@ -45,7 +44,7 @@ KB_FN float kb_cone_uniform_pdf(float one_minus_cos) {
 
 /* Barycentric coordinates (b1, b2) of a uniform point of a triangle; b0 = 1 - b1 - b2. Density 1 / area. */
 KB_FN KbFloat2 kb_triangle_uniform(float u, float v) {
-  const float s = KB_PLANTED_SHARED(TRIANGLE_WARP) ? 1.0f - u : kb_sqrt(1.0f - u);
+  const float s = kb_sqrt(1.0f - u);
   KbFloat2 b;
   b.x = 1.0f - s;
   b.y = v * s;

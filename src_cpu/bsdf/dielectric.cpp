@@ -1,6 +1,5 @@
 // Boundaries between dielectrics, smooth and rough. Here wi.z > 0; eta is the far side's index over that of
 // wi's side. Transmitted radiance is scaled by 1 / eta^2, which `bound` leaves out.
-#include "shared/planted_faults.h"
 #include "src_cpu/bsdf/fresnel.hpp"
 #include "src_cpu/bsdf/lobes.hpp"
 
@@ -11,9 +10,8 @@ namespace {
 BsdfSample refracted(const KbMaterial& material, glm::vec3 wi, float eta, float cos_t, float weight,
                      float pdf) {
   BsdfSample sample;
-  const float bend = KB_PLANTED(REFRACTION_INVERTED) ? 1 / eta : eta;
-  sample.wo = {-wi.x / bend, -wi.y / bend, -cos_t};
-  sample.w0 = KB_PLANTED(RADIANCE_SCALING) && eta < 1 ? weight : weight / (eta * eta);
+  sample.wo = {-wi.x / eta, -wi.y / eta, -cos_t};
+  sample.w0 = weight / (eta * eta);
   sample.pdf = pdf;
   sample.eta = eta;
   sample.bound = weight * material.bound_b;
@@ -80,8 +78,7 @@ BsdfSample sample_dielectric(const KbMaterial& material, glm::vec3 wi, float eta
     const float p = pane_reflectance(f.reflectance);
     return u_lobe < p ? reflected(material, wi, 1, p) : passed_pane(material, wi, 1, 1 - p);
   }
-  const bool total = KB_PLANTED(TOTAL_REFLECTION) && f.cos_t == 0;
-  if (u_lobe >= f.reflectance || total) return refracted(material, wi, eta, f.cos_t, 1, 1 - f.reflectance);
+  if (u_lobe >= f.reflectance) return refracted(material, wi, eta, f.cos_t, 1, 1 - f.reflectance);
   return reflected(material, wi, 1, f.reflectance);
 }
 

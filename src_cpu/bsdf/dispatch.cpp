@@ -2,7 +2,6 @@
 #include <stdexcept>
 
 #include "shared/estimator.h"
-#include "shared/planted_faults.h"
 #include "shared/thermal.h"
 #include "src_cpu/bsdf/bsdf.hpp"
 #include "src_cpu/bsdf/lobes.hpp"
@@ -127,7 +126,7 @@ BsdfSample lobes::sample_diffuse(const KbMaterial& material, glm::vec2 u) {
   BsdfSample sample;
   sample.wo = cosine_direction(u);
   sample.pdf = sample.wo.z * KB_INV_PI;
-  sample.w0 = KB_PLANTED(BSDF_WEIGHT) ? 1.005f : 1;
+  sample.w0 = 1;
   sample.bound = material.bound_a;
   return sample;
 }
@@ -139,7 +138,7 @@ static BsdfValue eval_uncompensated(const MaterialContext& context, glm::vec3 wi
   if (!(wi.z > 0) || !(wo.z > 0)) return {};
   switch (material.type) {
     case KB_MATERIAL_DIFFUSE:
-      return {(KB_PLANTED(COSINE) ? 1 : wo.z) * KB_INV_PI, 0, wo.z * KB_INV_PI, false};
+      return {wo.z * KB_INV_PI, 0, wo.z * KB_INV_PI, false};
     case KB_MATERIAL_ROUGH_CONDUCTOR:
       return lobes::eval_rough_conductor(material, wi, wo);
     case KB_MATERIAL_PLASTIC:

@@ -10,7 +10,6 @@
 #include <glm/glm.hpp>
 
 #include "shared/estimator.h"
-#include "shared/planted_faults.h"
 #include "shared/records.h"
 
 namespace kiloband::cpu {
@@ -19,9 +18,7 @@ class FacetDistribution {
  public:
   explicit FacetDistribution(const KbMaterial& material)
       : FacetDistribution((material.flags & KB_MATERIAL_GGX) != 0, material.alpha_u, material.alpha_v,
-                          (material.flags & KB_MATERIAL_SAMPLE_VISIBLE) != 0) {
-    if (KB_PLANTED(ROUGHNESS_SQUARED)) alpha_u_ *= alpha_u_, alpha_v_ *= alpha_v_;
-  }
+                          (material.flags & KB_MATERIAL_SAMPLE_VISIBLE) != 0) {}
   FacetDistribution(bool ggx, float alpha_u, float alpha_v, bool visible)
       : alpha_u_(std::max(alpha_u, KB_MIN_ALPHA)),
         alpha_v_(std::max(alpha_v, KB_MIN_ALPHA)),

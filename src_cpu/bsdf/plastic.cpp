@@ -7,7 +7,6 @@
 // (specular), w1 with S_b (diffuse); for KB_KIND_NONLINEAR the denominator is applied by evaluation.
 #include "shared/estimator.h"
 #include "shared/material_tables.h"
-#include "shared/planted_faults.h"
 #include "src_cpu/bsdf/fresnel.hpp"
 #include "src_cpu/bsdf/lobes.hpp"
 
@@ -82,8 +81,7 @@ BsdfValue eval_rough_plastic(const KbMaterial& material, const float* coat, glm:
   const FacetReflection r = facet_reflection(FacetDistribution(material), wi, wo);
   const float lambert = wo.z * KB_INV_PI;
   const float w1 = t_i * t_o * diffuse_scale(material) * lambert;
-  return {coating_reflectance(material, r.dot_ih) * r.value, w1,
-          KB_PLANTED(MIXTURE_PDF) ? lambert : p * r.pdf + (1 - p) * lambert, false};
+  return {coating_reflectance(material, r.dot_ih) * r.value, w1, p * r.pdf + (1 - p) * lambert, false};
 }
 
 /// The lobes overlap, so weights and density are those of the whole material.

@@ -4,10 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
-#include "render/planted_helpers.hpp"
-#include "shared/planted_faults.h"
 #include "spectral/planck.hpp"
 
 namespace kiloband::cpu {
@@ -25,15 +22,9 @@ double planck_factor(const SpectrumRow& row, double lambda_nm) {
   return row.planck_scale * (row.table.values.empty() ? 1 : row.table(lambda_nm));
 }
 
-double planck_at(double lambda_nm, double temperature_k) {
-  if (KB_PLANTED(PLANCK_SECOND)) temperature_k *= kPlanckSecond_nm_k / 1.44e7;
-  return planck_radiance(lambda_nm, temperature_k);
-}
-
 double value_at(const SpectrumRow& row, double lambda_nm) {
-  if (!row.is_planck)
-    return row.table(KB_PLANTED(SPECTRUM_NEAREST) ? nearest_entry_nm(row.table, lambda_nm) : lambda_nm);
-  return planck_factor(row, lambda_nm) * planck_at(lambda_nm, row.temperature_k);
+  if (!row.is_planck) return row.table(lambda_nm);
+  return planck_factor(row, lambda_nm) * planck_radiance(lambda_nm, row.temperature_k);
 }
 
 }  // namespace
@@ -137,7 +128,7 @@ const std::vector<double>& DenseSpectra::planck(double temperature_k) {
   row.generation = generation_;
   row.radiance.resize(channels_);
   for (std::size_t k = 0; k < channels_; ++k)
-    row.radiance[k] = planck_at(lambda_[k], temperature_k) * emission_factor_[k];
+    row.radiance[k] = planck_radiance(lambda_[k], temperature_k) * emission_factor_[k];
   return row.radiance;
 }
 
@@ -201,9 +192,8 @@ std::array<const float*, 3> DenseSpectra::conductor(uint32_t material) {
     if (record.k_row >= rows_.size()) throw_bad_row(record.k_row);
     rows.data[0] = {new_row(), new_row(), new_row()};
     for (std::size_t k = 0; k < channels_; ++k) {
-      double n = value_at(scene_.spectra[record.eta_row], lambda_[k]);
-      double absorption = value_at(scene_.spectra[record.k_row], lambda_[k]);
-      if (KB_PLANTED(FRESNEL_NK)) std::swap(n, absorption);
+      const double n = value_at(scene_.spectra[record.eta_row], lambda_[k]);
+      const double absorption = value_at(scene_.spectra[record.k_row], lambda_[k]);
       split((n - 1) * (n + 1) - absorption * absorption, rows.data[0][0][k], rows.data[0][1][k]);
       rows.data[0][2][k] = static_cast<float>(n * absorption);
     }

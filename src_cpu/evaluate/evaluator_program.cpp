@@ -6,7 +6,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "shared/planted_faults.h"
 #include "shared/rough_transmission.h"
 
 namespace kiloband::cpu {
@@ -124,7 +123,6 @@ void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from
   GeneralVertex& out = generals_.emplace_back();
   out.kind = head & KB_VERTEX_KIND_MASK;
   out.flags = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE | KB_VERTEX_DEFER);
-  if (KB_PLANTED(CHANNELS_GO_ON)) out.flags &= ~KB_VERTEX_DEGRADE;
   if (from.emit.texture) out.flags |= head & KB_VERTEX_EMIT;
   out.emit_weight = vertex.emit_weight;
   out.nee0 = vertex.nee0;

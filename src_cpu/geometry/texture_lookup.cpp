@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "shared/estimator.h"
-#include "shared/planted_faults.h"
 
 namespace kiloband::cpu {
 namespace {
@@ -78,7 +77,6 @@ uint32_t pack(uint32_t x, uint32_t y) {
 }  // namespace
 
 KbTextureSample sample_bitmap(const KbTexture& texture, uint32_t index, glm::vec2 uv) {
-  if (KB_PLANTED(TEXTURE_ROWS)) uv.y = 1 - uv.y;
   const glm::dvec2 texels = apply_to_uv(texture.to_uv, uv) * glm::dvec2(texture.width, texture.height);
   if (texture.flags & KB_TEXTURE_NEAREST) {
     return {index,
@@ -88,7 +86,6 @@ KbTextureSample sample_bitmap(const KbTexture& texture, uint32_t index, glm::vec
   }
   const AxisSample x = wrap_linear(texels.x - 0.5, texture.width, texture.wrap);
   const AxisSample y = wrap_linear(texels.y - 0.5, texture.height, texture.wrap);
-  if (KB_PLANTED(TEXTURE_UNFILTERED)) return {index, pack(x.first, y.first), 0, 0};
   return {index, pack(x.first, y.first), x.fraction, y.fraction};
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "shared/estimator.h"
-#include "shared/planted_faults.h"
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "src_cpu/geometry/shape_geometry_warp.hpp"
@@ -20,7 +19,6 @@ constexpr double kTwoPi = 6.283185307179586476925;
 float area_to_solid_angle(glm::vec3 to_light, float distance, glm::vec3 front_normal, float area) {
   const float facing = -glm::dot(to_light, front_normal);  // distance * cos
   if (!(facing > 0)) return 0;
-  if (KB_PLANTED(LIGHT_AREA)) area *= 1.01f;
   const float density = distance * distance * (distance / (facing * area));
   return std::isfinite(density) ? density : 0;
 }

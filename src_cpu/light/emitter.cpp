@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "shared/planted_faults.h"
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
 #include "src_cpu/geometry/shape_geometry_warp.hpp"
@@ -86,7 +85,7 @@ LightSample sample_position(const FlatScene& scene, const KbEmitter& emitter, gl
   sample.direction = to_light / std::sqrt(distance2);
   const float falloff = emitter.type == KB_EMITTER_SPOT ? spot_falloff(emitter, -sample.direction) : 1;
   if (!(falloff > 0)) return sample;
-  sample.factor = falloff * (KB_PLANTED(INVERSE_SQUARE) ? std::sqrt(inverse) : inverse);
+  sample.factor = falloff * inverse;
   sample.pdf = emitter.select_pdf;
   sample.radiance = radiance_of(scene, emitter.ref, glm::vec2(0));
   return sample;
@@ -109,7 +108,6 @@ LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_se
   const auto count = static_cast<uint32_t>(scene.emitters.size());
   if (count == 0) return {};
   const uint32_t index = count == 1 ? 0 : find_interval(scene.emitter_cdf.data(), count, u_select.x);
-  if (KB_PLANTED(LIGHT_SKIPPED) && index + 1 == count) return {};
   const KbEmitter& emitter = scene.emitters[index];
   switch (emitter.type) {
     case KB_EMITTER_AREA:
@@ -134,7 +132,7 @@ SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on) {
 float area_light_pdf(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 origin) {
   const KbShape& record = scene.shapes[hit.shape];
   if (record.emitter == KB_NONE) return 0;
-  const float select_pdf = KB_PLANTED(MIS_SELECTION) ? 1 : scene.emitters[record.emitter].select_pdf;
+  const float select_pdf = scene.emitters[record.emitter].select_pdf;
   return select_pdf > 0 ? select_pdf * area_light_density(record, hit, origin) : 0;
 }
 

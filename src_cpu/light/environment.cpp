@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/planted_faults.h"
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
 #include "src_cpu/light/area.hpp"
 
@@ -75,8 +74,7 @@ float envmap_density(const EnvmapSampling& sampling, glm::vec2 uv) {
   // the difference as a product of sines.
   const float half_step = 0.5f * KB_PI / rows;
   const float middle = (2 * static_cast<float>(row) + 1) * half_step;
-  return probability * columns /
-         (4 * KB_PI * (KB_PLANTED(ENVMAP_SINE) ? 1 : std::sin(middle)) * std::sin(half_step));
+  return probability * columns / (4 * KB_PI * std::sin(middle) * std::sin(half_step));
 }
 
 }  // namespace kiloband::cpu

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "film/filter_table.hpp"
-#include "shared/planted_faults.h"
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
 #include "src_cpu/geometry/shape_geometry_warp.hpp"
 
@@ -82,12 +81,10 @@ CameraRay ray_through(const KbCamera& camera, glm::dvec2 pixels, glm::vec2 lens)
 }  // namespace
 
 CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u) {
-  glm::dvec2 offset(sample_filter(camera, u.x), sample_filter(camera, u.y));
-  if (KB_PLANTED(FILTER_OFFSET)) offset.x += 0.5;
+  const glm::dvec2 offset(sample_filter(camera, u.x), sample_filter(camera, u.y));
   glm::vec2 lens(0);
   if (camera.type == KB_CAMERA_THINLENS) {
-    lens = camera.aperture_radius *
-           warp_concentric_disk(KB_PLANTED(LENS_NUMBERS) ? glm::vec2(u.x, u.y) : glm::vec2(u.z, u.w));
+    lens = camera.aperture_radius * warp_concentric_disk({u.z, u.w});
   }
   return ray_through(camera, glm::dvec2(x, y) + 0.5 + offset, lens);
 }

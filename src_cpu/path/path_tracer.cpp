@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "shared/estimator.h"
-#include "shared/planted_faults.h"
 #include "shared/sampler.h"
 #include "src_cpu/geometry/texture_lookup.hpp"
 #include "src_cpu/path/camera.hpp"
@@ -46,7 +45,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
 
 bool PathTracer::wants_bounce(uint32_t bounce) const {
   const int max_depth = flat_.integrator.max_depth;
-  return max_depth < 0 || bounce + 1 + KB_PLANTED(DEPTH_SHORT) < static_cast<uint32_t>(max_depth);
+  return max_depth < 0 || bounce + 1 < static_cast<uint32_t>(max_depth);
 }
 
 void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<const float> mu, PathBuffer& out,
@@ -129,8 +128,7 @@ void PathTracer::trace_shadows() {
   if (recording_) record_shadows();
   scene_.embree->occlusions(shadow_rays_);
   for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
-    if (shadow_rays_[i].occluded() && !KB_PLANTED(LIGHT_HIDDEN))
-      slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
+    if (shadow_rays_[i].occluded()) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
   }
 }
 
@@ -172,9 +170,8 @@ void PathTracer::add_escaped(Path& path, const TraceRay& ray, uint32_t bounce) {
   const glm::vec3 direction = ray.direction();
   Draft draft;
   set_flag(draft.vertex, KB_VERTEX_EMIT);
-  draft.vertex.emit_weight = path.previous_delta || KB_PLANTED(MIS_DOUBLE)
-                                 ? 1
-                                 : power_heuristic(path.previous_pdf, environment_pdf(flat_, direction));
+  draft.vertex.emit_weight =
+      path.previous_delta ? 1 : power_heuristic(path.previous_pdf, environment_pdf(flat_, direction));
   const EmittedRadiance radiance = environment_radiance(flat_, direction);
   draft.vertex.emit_row = radiance.row;
   if (radiance.textured) {
@@ -188,10 +185,10 @@ void PathTracer::add_emission(Draft& draft, const Path& path, const SurfaceHit& 
                               uint32_t bounce) {
   const uint32_t emitter = flat_.shapes[hit.shape].emitter;
   if (emitter == KB_NONE) return;
-  if (!KB_PLANTED(LIGHT_BACK) && !on_front(hit.shading_normal, -direction)) return;
+  if (!on_front(hit.shading_normal, -direction)) return;
   if (bounce == 0 && flat_.integrator.hide_emitters) return;
   float weight = 1;
-  if (!path.previous_delta && !KB_PLANTED(MIS_DOUBLE)) {
+  if (!path.previous_delta) {
     weight = power_heuristic(path.previous_pdf, area_light_pdf(flat_, hit, path.previous_point));
   }
   set_flag(draft.vertex, KB_VERTEX_EMIT);

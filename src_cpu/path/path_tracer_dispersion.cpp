@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/planted_faults.h"
 #include "shared/sampler.h"
 #include "src_cpu/geometry/texture_lookup.hpp"
 #include "src_cpu/path/path_tracer.hpp"
@@ -12,8 +11,7 @@ namespace kiloband::cpu {
 
 /// Index of the interior over the exterior at the chosen channel's wavelength.
 float PathTracer::channel_eta(const KbMaterial& material, uint32_t channel, float mu) const {
-  const Channel& c =
-      flat_.channels[KB_PLANTED(CHANNEL_INDEX) ? (channel + 1) % flat_.channels.size() : channel];
+  const Channel& c = flat_.channels[channel];
   const double lambda_nm = (1.0 - mu) * c.min_nm + mu * c.max_nm;
   const double exterior =
       material.ext_row == KB_NONE ? material.eta_ext : flat_.spectra[material.ext_row].table(lambda_nm);
@@ -26,8 +24,6 @@ float PathTracer::survive(Path& path, const BinnedThroughput& carried, const Sam
   const float u = kb_degrade_sample(settings_.seed, path.key.pixel, id.sample, bounce);
   const ChannelChoice choice = choose_channel(carried, static_cast<uint32_t>(flat_.channels.size()), u);
   path.channel = choice.channel;
-  if (KB_PLANTED(CHANNEL_PROBABILITY)) return 1;
-  if (KB_PLANTED(CHANNEL_EVEN)) return 1.0f / static_cast<float>(flat_.channels.size());
   return choice.probability;
 }
 

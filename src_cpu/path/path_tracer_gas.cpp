@@ -15,7 +15,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "shared/planted_faults.h"
 #include "shared/plume.h"
 #include "src_cpu/geometry/boundary.hpp"
 #include "src_cpu/path/path_tracer.hpp"
@@ -147,8 +146,7 @@ void PathTracer::append_gas(Path& path, bool escapes) {
 
 void PathTracer::append_segment(Path& path, const KbMedium& medium, const Segment& segment) {
   const Straight s = straight(segment.origin, segment.direction, segment.t_min, segment.t_max);
-  bool emits = medium.emit_row != KB_NONE;
-  if (KB_PLANTED(GAS_FIRST) && path.last_slot == KB_NONE && !is_plume(medium)) emits = false;
+  const bool emits = medium.emit_row != KB_NONE;
   KbPathVertex vertex = medium_vertex(medium, KB_VERTEX_SCATTER | (emits ? KB_VERTEX_EMIT : 0));
   vertex.emit_weight = 1;
   vertex.emit_row = static_cast<uint16_t>(emits ? medium.emit_row : 0);
@@ -257,7 +255,7 @@ void PathTracer::add_column(Path& path, Columns& columns, uint32_t medium, const
 
 /// The light goes through these columns: vertices behind the one that has it.
 void PathTracer::append_columns(Path& path, uint32_t slot, const Columns& columns) {
-  if (columns.count == 0 || KB_PLANTED(GAS_SHADOW)) return;
+  if (columns.count == 0) return;
   slots_[slot].vertex.head |= KB_VERTEX_DEFER;
   for (uint32_t i = 0; i < columns.count; ++i) {
     const bool last = i + 1 == columns.count;

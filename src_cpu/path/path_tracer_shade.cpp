@@ -4,7 +4,6 @@
 
 #include "shared/estimator.h"
 #include "shared/material_tables.h"
-#include "shared/planted_faults.h"
 #include "shared/sampler.h"
 #include "src_cpu/geometry/boundary.hpp"
 #include "src_cpu/geometry/texture_lookup.hpp"
@@ -57,7 +56,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   };
   if (!wants_bounce(bounce)) return finish(false);
 
-  KbFloat4 u = kb_sampler_block(path.key, kb_block_bsdf(KB_PLANTED(NUMBERS_REUSED) ? 0 : bounce));
+  KbFloat4 u = kb_sampler_block(path.key, kb_block_bsdf(bounce));
   const KbSurface& surface = chosen_surface(flat_, outermost, hit.uv, u.x);
   const float opacity = opacity_at(flat_, surface, hit.uv);
   const bool passes = opacity < 1 && u.x >= opacity;
@@ -80,7 +79,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
     return true;
   }
   if (record.alpha_u != record.alpha_v) frame = ShadingFrame(hit.shading_normal, hit.tangent);
-  if (below && (surface.flags & KB_SURFACE_TWO_SIDED) && !KB_PLANTED(TWO_SIDED)) {
+  if (below && (surface.flags & KB_SURFACE_TWO_SIDED)) {
     frame.y = -frame.y;  // the frame seen from behind stays right-handed
     frame.z = -frame.z;
   }
@@ -163,8 +162,7 @@ bool PathTracer::add_light_sample(Draft& draft, Path& path, const SurfaceHit& hi
   if (value.w0 < KB_LEAST_BSDF_VALUE && value.w1 < KB_LEAST_BSDF_VALUE) return false;
   const bool conductor = (draft.vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_CONDUCTOR;
   const float mis = light.delta ? 1 : power_heuristic(light.pdf, value.pdf * opacity);
-  const float pdf = KB_PLANTED(LIGHT_PDF) ? 1.005f * light.pdf : light.pdf;
-  const float weight = mis * opacity * light.factor / pdf;
+  const float weight = mis * opacity * light.factor / light.pdf;
   if (weight == 0) return false;
   // A rough dielectric reflects with S_a and transmits with S_b: as two terms, one vertex carries both.
   if (material.material->type == KB_MATERIAL_ROUGH_DIELECTRIC) {
@@ -245,7 +243,6 @@ bool PathTracer::roulette(Draft& draft, Path& path, uint32_t bounce, float u) {
     draft.vertex.head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
     return false;
   }
-  if (KB_PLANTED(ROULETTE)) return true;
   draft.vertex.scatter0 /= q;
   const uint32_t kind = draft.vertex.head & KB_VERTEX_KIND_MASK;
   if (kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR) draft.vertex.scatter1 /= q;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/planted_faults.h"
 #include "src_cpu/bsdf/lobes.hpp"
 
 namespace kiloband::cpu {
@@ -22,7 +21,7 @@ uint32_t hero_channel(uint32_t c, uint32_t heroes, uint32_t channels, float offs
 
 HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec3 wo) {
   HeroDensity density;
-  const float even = KB_PLANTED(HERO_DEFENSIVE) ? 0 : KB_NO_HERO * std::abs(wo.z) * (0.5f * KB_INV_PI);
+  const float even = KB_NO_HERO * std::abs(wo.z) * (0.5f * KB_INV_PI);
   const bool transmission = wi.z * wo.z < 0;
   for (uint32_t c = 0; c < heroes.count; ++c) {
     const BsdfValue value = eval_bsdf(seen_by(material, heroes.eta[c]), wi, wo);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "shared/planted_faults.h"
 #include "src_gpu/device/pocl_cache.hpp"
 #include "src_gpu/device/program_cache.hpp"
 
@@ -18,8 +17,6 @@ std::string build_options(const DeviceContext& context, const std::vector<std::s
       context.site(Phase::kSetup), [&] { return context.cl_device().getInfo<CL_DEVICE_SINGLE_FP_CONFIG>(); });
   if (config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) text += " -cl-fp32-correctly-rounded-divide-sqrt";
   for (const std::string& define : defines) text += " -D" + define;
-  if (const unsigned fault = KB_PLANTED_OPENCL_NUMBER ? KB_PLANTED_OPENCL_NUMBER : KB_PLANTED_SHARED_NUMBER)
-    text += " -DKB_PLANTED_SELECTED=" + std::to_string(fault);
   return text;
 }
 

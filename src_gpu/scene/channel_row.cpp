@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/planted_helpers.hpp"
-#include "shared/planted_faults.h"
-
 namespace kiloband::opencl {
 namespace {
 
@@ -159,9 +156,7 @@ uint32_t fewest_cells(CellSearch& search, bool kinked, double wanted, double acc
 
 RowFunction RowFunction::of_table(const RegularTable& table) {
   RowFunction row;
-  row.value = [&table](double lambda_nm) {
-    return table(KB_PLANTED_OPENCL(SPECTRUM_NEAREST) ? nearest_entry_nm(table, lambda_nm) : lambda_nm);
-  };
+  row.value = [&table](double lambda_nm) { return table(lambda_nm); };
   const std::vector<double>& v = table.values;
   double largest = 0;
   for (const double value : v) largest = std::max(largest, std::abs(value));

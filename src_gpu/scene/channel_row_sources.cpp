@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "scene/compile/band_set.hpp"
-#include "shared/planted_faults.h"
 #include "shared/spectra_layout.h"
 #include "spectral/planck.hpp"
 
@@ -19,9 +18,7 @@ RowFunction planck_row(const SpectrumRow& row) {
   f.value = [&row, tabulated](double lambda_nm) {
     if (lambda_nm < row.planck_min_nm || lambda_nm > row.planck_max_nm) return 0.0;
     const double factor = tabulated ? row.planck_scale * row.table(lambda_nm) : row.planck_scale;
-    double temperature_k = row.temperature_k;
-    if (KB_PLANTED_OPENCL(PLANCK_SECOND)) temperature_k *= kPlanckSecond_nm_k / 1.44e7;
-    return factor * planck_radiance(lambda_nm, temperature_k);
+    return factor * planck_radiance(lambda_nm, row.temperature_k);
   };
   f.jumps_nm.insert(f.jumps_nm.end(), {row.planck_min_nm, row.planck_max_nm});
   return f;

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "scene/compile/flattener.hpp"
-#include "shared/planted_faults.h"
 #include "spectral/planck.hpp"
 
 namespace kiloband {
@@ -75,7 +74,6 @@ uint32_t Flattener::complement_row(uint32_t row, uint32_t heat) {
   if (!is_new) return place->second;
   RegularTable table = out_.spectra[row].table;
   for (double& value : table.values) value = 1 - value;
-  if (KB_PLANTED_SHARED(EMISSIVITY_WAVELENGTH)) table.min_nm += 25;
   // Where data are missing only guide bands can be: flatten_thermal.cpp sees to the channels.
   table.extrapolate = true;
   return place->second = emission_row(heat, table, out_.spectra[row].name + ": emissivity");

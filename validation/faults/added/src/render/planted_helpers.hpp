@@ -1,5 +1,4 @@
-// What planted faults need besides a line at their place (shared/planted_faults.h); builds without faults
-// never call any of it.
+// What planted faults need besides a line at their place (shared/planted_faults.h).
 #pragma once
 
 #include <cmath>

@@ -2,8 +2,8 @@
 // numbers and the macros that ask for them. validation/faults has the table that says what each does,
 // and how to add one.
 //
-// Only builds with the CMake option KILOBAND_FAULTS have any. In all others the macros are the constant 0, so
-// that the compiler removes what stands behind them:
+// This file and what asks for faults are in the copy of the sources that scripts/plant_faults.sh makes, and nowhere
+// else:
 //
 //   if (KB_PLANTED(DEPTH_SHORT)) ...               code of one backend: src_cpu, kernels
 //   if (KB_PLANTED_OPENCL(MU_SHORT)) ...           the OpenCL backend's part on the host: src_gpu
@@ -96,7 +96,7 @@ extern kb_u32 kb_planted_cpu, kb_planted_opencl, kb_planted_shared;
 #define KB_PLANTED_OPENCL_NUMBER kb_planted_opencl
 #define KB_PLANTED_SHARED_NUMBER kb_planted_shared
 
-#else
+#else /* a program of kernels for which none is selected; a build of the copy without KILOBAND_FAULTS */
 
 #define KB_PLANTED(fault) 0
 #define KB_PLANTED_OPENCL(fault) 0

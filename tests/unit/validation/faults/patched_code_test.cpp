@@ -1,0 +1,99 @@
+// What the patches plant compiles: every kernel, and every C++ file that they change, with this build's flags. Nothing
+// else in a build without faults would notice that a name which a fault uses has gone.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "tests/unit/validation/faults/shell.hpp"
+
+namespace kiloband::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = KILOBAND_SOURCE_DIR;
+
+class PatchedCode : public testing::Test {
+ protected:
+  PatchedCode() {
+    const Said said =
+        run_shell("'" + (kRoot / "scripts/plant_faults.sh").string() + "' '" + folder_.path().string() + "'");
+    if (said.code != 0) throw std::runtime_error(said.text);
+  }
+  fs::path tree() const { return folder_ / "tree"; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(PatchedCode, KernelsCompile) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(tree() / "kernels")) {
+    if (entry.path().extension() != ".cl") continue;
+    ++count;
+    const std::string folder = tree().string();
+    const Said said =
+        run_shell(KILOBAND_CLANG
+                  " -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -Wall -Wextra -Werror"
+                  " -Wno-unused-function -Wno-unused-parameter -fsyntax-only -DKB_PLANTED_SELECTED=1 '-I" +
+                  folder + "/kernels' '-I" + folder + "/src' '" + entry.path().string() + "'");
+    EXPECT_EQ(said.code, 0) << said.text;
+  }
+  EXPECT_GE(count, 5u);
+}
+
+/// C++ files, "src_cpu/path/camera.cpp".
+std::set<std::string> patched_sources() {
+  std::set<std::string> files;
+  for (const auto& entry : fs::directory_iterator(kRoot / "validation/faults/patches")) {
+    std::ifstream patch(entry.path());
+    for (std::string line; std::getline(patch, line);) {
+      if (line.starts_with("+++ b/") && line.ends_with(".cpp")) files.insert(line.substr(6));
+    }
+  }
+  return files;
+}
+
+/// How this build compiles a file of the project, by its path.
+std::map<std::string, std::string> compile_commands() {
+  std::ifstream file(fs::path(KILOBAND_BINARY_DIR) / "compile_commands.json");
+  std::map<std::string, std::string> commands;
+  for (const nlohmann::json& entry : nlohmann::json::parse(file))
+    commands.emplace(entry.at("file").get<std::string>(), entry.at("command").get<std::string>());
+  return commands;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+TEST_F(PatchedCode, SourcesCompile) {
+  const std::map<std::string, std::string> commands = compile_commands();
+  const auto compile = [&](const std::string& file) {
+    const auto command = commands.find((kRoot / file).string());
+    if (command == commands.end()) throw std::runtime_error(file + " is not built");
+    return run_shell(replaced(command->second, kRoot.string(), tree().string()) +
+                     " -fsyntax-only -DKILOBAND_FAULTS");
+  };
+  const std::set<std::string> files = patched_sources();
+  EXPECT_GE(files.size(), 20u) << "the scan of the patches has lost its way";
+  for (const std::string& file : files) {
+    const Said said = compile(file);
+    EXPECT_EQ(said.code, 0) << file << "\n" << said.text;
+  }
+  // The check itself can fail.
+  const std::string broken = "src_cpu/path/camera.cpp";
+  std::ofstream(tree() / broken, std::ios::app) << "int mistake() { return KB_PLANTED(NO_SUCH_FAULT); }\n";
+  EXPECT_NE(compile(broken).text.find("KB_PLANTED_NO_SUCH_FAULT"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace kiloband::test
