@@ -48,9 +48,9 @@ const Selection& of_environment() {
 }  // namespace
 }  // namespace kiloband::faults
 
-kb_u32 kb_planted_cpu = kiloband::faults::of_environment().cpu;
-kb_u32 kb_planted_opencl = kiloband::faults::of_environment().opencl;
-kb_u32 kb_planted_shared = kiloband::faults::of_environment().shared;
+uint32_t kb_planted_cpu = kiloband::faults::of_environment().cpu;
+uint32_t kb_planted_opencl = kiloband::faults::of_environment().opencl;
+uint32_t kb_planted_shared = kiloband::faults::of_environment().shared;
 
 namespace kiloband::faults {
 

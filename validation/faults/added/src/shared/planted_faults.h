@@ -9,6 +9,8 @@
 //   if (KB_PLANTED_OPENCL(MU_SHORT)) ...           the OpenCL backend's part on the host: src_gpu
 //   if (KB_PLANTED_SHARED(TRIANGLE_WARP)) ...      what both backends use: src, src/shared
 //
+// shared/lang.h includes it there, so that code with faults need not.
+//
 // On the host they compare with the faults that are selected for the process
 // (validation/faults/selection.hpp). A program of kernels is compiled for one fault,
 // -DKB_PLANTED_SELECTED=number (src_gpu/device/program.cpp), which is therefore part of the key in the cache of
@@ -17,8 +19,6 @@
 // KB_FAULT_* of shared/pipeline.h are something else: what goes wrong on devices.
 #ifndef KILOBAND_SHARED_PLANTED_FAULTS_H
 #define KILOBAND_SHARED_PLANTED_FAULTS_H
-
-#include "shared/lang.h"
 
 enum KbPlantedFault {
   KB_PLANTED_NONE = 0,
@@ -88,7 +88,7 @@ enum KbPlantedFault {
 
 /* Selected for the process, KB_PLANTED_NONE or another: in the CPU backend, in the OpenCL backend,
    in what both use. */
-extern kb_u32 kb_planted_cpu, kb_planted_opencl, kb_planted_shared;
+extern unsigned kb_planted_cpu, kb_planted_opencl, kb_planted_shared;
 #define KB_PLANTED(fault) (kb_planted_cpu == KB_PLANTED_##fault)
 #define KB_PLANTED_OPENCL(fault) (kb_planted_opencl == KB_PLANTED_##fault)
 #define KB_PLANTED_SHARED(fault) (kb_planted_shared == KB_PLANTED_##fault)
