@@ -97,7 +97,7 @@ void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples)
   answer("image        {} x {} pixels\n", scene.film.crop_width, scene.film.crop_height);
   answer("film         {:.1f} MiB, with variance {:.1f} MiB (beyond 1024 MiB strips are streamed)\n",
          film(false), film(true));
-  answer("path vertex  {} bytes; textured values: {} bytes each, stored two to a {}-byte slot\n",
+  answer("path vertex  {} bytes; textured values: {} bytes each, stored two to a {}-byte entry\n",
          sizeof(KbPathVertex), sizeof(KbTextureSample), 2 * sizeof(KbTextureSample));
 }
 
@@ -114,16 +114,16 @@ void print_path_memory(const FlatScene& scene) {
   const uint64_t vertices = longest_path(scene.integrator);
   const bool textured =
       scene.features.bitmap || scene.features.envmap_light || scene.features.temperature_field;
-  const uint64_t slots =
+  const uint64_t entries_each =
       (textured ? 2 : 1) + (scene.features.gas ? 2 : 0);  // gas: a vertex on the way, one for its light
   const uint64_t pt =
-      opencl::bytes_per_path(Method::kPt, scene.channels.size(), vertices, slots, scene.features);
-  const uint64_t dpept =
-      opencl::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices, slots, scene.features);
+      opencl::bytes_per_path(Method::kPt, scene.channels.size(), vertices, entries_each, scene.features);
+  const uint64_t dpept = opencl::bytes_per_path(Method::kDpeptBatch, scene.channels.size(), vertices,
+                                                entries_each, scene.features);
   answer(
       "opencl path  pt {} bytes with {} channels; dpept-path, dpept-batch {} bytes with {} vertices of {} "
       "bytes\n",
-      pt, scene.channels.size(), dpept, vertices, slots * sizeof(KbPathVertex));
+      pt, scene.channels.size(), dpept, vertices, entries_each * sizeof(KbPathVertex));
   answer("opencl pool  paths      pt MiB   dpept MiB\n");
   for (const uint64_t edge : {256, 512, 1024, 2048}) {
     const double paths = static_cast<double>(edge) * static_cast<double>(edge);

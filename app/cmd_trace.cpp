@@ -82,7 +82,7 @@ void print_gas(const FlatScene& scene, const KbPathVertex& v) {
   }
 }
 
-/// With the slots that follow it.
+/// With the entries that follow it.
 void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
   const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
   if (kind == KB_KIND_MEDIUM) return print_gas(scene, v);
@@ -120,10 +120,10 @@ void print_path(const FlatScene& scene, const TracedPath& path) {
     bounce += boundary ? 0 : 1;
   }
   if (path.invalid) answer("invalid: a weight is not finite, or the path is endless; it leaves the mean\n");
-  if (path.slots.empty() && !path.invalid) answer("no vertex contributes\n");
-  for (std::size_t i = 0; i < path.slots.size();) {
-    print_vertex(scene, path.slots[i]);
-    i += 1 + kb_vertex_extensions(path.slots[i].head);
+  if (path.entries.empty() && !path.invalid) answer("no vertex contributes\n");
+  for (std::size_t i = 0; i < path.entries.size();) {
+    print_vertex(scene, path.entries[i]);
+    i += 1 + kb_vertex_extensions(path.entries[i].head);
   }
 }
 

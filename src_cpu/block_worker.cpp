@@ -157,8 +157,8 @@ std::vector<TracedPath> BlockWorker::trace(const PixelRect& block, const SampleI
         hit ? TracedHit{ray.shape, ray.primitive, ray.t_max, ray.u, ray.v} : TracedHit{});
   }
   for (const SavedPath& path : paths_.paths) {
-    const auto first = paths_.slots.begin() + path.first;
-    traced[path.pixel].slots.assign(first, first + path.count);
+    const auto first = paths_.entries.begin() + path.first;
+    traced[path.pixel].entries.assign(first, first + path.count);
   }
   for (const uint32_t pixel : invalid_) traced[pixel].invalid = true;
   for (TracedPath& path : traced) normalise(path);

@@ -11,8 +11,8 @@ constexpr uint32_t kAuxiliaryPixels = 1u << 15;
 
 /// A program's chunks where they are not the usual ones.
 void add_chunk_define(std::vector<std::string>& defines, const HostScene& host, Method method) {
-  const uint32_t slots = chunk_slots(method, host.scene.features);
-  if (slots != KB_CHUNK_SLOTS) defines.push_back("KB_CHUNK_SLOTS=" + std::to_string(slots) + "u");
+  const uint32_t slots = chunk_entries(method, host.scene.features);
+  if (slots != KB_CHUNK_ENTRIES) defines.push_back("KB_CHUNK_ENTRIES=" + std::to_string(slots) + "u");
 }
 
 std::vector<std::string> evaluation_defines(const HostScene& host, const DeviceSettings& settings) {
@@ -67,7 +67,7 @@ uint64_t DeviceState::table_bytes() const {
   return opencl::table_bytes(host_.spectra.layout, shape_);
 }
 uint64_t DeviceState::slot_bytes() const {
-  const uint64_t more = chunk_slots() - KB_CHUNK_SLOTS;
+  const uint64_t more = chunk_entries() - KB_CHUNK_ENTRIES;
   return opencl::slot_bytes(host_.spectra.layout, shape_) + more * sizeof(KbPathVertex);
 }
 

@@ -54,7 +54,7 @@ class DeviceState {
   uint64_t table_bytes() const;
   uint64_t slot_bytes() const;
   bool has_dispersion() const { return host_.scene.features.dispersion; }
-  uint32_t chunk_slots() const { return opencl::chunk_slots(method, host_.scene.features); }
+  uint32_t chunk_entries() const { return opencl::chunk_entries(method, host_.scene.features); }
   uint32_t derived_channels() const { return host_.spectra.layout.derived; }
   bool has_gas() const { return host_.scene.features.gas; }
 
@@ -84,8 +84,8 @@ class DeviceState {
   const Method method;
 
  private:
-  std::vector<KbPathVertex> saved_slots(const KbSavedPath& saved, const std::vector<KbPathVertex>& arena,
-                                        const std::vector<uint32_t>& chunk_next) const;
+  std::vector<KbPathVertex> saved_entries(const KbSavedPath& saved, const std::vector<KbPathVertex>& arena,
+                                          const std::vector<uint32_t>& chunk_next) const;
   const HostScene& host_;
   DeviceSettings settings_;
   EvaluationShape shape_;

@@ -63,7 +63,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels, bool open) const {
   r.most_jobs = most_jobs(device_, most_slots_);
   r.chunks_per_path = chunks_per_path_;
   r.dispersion = device_.has_dispersion();
-  r.chunk_slots = device_.chunk_slots();
+  r.chunk_entries = device_.chunk_entries();
   r.gas = device_.has_gas();
   return r;
 }

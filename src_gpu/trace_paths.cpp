@@ -37,16 +37,16 @@ class HitObserver {
 
 }  // namespace
 
-std::vector<KbPathVertex> DeviceState::saved_slots(const KbSavedPath& saved,
-                                                   const std::vector<KbPathVertex>& arena,
-                                                   const std::vector<uint32_t>& chunk_next) const {
-  std::vector<KbPathVertex> slots;
+std::vector<KbPathVertex> DeviceState::saved_entries(const KbSavedPath& saved,
+                                                     const std::vector<KbPathVertex>& arena,
+                                                     const std::vector<uint32_t>& chunk_next) const {
+  std::vector<KbPathVertex> entries;
   uint32_t chunk = saved.chunk;
   for (uint32_t i = 0; i < saved.count; ++i) {
-    slots.push_back(arena.at(std::size_t{chunk} * KB_CHUNK_SLOTS + i % KB_CHUNK_SLOTS));
-    if (i % KB_CHUNK_SLOTS == KB_CHUNK_SLOTS - 1 && i + 1 < saved.count) chunk = chunk_next.at(chunk);
+    entries.push_back(arena.at(std::size_t{chunk} * KB_CHUNK_ENTRIES + i % KB_CHUNK_ENTRIES));
+    if (i % KB_CHUNK_ENTRIES == KB_CHUNK_ENTRIES - 1 && i + 1 < saved.count) chunk = chunk_next.at(chunk);
   }
-  return slots;
+  return entries;
 }
 
 std::vector<TracedPath> DeviceState::trace(const KbRound& round, std::span<const KbRoundPixel> pixels,
@@ -63,7 +63,7 @@ std::vector<TracedPath> DeviceState::trace(const KbRound& round, std::span<const
   const std::vector<uint32_t> chunk_next = pool_->buffers().chunk_next.download();
   for (std::size_t job = 0; job < traced.size(); ++job) {
     traced[job].invalid = saved[job].count == KB_SAVED_INVALID;
-    if (!traced[job].invalid) traced[job].slots = saved_slots(saved[job], arena, chunk_next);
+    if (!traced[job].invalid) traced[job].entries = saved_entries(saved[job], arena, chunk_next);
     normalise(traced[job]);
   }
   return traced;

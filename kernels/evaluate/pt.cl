@@ -6,7 +6,7 @@
 //   pt_derived  count * D, after pt_update; only if there are derived channels
 //
 // Padded pixels of the round have no film. evaluation_parts: local size of pt_update. Runs once per bounce after shadow rays, over the
-// slots of the queue: the vertices of the bounce are states[slot].length slots of the arena from chunk `slot` on;
+// slots of the queue: the vertices of the bounce are states[slot].length entries of the arena from chunk `slot` on;
 // KB_PATH_FRESH: tau = 1, L = 0 before them; KB_PATH_ENDED: L goes to the film of the path's pixel (not if
 // KB_PATH_INVALID, then the sample does not count).
 #include "evaluate/evaluate.clh"
@@ -50,7 +50,7 @@ static inline void update_slot(const Evaluation* e, const Film* film, const KbPa
     place_batch(&batch, first, items, vectors);
     start_batch(&batch);
     if (!fresh) load_batch(&batch, tau + (size_t)slot * spectra.stride, radiance + (size_t)slot * spectra.stride);
-    run_vertices(&spectra, slot * KB_CHUNK_SLOTS, state->length, &batch);
+    run_vertices(&spectra, slot * KB_CHUNK_ENTRIES, state->length, &batch);
     if (!ended) {
       store_batch(&batch, tau + (size_t)slot * spectra.stride, radiance + (size_t)slot * spectra.stride);
     } else if (!(state->flags & KB_PATH_INVALID)) {

@@ -18,7 +18,7 @@ struct TracedHit {
 struct TracedPath {
   std::vector<TracedHit> hits;  // by bounce
   std::vector<KbPathVertex>
-      slots;             // as saved for evaluation, up to the last vertex with light; see path_vertex.h
+      entries;           // as saved for evaluation, up to the last vertex with light; see path_vertex.h
   bool invalid = false;  // the sample leaves the mean
 };
 

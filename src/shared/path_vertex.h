@@ -44,7 +44,7 @@
    instead of L, and a medium vertex follows for every gas along the shadow ray, the last one without DEFER.
 
    A plume's vertex has n = head >> KB_VERTEX_MATERIAL_SHIFT cells, from near to far: KbPlumeCell records follow, four
-   to a slot. Column d_i and temperature T_i at its far end; T_0 = nee0 at the near end of the first; E[emit_row] is
+   to a entry. Column d_i and temperature T_i at its far end; T_0 = nee0 at the near end of the first; E[emit_row] is
    Planck's law at nee1 kelvin, B(T) the same at T. Within a cell B is linear in the column:
 
      x = kappa d_i, e = exp(-x);  L += tau q ((1 - e) B(T_(i-1)) + (1 - e (1 + x)) / x (B(T_i) - B(T_(i-1))));  tau *= e */
@@ -63,7 +63,7 @@ enum KbVertexKind {
 #define KB_VERTEX_NEE 0x10u
 #define KB_VERTEX_SCATTER 0x20u
 #define KB_VERTEX_DEGRADE 0x40u
-/* Textured values: row_* is unused and a KbTextureSample follows the vertex, in this order, two to a 32-byte slot. */
+/* Textured values: row_* is unused and a KbTextureSample follows the vertex, in this order, two to a 32-byte entry. */
 #define KB_VERTEX_TEX_A 0x80u
 #define KB_VERTEX_TEX_B 0x100u
 #define KB_VERTEX_TEX_EMIT 0x200u
@@ -97,7 +97,7 @@ typedef struct {
 } KbPlumeCell;
 KB_STATIC_ASSERT(sizeof(KbPlumeCell) == 8, plume_cell_size);
 
-/* 32-byte slots that follow the vertex. */
+/* 32-byte entries that follow the vertex. */
 KB_FN kb_u32 kb_vertex_extensions(kb_u32 head) {
   if ((head & KB_VERTEX_KIND_MASK) == KB_KIND_MEDIUM) return ((head >> KB_VERTEX_MATERIAL_SHIFT) + 3u) / 4u;
   return (kb_popcount(head & KB_VERTEX_TEX_MASK) + 1u) / 2u;

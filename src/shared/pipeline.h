@@ -3,8 +3,8 @@
 // A ROUND renders S samples of Q pixels: its jobs are numbered sample * padded_pixels + pixel, where
 // padded_pixels is Q rounded up to a multiple of the pool's size P. Slot s of the pool takes the jobs s,
 // s + P, s + 2P ..., so a pixel belongs to one slot: what is added to it is added in the order of its
-// samples, however the device schedules. Vertices of saved paths lie in an arena of 32-byte slots, in chunks
-// of KB_CHUNK_SLOTS that are handed out by a counter and linked by chunk_next[].
+// samples, however the device schedules. Vertices of saved paths lie in an arena of 32-byte entries, in chunks
+// of KB_CHUNK_ENTRIES that are handed out by a counter and linked by chunk_next[].
 #ifndef KILOBAND_SHARED_PIPELINE_H
 #define KILOBAND_SHARED_PIPELINE_H
 
@@ -13,13 +13,13 @@
 #include "shared/records.h"
 #include "shared/spectra_layout.h"
 
-#ifndef KB_CHUNK_SLOTS
-#define KB_CHUNK_SLOTS 4u
+#ifndef KB_CHUNK_ENTRIES
+#define KB_CHUNK_ENTRIES 4u
 #endif
 /* With the method pt a slot's chunk holds what a path appends between two updates: with dispersion up to three vertices and
-   three slots of samples, with gas the cells of plumes. */
-#define KB_PT_DISPERSION_CHUNK_SLOTS 8u
-#define KB_PT_GAS_CHUNK_SLOTS 48u
+   three entries of samples, with gas the cells of plumes. */
+#define KB_PT_DISPERSION_CHUNK_ENTRIES 8u
+#define KB_PT_GAS_CHUNK_ENTRIES 48u
 
 /* Interiors that a path may be in at a time; a sample that is in more of them is invalid. */
 #define KB_MEDIUM_DEPTH 4
@@ -97,7 +97,7 @@ typedef struct {
   float origin[3];
   float t_max;
   float direction[3];
-  kb_u32 vertex; /* arena slot whose KB_VERTEX_NEE goes if something is in between */
+  kb_u32 vertex; /* arena entry whose KB_VERTEX_NEE goes if something is in between */
 } KbShadowRay;
 KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 
@@ -126,8 +126,8 @@ typedef struct {
   float magnitude; /* product of the scatter weights */
   kb_u32 channel;  /* the one that survived a dispersive refraction, or KB_NONE */
   kb_u32 chunk;    /* of the arena, being filled */
-  kb_u32 length;   /* arena slots of this path so far */
-  kb_u32 lit;      /* arena slots up to and with the last vertex that has light */
+  kb_u32 length;   /* arena entries of this path so far */
+  kb_u32 lit;      /* arena entries up to and with the last vertex that has light */
 } KbPathState;
 KB_STATIC_ASSERT(sizeof(KbPathState) == 32, path_state_size);
 
@@ -152,11 +152,11 @@ typedef struct {
 } KbRoundPixel;
 KB_STATIC_ASSERT(sizeof(KbRoundPixel) == 12, round_pixel_size);
 
-/* A saved path: arena slots from `chunk` on; count 0: nothing that contributes. */
+/* A saved path: arena entries from `chunk` on; count 0: nothing that contributes. */
 #define KB_SAVED_INVALID 0xffffffffu
 typedef struct {
   kb_u32 chunk;
-  kb_u32 count; /* slots, or KB_SAVED_INVALID */
+  kb_u32 count; /* entries, or KB_SAVED_INVALID */
 } KbSavedPath;
 KB_STATIC_ASSERT(sizeof(KbSavedPath) == 8, saved_path_size);
 

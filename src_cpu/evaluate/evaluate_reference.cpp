@@ -244,7 +244,7 @@ void apply_medium(const Point& at, const KbPathVertex& v, const KbPathVertex* ex
 double channel_value(const Point& at, const PathBuffer& paths, const SavedPath& path, uint32_t k) {
   State state;
   for (uint32_t i = path.first; i < path.first + path.count; ++i) {
-    const KbPathVertex& vertex = paths.slots[i];
+    const KbPathVertex& vertex = paths.entries[i];
     if ((vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_MEDIUM) {
       apply_medium(at, vertex, &vertex + 1, state);
       i += kb_vertex_extensions(vertex.head);
@@ -254,7 +254,7 @@ double channel_value(const Point& at, const PathBuffer& paths, const SavedPath& 
     uint32_t count = 0;
     for (uint32_t flag = KB_VERTEX_TEX_A; flag <= KB_VERTEX_TEX_NEE; flag <<= 1)
       count += (vertex.head & flag) != 0;
-    if (count > 0) std::memcpy(samples, &paths.slots[i] + 1, count * sizeof(KbTextureSample));
+    if (count > 0) std::memcpy(samples, &paths.entries[i] + 1, count * sizeof(KbTextureSample));
     apply(at, vertex, samples, k, state);
     i += (count + 1) / 2;
   }

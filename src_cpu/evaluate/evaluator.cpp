@@ -32,10 +32,10 @@ struct Evaluator::Impl {
   /// (AVX-512, K = 512, 1024 pixels).
   void add(const PathBuffer& paths, std::size_t p, std::span<float> sums) {
     const SavedPath& path = paths.paths[p];
-    if (std::size_t{path.first} + path.count > paths.slots.size())
-      throw std::logic_error("saved path: slots beyond the buffer");
+    if (std::size_t{path.first} + path.count > paths.entries.size())
+      throw std::logic_error("saved path: entries beyond the buffer");
     if (path.count == 0) return;
-    PathProgram program = builder.build(std::span(paths.slots).subspan(path.first, path.count), spectra);
+    PathProgram program = builder.build(std::span(paths.entries).subspan(path.first, path.count), spectra);
     program.derived = derived_rows.plan(spectra);
     if (p + 1 < paths.paths.size()) program.next_film = film_row(paths.paths[p + 1], sums);
     kernels.evaluate_path(program, film_row(path, sums));

@@ -39,7 +39,7 @@ FresnelTerms fresnel_terms(float cosine) {
 }  // namespace
 
 /// Pointers into generals_ and textures_ must stay valid while the program is built.
-void ProgramBuilder::reserve(std::size_t slots) {
+void ProgramBuilder::reserve(std::size_t entries) {
   steps_.clear();
   generals_.clear();
   textures_.clear();
@@ -47,29 +47,29 @@ void ProgramBuilder::reserve(std::size_t slots) {
   spectral_.begin_path();
   scratch_used_ = 0;
   cells_.clear();
-  if (generals_.capacity() >= slots) return;
-  slots = std::max<std::size_t>(64, 2 * slots);
-  steps_.reserve(2 * slots);
-  generals_.reserve(slots);
-  textures_.reserve(2 * slots);
-  cells_.reserve(5 * slots);
+  if (generals_.capacity() >= entries) return;
+  entries = std::max<std::size_t>(64, 2 * entries);
+  steps_.reserve(2 * entries);
+  generals_.reserve(entries);
+  textures_.reserve(2 * entries);
+  cells_.reserve(5 * entries);
 }
 
-PathProgram ProgramBuilder::build(std::span<const KbPathVertex> slots, DenseSpectra& spectra) {
-  reserve(slots.size());
-  for (std::size_t i = 0; i < slots.size();) {
-    const KbPathVertex& vertex = slots[i];
+PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSpectra& spectra) {
+  reserve(entries.size());
+  for (std::size_t i = 0; i < entries.size();) {
+    const KbPathVertex& vertex = entries[i];
     const std::size_t next = i + 1 + kb_vertex_extensions(vertex.head);
-    if (next > slots.size()) throw std::logic_error("saved path: texture samples or cells are missing");
+    if (next > entries.size()) throw std::logic_error("saved path: texture samples or cells are missing");
     if ((vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_MEDIUM) {
-      add_medium(vertex, &slots[i] + 1, spectra);
+      add_medium(vertex, &entries[i] + 1, spectra);
       i = next;
       continue;
     }
     const std::size_t samples = static_cast<std::size_t>(std::popcount(vertex.head & KB_VERTEX_TEX_MASK));
     KbTextureSample copies[4];
-    if (samples > 0) std::memcpy(copies, &slots[i] + 1, samples * sizeof(KbTextureSample));
-    add_vertex(vertex, sources(vertex, copies, spectra), next == slots.size(), spectra);
+    if (samples > 0) std::memcpy(copies, &entries[i] + 1, samples * sizeof(KbTextureSample));
+    add_vertex(vertex, sources(vertex, copies, spectra), next == entries.size(), spectra);
     i = next;
   }
   PathProgram program;

@@ -17,9 +17,9 @@ class ProgramBuilder {
   ProgramBuilder(const FlatScene& scene, const EvaluatorKernels& kernels)
       : scene_(scene), spectral_(scene, kernels) {}
 
-  /// The program of the path in `slots` at the offset of `spectra`; valid until the next call.
+  /// The program of the path in `entries` at the offset of `spectra`; valid until the next call.
   /// throws std::logic_error if the path refers to what the scene does not have
-  PathProgram build(std::span<const KbPathVertex> slots, DenseSpectra& spectra);
+  PathProgram build(std::span<const KbPathVertex> entries, DenseSpectra& spectra);
 
  private:
   /// The spectral factors that a vertex uses.
@@ -30,7 +30,7 @@ class ProgramBuilder {
     bool any_colour() const { return a.texture || b.texture || emit.texture || nee.texture; }
   };
 
-  void reserve(std::size_t slots);
+  void reserve(std::size_t entries);
   Sources sources(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
   void add_vertex(const KbPathVertex& vertex, const Sources& from, bool last, DenseSpectra& spectra);
   void add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra);

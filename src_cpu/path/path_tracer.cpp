@@ -40,7 +40,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
     : scene_(scene), flat_(*scene.flat), settings_(settings) {
   constexpr std::size_t kPixels = std::size_t{kBlockSize} * kBlockSize;
   paths_.reserve(kPixels);
-  slots_.reserve(8 * kPixels);
+  entries_.reserve(8 * kPixels);
 }
 
 bool PathTracer::wants_bounce(uint32_t bounce) const {
@@ -52,7 +52,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
                        std::vector<uint32_t>& invalid) {
   out.clear();
   invalid.clear();
-  slots_.clear();
+  entries_.clear();
   if (flat_.integrator.max_depth == 0) return;
   const auto pixels = static_cast<uint32_t>(block.pixels());
   for (uint32_t first = 0; first < pixels; first += kWavefront) {
@@ -78,7 +78,7 @@ void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t co
   paths_.clear();
   dispersed_.clear();
   gas_.clear();
-  slots_.clear();
+  entries_.clear();
   active_.clear();
   rays_queue_.clear();
   const uint32_t sampler =
@@ -92,7 +92,7 @@ void PathTracer::start_paths(const PixelRect& block, uint32_t first, uint32_t co
                               id.replicate, id.index);
     path.bound = path.magnitude = 1;
     path.previous_delta = true;
-    path.channel = path.first_slot = path.last_slot = KB_NONE;
+    path.channel = path.first_entry = path.last_entry = KB_NONE;
     const CameraRay ray = sample_camera_ray(flat_.camera, x, y, kb_sampler_block(path.key, KB_BLOCK_CAMERA));
     path.previous_point = ray.origin;
     paths_.push_back(path);
@@ -128,7 +128,7 @@ void PathTracer::trace_shadows() {
   if (recording_) record_shadows();
   scene_.embree->occlusions(shadow_rays_);
   for (std::size_t i = 0; i < shadow_rays_.size(); ++i) {
-    if (shadow_rays_[i].occluded()) slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
+    if (shadow_rays_[i].occluded()) entries_[shadow_entry_[i]].vertex.head &= ~KB_VERTEX_NEE;
   }
 }
 
@@ -149,7 +149,7 @@ void PathTracer::shade_all(const SampleId& id, uint32_t bounce, std::span<const 
   next_active_.clear();
   next_rays_.clear();
   shadow_rays_.clear();
-  shadow_slot_.clear();
+  shadow_entry_.clear();
   shadow_path_.clear();
   for (std::size_t i = 0; i < active_.size(); ++i) {
     Path& path = paths_[active_[i]];
@@ -230,16 +230,16 @@ void PathTracer::append(Path& path, const Draft& draft) {
   if (!stays_finite(draft.vertex, draft.scale, path.magnitude)) path.invalid = true;
   if (flat_.features.dispersion && (draft.vertex.head & KB_VERTEX_SCATTER))
     carry(dispersed(path).carried, draft.vertex, flat_.channel_bins);
-  const auto index = static_cast<uint32_t>(slots_.size());
-  (path.last_slot == KB_NONE ? path.first_slot : slots_[path.last_slot].next) = index;
-  path.last_slot = index;
-  slots_.push_back({draft.vertex, KB_NONE});
+  const auto index = static_cast<uint32_t>(entries_.size());
+  (path.last_entry == KB_NONE ? path.first_entry : entries_[path.last_entry].next) = index;
+  path.last_entry = index;
+  entries_.push_back({draft.vertex, KB_NONE});
   for (uint32_t i = 0; i < draft.sample_count; i += 2) {
-    Slot extension{};
+    Entry extension{};
     extension.next = KB_NONE;
     std::memcpy(&extension.vertex, &draft.samples[i],
                 std::min(draft.sample_count - i, 2u) * sizeof(KbTextureSample));
-    slots_.push_back(extension);  // directly behind its vertex; not linked
+    entries_.push_back(extension);  // directly behind its vertex; not linked
   }
 }
 
@@ -252,22 +252,22 @@ void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) {
       continue;
     }
     uint32_t last_lit = KB_NONE;
-    for (uint32_t s = path.first_slot; s != KB_NONE; s = slots_[s].next) {
-      if (slots_[s].vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE)) last_lit = s;
+    for (uint32_t s = path.first_entry; s != KB_NONE; s = entries_[s].next) {
+      if (entries_[s].vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE)) last_lit = s;
     }
     if (last_lit == KB_NONE) continue;
-    const auto first = static_cast<uint32_t>(out.slots.size());
-    for (uint32_t s = path.first_slot;; s = slots_[s].next) {
-      KbPathVertex vertex = slots_[s].vertex;
+    const auto first = static_cast<uint32_t>(out.entries.size());
+    for (uint32_t s = path.first_entry;; s = entries_[s].next) {
+      KbPathVertex vertex = entries_[s].vertex;
       if (!(vertex.head & KB_VERTEX_NEE))
         vertex.head &= ~KB_VERTEX_TEX_NEE;  // its sample comes last: drop it
       if (s == last_lit) vertex.head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
-      out.slots.push_back(vertex);
+      out.entries.push_back(vertex);
       for (uint32_t i = 0; i < kb_vertex_extensions(vertex.head); ++i)
-        out.slots.push_back(slots_[s + 1 + i].vertex);
+        out.entries.push_back(entries_[s + 1 + i].vertex);
       if (s == last_lit) break;
     }
-    out.paths.push_back({first, static_cast<uint32_t>(out.slots.size()) - first, path.pixel});
+    out.paths.push_back({first, static_cast<uint32_t>(out.entries.size()) - first, path.pixel});
   }
 }
 

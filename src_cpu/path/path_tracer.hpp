@@ -75,7 +75,7 @@ class PathTracer {
     uint32_t pixel;      // in the block
     KbSamplerKey key;    // of the path's random numbers
     uint32_t channel;    // after degradation, else KB_NONE
-    uint32_t first_slot, last_slot;  // linked list in slots_
+    uint32_t first_entry, last_entry;  // linked list in entries_
     float magnitude;  // product of the scatter weights: where this overflows the sample is invalid
     bool previous_delta;
     bool invalid;
@@ -86,7 +86,7 @@ class PathTracer {
     uint32_t heroes = 0;                              // of spectral MIS; 0: none chosen yet
     std::array<float, KB_MAX_HEROES> hero_weights{};  // q_c
   };
-  struct Slot {
+  struct Entry {
     KbPathVertex vertex;
     uint32_t next;
   };
@@ -189,7 +189,7 @@ class PathTracer {
   void trace_shadows_through_gas();
   bool walk_shadow(Path& path, ShadowOwner begin, const ShadowRay& shadow, Columns& columns);
   void add_column(Path& path, Columns& columns, uint32_t medium, const TraceRay& ray, float begin);
-  void append_columns(Path& path, uint32_t slot, const Columns& columns);
+  void append_columns(Path& path, uint32_t entry, const Columns& columns);
   void gather(PathBuffer& out, std::vector<uint32_t>& invalid);
   float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
   bool wants_bounce(uint32_t bounce) const;
@@ -202,9 +202,9 @@ class PathTracer {
   std::vector<uint32_t> active_, next_active_;
   std::vector<TraceRay> rays_queue_, next_rays_;
   std::vector<ShadowRay> shadow_rays_;
-  std::vector<uint32_t> shadow_slot_;  // vertex of each shadow ray
-  std::vector<uint32_t> shadow_path_;  // while recording: its path
-  std::vector<Slot> slots_;
+  std::vector<uint32_t> shadow_entry_;  // vertex of each shadow ray
+  std::vector<uint32_t> shadow_path_;   // while recording: its path
+  std::vector<Entry> entries_;
   std::vector<DispersedPath> dispersed_;  // as paths_; empty in scenes without dispersion
   std::vector<GasPath> gas_;              // as paths_; this and the next two are empty in scenes without gas
   std::vector<Segment> segments_;

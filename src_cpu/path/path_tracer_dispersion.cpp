@@ -128,7 +128,7 @@ bool PathTracer::add_hero_light(Path& path, const Boundary& at, const HeroSet& h
   append_pair(path, draft, at, pair, wo);
   queue_shadow_ray(at.hit, light);
   if (flat_.features.gas) note_shadow(path, at.hit, at.direction);
-  shadow_slot_.push_back(path.last_slot);
+  shadow_entry_.push_back(path.last_entry);
   if (recording_) shadow_path_.push_back(path.pixel);
   return true;
 }

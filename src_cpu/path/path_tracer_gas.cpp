@@ -174,11 +174,11 @@ void PathTracer::append_medium(Path& path, const KbPathVertex& vertex, std::span
   draft.vertex = vertex;
   append(path, draft);
   for (std::size_t i = 0; i < cells.size(); i += 4) {
-    Slot extension{};
+    Entry extension{};
     extension.next = KB_NONE;
     const auto some = cells.subspan(i, std::min<std::size_t>(4, cells.size() - i));
     std::memcpy(static_cast<void*>(&extension.vertex), some.data(), some.size_bytes());
-    slots_.push_back(extension);
+    entries_.push_back(extension);
   }
 }
 
@@ -204,9 +204,9 @@ void PathTracer::trace_shadows_through_gas() {
     Path& path = paths_[shadow_owner_[i].path];
     Columns columns;
     if (walk_shadow(path, shadow_owner_[i], shadow_rays_[i], columns))
-      append_columns(path, shadow_slot_[i], columns);
+      append_columns(path, shadow_entry_[i], columns);
     else
-      slots_[shadow_slot_[i]].vertex.head &= ~KB_VERTEX_NEE;
+      entries_[shadow_entry_[i]].vertex.head &= ~KB_VERTEX_NEE;
   }
   shadow_owner_.clear();
 }
@@ -254,9 +254,9 @@ void PathTracer::add_column(Path& path, Columns& columns, uint32_t medium, const
 }
 
 /// The light goes through these columns: vertices behind the one that has it.
-void PathTracer::append_columns(Path& path, uint32_t slot, const Columns& columns) {
+void PathTracer::append_columns(Path& path, uint32_t entry, const Columns& columns) {
   if (columns.count == 0) return;
-  slots_[slot].vertex.head |= KB_VERTEX_DEFER;
+  entries_[entry].vertex.head |= KB_VERTEX_DEFER;
   for (uint32_t i = 0; i < columns.count; ++i) {
     const bool last = i + 1 == columns.count;
     KbPathVertex vertex =

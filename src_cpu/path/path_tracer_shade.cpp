@@ -132,7 +132,7 @@ bool PathTracer::shade(Path& path, const TraceRay& ray, const SampleId& id, uint
   }
   if (goes_on && flat_.features.gas) follow_gas(path, hit, direction);
   finish(goes_on);
-  if (lit) shadow_slot_.push_back(path.last_slot);
+  if (lit) shadow_entry_.push_back(path.last_entry);
   if (lit && recording_) shadow_path_.push_back(path.pixel);
   return goes_on;
 }

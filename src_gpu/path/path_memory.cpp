@@ -2,11 +2,11 @@
 
 namespace kiloband::opencl {
 
-uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uint64_t slots_each,
+uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uint64_t entries_each,
                         const SceneFeatures& features) {
   PoolSize one;
   one.dispersion = features.dispersion;
-  one.chunk_slots = chunk_slots(method, features);
+  one.chunk_entries = chunk_entries(method, features);
   one.slots = 1;
   one.gas = features.gas;
   if (method == Method::kPt) {
@@ -15,7 +15,8 @@ uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uin
     return path_pool_bytes(one) + 2 * sizeof(float) * padded;  // throughput and radiance
   }
   one.jobs = 1;
-  one.arena_chunks = static_cast<uint32_t>((vertices * slots_each + KB_CHUNK_SLOTS - 1) / KB_CHUNK_SLOTS);
+  one.arena_chunks =
+      static_cast<uint32_t>((vertices * entries_each + KB_CHUNK_ENTRIES - 1) / KB_CHUNK_ENTRIES);
   return path_pool_bytes(one);
 }
 

@@ -23,7 +23,7 @@ uint64_t path_pool_bytes(const PoolSize& size) {
                             sizeof(KbTally) + 2 * sizeof(uint32_t) +
                             (size.dispersion ? sizeof(KbDispersionState) : 0) +
                             (size.gas ? sizeof(KbGasState) : 0);
-  const uint64_t per_chunk = size.chunk_slots * sizeof(KbPathVertex) + sizeof(uint32_t);
+  const uint64_t per_chunk = size.chunk_entries * sizeof(KbPathVertex) + sizeof(uint32_t);
   return size.slots * per_slot + size.arena_chunks * per_chunk + uint64_t{size.jobs} * sizeof(KbSavedPath) +
          uint64_t{size.pixels} * sizeof(KbRoundPixel) + uint64_t{size.tables} * sizeof(float);
 }
@@ -45,8 +45,8 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
               memory.allocate<KbDispersionState>("dispersion states", size.dispersion ? size.slots : 0),
           .gas = memory.allocate<KbGasState>("media of paths", size.gas ? size.slots : 0),
           .tallies = memory.allocate<KbTally>("tallies", size.slots),
-          .arena =
-              memory.allocate<KbPathVertex>("path vertices", uint64_t{size.arena_chunks} * size.chunk_slots),
+          .arena = memory.allocate<KbPathVertex>("path vertices",
+                                                 uint64_t{size.arena_chunks} * size.chunk_entries),
           .chunk_next = memory.allocate<uint32_t>("vertex chunks", size.arena_chunks),
           .saved = memory.allocate<KbSavedPath>("saved paths", size.jobs),
           .faults = memory.allocate<KbFaults>("faults", 1),

@@ -14,14 +14,14 @@ namespace kiloband::opencl {
 
 /// Capacities. Bytes of each: see path_pool_bytes().
 struct PoolSize {
-  uint32_t slots = 0;                     // paths in flight
-  uint32_t arena_chunks = 0;              // the method pt has one per slot
-  uint32_t jobs = 0;                      // largest samples * padded_pixels of a round
-  uint32_t pixels = 0;                    // largest padded_pixels of a round
-  uint32_t tables = 0;                    // largest blocks * samples of a round
-  uint32_t chunk_slots = KB_CHUNK_SLOTS;  // vertices of a chunk
-  bool dispersion = false;                // the scene has boundaries whose index depends on wavelength
-  bool gas = false;                       // the scene has gas
+  uint32_t slots = 0;                         // paths in flight
+  uint32_t arena_chunks = 0;                  // the method pt has one per slot
+  uint32_t jobs = 0;                          // largest samples * padded_pixels of a round
+  uint32_t pixels = 0;                        // largest padded_pixels of a round
+  uint32_t tables = 0;                        // largest blocks * samples of a round
+  uint32_t chunk_entries = KB_CHUNK_ENTRIES;  // vertices of a chunk
+  bool dispersion = false;                    // the scene has boundaries whose index depends on wavelength
+  bool gas = false;                           // the scene has gas
 };
 
 uint64_t path_pool_bytes(const PoolSize& size);

@@ -12,9 +12,9 @@ namespace {
 constexpr double kFilmShare = 0.45, kTableShare = 0.2, kPathShare = 0.3;
 /// More chunks than expected, so that a round seldom has to be repeated.
 constexpr double kChunkReserve = 1.25;
-/// Chunks of the longest path: 1e5 vertices with two slots of texture samples each. With that many (10 MB) a
+/// Chunks of the longest path: 1e5 vertices with two entries of texture samples each. With that many (10 MB) a
 /// single path fits whatever its length, so unlimited depth is unlimited.
-constexpr uint64_t kLongestPath = 100000 * 3 / KB_CHUNK_SLOTS + 1;
+constexpr uint64_t kLongestPath = 100000 * 3 / KB_CHUNK_ENTRIES + 1;
 
 /// Dense spectra of a block that a round may need.
 constexpr uint64_t kTablesOfBlock = 4u << 20;
@@ -28,7 +28,7 @@ uint32_t to_u32(uint64_t n) {
 }
 
 uint64_t chunk_bytes() {
-  return KB_CHUNK_SLOTS * sizeof(KbPathVertex) + sizeof(uint32_t);
+  return KB_CHUNK_ENTRIES * sizeof(KbPathVertex) + sizeof(uint32_t);
 }
 
 uint64_t expected_chunks(const PlanRequest& r, uint64_t jobs) {
@@ -103,10 +103,10 @@ std::optional<Method> find_method(std::string_view name) {
   return {};
 }
 
-uint32_t chunk_slots(Method method, const SceneFeatures& features) {
-  if (method != Method::kPt) return KB_CHUNK_SLOTS;
-  if (features.gas) return KB_PT_GAS_CHUNK_SLOTS;
-  return features.dispersion ? KB_PT_DISPERSION_CHUNK_SLOTS : KB_CHUNK_SLOTS;
+uint32_t chunk_entries(Method method, const SceneFeatures& features) {
+  if (method != Method::kPt) return KB_CHUNK_ENTRIES;
+  if (features.gas) return KB_PT_GAS_CHUNK_ENTRIES;
+  return features.dispersion ? KB_PT_DISPERSION_CHUNK_ENTRIES : KB_CHUNK_ENTRIES;
 }
 
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {
@@ -139,7 +139,7 @@ RoundPlan plan_rounds(const PlanRequest& r) {
   plan.round_jobs = fitting_jobs(r, plan.group_pixels);
   plan.round_pixels = to_u32(std::min(plan.group_pixels, plan.round_jobs));
   plan.pool.dispersion = r.dispersion;
-  plan.pool.chunk_slots = r.chunk_slots;
+  plan.pool.chunk_entries = r.chunk_entries;
   plan.pool.tables = to_u32(fitting_tables(r, plan.round_jobs));
   plan.pool.slots = to_u32(
       std::min<uint64_t>(pt ? plan.round_pixels : std::max<uint64_t>(plan.round_jobs / 2, 1), r.most_slots));

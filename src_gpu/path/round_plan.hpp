@@ -19,7 +19,7 @@ const char* to_string(Method method);
 std::optional<Method> find_method(std::string_view name);
 
 /// Vertices of a chunk: with the method pt, which empties chunks at every bounce, what a bounce may append.
-uint32_t chunk_slots(Method method, const SceneFeatures& features);
+uint32_t chunk_entries(Method method, const SceneFeatures& features);
 
 struct PlanRequest {
   uint64_t budget = 0;   // bytes that may be used
@@ -34,7 +34,7 @@ struct PlanRequest {
   uint64_t most_jobs = 1;      // paths per round that it gains from
   double chunks_per_path = 3;  // expected
   bool dispersion = false;     // PoolSize::dispersion
-  uint32_t chunk_slots = KB_CHUNK_SLOTS;
+  uint32_t chunk_entries = KB_CHUNK_ENTRIES;
   bool gas = false;  // the scene has gas
 };
 

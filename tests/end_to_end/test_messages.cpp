@@ -24,7 +24,7 @@ TEST(Messages, InfoNamesEmittersAndTheirProbabilities) {
   expect_text(outcome.out, "  constant         sky, selected with probability 0.");
   expect_text(outcome.out, "  point            selected with probability 0.");
   expect_text(outcome.out,
-              "path vertex  32 bytes; textured values: 16 bytes each, stored two to a 32-byte slot\n");
+              "path vertex  32 bytes; textured values: 16 bytes each, stored two to a 32-byte entry\n");
 }
 
 TEST(Messages, ConvertSaysWhatItWrote) {

@@ -65,9 +65,9 @@ double cpu_seconds(const FlatScene& scene, const PathBuffer& paths, const RoundO
       PathBuffer sample;
       for (uint32_t p = 0; p < kBlockPixels; ++p) {
         const SavedPath& path = paths.paths[s * kPixels + b * kBlockPixels + p];
-        sample.paths.push_back({static_cast<uint32_t>(sample.slots.size()), path.count, p});
-        sample.slots.insert(sample.slots.end(), paths.slots.begin() + path.first,
-                            paths.slots.begin() + path.first + path.count);
+        sample.paths.push_back({static_cast<uint32_t>(sample.entries.size()), path.count, p});
+        sample.entries.insert(sample.entries.end(), paths.entries.begin() + path.first,
+                              paths.entries.begin() + path.first + path.count);
       }
       part.samples.push_back(std::move(sample));
     }
@@ -120,7 +120,7 @@ void bench(std::size_t channels) {
   DeviceEvaluator device(program, scene, tables, kPixels);
   device.load(paths, round, false);
   cl::Kernel batch = device.batch_kernel(), path = device.path_kernel();
-  const double unit = 1e9 / (static_cast<double>(paths.slots.size()) * static_cast<double>(channels));
+  const double unit = 1e9 / (static_cast<double>(paths.entries.size()) * static_cast<double>(channels));
   const double cpu = cpu_seconds(scene, paths, round) * unit;
   const double batch_ns = best_seconds([&] { launch(program.probe, batch, kPixels / kTile, 1); }) * unit;
   const double path_ns = best_seconds([&] { launch(program.probe, path, kPixels, 16); }) * unit;

@@ -52,15 +52,15 @@ PathBuffer textured(const PathBuffer& plain) {
   std::uniform_real_distribution<float> uniform(0, 1);
   PathBuffer paths;
   for (const SavedPath& path : plain.paths) {
-    paths.paths.push_back({static_cast<uint32_t>(paths.slots.size()), 2 * path.count, path.pixel});
+    paths.paths.push_back({static_cast<uint32_t>(paths.entries.size()), 2 * path.count, path.pixel});
     for (uint32_t v = 0; v < path.count; ++v) {
-      KbPathVertex vertex = plain.slots[path.first + v];
+      KbPathVertex vertex = plain.entries[path.first + v];
       vertex.head |= KB_VERTEX_TEX_A;
-      paths.slots.push_back(vertex);
+      paths.entries.push_back(vertex);
       const auto x = static_cast<uint32_t>(random() % 64), y = static_cast<uint32_t>(random() % 64);
       const KbTextureSample sample{0, x | y << 16, uniform(random), uniform(random)};
-      paths.slots.emplace_back();
-      std::memcpy(&paths.slots.back(), &sample, sizeof sample);
+      paths.entries.emplace_back();
+      std::memcpy(&paths.entries.back(), &sample, sizeof sample);
     }
   }
   return paths;
@@ -91,7 +91,7 @@ void evaluate(benchmark::State& state, Isa isa, std::size_t channels, bool share
       evaluator.add_per_path(paths, offsets, film);
     benchmark::ClobberMemory();
   }
-  const double work = static_cast<double>(plain.slots.size() * channels);
+  const double work = static_cast<double>(plain.entries.size() * channels);
   state.counters["s_per_channel_vertex"] =
       benchmark::Counter(work, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }

@@ -90,7 +90,7 @@ void generate(benchmark::State& state, const std::string& name, SamplerType samp
     for (const PixelRect& block : bench.blocks) {
       for (uint32_t s = 0; s < kSamples; ++s) tracer.trace(block, {s, 0, s}, mu, paths, invalid);
     }
-    benchmark::DoNotOptimize(paths.slots.data());
+    benchmark::DoNotOptimize(paths.entries.data());
   }
   count_paths(state, pixels_of(bench) * kSamples);
   state.counters["rays_per_path"] =

@@ -40,7 +40,7 @@ inline PathBuffer synthetic_paths(uint32_t count, uint32_t pixels, double extra,
   PathBuffer paths;
   for (uint32_t path = 0; path < count; ++path) {
     const uint32_t vertices = 1 + static_cast<uint32_t>(more(random));
-    paths.paths.push_back({static_cast<uint32_t>(paths.slots.size()), vertices, path % pixels});
+    paths.paths.push_back({static_cast<uint32_t>(paths.entries.size()), vertices, path % pixels});
     for (uint32_t v = 0; v < vertices; ++v) {
       KbPathVertex vertex{};
       vertex.head = KB_KIND_SCALED | (uniform(random) < lit ? KB_VERTEX_NEE : 0u);
@@ -49,7 +49,7 @@ inline PathBuffer synthetic_paths(uint32_t count, uint32_t pixels, double extra,
       vertex.nee_row = 5;
       vertex.nee0 = uniform(random);
       vertex.scatter0 = uniform(random);
-      paths.slots.push_back(vertex);
+      paths.entries.push_back(vertex);
     }
   }
   return paths;

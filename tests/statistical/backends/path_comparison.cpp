@@ -44,7 +44,7 @@ std::size_t sample_count(uint32_t head) {
 
 KbTextureSample texture_sample(const TracedPath& path, std::size_t vertex, std::size_t i) {
   KbTextureSample sample;
-  const auto* bytes = reinterpret_cast<const char*>(&path.slots[vertex + 1 + i / 2]);
+  const auto* bytes = reinterpret_cast<const char*>(&path.entries[vertex + 1 + i / 2]);
   std::memcpy(&sample, bytes + (i % 2) * sizeof sample, sizeof sample);
   return sample;
 }
@@ -52,13 +52,13 @@ KbTextureSample texture_sample(const TracedPath& path, std::size_t vertex, std::
 /// Indices of the vertices among the slots.
 std::vector<std::size_t> vertices_of(const TracedPath& path) {
   std::vector<std::size_t> vertices;
-  for (std::size_t i = 0; i < path.slots.size(); i += 1 + kb_vertex_extensions(path.slots[i].head))
+  for (std::size_t i = 0; i < path.entries.size(); i += 1 + kb_vertex_extensions(path.entries[i].head))
     vertices.push_back(i);
   return vertices;
 }
 
 bool same_texels(const TracedPath& a, const TracedPath& b, std::size_t vertex) {
-  for (std::size_t i = 0; i < sample_count(a.slots[vertex].head); ++i) {
+  for (std::size_t i = 0; i < sample_count(a.entries[vertex].head); ++i) {
     const KbTextureSample s = texture_sample(a, vertex, i), t = texture_sample(b, vertex, i);
     if (s.texture != t.texture || s.xy != t.xy) return false;
   }
@@ -74,14 +74,14 @@ Parting compare_decisions(const TracedPath& a, const TracedPath& b) {
   const std::vector<std::size_t> vertices = vertices_of(a);
   if (vertices != vertices_of(b)) return Parting::kDecisions;
   const bool same = std::ranges::all_of(vertices, [&](std::size_t i) {
-    return same_decisions(a.slots[i], b.slots[i]) && same_texels(a, b, i);
+    return same_decisions(a.entries[i], b.entries[i]) && same_texels(a, b, i);
   });
   return same ? Parting::kNone : Parting::kDecisions;
 }
 
 std::vector<double> path_values(const FlatScene& scene, const TracedPath& path, double mu) {
-  if (path.invalid || path.slots.empty()) return std::vector<double>(scene.channels.size(), 0.0);
-  const PathBuffer buffer{path.slots, {{0, static_cast<uint32_t>(path.slots.size()), 0}}};
+  if (path.invalid || path.entries.empty()) return std::vector<double>(scene.channels.size(), 0.0);
+  const PathBuffer buffer{path.entries, {{0, static_cast<uint32_t>(path.entries.size()), 0}}};
   return evaluate_path_reference(scene, {}, buffer, 0, mu);
 }
 

@@ -159,8 +159,8 @@ std::vector<TracedPath> trace_paths(const std::string& backend, const std::share
 
 /// What the oracle sees along a path, per channel; a path without records brings nothing.
 std::vector<double> evaluated(const FlatScene& scene, const TracedPath& path, double mu) {
-  if (path.slots.empty()) return std::vector<double>(scene.channels.size(), 0.0);
-  const cpu::PathBuffer buffer{path.slots, {{0, static_cast<uint32_t>(path.slots.size()), 0}}};
+  if (path.entries.empty()) return std::vector<double>(scene.channels.size(), 0.0);
+  const cpu::PathBuffer buffer{path.entries, {{0, static_cast<uint32_t>(path.entries.size()), 0}}};
   return cpu::evaluate_path_reference(scene, {}, buffer, 0, mu);
 }
 
@@ -190,7 +190,7 @@ void Trial::oracle(const std::string& name, const std::string& xml, const TrialS
   double error = 0, value = 0, reference = 0;
   std::size_t slots = 0;
   for (uint32_t p = 0; p < paths.size(); ++p) {
-    slots = std::max(slots, paths[p].slots.size());
+    slots = std::max(slots, paths[p].entries.size());
     const double mu = offset_of(sampling, scene, p % rect.width, p / rect.width);
     const std::vector<double> expected = evaluated(scene, paths[p], mu);
     const double largest = *std::ranges::max_element(expected);

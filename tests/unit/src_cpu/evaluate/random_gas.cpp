@@ -52,13 +52,13 @@ KbPathVertex gas_vertex(const FlatScene& scene, uint32_t flags, std::mt19937& ra
 
 void add_segment(const FlatScene& scene, PathBuffer& paths, std::mt19937& random) {
   const bool emits = random() % 3 != 0;
-  paths.slots.push_back(gas_vertex(scene, KB_VERTEX_SCATTER | (emits ? KB_VERTEX_EMIT : 0), random));
+  paths.entries.push_back(gas_vertex(scene, KB_VERTEX_SCATTER | (emits ? KB_VERTEX_EMIT : 0), random));
 }
 
 void add_aside(const FlatScene& scene, PathBuffer& paths, std::mt19937& random) {
-  paths.slots.push_back(gas_vertex(scene, KB_VERTEX_DEFER, random));
-  paths.slots.back().scatter0 = static_cast<float>(uniform(random, 0, 3));
-  paths.slots.push_back(gas_vertex(scene, KB_VERTEX_SCATTER | KB_VERTEX_EMIT, random));
+  paths.entries.push_back(gas_vertex(scene, KB_VERTEX_DEFER, random));
+  paths.entries.back().scatter0 = static_cast<float>(uniform(random, 0, 3));
+  paths.entries.push_back(gas_vertex(scene, KB_VERTEX_SCATTER | KB_VERTEX_EMIT, random));
 }
 
 /// A diffuse vertex whose light passes one or two gases.
@@ -69,11 +69,11 @@ void add_light(const FlatScene& scene, PathBuffer& paths, std::mt19937& random) 
   v.nee_row = 8;
   v.nee0 = static_cast<float>(uniform(random, 0.1, 1));
   v.scatter0 = static_cast<float>(uniform(random, 0.5, 2));
-  paths.slots.push_back(v);
+  paths.entries.push_back(v);
   for (uint32_t left = 1 + random() % 2; left-- > 0;) {
     KbPathVertex gas = gas_vertex(scene, KB_VERTEX_NEE | (left > 0 ? KB_VERTEX_DEFER : 0), random);
     gas.nee0 = static_cast<float>(uniform(random, 0, 4));
-    paths.slots.push_back(gas);
+    paths.entries.push_back(gas);
   }
 }
 
@@ -89,10 +89,10 @@ void add_plume(const FlatScene& scene, PathBuffer& paths, std::mt19937& random) 
     cell = {column(random), static_cast<float>(uniform(random, 0.7 * kHottest, kHottest))};
     v.scatter0 += cell.column;
   }
-  paths.slots.push_back(v);
-  const std::size_t first = paths.slots.size();
-  paths.slots.resize(first + kb_vertex_extensions(v.head));
-  std::memcpy(static_cast<void*>(&paths.slots[first]), list, cells * sizeof(KbPlumeCell));
+  paths.entries.push_back(v);
+  const std::size_t first = paths.entries.size();
+  paths.entries.resize(first + kb_vertex_extensions(v.head));
+  std::memcpy(static_cast<void*>(&paths.entries[first]), list, cells * sizeof(KbPlumeCell));
 }
 
 }  // namespace
@@ -116,16 +116,16 @@ PathBuffer make_gas_paths(const FlatScene& scene, std::size_t count, std::mt1993
   constexpr std::array kAdd = {add_segment, add_aside, add_light, add_plume};
   PathBuffer paths;
   for (uint32_t p = 0; p < count; ++p) {
-    const auto first = static_cast<uint32_t>(paths.slots.size());
+    const auto first = static_cast<uint32_t>(paths.entries.size());
     for (uint32_t v = 0, n = 1 + random() % 4; v < n; ++v) {
       kAdd[random() % kAdd.size()](scene, paths, random);
       const PathBuffer other = make_paths(scene, 1, random);
-      const KbPathVertex& head = other.slots.front();
+      const KbPathVertex& head = other.entries.front();
       if (random() % 2)
-        paths.slots.insert(paths.slots.end(), other.slots.begin(),
-                           other.slots.begin() + 1 + kb_vertex_extensions(head.head));
+        paths.entries.insert(paths.entries.end(), other.entries.begin(),
+                             other.entries.begin() + 1 + kb_vertex_extensions(head.head));
     }
-    paths.paths.push_back({first, static_cast<uint32_t>(paths.slots.size()) - first, p});
+    paths.paths.push_back({first, static_cast<uint32_t>(paths.entries.size()) - first, p});
   }
   return paths;
 }

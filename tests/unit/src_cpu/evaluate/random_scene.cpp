@@ -210,10 +210,10 @@ void add_vertex(const FlatScene& scene, PathBuffer& paths, std::mt19937& random)
       samples[count++] = random_sample(scene, flag >= KB_VERTEX_TEX_EMIT, random);
     }
   }
-  paths.slots.push_back(vertex);
-  const std::size_t first = paths.slots.size(), slots = (count + 1) / 2;
-  paths.slots.resize(first + slots);
-  if (slots > 0) std::memcpy(&paths.slots[first], samples, slots * sizeof(KbPathVertex));
+  paths.entries.push_back(vertex);
+  const std::size_t first = paths.entries.size(), slots = (count + 1) / 2;
+  paths.entries.resize(first + slots);
+  if (slots > 0) std::memcpy(&paths.entries[first], samples, slots * sizeof(KbPathVertex));
 }
 
 }  // namespace
@@ -268,9 +268,9 @@ FlatScene make_scene(const ChannelList& channels, std::mt19937& random) {
 PathBuffer make_paths(const FlatScene& scene, std::size_t count, std::mt19937& random) {
   PathBuffer paths;
   for (uint32_t p = 0; p < count; ++p) {
-    const uint32_t first = static_cast<uint32_t>(paths.slots.size());
+    const uint32_t first = static_cast<uint32_t>(paths.entries.size());
     for (uint32_t v = 0, n = 1 + below(random, 8); v < n; ++v) add_vertex(scene, paths, random);
-    paths.paths.push_back({first, static_cast<uint32_t>(paths.slots.size()) - first, p});
+    paths.paths.push_back({first, static_cast<uint32_t>(paths.entries.size()) - first, p});
   }
   return paths;
 }

@@ -20,7 +20,7 @@ FlatScene constant_scene(const ChannelList& channels) {
 
 PathBuffer one_path(const std::vector<KbPathVertex>& vertices) {
   PathBuffer paths;
-  paths.slots = vertices;
+  paths.entries = vertices;
   paths.paths = {{0, static_cast<uint32_t>(vertices.size()), 0}};
   return paths;
 }
@@ -97,12 +97,12 @@ TEST_P(Formulas, TexelsAndWrapping) {
     v.nee0 = 1;
     PathBuffer paths = one_path({v, {}});
     const KbTextureSample sample{t, 1, 0.75f, 0.5f};
-    std::memcpy(&paths.slots[1], &sample, sizeof sample);
+    std::memcpy(&paths.entries[1], &sample, sizeof sample);
     EXPECT_NEAR(channel(scene, paths, GetParam(), 0), 3 * expected[t], 1e-6) << t;
     // The same texture as emission without an illuminant: the integral over 1 nm.
     v.head = KB_KIND_SCALED | KB_VERTEX_EMIT | KB_VERTEX_TEX_EMIT;
     v.emit_weight = 1;
-    paths.slots[0] = v;
+    paths.entries[0] = v;
     EXPECT_NEAR(channel(scene, paths, GetParam(), 0), expected[t], 1e-6) << t;
   }
 }
@@ -116,7 +116,7 @@ TEST_P(Formulas, SigmoidsKeepRelativePrecision) {
   KbPathVertex v = vertex_of(KB_KIND_SCALED | KB_VERTEX_NEE | KB_VERTEX_TEX_A);
   v.nee0 = 1;
   PathBuffer paths = one_path({v, {}});
-  std::memset(&paths.slots[1], 0, sizeof paths.slots[1]);
+  std::memset(&paths.entries[1], 0, sizeof paths.entries[1]);
   const double value = evaluate(scene, {}, paths, GetParam(), 0.5)[0] * 4.0;
   EXPECT_NEAR(value, 3 * 2.5e-7, 3 * 2.5e-7 * 2e-6);
 }

@@ -32,8 +32,8 @@ struct FresnelCase {
       vertex.nee0 = 1;
       vertex.nee1 = cosine;
       paths.paths.push_back(
-          {static_cast<uint32_t>(paths.slots.size()), 1, static_cast<uint32_t>(paths.slots.size())});
-      paths.slots.push_back(vertex);
+          {static_cast<uint32_t>(paths.entries.size()), 1, static_cast<uint32_t>(paths.entries.size())});
+      paths.entries.push_back(vertex);
     }
   }
 

@@ -94,7 +94,7 @@ TEST_P(GasOracle, PlanckRatioOverTheFloatRange) {
       v.nee1 = static_cast<float>(reference);
       PathBuffer paths{{v, KbPathVertex{}}, {{0, 2, 0}}};
       const KbPlumeCell cell{1e6f, v.nee0};
-      std::memcpy(static_cast<void*>(&paths.slots[1]), &cell, sizeof cell);
+      std::memcpy(static_cast<void*>(&paths.entries[1]), &cell, sizeof cell);
       largest = std::max(largest, largest_error(scene, paths, GetParam(), 0.25, true));
     }
   }

@@ -21,7 +21,7 @@ std::pair<FlatScene, PathBuffer> channel_alone(const FlatScene& scene, const Pat
   PathBuffer changed = paths;
   for (const SavedPath& path : changed.paths) {
     for (uint32_t i = path.first; i < path.first + path.count; ++i) {
-      KbPathVertex& v = changed.slots[i];
+      KbPathVertex& v = changed.entries[i];
       if (v.head & KB_VERTEX_DEGRADE) v.scatter1 = kb_as_f32(kb_as_u32(v.scatter1) == k ? 0 : 1);
       i += kb_vertex_extensions(v.head);
     }
@@ -106,7 +106,7 @@ TEST_P(Invariants, InvalidWeightsStayInTheirPixel) {
   const float values[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                           -std::numeric_limits<float>::infinity(), -1e38f};
   for (std::size_t p = 0; p < 60; p += 2) {
-    KbPathVertex& v = bad.slots[bad.paths[p].first];
+    KbPathVertex& v = bad.entries[bad.paths[p].first];
     v.emit_weight = v.nee0 = v.nee1 = v.scatter0 = values[p / 2 % 4];
     if (!(v.head & KB_VERTEX_DEGRADE)) v.scatter1 = values[p / 2 % 4];
   }
@@ -129,7 +129,7 @@ TEST(EvaluatorErrors, BrokenPathsAreOurBugs) {
   const FlatScene scene = make_scene(make_channels(8, Layout::kRegular, random), random);
   const auto run = [&](const KbPathVertex& vertex, uint32_t count, uint32_t pixel) {
     PathBuffer paths;
-    paths.slots = {vertex};
+    paths.entries = {vertex};
     paths.paths = {{0, count, pixel}};
     Evaluator evaluator(scene, {}, Isa::kAuto);
     std::vector<float> sums(evaluator.stride(), 0.0f);

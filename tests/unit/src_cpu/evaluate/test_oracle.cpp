@@ -21,7 +21,7 @@ double allowance(const PathBuffer& paths, std::size_t path) {
   const SavedPath& p = paths.paths[path];
   double allowed = kTolerance;
   for (uint32_t i = p.first; i < p.first + p.count; ++i) {
-    const KbPathVertex& v = paths.slots[i];
+    const KbPathVertex& v = paths.entries[i];
     if ((v.head & KB_VERTEX_KIND_MASK) == KB_KIND_ROUGH_TRANSMISSION) allowed += kTransmissionTolerance;
     i += (static_cast<uint32_t>(__builtin_popcount(v.head & KB_VERTEX_TEX_MASK)) + 1) / 2;
   }
@@ -102,10 +102,10 @@ TEST_P(Oracle, LongPath) {
   vertex.nee_row = 8;
   vertex.nee0 = 0.7f;
   vertex.scatter0 = 2;
-  paths.slots.assign(1000, vertex);
+  paths.entries.assign(1000, vertex);
   EXPECT_LT(largest_error(scene, {}, paths, GetParam(), 0.3, true), kLongTolerance);
   // The general step takes the same path.
-  for (KbPathVertex& v : paths.slots) v.head = (v.head & ~KB_VERTEX_KIND_MASK) | KB_KIND_TWO_TERM;
+  for (KbPathVertex& v : paths.entries) v.head = (v.head & ~KB_VERTEX_KIND_MASK) | KB_KIND_TWO_TERM;
   EXPECT_LT(largest_error(scene, {}, paths, GetParam(), 0.3, true), kLongTolerance);
 }
 

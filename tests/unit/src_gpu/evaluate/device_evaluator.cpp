@@ -15,7 +15,7 @@ constexpr uint64_t kSeed = 77;
 struct Arena {
   static constexpr uint32_t kPool = 8192;
 
-  std::vector<KbPathVertex> slots;
+  std::vector<KbPathVertex> entries;
   std::vector<uint32_t> next, first;
   std::vector<std::vector<uint32_t>> chunks;  // of a path
 
@@ -27,14 +27,14 @@ struct Arena {
       for (uint32_t level = 0; more; ++level) {
         more = false;
         for (std::size_t p = begin; p < end; ++p) {
-          if (level * KB_CHUNK_SLOTS >= paths.paths[p].count) continue;
+          if (level * KB_CHUNK_ENTRIES >= paths.paths[p].count) continue;
           chunks[p].push_back(count++);
           more = true;
         }
       }
     }
     if (scattered) scatter(count);
-    slots.resize(std::size_t{count} * KB_CHUNK_SLOTS);
+    entries.resize(std::size_t{count} * KB_CHUNK_ENTRIES);
     next.assign(count, 0xfffffff0u);
     for (std::size_t p = 0; p < chunks.size(); ++p) place(paths, paths.paths[p], chunks[p]);
   }
@@ -51,7 +51,8 @@ struct Arena {
     first.push_back(own.empty() ? 0xfffffff0u : own.front());
     for (std::size_t i = 1; i < own.size(); ++i) next[own[i - 1]] = own[i];
     for (uint32_t i = 0; i < path.count; ++i)
-      slots[own[i / KB_CHUNK_SLOTS] * KB_CHUNK_SLOTS + i % KB_CHUNK_SLOTS] = paths.slots[path.first + i];
+      entries[own[i / KB_CHUNK_ENTRIES] * KB_CHUNK_ENTRIES + i % KB_CHUNK_ENTRIES] =
+          paths.entries[path.first + i];
   }
 };
 
@@ -67,7 +68,7 @@ std::vector<float> texel_values(const FlatScene& scene) {
 
 }  // namespace
 
-uint32_t slots_of(const KbPathVertex& vertex) {
+uint32_t entries_of(const KbPathVertex& vertex) {
   return 1 + kb_vertex_extensions(vertex.head);
 }
 
@@ -132,7 +133,7 @@ void DeviceEvaluator::load(const PathBuffer& paths, const RoundOfPaths& round, b
   for (uint32_t p = 0; p < round.pixels; ++p) pixels.push_back({p % 7, p / 7, round.block[p]});
   pool_.pixels = probe.upload(pixels);
   const Arena arena(paths, scattered);
-  pool_.arena = probe.upload(arena.slots);
+  pool_.arena = probe.upload(arena.entries);
   pool_.chunk_next = probe.upload(arena.next);
   std::vector<KbSavedPath> saved;
   for (const uint32_t p : round.path) {

@@ -17,7 +17,7 @@ namespace kiloband::test {
 using namespace cpu;
 
 /// Slots of a vertex with its texture samples.
-uint32_t slots_of(const KbPathVertex& vertex);
+uint32_t entries_of(const KbPathVertex& vertex);
 
 /// The macros of a build.
 struct EvaluatorBuild {

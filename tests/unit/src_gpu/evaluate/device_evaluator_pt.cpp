@@ -33,13 +33,13 @@ bool next_bounce(Slot& slot, uint32_t number, uint32_t slots, const RoundOfPaths
   const bool nothing = p == RoundOfPaths::kEmpty || p == RoundOfPaths::kInvalid || paths.paths[p].count == 0;
   if (!nothing) {
     const SavedPath& path = paths.paths[p];
-    const KbPathVertex* vertices = &paths.slots[path.first + slot.at];
+    const KbPathVertex* vertices = &paths.entries[path.first + slot.at];
     // What a deferred vertex waits for comes with it.
     for (bool more = true; more;) {
       more = vertices[state.length].head & KB_VERTEX_DEFER;
-      state.length += slots_of(vertices[state.length]);
+      state.length += entries_of(vertices[state.length]);
     }
-    std::copy_n(&paths.slots[path.first + slot.at], state.length, chunk);
+    std::copy_n(&paths.entries[path.first + slot.at], state.length, chunk);
     slot.at += state.length;
   }
   if (p == RoundOfPaths::kInvalid) state.flags |= KB_PATH_INVALID;
@@ -60,13 +60,13 @@ void DeviceEvaluator::pt(const PathBuffer& paths, uint32_t slots, uint32_t local
   evaluation_.parts = local_size;
   std::vector<Slot> pool(slots);
   std::vector<KbPathState> states(slots);
-  std::vector<KbPathVertex> chunks(std::size_t{slots} * KB_CHUNK_SLOTS);
+  std::vector<KbPathVertex> chunks(std::size_t{slots} * KB_CHUNK_ENTRIES);
   for (bool more = true; more;) {
     more = false;
     std::vector<uint32_t> queue;
     for (uint32_t s = slots; s-- > 0;) {  // not in order: nothing may depend on it
       queue.push_back(s);
-      if (next_bounce(pool[s], s, slots, round_, paths, states[s], &chunks[s * KB_CHUNK_SLOTS]))
+      if (next_bounce(pool[s], s, slots, round_, paths, states[s], &chunks[s * KB_CHUNK_ENTRIES]))
         more = true;
       else
         states[s].flags = KB_PATH_FINISHED;
@@ -100,9 +100,9 @@ PtTiming DeviceEvaluator::time_pt(uint32_t slots, uint32_t groups, uint32_t boun
   vertex.head = KB_KIND_SCALED | KB_VERTEX_NEE | KB_VERTEX_SCATTER;
   vertex.nee_row = 5;
   vertex.nee0 = vertex.scatter0 = 1;
-  std::vector<KbPathVertex> chunks(std::size_t{slots} * KB_CHUNK_SLOTS, vertex);
+  std::vector<KbPathVertex> chunks(std::size_t{slots} * KB_CHUNK_ENTRIES, vertex);
   for (uint32_t i = 0; i < chunks.size(); ++i)
-    chunks[i].row_a = static_cast<uint16_t>(i / KB_CHUNK_SLOTS % 5);
+    chunks[i].row_a = static_cast<uint16_t>(i / KB_CHUNK_ENTRIES % 5);
   pool_.arena = probe.upload(chunks);
   std::vector<uint32_t> order(slots);
   std::iota(order.begin(), order.end(), 0u);

@@ -129,7 +129,7 @@ std::vector<float> cpu_means(const Workload& w, bool per_path) {
     const float mu = per_path ? per_path_mu(w.round, pixel, sample)
                               : w.round.mu[w.round.block[pixel] * w.round.samples + sample];
     PathBuffer one;
-    one.slots = w.paths.slots;
+    one.entries = w.paths.entries;
     one.paths = {w.paths.paths[w.round.path[job]]};
     one.paths[0].pixel = 0;
     const std::vector<float> row = evaluate(w.scene, w.derived, one, Isa::kAuto, mu, true);
@@ -235,15 +235,15 @@ TEST(DeviceEvaluator, AMillionEqualSamplesLoseNothing) {
 PathBuffer plain_paths(const FlatScene& scene, std::mt19937& random) {
   PathBuffer paths = make_paths(scene, 40, random), plain;
   for (const SavedPath& path : paths.paths) {
-    const uint32_t first = static_cast<uint32_t>(plain.slots.size());
+    const uint32_t first = static_cast<uint32_t>(plain.entries.size());
     for (uint32_t i = 0; i < path.count;) {
-      KbPathVertex v = paths.slots[path.first + i];
-      i += slots_of(v);
+      KbPathVertex v = paths.entries[path.first + i];
+      i += entries_of(v);
       if ((v.head & KB_VERTEX_TEX_MASK) || (v.head & KB_VERTEX_KIND_MASK) != KB_KIND_SCALED) continue;
       v.head &= ~KB_VERTEX_DEGRADE;
-      plain.slots.push_back(v);
+      plain.entries.push_back(v);
     }
-    const uint32_t count = static_cast<uint32_t>(plain.slots.size()) - first;
+    const uint32_t count = static_cast<uint32_t>(plain.entries.size()) - first;
     plain.paths.push_back({first, count, path.pixel});
   }
   return plain;
@@ -265,12 +265,12 @@ TEST(DeviceEvaluator, SpecialisedKernelsComputeTheSameBits) {
     // Paths whose vertices are all of the build's kinds;
     // with a feature's macro alone the others are compiled out.
     PathBuffer some;
-    some.slots = many.slots;
+    some.entries = many.entries;
     const bool textures = macro.find("TEXTURE") != std::string::npos;
     for (const SavedPath& path : many.paths) {
       bool fits = true;
-      for (uint32_t i = 0; i < path.count; i += slots_of(many.slots[path.first + i])) {
-        const KbPathVertex& v = many.slots[path.first + i];
+      for (uint32_t i = 0; i < path.count; i += entries_of(many.entries[path.first + i])) {
+        const KbPathVertex& v = many.entries[path.first + i];
         fits &= (textures || !(v.head & KB_VERTEX_TEX_MASK)) && (kinds >> (v.head & KB_VERTEX_KIND_MASK) & 1);
         fits &= !(v.head & KB_VERTEX_DEGRADE) || macro == "-DKB_HAS_DISPERSION=1";
       }

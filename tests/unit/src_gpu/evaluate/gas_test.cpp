@@ -95,10 +95,10 @@ TEST(DeviceGasPlanck, RatioOverTheFloatRange) {
       v.nee1 = static_cast<float>(reference_k);
       const KbPlumeCell cell{1e6f, v.nee0};
       paths.paths.push_back(
-          {static_cast<uint32_t>(paths.slots.size()), 2, static_cast<uint32_t>(paths.paths.size())});
-      paths.slots.push_back(v);
-      paths.slots.push_back({});
-      std::memcpy(static_cast<void*>(&paths.slots.back()), &cell, sizeof cell);
+          {static_cast<uint32_t>(paths.entries.size()), 2, static_cast<uint32_t>(paths.paths.size())});
+      paths.entries.push_back(v);
+      paths.entries.push_back({});
+      std::memcpy(static_cast<void*>(&paths.entries.back()), &cell, sizeof cell);
     }
     RoundOfPaths round;
     round.pixels = 6;
