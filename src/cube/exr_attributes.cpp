@@ -3,6 +3,7 @@
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 
@@ -96,6 +97,10 @@ ExrLayout plan_exr(const CubeInfo& info, const std::string& where) {
     if (!used.insert(name).second || parse_spectral_name(name))
       throw InputError(where + ": auxiliary plane '" + printable(name) +
                        "': the name is that of another EXR channel");
+  const auto is_variance = [&](const std::string& mean) { return used.contains("var." + mean); };
+  if (!info.variance && std::ranges::all_of(layout.means, is_variance))  // what readers take variances from
+    throw InputError(where + ": auxiliary plane '" + printable("var." + layout.means.front()) +
+                     "': would be read as the variance of a band");
   for (const auto& [key, value] : info.metadata)
     if (key.empty() || key.size() > kMaxNameLength || key.find('\0') != std::string::npos)
       throw InputError(where + ": metadata name '" + printable(key) + "': must have 1 to " +

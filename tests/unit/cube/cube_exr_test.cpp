@@ -127,7 +127,16 @@ TEST_F(ExrFile, NamesThatCollideAreRefused) {
               (folder / "a.exr").string() + ": auxiliary plane '" + name +
                   "': the name is that of another EXR channel");
   }
+  // Readers take variances where every band has one.
+  const std::string name = "var.S0.450,000000nm";
+  const Cube one = make_cube(2, 2, equal_bands(400, 500, 1), false, {name});
+  EXPECT_EQ(error_of([&] { create_cube_writer(folder / "a.exr", one.info, 2); }),
+            (folder / "a.exr").string() + ": auxiliary plane '" + name +
+                "': would be read as the variance of a band");
   EXPECT_TRUE(folder.list().empty());
+  const Cube two = make_cube(2, 2, {{{400, 500, ""}, false}, {{500, 600, ""}, false}}, false, {name});
+  write_cube_file(two, folder / "b.exr");
+  EXPECT_EQ(read_cube(folder / "b.exr").info.aux, std::vector{name});
 }
 
 }  // namespace
