@@ -30,21 +30,21 @@ class BufferRef {
 #define KB_HOST_FIELD_VALUE(type, name) type name;
 #define KB_HOST_FIELD(group, kind, type, name) KB_HOST_FIELD_##kind(type, name)
 #define KB_HOST_VISIT(group, kind, type, name) visit(name);
-#define KB_HOST_COUNT(group, kind, type, name) +1
+#define KB_HOST_COUNT(group, kind, type, name) 1
 
 // XArguments::Of<Buffer>: an aggregate with a member per argument, Buffer<type> or the scalar, in the order of the list.
 // Designated initialisers fill it: one that is forgotten is a warning, which CI takes for an error.
-#define KB_HOST_GROUP(GROUP, Name)                                              \
-  struct Name##Arguments {                                                      \
-    static constexpr uint32_t kCount = KB_##GROUP##_ARGUMENTS(KB_HOST_COUNT, ); \
-    template <template <class> class Buffer>                                    \
-    struct Of {                                                                 \
-      using Group = Name##Arguments;                                            \
-      KB_##GROUP##_ARGUMENTS(KB_HOST_FIELD, ) template <class Visit>            \
-      void each(const Visit& visit) const {                                     \
-        KB_##GROUP##_ARGUMENTS(KB_HOST_VISIT, )                                 \
-      }                                                                         \
-    };                                                                          \
+#define KB_HOST_GROUP(GROUP, Name)                                               \
+  struct Name##Arguments {                                                       \
+    static constexpr uint32_t kCount = KB_##GROUP##_ARGUMENTS(KB_HOST_COUNT, +); \
+    template <template <class> class Buffer>                                     \
+    struct Of {                                                                  \
+      using Group = Name##Arguments;                                             \
+      KB_##GROUP##_ARGUMENTS(KB_HOST_FIELD, ) template <class Visit>             \
+      void each(const Visit& visit) const {                                      \
+        KB_##GROUP##_ARGUMENTS(KB_HOST_VISIT, )                                  \
+      }                                                                          \
+    };                                                                           \
   };
 
 KB_HOST_GROUP(SCENE, Scene)

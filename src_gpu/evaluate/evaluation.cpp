@@ -108,8 +108,7 @@ uint64_t slot_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape)
 Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpectraLayout& layout,
                        const EvaluationShape& shape, const std::vector<std::string>& defines,
                        bool program_cache, const PoolSize& pool, uint64_t film_pixels, bool open)
-    : context_(context),
-      layout_(layout),
+    : layout_(layout),
       shape_(shape),
       film_pixels_(film_pixels),
       means_pixels_(pixels_of_means(layout, film_pixels)),

@@ -74,7 +74,6 @@ class Evaluation {
   void pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
   uint64_t touched_pixels(uint64_t pixels) const;
 
-  DeviceContext& context_;
   KbSpectraLayout layout_;
   EvaluationShape shape_;
   uint64_t film_pixels_, means_pixels_;
