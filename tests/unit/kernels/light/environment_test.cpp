@@ -2,7 +2,6 @@
 // poles and the seam.
 #include "src_cpu/light/environment.hpp"
 
-#include "scene/compile/envmap_sampling.hpp"
 #include "src_cpu/geometry/texture_lookup.hpp"
 #include "src_cpu/light/emitter.hpp"
 #include "support.hpp"
@@ -39,23 +38,13 @@ OpenclProbe& probe() {
   return instance;
 }
 
-FlatScene envmap_scene(uint32_t width, uint32_t height, const glm::dmat4& to_world, uint32_t seed) {
-  KbEmitter emitter = make_emitter(KB_EMITTER_ENVMAP, to_world);
-  emitter.ref = KB_REF_BITMAP | 0u;
-  FlatScene scene = scene_with(emitter);
-  KbTexture texture{};
-  texture.width = width;
-  texture.height = height;
-  texture.flags = KB_TEXTURE_ENVMAP;
-  scene.textures = {texture};
+/// Texels at random, one in fifty far brighter than the others.
+FlatScene random_envmap(uint32_t width, uint32_t height, const glm::dmat4& to_world, uint32_t seed) {
   Random random(seed);
-  std::vector<float> weights;
-  for (uint32_t i = 0; i < width * height; ++i) {
-    weights.push_back(random.index(50) == 0 ? 1000 * random.unit() : random.unit());
-    scene.texels.push_back({0, 0, 1e10f, weights.back()});
-  }
-  scene.envmap = build_envmap_sampling(width, height, weights);
-  return scene;
+  std::vector<float> texels;
+  for (uint32_t i = 0; i < width * height; ++i)
+    texels.push_back(random.index(50) == 0 ? 1000 * random.unit() : random.unit());
+  return envmap_scene(width, height, texels, to_world);
 }
 
 const uint32_t kSizes[][2] = {{16, 9}, {3, 2}, {1024, 513}, {2, 2}};
@@ -64,7 +53,7 @@ const uint32_t kSizes[][2] = {{16, 9}, {3, 2}, {1024, 513}, {2, 2}};
 /// cell's border rounding of the direction may name the neighbour.
 TEST(GpuEnvironment, SamplesOfMaps) {
   for (const auto& size : kSizes) {
-    const FlatScene scene = envmap_scene(size[0], size[1], placed({7, 8, 9}, 1.1, glm::dvec3(2)), size[0]);
+    const FlatScene scene = random_envmap(size[0], size[1], placed({7, 8, 9}, 1.1, glm::dvec3(2)), size[0]);
     Random random(25);
     std::vector<ItemIn> in(30000);
     for (ItemIn& item : in) item = {{random.unit(), random.unit()}, {}};
@@ -105,7 +94,7 @@ TEST(GpuEnvironment, DirectionsPolesAndSeam) {
   for (const auto& size : kSizes) {
     for (const double angle : {0.0, 2.0}) {
       const FlatScene scene =
-          envmap_scene(size[0], size[1], placed({0, 0, 0}, angle, glm::dvec3(1)), size[1]);
+          random_envmap(size[0], size[1], placed({0, 0, 0}, angle, glm::dvec3(1)), size[1]);
       Random random(26);
       std::vector<ItemIn> in(20000);
       for (std::size_t i = 0; i < in.size(); ++i) {
