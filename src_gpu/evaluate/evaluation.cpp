@@ -112,7 +112,6 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
       shape_(shape),
       film_pixels_(film_pixels),
       means_pixels_(pixels_of_means(layout, film_pixels)),
-      layout_buffer_(memory.upload("spectra layout", std::vector{layout})),
       sum_(memory.allocate<float>("film", film_pixels * layout.film_columns)),
       compensation_(memory.allocate<float>("film's rounding errors", film_pixels * layout.film_columns)),
       open_(memory.allocate<float>("sums of chunks", open ? sum_.size() : 0)),
@@ -157,7 +156,7 @@ FilmArguments::Of<BufferRef> Evaluation::film(uint64_t first_pixel, bool open) c
 
 PackingArguments::Of<BufferRef> Evaluation::packing(const DeviceBuffer<float>& values,
                                                     uint64_t pixels) const {
-  return {.layout = layout_buffer_,
+  return {.layout = *device_layout_,
           .open = open_,
           .values = values,
           .packed = means_,
@@ -165,6 +164,7 @@ PackingArguments::Of<BufferRef> Evaluation::packing(const DeviceBuffer<float>& v
 }
 
 void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, const PathPool& pool) {
+  device_layout_ = &spectra.layout;
   const auto bind_one = [&](EvaluationKernel& kernel, LaunchScale scale) {
     kernel.set(scene, spectra, pool.buffers(), buffers_, film(0), pool.queue(0));
     kernel->set_scale(scale);

@@ -49,7 +49,7 @@ class Evaluation {
              const EvaluationShape& shape, const std::vector<std::string>& defines, bool program_cache,
              const PoolSize& pool, uint64_t film_pixels, bool open);
 
-  /// Sets what does not change from launch to launch; the arguments must outlive this object.
+  /// Sets what does not change from launch to launch, before anything else; the arguments must outlive this object.
   void bind(const DeviceScene& scene, const DeviceSpectra& spectra, const PathPool& pool);
 
   void clear(uint64_t pixels);
@@ -77,7 +77,7 @@ class Evaluation {
   KbSpectraLayout layout_;
   EvaluationShape shape_;
   uint64_t film_pixels_, means_pixels_;
-  DeviceBuffer<KbSpectraLayout> layout_buffer_;
+  const DeviceBuffer<KbSpectraLayout>* device_layout_ = nullptr;  // of the spectra, since bind()
   DeviceBuffer<float> sum_, compensation_, open_, means_;
   DeviceBuffer<uint32_t> counts_;
   EvaluationArguments::Of<DeviceBuffer> buffers_;
