@@ -6,13 +6,13 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/messages.hpp"
-#include "app/render_options.hpp"
-#include "app/signature_options.hpp"
+#include "app/console/messages.hpp"
+#include "app/options/render_options.hpp"
+#include "app/options/signature_options.hpp"
 #include "cube/cube_io.hpp"
 #include "cube/cube_text.hpp"
 #include "post/convert.hpp"
-#include "spectral/text_table.hpp"
+#include "spectral/files/text_table.hpp"
 
 namespace kiloband {
 namespace {

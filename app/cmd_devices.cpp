@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "app/commands.hpp"
-#include "app/standard_output.hpp"
+#include "app/console/standard_output.hpp"
 #include "src_gpu/device/device.hpp"
 
 namespace kiloband {

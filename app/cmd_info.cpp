@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/render_options.hpp"
-#include "app/standard_output.hpp"
+#include "app/console/standard_output.hpp"
+#include "app/options/render_options.hpp"
 #include "film/spectral_film.hpp"
 #include "render/session.hpp"
 #include "scene/compile/flat_scene.hpp"

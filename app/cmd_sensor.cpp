@@ -5,15 +5,15 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/messages.hpp"
-#include "app/output_files.hpp"
-#include "app/render_options.hpp"
-#include "app/signature_options.hpp"
+#include "app/console/messages.hpp"
+#include "app/console/output_files.hpp"
+#include "app/options/render_options.hpp"
+#include "app/options/signature_options.hpp"
 #include "cube/cube_text.hpp"
 #include "post/convert.hpp"
 #include "post/picture.hpp"
 #include "post/sensor_cube.hpp"
-#include "spectral/spectrum_files.hpp"
+#include "spectral/files/spectrum_files.hpp"
 
 namespace kiloband {
 namespace {

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/messages.hpp"
-#include "app/output_files.hpp"
-#include "app/render_options.hpp"
+#include "app/console/messages.hpp"
+#include "app/console/output_files.hpp"
+#include "app/options/render_options.hpp"
 #include "cube/cube_io.hpp"
 #include "sky/sky_map.hpp"
 

@@ -6,12 +6,12 @@
 #include <iterator>
 #include <memory>
 
-#include "app/backend_options.hpp"
 #include "app/commands.hpp"
-#include "app/messages.hpp"
-#include "app/render_options.hpp"
-#include "app/sampling_options.hpp"
-#include "app/standard_output.hpp"
+#include "app/console/messages.hpp"
+#include "app/console/standard_output.hpp"
+#include "app/options/backend_options.hpp"
+#include "app/options/render_options.hpp"
+#include "app/options/sampling_options.hpp"
 #include "render/traced_path.hpp"
 
 namespace kiloband {

@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/messages.hpp"
-#include "app/standard_output.hpp"
-#include "app/stop_signals.hpp"
+#include "app/console/messages.hpp"
+#include "app/console/standard_output.hpp"
+#include "app/console/stop_signals.hpp"
 #include "base/error.hpp"
 #include "scenes/generator/scenes.hpp"
 #include "src_cpu/cpu_backend.hpp"

@@ -8,7 +8,7 @@
 
 #include "base/diagnostics.hpp"
 #include "cube/cube_io.hpp"
-#include "stats/moment_comparison.hpp"
+#include "stats/comparison/moment_comparison.hpp"
 
 namespace kiloband {
 

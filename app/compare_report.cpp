@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "stats/comparison_json.hpp"
+#include "stats/comparison/comparison_json.hpp"
 
 namespace kiloband {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cube/cube_io.hpp"
-#include "stats/comparison.hpp"
+#include "stats/comparison/comparison.hpp"
 
 namespace kiloband {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cube/cube_layout.hpp"
-#include "stats/comparison_json.hpp"
+#include "stats/comparison/comparison_json.hpp"
 
 namespace kiloband {
 

@@ -1,7 +1,7 @@
 // The masks that the options of a signature describe.
 #pragma once
 
-#include "app/signature_options.hpp"
+#include "app/options/signature_options.hpp"
 
 namespace kiloband {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cube/cube_layout.hpp"
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 
 namespace kiloband {
 namespace {

@@ -3,7 +3,7 @@
 #include "cube/cube_layout.hpp"
 #include "files/atomic_file.hpp"
 #include "pictures/picture_library.hpp"
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 
 namespace kiloband {
 namespace {

@@ -9,7 +9,7 @@
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
 #include "post/effective_band.hpp"
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 
 namespace kiloband {
 namespace {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "spectral/spectrum_units.hpp"
-#include "spectral/text_table.hpp"
+#include "spectral/files/spectrum_units.hpp"
+#include "spectral/files/text_table.hpp"
 
 namespace kiloband {
 namespace {

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "spectral/files/text_table.hpp"
 #include "spectral/tabulate.hpp"
-#include "spectral/text_table.hpp"
 
 namespace kiloband {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "spectral/files/text_table.hpp"
 #include "spectral/spectrum_node.hpp"
-#include "spectral/text_table.hpp"
 
 namespace kiloband {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 #include "spectral/planck.hpp"
 #include "spectral/quadrature.hpp"
 #include "spectral/spectrum_node.hpp"

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "stats/replicate_image.hpp"
+#include "stats/comparison/replicate_image.hpp"
 
 namespace kiloband::stats {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "stats/replicate_image.hpp"
+#include "stats/comparison/replicate_image.hpp"
 
 namespace kiloband::stats {
 

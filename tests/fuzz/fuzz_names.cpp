@@ -1,7 +1,7 @@
 // Targets: short texts (names, numbers with units, lists), and the first look at images.
 #include <set>
 
-#include "app/option_values.hpp"
+#include "app/options/option_values.hpp"
 #include "cube/cube_text.hpp"
 #include "cube/exr_names.hpp"
 #include "post/convert.hpp"

@@ -6,7 +6,7 @@
 #include "scene/read/reader.hpp"
 #include "spectral/channel_knots.hpp"
 #include "spectral/channels.hpp"
-#include "spectral/spectrum_files.hpp"
+#include "spectral/files/spectrum_files.hpp"
 #include "tests/fuzz/flat_scene_check.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "stats/comparison/replicate_image.hpp"
 #include "stats/random.hpp"
-#include "stats/replicate_image.hpp"
 
 namespace kiloband::test {
 

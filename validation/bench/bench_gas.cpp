@@ -16,8 +16,8 @@
 
 #include "shared/sampler.h"
 #include "spectral/channel_knots.hpp"
+#include "spectral/files/spectrum_files.hpp"
 #include "spectral/planck.hpp"
-#include "spectral/spectrum_files.hpp"
 
 namespace kiloband {
 namespace {

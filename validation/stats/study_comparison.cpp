@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "stats/comparison.hpp"
+#include "stats/comparison/comparison.hpp"
 #include "stats/distributions.hpp"
 #include "stats/max_t.hpp"
 #include "tests/support/simulated_image.hpp"

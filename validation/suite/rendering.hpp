@@ -11,7 +11,7 @@
 
 #include "render/backend_registry.hpp"
 #include "scene/compile/flat_scene.hpp"
-#include "stats/replicate_image.hpp"
+#include "stats/comparison/replicate_image.hpp"
 
 namespace kiloband::validation {
 

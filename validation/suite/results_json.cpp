@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "stats/comparison_json.hpp"
+#include "stats/comparison/comparison_json.hpp"
 #include "validation/suite/results.hpp"
 
 namespace kiloband::validation {

@@ -20,7 +20,7 @@ uint64_t seed_of(uint64_t run_seed, const std::string& case_name, const std::str
 
 /// Degradation gives all of a path's weight to one channel of K: a pixel whose rare path was not met has
 /// neither the right mean nor a warning, and the other estimator has met it
-/// (as against a truth, stats/comparison.hpp).
+/// (as against a truth, stats/comparison/comparison.hpp).
 bool has_fine_scales(const Pairing& pairing) {
   return pairing.a.rough_dispersion == pairing.b.rough_dispersion;
 }

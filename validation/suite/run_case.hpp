@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "stats/comparison.hpp"
+#include "stats/comparison/comparison.hpp"
 #include "validation/suite/case.hpp"
 #include "validation/suite/error_rates.hpp"
 

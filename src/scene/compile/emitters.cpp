@@ -8,9 +8,9 @@
 #include "scene/compile/envmap_sampling.hpp"
 #include "scene/compile/flattener.hpp"
 #include "scene/compile/lattice_cdf.hpp"
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
+#include "spectral/colour/rgb.hpp"
 #include "spectral/planck.hpp"
-#include "spectral/rgb.hpp"
 
 namespace kiloband {
 namespace {

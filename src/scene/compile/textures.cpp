@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "scene/compile/flattener.hpp"
-#include "spectral/colour.hpp"
-#include "spectral/rgb.hpp"
+#include "spectral/colour/colour.hpp"
+#include "spectral/colour/rgb.hpp"
 
 namespace kiloband {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "scene/read/context.hpp"
-#include "spectral/spectrum_files.hpp"
+#include "spectral/files/spectrum_files.hpp"
 
 namespace kiloband {
 

@@ -5,8 +5,8 @@
 #include "scene/read/context.hpp"
 #include "scene/read/limits.hpp"
 #include "scene/xml/values.hpp"
-#include "spectral/number_table.hpp"
-#include "spectral/text_table.hpp"
+#include "spectral/files/number_table.hpp"
+#include "spectral/files/text_table.hpp"
 
 namespace kiloband {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "scene/read/context.hpp"
 #include "scene/xml/values.hpp"
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 
 namespace kiloband {
 namespace {

@@ -5,9 +5,9 @@
 #include "scene/read/context.hpp"
 #include "scene/read/limits.hpp"
 #include "scene/xml/values.hpp"
-#include "spectral/colour.hpp"
-#include "spectral/rgb.hpp"
-#include "spectral/spectrum_files.hpp"
+#include "spectral/colour/colour.hpp"
+#include "spectral/colour/rgb.hpp"
+#include "spectral/files/spectrum_files.hpp"
 
 namespace kiloband {
 namespace {

@@ -3,8 +3,8 @@
 #include "scene/read/context.hpp"
 #include "scene/read/limits.hpp"
 #include "scene/xml/values.hpp"
-#include "spectral/colour.hpp"
-#include "spectral/rgb.hpp"
+#include "spectral/colour/colour.hpp"
+#include "spectral/colour/rgb.hpp"
 
 namespace kiloband {
 namespace {

@@ -5,7 +5,7 @@
 #include "scene/read/context.hpp"
 #include "scene/read/limits.hpp"
 #include "scene/xml/values.hpp"
-#include "spectral/value_scale.hpp"
+#include "spectral/files/value_scale.hpp"
 
 namespace kiloband {
 namespace {

@@ -4,10 +4,10 @@
 #include <stdexcept>
 
 #include "spectral/dispersion_formula.hpp"
+#include "spectral/files/text_table.hpp"
 #include "spectral/materials/dielectric_table.h"
 #include "spectral/materials/metal_table.h"
 #include "spectral/tabulate.hpp"
-#include "spectral/text_table.hpp"
 
 namespace kiloband {
 namespace {

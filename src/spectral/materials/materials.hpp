@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "spectral/spectrum_files.hpp"
+#include "spectral/files/spectrum_files.hpp"
 
 namespace kiloband {
 

@@ -3,8 +3,8 @@
 // program; detectable bias with each test.
 #include "base/diagnostics.hpp"
 #include "gas_scenes.hpp"
+#include "spectral/files/spectrum_files.hpp"
 #include "spectral/planck.hpp"
-#include "spectral/spectrum_files.hpp"
 #include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 
 namespace kiloband::test {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cube_support.hpp"
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 
 namespace kiloband {
 namespace {

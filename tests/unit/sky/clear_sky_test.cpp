@@ -6,8 +6,8 @@
 
 #include <cmath>
 
+#include "spectral/files/spectrum_files.hpp"
 #include "spectral/planck.hpp"
-#include "spectral/spectrum_files.hpp"
 #include "tests/support/data_folder.hpp"
 #include "tests/support/messages.hpp"
 

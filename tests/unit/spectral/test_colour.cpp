@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 
 namespace kiloband::test {
 namespace {

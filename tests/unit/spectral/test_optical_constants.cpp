@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "spectral/dispersion_formula.hpp"
-#include "spectral/spectrum_files.hpp"
+#include "spectral/files/spectrum_files.hpp"
 #include "tests/support/messages.hpp"
 
 namespace kiloband::test {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
-#include "spectral/colour.hpp"
-#include "spectral/spectrum_files.hpp"
+#include "spectral/colour/colour.hpp"
+#include "spectral/files/spectrum_files.hpp"
 #include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "spectral/colour.hpp"
-#include "spectral/rgb.hpp"
+#include "spectral/colour/colour.hpp"
+#include "spectral/colour/rgb.hpp"
 #include "tests/support/messages.hpp"
 
 namespace kiloband::test {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "spectral/channels.hpp"
-#include "spectral/spectrum_files.hpp"
+#include "spectral/files/spectrum_files.hpp"
 #include "tests/support/mutations.hpp"
 #include "tests/support/temporary_folder.hpp"
 

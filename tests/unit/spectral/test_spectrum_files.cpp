@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "spectral/spectrum_files.hpp"
-#include "spectral/spectrum_units.hpp"
+#include "spectral/files/spectrum_files.hpp"
+#include "spectral/files/spectrum_units.hpp"
 #include "tests/support/messages.hpp"
 
 namespace kiloband::test {

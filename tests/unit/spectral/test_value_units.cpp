@@ -1,9 +1,9 @@
 // Units that files state for their values.
 #include <gtest/gtest.h>
 
-#include "spectral/spectrum_files.hpp"
-#include "spectral/text_table.hpp"
-#include "spectral/value_units.hpp"
+#include "spectral/files/spectrum_files.hpp"
+#include "spectral/files/text_table.hpp"
+#include "spectral/files/value_units.hpp"
 #include "tests/support/messages.hpp"
 
 namespace kiloband::test {

@@ -1,5 +1,5 @@
 // What a comparison does with units that are not the usual ones, and what it says.
-#include "stats/comparison.hpp"
+#include "stats/comparison/comparison.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "stats/comparison.hpp"
-#include "stats/moment_comparison.hpp"
+#include "stats/comparison/comparison.hpp"
+#include "stats/comparison/moment_comparison.hpp"
 #include "tests/support/messages.hpp"
 #include "tests/support/simulated_image.hpp"
 #include "tests/unit/stats/support.hpp"

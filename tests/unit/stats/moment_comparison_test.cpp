@@ -1,5 +1,5 @@
 // Means with variances and nothing else.
-#include "stats/moment_comparison.hpp"
+#include "stats/comparison/moment_comparison.hpp"
 
 #include <gtest/gtest.h>
 

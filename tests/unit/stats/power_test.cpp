@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "stats/comparison.hpp"
+#include "stats/comparison/comparison.hpp"
 #include "tests/support/simulated_image.hpp"
 
 namespace kiloband::stats {

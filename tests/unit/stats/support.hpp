@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "stats/comparison.hpp"
+#include "stats/comparison/comparison.hpp"
 
 namespace kiloband::stats {
 

@@ -64,10 +64,15 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
     {"app", {"src/", "src_cpu", "src_gpu", "src_gpu/", "scenes/generator", "validation/"}},
 };
 
-/// "src/scene/read" of "src/scene/read/ior.cpp"; src/spectral/materials belongs to src/spectral.
+/// "src/scene/read" of "src/scene/read/ior.cpp". A folder that the table does not name is part of the room that
+/// it stands in: src/spectral/files of src/spectral.
 std::string room_of(const std::string& path) {
-  const std::string room = std::filesystem::path(path).parent_path().string();
-  return room == "src/spectral/materials" ? "src/spectral" : room;
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  for (std::filesystem::path room = folder; !room.empty(); room = room.parent_path()) {
+    if (std::ranges::any_of(kRooms, [&](const auto& entry) { return entry.first == room.string(); }))
+      return room.string();
+  }
+  return folder.string();
 }
 
 bool is_source(const std::string& path) {

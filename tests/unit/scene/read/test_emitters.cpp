@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

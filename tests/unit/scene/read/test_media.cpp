@@ -1,7 +1,7 @@
 // Gases: elements, their defaults, files of absorption coefficients, messages.
 #include <gtest/gtest.h>
 
-#include "spectral/spectrum_files.hpp"
+#include "spectral/files/spectrum_files.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

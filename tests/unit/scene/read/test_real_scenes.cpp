@@ -1,7 +1,7 @@
 // Scenes that others wrote: read where the data folder is present.
 #include <gtest/gtest.h>
 
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
 #include "support.hpp"
 #include "tests/support/data_folder.hpp"
 

@@ -1,9 +1,9 @@
 // How numbers, colours and spectra are understood in reflectances and on emitters.
 #include <gtest/gtest.h>
 
-#include "spectral/colour.hpp"
+#include "spectral/colour/colour.hpp"
+#include "spectral/colour/rgb.hpp"
 #include "spectral/planck.hpp"
-#include "spectral/rgb.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

@@ -1,0 +1,47 @@
+#include "app/options/sampling_options.hpp"
+
+#include <charconv>
+
+namespace kiloband {
+namespace {
+
+/// CLI11 would take -1 for 2^64 - 1, and a larger number too.
+std::string check_seed(const std::string& text) {
+  uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size()) return {};
+  return "Value " + text + " not a whole number from 0 to 18446744073709551615";
+}
+
+}  // namespace
+
+void SamplingOptions::add_to(CLI::App& command) {
+  command.add_option("--wavelengths", wavelengths, "wavelength sampling")
+      ->check(CLI::IsMember({"shared", "per-path"}))
+      ->capture_default_str();
+  command.add_option("--sampler", sampler, "random numbers")
+      ->check(CLI::IsMember({"sobol", "independent"}))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--rough-dispersion", rough_dispersion,
+          "rough boundaries of dispersive materials: all channels by spectral MIS, or one by degradation")
+      ->check(CLI::IsMember({"mis", "degrade"}))
+      ->capture_default_str();
+  command.add_option("--seed", seed, "seed of all random numbers")
+      ->check(CLI::Validator(check_seed, ""))
+      ->capture_default_str();
+}
+
+SamplingSettings SamplingOptions::settings(uint32_t replicates) const {
+  SamplingSettings sampling;
+  sampling.seed = seed;
+  sampling.replicates = replicates;
+  sampling.wavelengths = wavelengths == "shared" ? WavelengthMode::kShared : WavelengthMode::kPerPath;
+  sampling.sampler = sampler == "sobol" ? SamplerType::kSobol : SamplerType::kIndependent;
+  sampling.rough_dispersion =
+      rough_dispersion == "mis" ? RoughDispersion::kSpectralMis : RoughDispersion::kDegrade;
+  return sampling;
+}
+
+}  // namespace kiloband

@@ -1,0 +1,169 @@
+#include "stats/comparison/moment_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <stdexcept>
+
+#include "stats/comparison/comparison_verdict.hpp"
+#include "stats/random.hpp"
+
+namespace kiloband::stats {
+namespace {
+
+/// dof of va + vb, in shares of the sum (contrast.cpp).
+double joint_dof(double va, double dof_a, double vb, double dof_b) {
+  const double share = va + vb > 0 ? va / (va + vb) : 0.5;
+  return 1 / (share * share / dof_a + (1 - share) * (1 - share) / dof_b);
+}
+
+/// The moments of one pixel's replicates, of which `lost` are not finite; appended. zero: of all channels
+void add_moments(const UnitSample& pixel, std::size_t lost, const TruthValues& zero, MomentImage& moments) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  const std::size_t sampled = pixel.sampled();
+  moments.pixel_dof.push_back(static_cast<double>(sampled) - 1);
+  const Contrast contrast = truth_contrast(pixel, zero, 0);
+  const auto only = static_cast<std::size_t>(
+      std::ranges::find_if(pixel.weights, [](double w) { return w > 0; }) - pixel.weights.begin());
+  for (std::size_t c = 0; c < pixel.channels; ++c) {
+    double mean = kNone;
+    if (contrast.valid) mean = contrast.a[c];
+    if (sampled == 1) mean = pixel.mean_at(only, c);
+    if (lost > 0) mean = std::numeric_limits<float>::infinity();
+    moments.mean.push_back(static_cast<float>(mean));
+    moments.variance.push_back(contrast.valid ? static_cast<float>(contrast.variance[c]) : kNone);
+  }
+}
+
+}  // namespace
+
+MomentImage moments_of(const ReplicateImage& image) {
+  MomentImage moments{image.width, image.height, image.channels, image.replicates - 1.0, {}, {}};
+  UnitSample pixel;
+  const TruthValues zero{std::vector<double>(image.channels), {}};
+  for (std::size_t p = 0; p < image.pixels(); ++p) {
+    const std::size_t lost = gather_pixel(image, p, pixel);
+    add_moments(pixel, lost, zero, moments);
+  }
+  return moments;
+}
+
+MomentComparison::MomentComparison(uint32_t width, uint32_t height, std::size_t channels,
+                                   bool independent_pixels, const ComparisonOptions& options)
+    : width_(width),
+      height_(height),
+      channels_(channels),
+      independent_(independent_pixels),
+      options_(options),
+      pixels_(width, height, mix_seed(options.seed, 1)),
+      tiles_(tiles_along(width), tiles_along(height), mix_seed(options.seed, 2)),
+      whole_(1, 1, mix_seed(options.seed, 3)) {}
+
+void MomentComparison::add_sums(Sums& sums, const Contrast& pixel) const {
+  for (auto* numbers : {&sums.a, &sums.b, &sums.variance, &sums.spread}) numbers->resize(channels_);
+  ++sums.pixels;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    sums.a[c] += pixel.a[c];
+    sums.b[c] += pixel.b[c];
+    sums.variance[c] += pixel.variance[c];
+    sums.spread[c] += pixel.variance[c] * pixel.variance[c] / pixel.dof[c];
+  }
+}
+
+Contrast MomentComparison::contrast_of(const Sums& sums) const {
+  Contrast contrast;
+  contrast.channels = channels_;
+  contrast.valid = sums.pixels > 0;
+  for (std::size_t c = 0; c < channels_ && contrast.valid; ++c) {
+    const double a = sums.a[c] / sums.pixels, b = sums.b[c] / sums.pixels;
+    contrast.a.push_back(a);
+    contrast.b.push_back(b);
+    contrast.difference.push_back(a - b);
+    contrast.variance.push_back(sums.variance[c] / (sums.pixels * sums.pixels));
+    const double v = sums.variance[c];
+    contrast.dof.push_back(sums.spread[c] > 0 ? v * v / sums.spread[c]
+                                              : std::numeric_limits<double>::infinity());
+    contrast.slack.push_back(options_.rounding * std::max(std::abs(a), std::abs(b)));
+  }
+  return contrast;
+}
+
+void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y) {
+  const std::size_t pixel = std::size_t{y - next_row_} * width_ + x, first = pixel * channels_;
+  const std::span<const float> ma(&a.mean[first], channels_), mb(&b.mean[first], channels_);
+  const auto finite = [](float v) { return std::isfinite(v); };
+  const auto none = [](float v) { return std::isnan(v); };
+  const bool has_a = std::ranges::all_of(ma, finite), has_b = std::ranges::all_of(mb, finite);
+  const bool missing = std::ranges::all_of(ma, none) && std::ranges::all_of(mb, none);
+  non_finite_ += !missing && !(has_a && has_b);
+  Contrast contrast;
+  contrast.channels = channels_;
+  contrast.valid = has_a && has_b;
+  for (std::size_t c = 0; c < channels_ && contrast.valid; ++c) {
+    const double va = a.variance[first + c], vb = b.variance[first + c];
+    contrast.valid = va >= 0 && vb >= 0 && std::isfinite(va + vb);
+    contrast.a.push_back(ma[c]);
+    contrast.b.push_back(mb[c]);
+    contrast.difference.push_back(double{ma[c]} - mb[c]);
+    contrast.variance.push_back(va + vb);
+    contrast.dof.push_back(joint_dof(va, a.dof_of(pixel), vb, b.dof_of(pixel)));
+    contrast.slack.push_back(options_.rounding * std::max(std::abs(ma[c]), std::abs(mb[c])));
+  }
+  const auto index = static_cast<std::ptrdiff_t>(std::size_t{y} * width_ + x);
+  pixels_.add(index, {x, y, 1, 1}, contrast, {});
+  if (!contrast.valid || !independent_) return;
+  add_sums(tile_, contrast);
+  add_sums(image_, contrast);
+}
+
+void MomentComparison::add(const MomentImage& a, const MomentImage& b) {
+  const std::size_t values = std::size_t{a.width} * a.height * channels_;
+  for (const MomentImage* side : {&a, &b}) {
+    if (side->width != width_ || side->height != a.height || next_row_ + side->height > height_ ||
+        side->mean.size() != values || side->variance.size() != values)
+      throw std::logic_error("MomentComparison: the strip does not fit the image");
+  }
+  for (uint32_t y0 = next_row_; y0 < next_row_ + a.height; y0 += kTileEdge) {
+    for (uint32_t x0 = 0; x0 < width_; x0 += kTileEdge) {
+      const UnitPlace place{x0, y0, std::min(kTileEdge, width_ - x0),
+                            std::min(kTileEdge, next_row_ + a.height - y0)};
+      for (uint32_t y = y0; y < y0 + place.height; ++y) {
+        for (uint32_t x = x0; x < x0 + place.width; ++x) add_pixel(a, b, x, y);
+      }
+      const std::size_t index = std::size_t{y0 / kTileEdge} * tiles_along(width_) + x0 / kTileEdge;
+      if (independent_) tiles_.add(static_cast<std::ptrdiff_t>(index), place, contrast_of(tile_), {});
+      tile_ = {};
+    }
+  }
+  next_row_ += a.height;
+}
+
+Comparison MomentComparison::finish() {
+  if (next_row_ != height_) throw std::logic_error("MomentComparison: rows are missing");
+  Comparison c;
+  c.width = width_;
+  c.height = height_;
+  c.channels = channels_;
+  c.non_finite = non_finite_;
+  c.scales = {Scale::kPixel};
+  c.means.push_back(pixels_.finish());
+  if (independent_) {
+    const Contrast contrast = contrast_of(image_);
+    whole_.add(0, {0, 0, width_, height_}, contrast, {});
+    c.scales = {Scale::kPixel, Scale::kTile, Scale::kImage};
+    c.means.push_back(tiles_.finish());
+    c.means.push_back(whole_.finish());
+    add_image_means(contrast, c);
+  } else {
+    c.notes.push_back(
+        "tiles and the image were not compared: from variances alone their errors are not known, unless "
+        "pixels are "
+        "independent");
+  }
+  c.notes.push_back("variances were not compared: that needs replicates or several renders");
+  judge(c, options_, true);
+  return c;
+}
+
+}  // namespace kiloband::stats

@@ -1,0 +1,56 @@
+// Comparison of images of which only means and their variances are known: the means alone can be tested.
+//
+// Nothing says how pixels and channels depend on each other. Channels: the Bonferroni bound. Pixels: where
+// they share random numbers (wavelength offsets, filters wider than a pixel) the variance of a tile is not
+// the sum of its pixels'; tiles and the image are tested only if the caller knows
+// that pixels are independent.
+#pragma once
+
+#include "stats/comparison/comparison.hpp"
+
+namespace kiloband::stats {
+
+/// dof: of the variances; infinite where unknown (normal). A variance that is negative or not finite is none.
+struct MomentImage {
+  uint32_t width = 0, height = 0;
+  std::size_t channels = 0;
+  double dof = 0;
+  std::vector<float> mean, variance;   // [pixel][channel], variance of the mean
+  std::vector<double> pixel_dof = {};  // [pixel] instead of dof; may be empty
+
+  double dof_of(std::size_t pixel) const { return pixel_dof.empty() ? dof : pixel_dof[pixel]; }
+};
+
+/// The moments of replicates; one less than have samples in the pixel are its degrees of freedom. The
+/// variance is NaN with fewer than two, the mean without any;
+/// the mean is infinite where a replicate is not finite.
+MomentImage moments_of(const ReplicateImage& image);
+
+/// Strips as in StripComparison. A pixel whose mean is NaN in all channels on both sides is left out;
+/// any other mean that is not finite is a difference.
+class MomentComparison {
+ public:
+  MomentComparison(uint32_t width, uint32_t height, std::size_t channels, bool independent_pixels,
+                   const ComparisonOptions& options);
+  void add(const MomentImage& a, const MomentImage& b);
+  Comparison finish();
+
+ private:
+  /// Sums over the pixels of a unit.
+  struct Sums {
+    double pixels = 0;
+    std::vector<double> a, b, variance, spread;  // [channel]; spread: sum of v^2 / dof
+  };
+  void add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y);
+  void add_sums(Sums& sums, const Contrast& pixel) const;
+  Contrast contrast_of(const Sums& sums) const;
+
+  uint32_t width_, height_, next_row_ = 0;
+  std::size_t channels_, non_finite_ = 0;
+  bool independent_;
+  ComparisonOptions options_;
+  ScaleTest pixels_, tiles_, whole_;
+  Sums tile_, image_;
+};
+
+}  // namespace kiloband::stats
