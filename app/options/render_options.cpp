@@ -2,12 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <charconv>
 #include <filesystem>
 #include <set>
 
 #include "app/console/messages.hpp"
 #include "base/error.hpp"
+#include "base/number.hpp"
 #include "cube/cube_text.hpp"
 #include "post/effective_band.hpp"
 #include "post/sensor_cube.hpp"
@@ -26,11 +26,9 @@ std::pair<std::string, std::string> parse_define(const std::string& text) {
 }
 
 uint32_t parse_extent(std::string_view text, const std::string& whole) {
-  uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || value < 1 || value > 65535) {
+  const uint32_t value = whole_number<uint32_t>(text).value_or(0);
+  if (value < 1 || value > 65535)
     throw InputError("--size " + whole + ": must be WIDTHxHEIGHT with both from 1 to 65535");
-  }
   return value;
 }
 

@@ -1,15 +1,13 @@
 #include "app/options/sampling_options.hpp"
 
-#include <charconv>
+#include "base/number.hpp"
 
 namespace kiloband {
 namespace {
 
 /// CLI11 would take -1 for 2^64 - 1, and a larger number too.
 std::string check_seed(const std::string& text) {
-  uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size()) return {};
+  if (whole_number<uint64_t>(text)) return {};
   return "Value " + text + " not a whole number from 0 to 18446744073709551615";
 }
 

@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "base/number.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -34,20 +36,13 @@ std::string format_short(double value) {
 }
 
 std::optional<double> parse_number(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;
+  if (read_number(trimmed(text), value) != NumberText::kNumber) return std::nullopt;
   return value;
 }
 
 std::optional<uint64_t> parse_unsigned(std::string_view text) {
-  text = trimmed(text);
-  uint64_t value = 0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return std::nullopt;
-  return value;
+  return whole_number<uint64_t>(trimmed(text));
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {

@@ -5,7 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
+
+#include "base/number.hpp"
 
 namespace kiloband {
 namespace {
@@ -15,12 +16,11 @@ constexpr int kMostLinks = 40;  // Linux's own limit
 /// N if the path is entry N of this process's table of open files.
 std::optional<int> own_descriptor(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
-  int number = -1;
-  const auto [end, failed] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (failed != std::errc{} || end != name.data() + name.size() || number < 0) return std::nullopt;
+  const std::optional<int> number = whole_number<int>(name);
+  if (!number || *number < 0) return std::nullopt;
   std::error_code error;
   const bool ours = std::filesystem::equivalent(path.parent_path(), "/proc/self/fd", error);
-  return ours && !error ? std::optional(number) : std::nullopt;
+  return ours && !error ? number : std::nullopt;
 }
 
 OutputTarget descriptor_target(const std::filesystem::path& path, int descriptor) {

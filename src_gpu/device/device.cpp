@@ -1,10 +1,10 @@
 #include "src_gpu/device/device.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <thread>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "base/threads.hpp"
 #include "src_gpu/device/errors.hpp"
@@ -107,11 +107,9 @@ DeviceInfo default_device(const std::vector<DeviceInfo>& devices) {
 }
 
 DeviceInfo device_of_index(const std::vector<DeviceInfo>& devices, const std::string& choice) {
-  uint32_t index = 0;
-  const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), index);
-  if (error == std::errc() && end == choice.data() + choice.size()) {
+  if (const std::optional<uint32_t> index = whole_number<uint32_t>(choice)) {
     for (const DeviceInfo& device : devices) {
-      if (device.index == index) return device;
+      if (device.index == *index) return device;
     }
   }
   throw InputError("no OpenCL device " + choice + ": there is " + names_of(devices));

@@ -1,9 +1,8 @@
 #include "scene/mesh/text.hpp"
 
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <type_traits>
+
+#include "base/number.hpp"
 
 namespace kiloband {
 namespace {
@@ -12,38 +11,21 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-// from_chars reports underflow and overflow alike; strtod tells them apart.
-// Rare, so its copy does not matter.
-template <typename Real>
-const char* parse_out_of_range(std::string_view token, Real& value) {
-  const std::string copy(token);
-  if constexpr (std::is_same_v<Real, float>) {
-    value = std::strtof(copy.c_str(), nullptr);
-    return std::isfinite(value) ? nullptr : "is too large for a float";
-  } else {
-    value = std::strtod(copy.c_str(), nullptr);
-    return std::isfinite(value) ? nullptr : "is too large";
-  }
-}
-
-template <typename Real>
-const char* parse_real(std::string_view token, Real& value) {
-  // from_chars knows no plus sign; "+-1" must not slip through.
-  if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
-  const char* end = token.data() + token.size();
-  const auto [stop, error] = std::from_chars(token.data(), end, value);
-  if (error == std::errc::invalid_argument || stop != end) return "is not a number";
-  if (error == std::errc::result_out_of_range) return parse_out_of_range(token, value);
+template <class Real>
+const char* parse_real(std::string_view token, Real& value, const char* too_large) {
+  const NumberText text = read_number(token, value);
+  if (text == NumberText::kNone) return "is not a number";
+  if (text == NumberText::kTooLarge) return too_large;
   return std::isfinite(value) ? nullptr : "is not finite";
 }
 
 }  // namespace
 
 const char* parse_number(std::string_view token, float& value) {
-  return parse_real(token, value);
+  return parse_real(token, value, "is too large for a float");
 }
 const char* parse_number(std::string_view token, double& value) {
-  return parse_real(token, value);
+  return parse_real(token, value, "is too large");
 }
 
 std::string_view LineTokens::next() {

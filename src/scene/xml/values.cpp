@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/number.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -15,24 +17,6 @@ std::string quoted(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   if (text.size() <= kLongest) return "'" + std::string(text) + "'";
   return "'" + std::string(text.substr(0, kLongest)) + "...'";
-}
-
-struct Kind {
-  const char *one, *many;
-};
-
-/// What the whole of the text spells.
-template <class T>
-T parse_whole(std::string_view text, const Place& place, const std::string& context, const Kind& kind) {
-  std::string_view digits = trimmed(text, kBlank);
-  if (digits.starts_with('+') && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
-  T value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::invalid_argument || end != digits.data() + digits.size()) {
-    fail(place, context + quoted(text) + " is not " + kind.one);
-  }
-  if (error != std::errc{}) fail(place, context + quoted(text) + " is outside the range of " + kind.many);
-  return value;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -64,13 +48,23 @@ std::vector<std::string_view> split_tokens(std::string_view text) {
 }
 
 double parse_number(std::string_view text, const Place& place, const std::string& context) {
-  const double value = parse_whole<double>(text, place, context, {"a number", "numbers"});
+  double value = 0;
+  const NumberText number = read_number(trimmed(text, kBlank), value);
+  if (number == NumberText::kNone) fail(place, context + quoted(text) + " is not a number");
+  if (number != NumberText::kNumber) fail(place, context + quoted(text) + " is outside the range of numbers");
   if (!std::isfinite(value)) fail(place, context + quoted(text) + " is not finite");
   return value;
 }
 
 int64_t parse_integer(std::string_view text, const Place& place, const std::string& context) {
-  return parse_whole<int64_t>(text, place, context, {"an integer", "integers"});
+  std::string_view digits = trimmed(text, kBlank);
+  if (digits.starts_with('+') && digits.size() > 1 && digits[1] != '-') digits.remove_prefix(1);
+  int64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+    fail(place, context + quoted(text) + " is not an integer");
+  if (error != std::errc{}) fail(place, context + quoted(text) + " is outside the range of integers");
+  return value;
 }
 
 bool parse_boolean(std::string_view text, const Place& place, const std::string& context) {

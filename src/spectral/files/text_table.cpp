@@ -1,11 +1,9 @@
 #include "spectral/files/text_table.hpp"
 
-#include <charconv>
-#include <cmath>
 #include <fstream>
-#include <limits>
 
 #include "base/error.hpp"
+#include "base/number.hpp"
 
 namespace kiloband {
 namespace {
@@ -26,16 +24,6 @@ void split_blanks(std::string_view line, std::size_t max_fields, std::vector<std
     fields.push_back(line.substr(at, end - at));
     at = end;
   }
-}
-
-/// A value out of double's range: from_chars does not say on which side.
-/// The exponent's sign does for what people write.
-double out_of_range_value(std::string_view text) {
-  const std::size_t exponent = text.find_first_of("eE");
-  const bool tiny = exponent == std::string_view::npos ? text.find("0.0") != std::string_view::npos
-                                                       : text.substr(exponent + 1).starts_with('-');
-  const double magnitude = tiny ? 0.0 : std::numeric_limits<double>::infinity();
-  return text.starts_with('-') ? -magnitude : magnitude;
 }
 
 }  // namespace
@@ -89,12 +77,8 @@ std::vector<std::string_view> split_fields(std::string_view line, std::size_t ma
 }
 
 std::optional<double> to_number(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || end != text.data() + text.size()) return std::nullopt;
-  if (error == std::errc::result_out_of_range) return out_of_range_value(text);
-  if (error != std::errc{}) return std::nullopt;
+  if (read_number(text, value) == NumberText::kNone) return std::nullopt;
   return value;
 }
 
