@@ -18,8 +18,6 @@ Kernel::Kernel(DeviceContext& context, cl::Kernel kernel, std::string name)
     argument_count_ = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
     max_work_group_size_ = kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device);
     preferred_multiple_ = kernel_.getWorkGroupInfo<CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE>(device);
-    private_bytes_ = kernel_.getWorkGroupInfo<CL_KERNEL_PRIVATE_MEM_SIZE>(device);
-    local_bytes_ = kernel_.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device);
   });
 }
 

@@ -56,8 +56,6 @@ class Kernel {
   uint64_t max_work_group_size() const { return max_work_group_size_; }
   /// Work-items that the device runs together (a warp), or the width of its vectors.
   uint64_t preferred_multiple() const { return preferred_multiple_; }
-  uint64_t private_bytes() const { return private_bytes_; }  // per work-item, what spills to memory
-  uint64_t local_bytes() const { return local_bytes_; }      // per work-group, without LocalArray arguments
   const std::string& name() const { return name_; }
 
  private:
@@ -84,7 +82,7 @@ class Kernel {
   std::string name_;
   LaunchScale scale_ = LaunchScale::kOther;
   uint32_t argument_count_ = 0;
-  uint64_t max_work_group_size_ = 0, preferred_multiple_ = 0, private_bytes_ = 0, local_bytes_ = 0;
+  uint64_t max_work_group_size_ = 0, preferred_multiple_ = 0;
 };
 
 }  // namespace kiloband::opencl

@@ -19,9 +19,6 @@ namespace kiloband::opencl {
 /// `specialised` false: none, everything is compiled in.
 std::vector<std::string> scene_defines(const SceneFeatures& features, bool specialised);
 
-/// What kernels read of a scene beside its arrays.
-KbSceneConstants scene_constants(const FlatScene& scene);
-
 /// The scene's arrays, the acceleration structure and the spectra in device memory.
 using DeviceScene = SceneArguments::Of<DeviceBuffer>;
 using DeviceBvh = BvhArguments::Of<DeviceBuffer>;

@@ -1,0 +1,78 @@
+// What kernels read of a scene, from a FlatScene: the one list of which array goes where.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "film/filter_table.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "shared/pipeline.h"
+#include "src_gpu/device/kernel_groups.hpp"
+
+namespace kiloband::opencl {
+
+/// The gaussian filter's table; other filters read none.
+inline std::vector<KbFloat2> filter_nodes(const KbCamera& camera) {
+  if (camera.filter != KB_FILTER_GAUSSIAN) return {};
+  return make_gaussian_filter_table(static_cast<double>(camera.filter_radius) / camera.filter_stddev);
+}
+
+inline std::vector<float> bounds_of_rows(const FlatScene& scene) {
+  std::vector<float> bounds;
+  for (const SpectrumRow& row : scene.spectra) bounds.push_back(row.bound);
+  return bounds;
+}
+
+inline KbSceneConstants scene_constants(const FlatScene& scene) {
+  KbSceneConstants c{};
+  c.camera = scene.camera;
+  c.channels = static_cast<uint32_t>(scene.channels.size());
+  c.emitter_count = static_cast<uint32_t>(scene.emitters.size());
+  c.environment = scene.environment;
+  c.max_depth = scene.integrator.max_depth < 0 ? KB_NONE : static_cast<uint32_t>(scene.integrator.max_depth);
+  c.rr_depth = static_cast<uint32_t>(scene.integrator.rr_depth);
+  c.hide_emitters = scene.integrator.hide_emitters ? 1 : 0;
+  c.unit_row = scene.unit_row;
+  c.envmap_width = scene.envmap.width;
+  c.envmap_height = scene.envmap.height;
+  c.atmosphere = scene.atmosphere;
+  std::ranges::copy(scene.camera_media, c.camera_media);
+  c.gas = scene.features.gas ? 1 : 0;
+  if (scene.camera.filter == KB_FILTER_GAUSSIAN)
+    c.filter_ratio = scene.camera.filter_radius / scene.camera.filter_stddev;
+  return c;
+}
+
+/// All arrays of a scene but the values of spectral textures, whose many gigabytes go piece by piece.
+/// up  (name, vector) -> Buffer<its type>
+template <template <class> class Buffer, class Upload>
+SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload& up) {
+  return {.constants = up("scene constants", std::vector{scene_constants(scene)}),
+          .materials = up("materials", scene.materials),
+          .tables = up("tables", scene.tables),
+          .surfaces = up("surfaces", scene.surfaces),
+          .shapes = up("shapes", scene.shapes),
+          .textures = up("textures", scene.textures),
+          .checkerboards = up("checkerboards", scene.checkerboards),
+          .texels = up("texels", scene.texels),
+          .texel_values = {},
+          .texel_bounds = up("texel bounds", scene.texel_bounds),
+          .spectrum_bounds = up("spectrum bounds", bounds_of_rows(scene)),
+          .normals = up("normals", scene.normals),
+          .uvs = up("texture coordinates", scene.uvs),
+          .positions = up("positions", scene.positions),
+          .triangles = up("triangles", scene.triangles),
+          .area_cdf = up("area distribution", scene.area_cdf),
+          .emitters = up("emitters", scene.emitters),
+          .emitter_cdf = up("emitter distribution", scene.emitter_cdf),
+          .envmap_marginal = up("environment rows", scene.envmap.marginal_cdf),
+          .envmap_rows = up("environment distribution", scene.envmap.row_cdf),
+          .media = up("media", scene.media),
+          .plume_nodes = up("plumes", scene.plume_nodes),
+          .interiors = up("interiors", scene.interiors),
+          .filter_table = up("filter table", filter_nodes(scene.camera)),
+          .channel_bins = up("reflectances by channel bins", scene.channel_bins),
+          .thermals = up("thermal emission", scene.thermals)};
+}
+
+}  // namespace kiloband::opencl
