@@ -146,19 +146,14 @@ float bitmap_value(const FlatScene& scene, const KbTextureSample& sample) {
   return (1 - sample.fy) * top + sample.fy * bottom;
 }
 
-/// A number, or the value of a bitmap.
-static float share_at(const FlatScene& scene, uint32_t ref, float constant, glm::vec2 uv) {
+float share_at(const FlatScene& scene, uint32_t ref, float constant, glm::vec2 uv) {
   if (ref == KB_NONE) return constant;
   const ResolvedSpectrum value = resolve_spectrum(scene, ref, uv);
   return std::clamp(bitmap_value(scene, value.texture), 0.0f, 1.0f);
 }
 
-float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv) {
-  return share_at(scene, surface.opacity_ref, surface.opacity, uv);
-}
-
-const KbSurface& chosen_surface(const FlatScene& scene, uint32_t index, glm::vec2 uv, float& u) {
-  const KbSurface* surface = &scene.surfaces[index];
+const KbSurface& blended_surface(const FlatScene& scene, const KbSurface& blend, glm::vec2 uv, float& u) {
+  const KbSurface* surface = &blend;
   while (surface->flags & KB_SURFACE_BLEND) {
     const float weight = share_at(scene, surface->weight_ref, surface->weight, uv);
     const bool second = u < weight;

@@ -25,12 +25,23 @@ ResolvedSpectrum resolve_spectrum(const FlatScene& scene, uint32_t ref, glm::vec
 /// The bilinear value of a flat (raw) bitmap, for opacities: sum of weights times texel scale.
 float bitmap_value(const FlatScene& scene, const KbTextureSample& sample);
 
-/// The surface that a ray finds where it hits surface `index`: of a blend one of those blended, by the uniform number
-/// u, which is uniform again afterwards.
-const KbSurface& chosen_surface(const FlatScene& scene, uint32_t index, glm::vec2 uv, float& u);
+/// One of the surfaces that a blend blends, by the uniform number u, which is uniform again afterwards.
+const KbSurface& blended_surface(const FlatScene& scene, const KbSurface& blend, glm::vec2 uv, float& u);
+
+/// The surface that a ray finds where it hits surface `index`: itself, or what a blend chooses with u.
+inline const KbSurface& chosen_surface(const FlatScene& scene, uint32_t index, glm::vec2 uv, float& u) {
+  const KbSurface& surface = scene.surfaces[index];
+  return surface.flags & KB_SURFACE_BLEND ? blended_surface(scene, surface, uv, u) : surface;
+}
+
+/// A share between 0 and 1: a number, or where `ref` is not KB_NONE the value of a bitmap.
+float share_at(const FlatScene& scene, uint32_t ref, float constant, glm::vec2 uv);
 
 /// A mask's opacity; 1 for other surfaces.
-float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv);
+inline float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::vec2 uv) {
+  return surface.opacity_ref == KB_NONE ? surface.opacity
+                                        : share_at(scene, surface.opacity_ref, surface.opacity, uv);
+}
 
 /// Upper bound of a resolved spectrum over guide bands and rendered channels
 /// (of a lookup: of its four texels).
