@@ -10,10 +10,6 @@ namespace {
 constexpr double kHottest = 3000;
 constexpr uint16_t kGasRows = 3;
 
-double uniform(std::mt19937& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
 uint16_t first_row(const FlatScene& scene) {
   return static_cast<uint16_t>(scene.spectra.size() - kGasRows - 1);
 }

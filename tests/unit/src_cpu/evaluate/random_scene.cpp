@@ -9,10 +9,6 @@
 namespace kiloband::test {
 namespace {
 
-double uniform(std::mt19937& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
 float uniform_float(std::mt19937& random, double low, double high) {
   return static_cast<float>(uniform(random, low, high));
 }

@@ -13,6 +13,10 @@ namespace kiloband::test {
 
 using namespace cpu;
 
+inline double uniform(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
 enum class Layout { kRegular, kOverlapping, kNarrow, kInfrared };
 
 /// K channels: equal ones over 380-780 nm; of random width and order that overlap and leave gaps; 0.1 nm

@@ -6,10 +6,6 @@
 namespace kiloband::test {
 namespace {
 
-double uniform(std::mt19937& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
 void add_texture(FlatScene& scene, uint32_t flags, uint32_t values, uint32_t first_row, double low,
                  double high, std::mt19937& random) {
   KbTexture texture{};
