@@ -48,6 +48,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
     {"kernels/path", {"src/shared", "kernels/base", "kernels/geometry", "kernels/bsdf", "kernels/light"}},
     {"kernels/film", {"src/shared", "kernels/base"}},
     {"kernels/evaluate", {"src/shared", "kernels/base", "kernels/film"}},
+    {"src_cpu/lanes", {"src/"}},
     {"src_cpu/geometry", {"src/"}},
     {"src_cpu/bsdf", {"src/"}},
     {"src_cpu/light", {"src/", "src_cpu/geometry", "src_cpu/bsdf"}},

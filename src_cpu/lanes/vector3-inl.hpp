@@ -1,0 +1,59 @@
+// Vectors of three numbers in each lane, and orthonormal frames.
+//
+// For one lane or a vector of them: see one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
+#if defined(KILOBAND_VECTOR3_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_VECTOR3_INL
+#undef KILOBAND_VECTOR3_INL
+#else
+#define KILOBAND_VECTOR3_INL
+#endif
+
+KB_BEFORE_LANES;
+namespace kiloband::cpu::KB_LANES {
+
+struct V2 {
+  F x, y;
+};
+
+struct V3 {
+  F x, y, z;
+};
+
+KB_INLINE V3 operator+(V3 a, V3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+KB_INLINE V3 operator-(V3 a, V3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+KB_INLINE V3 operator-(V3 a) {
+  return {-a.x, -a.y, -a.z};
+}
+KB_INLINE V3 operator*(V3 a, F s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+KB_INLINE F dot(V3 a, V3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+KB_INLINE V3 cross(V3 a, V3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+KB_INLINE F length(V3 a) {
+  return sqrt(dot(a, a));
+}
+KB_INLINE V3 normalize(V3 a) {
+  return a * (F(1) / length(a));
+}
+KB_INLINE V3 select(M m, V3 yes, V3 no) {
+  return {select(m, yes.x, no.x), select(m, yes.y, no.y), select(m, yes.z, no.z)};
+}
+KB_INLINE F largest(V3 a) {
+  return max(max(a.x, a.y), a.z);
+}
+KB_INLINE V3 abs(V3 a) {
+  return {abs(a.x), abs(a.y), abs(a.z)};
+}
+
+}  // namespace kiloband::cpu::KB_LANES
+KB_AFTER_LANES;
+
+#endif
