@@ -26,17 +26,19 @@ KB_INLINE F polynomial(F x, float c, Rest... rest) {
   return F(c) + x * polynomial(x, rest...);
 }
 
-/// e^x. Relative error below 1.5e-7; 0 below -87.3, no larger than e^88 above 88.
+/// e^x. Relative error below 1.5e-7 where it is no denormal; no larger than e^88 above 88.
 KB_INLINE F exp(F x) {
-  const F clamped = min(F(88.0f), max(F(-87.3f), x));
+  const F clamped = min(F(88.0f), max(F(-104.0f), x));
   const F n = floor(clamped * F(1.44269504f) + F(0.5f));
   // ln 2 in two parts, the first of which has few enough bits that n times it is exact.
   const F r = (clamped - n * F(0.693359375f)) - n * F(-2.12194440e-4f);
   // (e^r - 1 - r) / r^2 for |r| <= ln(2) / 2
   const F p = polynomial(r, 0.49999994f, 0.16666521f, 0.04166839f, 0.008368726f, 0.0013814579f);
   const F e = F(1) + (r + r * r * p);
-  const F power = as_floats(shift_left<23>(to_words(n) + U(127u)));
-  return select(x < F(-87.3f), F(0), e * power);
+  // Small ones in two steps, the second of which rounds to a denormal or, at e^-104, to 0.
+  const M small = n < F(-100);
+  const F power = as_floats(shift_left<23>(to_words(select(small, n + F(64), n)) + U(127u)));
+  return e * power * select(small, F(0x1p-64f), F(1));
 }
 
 /// ln x of x > 0 that is no denormal. Relative error below 2e-7.

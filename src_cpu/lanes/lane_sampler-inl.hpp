@@ -106,8 +106,12 @@ KB_INLINE V2 concentric_disk(F u, F v) {
   const F larger = max(abs(a), abs(b)), smaller = min(abs(a), abs(b));
   const SinCos r = sin_cos_of_eighth(F(KB_PI / 4) * (smaller / max(larger, F(1e-30f))));
   const F along = larger * r.cos, across = larger * r.sin;
-  const M wide = abs(a) > abs(b);
-  return {copysign(select(wide, along, across), a), copysign(select(wide, across, along), b)};
+  // Exchanged by bits: which is larger is random, and for one lane select() would be a branch. Floats that are not
+  // negative are ordered as their words are; the sign of the difference is spread over all bits.
+  const U wide = U(0u) - shift_right<31>(as_words(abs(b)) - as_words(abs(a)));
+  const U exchanged = (as_words(along) ^ as_words(across)) & wide;
+  return {copysign(as_floats(as_words(across) ^ exchanged), a),
+          copysign(as_floats(as_words(along) ^ exchanged), b)};
 }
 
 /// A direction around +z with density cos / pi; cosines are at least 1e-6.

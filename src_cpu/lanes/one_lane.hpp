@@ -5,6 +5,8 @@
 // IEEE 754 has it, one by one (no fused multiply-add), so that every number of lanes gives the same bits.
 #pragma once
 
+#include <smmintrin.h>
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -104,7 +106,7 @@ KB_INLINE F max(F a, F b) {
   return a.v > b.v ? a.v : b.v;
 }
 KB_INLINE F sqrt(F a) {
-  return std::sqrt(a.v);
+  return _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(a.v)));  // std::sqrt asks for its sign, for errno's sake
 }
 KB_INLINE F abs(F a) {
   return std::fabs(a.v);
@@ -114,7 +116,8 @@ KB_INLINE F copysign(F magnitude, F sign) {
 }
 /// Towards minus infinity; of numbers below 2^31 in magnitude.
 KB_INLINE F floor(F a) {
-  return std::floor(a.v);
+  const __m128 x = _mm_set_ss(a.v);
+  return _mm_cvtss_f32(_mm_floor_ss(x, x));  // std::floor is a call
 }
 
 KB_INLINE U operator+(U a, U b) {

@@ -31,6 +31,9 @@ KB_INLINE V3 operator-(V3 a) {
 KB_INLINE V3 operator*(V3 a, F s) {
   return {a.x * s, a.y * s, a.z * s};
 }
+KB_INLINE V3 operator/(V3 a, F s) {
+  return {a.x / s, a.y / s, a.z / s};
+}
 KB_INLINE F dot(V3 a, V3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }

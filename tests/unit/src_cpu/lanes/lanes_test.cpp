@@ -153,6 +153,21 @@ TEST(LaneMath, ErrorsAreThoseStated) {
             3e-7);
 }
 
+TEST(LaneMath, SmallExponentialsAreDenormals) {
+  const std::vector<float> exponents = random_between(29, -110, -88);
+  const std::vector<float> values = apply_one_lane("exp", {exponents})[0];
+  EXPECT_LT(largest_error(values, exponents, false, [](double x) { return std::exp(x); }),
+            1.5 * double(std::numeric_limits<float>::denorm_min()));
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (exponents[i] < -104) {
+      ASSERT_EQ(values[i], 0.0f) << exponents[i];
+    }
+    if (exponents[i] > -103) {
+      ASSERT_GT(values[i], 0.0f) << exponents[i];
+    }
+  }
+}
+
 TEST(LaneMath, NearOneTheLogarithmKeepsItsDigits) {
   std::vector<float> near_one = random_between(25, 0.9, 1.1);
   EXPECT_LT(largest_error(apply_one_lane("log", {near_one})[0], near_one, false,
