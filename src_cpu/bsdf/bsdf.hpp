@@ -1,4 +1,5 @@
-// Wavelength-independent part of the BSDFs on the CPU: what sampling, densities and saved vertices need.
+// Wavelength-independent part of the BSDFs on the CPU: what sampling, densities and saved vertices need. Here for one
+// path at a time; the formulas are written over lanes (bsdf-inl.hpp), for vectors of paths as well.
 //
 // A BSDF value times |cos theta_o| is split into a part that does not depend on wavelength and the spectral
 // factors that deferred evaluation applies (KbVertexKind in shared/records.h). Directions are unit vectors in
@@ -57,7 +58,7 @@ struct MaterialContext {
   const KbMaterial* material = nullptr;
   const float* table = nullptr;  // its tables (shared/material_tables.h), if it has any
   DispersionState dispersion;    // for KB_MATERIAL_DISPERSIVE, else unused
-  /// For KB_MATERIAL_COMPENSATED: its table (shared/thermal.h), else unused.
+  /// For KB_MATERIAL_COMPENSATED: its table (shared/thermal.h), behind `table` if it has that; else unused.
   const float* compensation = nullptr;
 };
 
@@ -95,23 +96,13 @@ BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::
 /// eta  either ratio of the two indices
 bool acts_smooth(const KbMaterial& material, float eta);
 
-/// The kind of eval_bsdf's weights for this material.
-inline uint8_t eval_kind(const KbMaterial& material) {
-  switch (material.type) {
-    case KB_MATERIAL_CONDUCTOR:
-    case KB_MATERIAL_ROUGH_CONDUCTOR:
-      return material.flags & KB_MATERIAL_PERFECT_MIRROR ? KB_KIND_SCALED : KB_KIND_CONDUCTOR;
-    case KB_MATERIAL_PLASTIC:
-    case KB_MATERIAL_ROUGH_PLASTIC:
-      return material.flags & KB_MATERIAL_NONLINEAR ? KB_KIND_NONLINEAR : KB_KIND_TWO_TERM;
-    default:
-      return KB_KIND_SCALED;
-  }
-}
+/// Cosine-weighted direction around +z, of density cos / pi. u uniform in [0,1)^2.
+glm::vec3 cosine_direction(glm::vec2 u);
+
+/// The KbVertexKind of eval_bsdf's weights for this material.
+uint8_t eval_kind(const KbMaterial& material);
 
 /// True if the material has a non-delta lobe, so that next-event estimation makes sense.
-inline bool has_smooth_lobe(const KbMaterial& material) {
-  return material.type != KB_MATERIAL_CONDUCTOR && material.type != KB_MATERIAL_DIELECTRIC;
-}
+bool has_smooth_lobe(const KbMaterial& material);
 
 }  // namespace kiloband::cpu

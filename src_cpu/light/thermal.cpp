@@ -6,9 +6,11 @@
 
 #include "shared/material_tables.h"
 #include "shared/thermal.h"
-#include "src_cpu/bsdf/fresnel.hpp"
 #include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/lanes/one_lane.hpp"
 #include "src_cpu/light/area.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/bsdf/fresnel-inl.hpp"
 
 namespace kiloband::cpu {
 namespace {
@@ -73,7 +75,8 @@ void coefficients(const FlatScene& scene, const KbThermal& thermal, const Aspect
   const bool transmits = thermal.flags & KB_THERMAL_TRANSMITS;
   const float* table = thermal.table == KB_NONE ? nullptr : &scene.tables[thermal.table];
   const float eta = aspect.below && transmits ? 1 / thermal.eta : thermal.eta;
-  c[0] = table ? reflected_part(thermal, table, aspect) : fresnel_dielectric(aspect.cosine, eta).reflectance;
+  c[0] = table ? reflected_part(thermal, table, aspect)
+               : one_lane::fresnel_dielectric(aspect.cosine, eta).reflectance.v;
   if (thermal.flags & KB_THERMAL_THIN) c[0] = 2 * c[0] / (1 + c[0]);
   if (transmits) {
     const float scale = aspect.below ? thermal.eta * thermal.eta : 1;

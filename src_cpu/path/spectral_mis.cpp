@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src_cpu/bsdf/lobes.hpp"
-
 namespace kiloband::cpu {
 namespace {
 
@@ -37,7 +35,7 @@ HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm:
 glm::vec3 sample_heroes(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec2 u_hero,
                         float u_lobe, glm::vec2 u) {
   if (u_hero.y < KB_NO_HERO) {
-    const glm::vec3 wo = lobes::cosine_direction(u);
+    const glm::vec3 wo = cosine_direction(u);
     return u_lobe < 0.5f ? wo : glm::vec3(wo.x, wo.y, -wo.z);
   }
   uint32_t c = 0;

@@ -5,13 +5,30 @@
 
 #include "cases.hpp"
 #include "reference.hpp"
-#include "src_cpu/bsdf/fresnel.hpp"
-#include "src_cpu/bsdf/microfacet.hpp"
+#include "src_cpu/lanes/one_lane.hpp"
+// After the lanes that they are to be compiled for.
+#include "src_cpu/bsdf/fresnel-inl.hpp"
+#include "src_cpu/bsdf/microfacet-inl.hpp"
 
 namespace kiloband::test {
 
 using namespace cpu;
 namespace {
+
+struct Reflection {
+  float reflectance, cos_t;
+};
+
+Reflection fresnel_dielectric(float cos_i, float eta) {
+  const auto f = one_lane::fresnel_dielectric(cos_i, eta);
+  return {f.reflectance.v, f.cos_t.v};
+}
+
+constexpr one_lane::M kActive{true};
+
+one_lane::V3 lane_of(glm::vec3 v) {
+  return {v.x, v.y, v.z};
+}
 
 // Near the critical angle F has an infinite slope, so the formula cannot do better than what half an ulp of
 // the cosine makes of it: the error is allowed to be 3e-6 plus the change of F over 2e-7 in cosine.
@@ -22,7 +39,7 @@ TEST(Fresnel, MatchesComplexArithmetic) {
       const long double expected = reference::fresnel(c, eta);
       const long double spread = std::abs(reference::fresnel(std::min(1.0f, c + 2e-7f), eta) -
                                           reference::fresnel(std::max(0.0f, c - 2e-7f), eta));
-      const DielectricFresnel f = fresnel_dielectric(c, eta);
+      const Reflection f = fresnel_dielectric(c, eta);
       ASSERT_NEAR(f.reflectance, double(expected), 3e-6 + double(spread)) << "cos " << c << " eta " << eta;
       ASSERT_LE(f.cos_t, 1);
     }
@@ -39,16 +56,18 @@ TEST(Microfacet, DensityAndMaskingMatchDouble) {
   Uniform uniform(3);
   for (bool ggx : {false, true})
     for (float alpha : {0.001f, 0.05f, 0.3f, 1.0f}) {
-      const FacetDistribution facets(ggx, alpha, 0.5f * alpha, true);
+      const one_lane::Facets facets{alpha, 0.5f * alpha, {ggx}, {true}};
       const reference::Roughness r{ggx, alpha, 0.5 * alpha};
       for (int i = 0; i < 2000; ++i) {
         const glm::vec3 v = direction(89.9 * uniform(), 6 * uniform());
         const double g = reference::masking(r, glm::dvec3(v));
-        ASSERT_NEAR(facets.masking(v), g, 2e-6);
-        ASSERT_NEAR(facets.masking_over_cos(v), g / v.z, 3e-6 * g / v.z);
-        const glm::vec3 m = facets.sample_normal(v, uniform.pair());
-        const double d = reference::normal_density(r, glm::dvec3(m));
-        ASSERT_NEAR(facets.normal_density(m), d, 2e-5 * d + 1e-20);
+        const one_lane::V3 w = lane_of(v);
+        ASSERT_NEAR(facet_masking(facets, w, kActive).v, g, 2e-6);
+        ASSERT_NEAR(facet_masking_over_cos(facets, w, kActive).v, g / v.z, 3e-6 * g / v.z);
+        const glm::vec2 u = uniform.pair();
+        const one_lane::V3 m = sample_facet_normal(facets, w, {u.x, u.y}, kActive);
+        const double d = reference::normal_density(r, {m.x.v, m.y.v, m.z.v});
+        ASSERT_NEAR(facet_density(facets, m, kActive).v, d, 2e-5 * d + 1e-20);
       }
     }
 }

@@ -1,0 +1,90 @@
+// Chooses each lane's material: eval_bsdf() and sample_bsdf() of src_cpu/bsdf/bsdf.hpp over lanes.
+//
+// A material's code runs where a lane has it, so that a wave of one material pays for one; for one lane that is a
+// branch. Lanes outside `active`, and those without a value or sample, get pdf and weights of 0. Without a value, too,
+// is a rough dispersive dielectric that is not degraded; a rough plastic has to have its table.
+//
+// The heroes of spectral MIS are asked for one path at a time (path/spectral_mis.hpp): few paths are at a rough
+// dispersive boundary together, and each evaluates it for up to 8 indices.
+//
+// For one lane or a vector of them: see lanes/one_lane.hpp and lanes/highway_lanes-inl.hpp, one of which comes first.
+#if defined(KILOBAND_BSDF_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_BSDF_INL
+#undef KILOBAND_BSDF_INL
+#else
+#define KILOBAND_BSDF_INL
+#endif
+
+#include "src_cpu/bsdf/compensation-inl.hpp"
+#include "src_cpu/bsdf/conductor-inl.hpp"
+#include "src_cpu/bsdf/dielectric-inl.hpp"
+#include "src_cpu/bsdf/diffuse-inl.hpp"
+#include "src_cpu/bsdf/plastic-inl.hpp"
+
+KB_BEFORE_LANES;
+namespace kiloband::cpu::KB_LANES {
+
+/// Models are for wi above: distributions of normals are symmetric.
+KB_INLINE void eval_dielectric_side(const Material& m, V3 wi, V3 wo, M active, BsdfValue& value) {
+  const M below = wi.z < F(0);
+  const F eta = select(below, F(1) / index_ratio(m), index_ratio(m));
+  eval_rough_dielectric(m, select(below, flip(wi), wi), select(below, flip(wo), wo), eta, active, value);
+}
+
+KB_INLINE void sample_dielectric_side(const Material& m, V3 wi, F u_lobe, V2 u, M active,
+                                      BsdfSample& sample) {
+  const M rough = is_type(m.type, KB_MATERIAL_ROUGH_DIELECTRIC);
+  const M below = wi.z < F(0), undecided = not_degraded(m);
+  const M inside = below & !has_bits(m.flags, KB_MATERIAL_THIN);
+  const F eta = select(inside, F(1) / index_ratio(m), index_ratio(m));
+  wi = select(below, flip(wi), wi);
+  if (const M lanes = active & rough & !undecided; any(lanes))
+    sample_rough_dielectric(m, wi, eta, u_lobe, u, lanes, sample);
+  if (const M lanes = active & !rough & !undecided; any(lanes))
+    sample_dielectric(m, wi, eta, u_lobe, lanes, sample);
+  if (const M lanes = active & !rough & undecided; any(lanes))
+    sample_dispersive(m, wi, eta, below, u_lobe, lanes, sample);
+  sample.wo = select(active & below, flip(sample.wo), sample.wo);
+}
+
+KB_INLINE BsdfValue eval_bsdf(const Material& m, V3 wi, V3 wo, M active) {
+  BsdfValue value = no_value();
+  const M above = active & (wi.z > F(0)) & (wo.z > F(0));
+  const auto lanes_of = [&](KbMaterialType type) KB_LAMBDA { return above & is_type(m.type, type); };
+  if (const M lanes = lanes_of(KB_MATERIAL_DIFFUSE); any(lanes)) put(value, lanes, eval_diffuse(wo));
+  if (const M lanes = lanes_of(KB_MATERIAL_ROUGH_CONDUCTOR); any(lanes))
+    put(value, lanes, eval_rough_conductor(m, wi, wo, lanes));
+  if (const M lanes = lanes_of(KB_MATERIAL_PLASTIC); any(lanes)) put(value, lanes, eval_plastic(m, wi, wo));
+  if (const M lanes = lanes_of(KB_MATERIAL_ROUGH_PLASTIC); any(lanes))
+    put(value, lanes, eval_rough_plastic(m, wi, wo, lanes));
+  const M glass = active & is_type(m.type, KB_MATERIAL_ROUGH_DIELECTRIC) & (abs(wi.z) > F(0)) &
+                  (abs(wo.z) > F(0)) & !not_degraded(m);
+  if (any(glass)) eval_dielectric_side(m, wi, wo, glass, value);
+  compensate(m, wi, active, value);
+  return value;
+}
+
+KB_INLINE BsdfSample sample_bsdf(const Material& m, V3 wi, F u_lobe, V2 u, M active) {
+  BsdfSample sample = no_sample();
+  const M above = active & (wi.z > F(0));
+  const auto lanes_of = [&](KbMaterialType type) KB_LAMBDA { return above & is_type(m.type, type); };
+  if (const M lanes = lanes_of(KB_MATERIAL_DIFFUSE); any(lanes)) put(sample, lanes, sample_diffuse(m, u));
+  if (const M lanes = lanes_of(KB_MATERIAL_CONDUCTOR); any(lanes))
+    put(sample, lanes, sample_conductor(m, wi));
+  if (const M lanes = lanes_of(KB_MATERIAL_ROUGH_CONDUCTOR); any(lanes))
+    sample_rough_conductor(m, wi, u, lanes, sample);
+  if (const M lanes = lanes_of(KB_MATERIAL_PLASTIC); any(lanes))
+    sample_plastic(m, wi, u_lobe, u, lanes, sample);
+  if (const M lanes = lanes_of(KB_MATERIAL_ROUGH_PLASTIC); any(lanes))
+    sample_rough_plastic(m, wi, u_lobe, u, lanes, sample);
+  const M glass = active & (abs(wi.z) > F(0)) &
+                  (is_type(m.type, KB_MATERIAL_DIELECTRIC) | is_type(m.type, KB_MATERIAL_ROUGH_DIELECTRIC));
+  if (any(glass)) sample_dielectric_side(m, wi, u_lobe, u, glass, sample);
+  compensate(m, wi, active, sample);
+  return sample;
+}
+
+}  // namespace kiloband::cpu::KB_LANES
+KB_AFTER_LANES;
+
+#endif

@@ -1,0 +1,161 @@
+// What all BSDFs over lanes have in common: a material in each lane, a value, a sample.
+//
+// What they mean, units and conventions: src_cpu/bsdf/bsdf.hpp. Vectors are in the local shading frame.
+// For one lane or a vector of them: see lanes/one_lane.hpp and lanes/highway_lanes-inl.hpp, one of which comes first.
+#if defined(KILOBAND_BSDF_COMMON_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_BSDF_COMMON_INL
+#undef KILOBAND_BSDF_COMMON_INL
+#else
+#define KILOBAND_BSDF_COMMON_INL
+#endif
+
+#include <cstddef>
+
+#include "shared/material_tables.h"
+#include "shared/records.h"
+#include "src_cpu/lanes/vector3-inl.hpp"
+
+KB_BEFORE_LANES;
+namespace kiloband::cpu::KB_LANES {
+
+/// What the BSDFs read of a KbMaterial, which is described there.
+struct Material {
+  U type, flags;
+  F alpha_u, alpha_v, eta, specular_weight, fdr_int, bound_a, bound_b;
+  U table;              // where its tables begin in `tables`, or KB_NONE
+  U compensation;       // where its table of energy compensation begins there, or KB_NONE
+  F channel_eta;        // dispersive: interior over exterior index at the chosen wavelength; 0: not degraded
+  const float* tables;  // of the scene; for lanes that have a table at all
+};
+
+struct BsdfValue {
+  F w0, w1, pdf;
+  M lobe_b;
+};
+
+struct BsdfSample {
+  V3 wo;
+  F w0, w1, pdf, eta, bound;
+  M delta, transmission, lobe_b, needs_channel;
+  U kind;
+};
+
+KB_INLINE M no_lanes() {
+  return first_lanes(0);
+}
+
+KB_INLINE BsdfValue no_value() {
+  return {F(0), F(0), F(0), no_lanes()};
+}
+
+KB_INLINE BsdfSample no_sample() {
+  const M none = no_lanes();
+  return {{F(0), F(0), F(0)},         F(0), F(0), F(0), F(1), F(0), none, none, none, none,
+          U(uint32_t{KB_KIND_SCALED})};
+}
+
+KB_INLINE M select(M m, M yes, M no) {
+  return (m & yes) | (no & !m);
+}
+
+KB_INLINE void put(BsdfValue& to, M lanes, const BsdfValue& from) {
+  to.w0 = select(lanes, from.w0, to.w0);
+  to.w1 = select(lanes, from.w1, to.w1);
+  to.pdf = select(lanes, from.pdf, to.pdf);
+  to.lobe_b = select(lanes, from.lobe_b, to.lobe_b);
+}
+
+KB_INLINE void put(BsdfSample& to, M lanes, const BsdfSample& from) {
+  to.wo = select(lanes, from.wo, to.wo);
+  to.w0 = select(lanes, from.w0, to.w0);
+  to.w1 = select(lanes, from.w1, to.w1);
+  to.pdf = select(lanes, from.pdf, to.pdf);
+  to.eta = select(lanes, from.eta, to.eta);
+  to.bound = select(lanes, from.bound, to.bound);
+  to.delta = select(lanes, from.delta, to.delta);
+  to.transmission = select(lanes, from.transmission, to.transmission);
+  to.lobe_b = select(lanes, from.lobe_b, to.lobe_b);
+  to.needs_channel = select(lanes, from.needs_channel, to.needs_channel);
+  to.kind = select(lanes, from.kind, to.kind);
+}
+
+KB_INLINE M is_type(U type, KbMaterialType wanted) {
+  return type == U(static_cast<uint32_t>(wanted));
+}
+
+/// Where the energy compensation of these materials begins, behind their other tables; KB_NONE: nowhere.
+KB_INLINE U compensation_offset(U type, U flags, U table) {
+  const M metal = is_type(type, KB_MATERIAL_CONDUCTOR) | is_type(type, KB_MATERIAL_ROUGH_CONDUCTOR);
+  const M bounded = metal & !has_bits(flags, KB_MATERIAL_PERFECT_MIRROR);
+  U before = select(bounded, U(kb_floats_before_compensation(KB_MATERIAL_ROUGH_CONDUCTOR, 0)), U(0u));
+  before = select(is_type(type, KB_MATERIAL_ROUGH_PLASTIC),
+                  U(kb_floats_before_compensation(KB_MATERIAL_ROUGH_PLASTIC, 0)), before);
+  return select(has_bits(flags, KB_MATERIAL_COMPENSATED), table + before, U(KB_NONE));
+}
+
+/// Material `index` of each lane, not degraded. index: that of a record in every lane, in use or not
+KB_INLINE Material gather_material(const KbMaterial* materials, const float* tables, U index) {
+  const U first = index * U(static_cast<uint32_t>(sizeof(KbMaterial) / 4));
+  const auto word = [&](std::size_t byte) KB_LAMBDA {
+    return gather(reinterpret_cast<const uint32_t*>(materials), first + U(static_cast<uint32_t>(byte / 4)));
+  };
+  const auto number = [&](std::size_t byte) KB_LAMBDA {
+    return gather(reinterpret_cast<const float*>(materials), first + U(static_cast<uint32_t>(byte / 4)));
+  };
+  Material m;
+  m.type = word(offsetof(KbMaterial, type));
+  m.flags = word(offsetof(KbMaterial, flags));
+  m.alpha_u = number(offsetof(KbMaterial, alpha_u));
+  m.alpha_v = number(offsetof(KbMaterial, alpha_v));
+  m.eta = number(offsetof(KbMaterial, eta));
+  m.specular_weight = number(offsetof(KbMaterial, specular_weight));
+  m.fdr_int = number(offsetof(KbMaterial, fdr_int));
+  m.bound_a = number(offsetof(KbMaterial, bound_a));
+  m.bound_b = number(offsetof(KbMaterial, bound_b));
+  m.table = word(offsetof(KbMaterial, table));
+  m.compensation = compensation_offset(m.type, m.flags, m.table);
+  m.channel_eta = F(0);
+  m.tables = tables;
+  return m;
+}
+
+/// The KbVertexKind of eval_bsdf's weights.
+KB_INLINE U eval_kind(U type, U flags) {
+  const M metal = is_type(type, KB_MATERIAL_CONDUCTOR) | is_type(type, KB_MATERIAL_ROUGH_CONDUCTOR);
+  const M plastic = is_type(type, KB_MATERIAL_PLASTIC) | is_type(type, KB_MATERIAL_ROUGH_PLASTIC);
+  U kind(uint32_t{KB_KIND_SCALED});
+  kind = select(metal & !has_bits(flags, KB_MATERIAL_PERFECT_MIRROR), U(uint32_t{KB_KIND_CONDUCTOR}), kind);
+  return select(plastic,
+                select(has_bits(flags, KB_MATERIAL_NONLINEAR), U(uint32_t{KB_KIND_NONLINEAR}),
+                       U(uint32_t{KB_KIND_TWO_TERM})),
+                kind);
+}
+
+/// Has the material a non-delta lobe, so that next-event estimation makes sense?
+KB_INLINE M has_smooth_lobe(U type) {
+  return !(is_type(type, KB_MATERIAL_CONDUCTOR) | is_type(type, KB_MATERIAL_DIELECTRIC));
+}
+
+/// Dispersive, and no channel is chosen yet.
+KB_INLINE M not_degraded(const Material& m) {
+  return has_bits(m.flags, KB_MATERIAL_DISPERSIVE) & !(m.channel_eta > F(0));
+}
+
+/// Interior over exterior index of a dielectric.
+KB_INLINE F index_ratio(const Material& m) {
+  const M chosen = has_bits(m.flags, KB_MATERIAL_DISPERSIVE) & (m.channel_eta > F(0));
+  return select(chosen, m.channel_eta, m.eta);
+}
+
+KB_INLINE V3 mirror(V3 w) {
+  return {-w.x, -w.y, w.z};
+}
+
+KB_INLINE V3 flip(V3 w) {
+  return {w.x, w.y, -w.z};
+}
+
+}  // namespace kiloband::cpu::KB_LANES
+KB_AFTER_LANES;
+
+#endif
