@@ -48,13 +48,18 @@ TEST_F(PatchedCode, KernelsCompile) {
   EXPECT_GE(count, 5u);
 }
 
-/// C++ files, "src_cpu/path/camera.cpp".
+/// C++ files, "src_cpu/path/camera.cpp"; for a header of the CPU backend those of its folder.
 std::set<std::string> patched_sources() {
   std::set<std::string> files;
   for (const auto& entry : fs::directory_iterator(kRoot / "validation/faults/patches")) {
     std::ifstream patch(entry.path());
     for (std::string line; std::getline(patch, line);) {
       if (line.starts_with("+++ b/") && line.ends_with(".cpp")) files.insert(line.substr(6));
+      if (!line.starts_with("+++ b/") || !line.ends_with(".hpp")) continue;
+      const fs::path folder = fs::path(line.substr(6)).parent_path();
+      for (const auto& beside : fs::directory_iterator(kRoot / folder)) {
+        if (beside.path().extension() == ".cpp") files.insert((folder / beside.path().filename()).string());
+      }
     }
   }
   return files;
