@@ -9,11 +9,9 @@
 #define KILOBAND_BSDF_COMMON_INL
 #endif
 
-#include <cstddef>
-
 #include "shared/material_tables.h"
 #include "shared/records.h"
-#include "src_cpu/lanes/vector3-inl.hpp"
+#include "src_cpu/lanes/lane_access-inl.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
@@ -40,10 +38,6 @@ struct BsdfSample {
   U kind;
 };
 
-KB_INLINE M no_lanes() {
-  return first_lanes(0);
-}
-
 KB_INLINE BsdfValue no_value() {
   return {F(0), F(0), F(0), no_lanes()};
 }
@@ -52,10 +46,6 @@ KB_INLINE BsdfSample no_sample() {
   const M none = no_lanes();
   return {{F(0), F(0), F(0)},         F(0), F(0), F(0), F(1), F(0), none, none, none, none,
           U(uint32_t{KB_KIND_SCALED})};
-}
-
-KB_INLINE M select(M m, M yes, M no) {
-  return (m & yes) | (no & !m);
 }
 
 KB_INLINE void put(BsdfValue& to, M lanes, const BsdfValue& from) {
@@ -95,24 +85,17 @@ KB_INLINE U compensation_offset(U type, U flags, U table) {
 
 /// Material `index` of each lane, not degraded. index: that of a record in every lane, in use or not
 KB_INLINE Material gather_material(const KbMaterial* materials, const float* tables, U index) {
-  const U first = index * U(static_cast<uint32_t>(sizeof(KbMaterial) / 4));
-  const auto word = [&](std::size_t byte) KB_LAMBDA {
-    return gather(reinterpret_cast<const uint32_t*>(materials), first + U(static_cast<uint32_t>(byte / 4)));
-  };
-  const auto number = [&](std::size_t byte) KB_LAMBDA {
-    return gather(reinterpret_cast<const float*>(materials), first + U(static_cast<uint32_t>(byte / 4)));
-  };
   Material m;
-  m.type = word(offsetof(KbMaterial, type));
-  m.flags = word(offsetof(KbMaterial, flags));
-  m.alpha_u = number(offsetof(KbMaterial, alpha_u));
-  m.alpha_v = number(offsetof(KbMaterial, alpha_v));
-  m.eta = number(offsetof(KbMaterial, eta));
-  m.specular_weight = number(offsetof(KbMaterial, specular_weight));
-  m.fdr_int = number(offsetof(KbMaterial, fdr_int));
-  m.bound_a = number(offsetof(KbMaterial, bound_a));
-  m.bound_b = number(offsetof(KbMaterial, bound_b));
-  m.table = word(offsetof(KbMaterial, table));
+  m.type = KB_GATHER_WORD(materials, KbMaterial, type, index);
+  m.flags = KB_GATHER_WORD(materials, KbMaterial, flags, index);
+  m.alpha_u = KB_GATHER_FLOAT(materials, KbMaterial, alpha_u, index);
+  m.alpha_v = KB_GATHER_FLOAT(materials, KbMaterial, alpha_v, index);
+  m.eta = KB_GATHER_FLOAT(materials, KbMaterial, eta, index);
+  m.specular_weight = KB_GATHER_FLOAT(materials, KbMaterial, specular_weight, index);
+  m.fdr_int = KB_GATHER_FLOAT(materials, KbMaterial, fdr_int, index);
+  m.bound_a = KB_GATHER_FLOAT(materials, KbMaterial, bound_a, index);
+  m.bound_b = KB_GATHER_FLOAT(materials, KbMaterial, bound_b, index);
+  m.table = KB_GATHER_WORD(materials, KbMaterial, table, index);
   m.compensation = compensation_offset(m.type, m.flags, m.table);
   m.channel_eta = F(0);
   m.tables = tables;

@@ -69,6 +69,11 @@ KB_INLINE bool all(M a) {
 KB_INLINE uint32_t count(M a) {
   return static_cast<uint32_t>(hn::CountTrue(kFloatLanes, a.v));
 }
+KB_INLINE uint32_t bits_of(M a) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kFloatLanes, a.v, bytes);
+  return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8;
+}
 KB_INLINE M first_lanes(uint32_t n) {
   return {hn::FirstN(kFloatLanes, n)};
 }
@@ -189,6 +194,34 @@ KB_INLINE U reversed_bits(U a) {
   return hn::BitCast(kWordLanes, hn::TableLookupBytes(reversed, hn::LoadDup128(bytes, kSwap)));
 }
 
+// Twice as wide as floats: two vectors.
+using DoubleLanes = hn::Repartition<double, FloatLanes>;
+using HalfLanes = hn::Half<FloatLanes>;
+inline constexpr DoubleLanes kDoubleLanes;
+inline constexpr HalfLanes kHalfLanes;
+struct D {
+  hn::Vec<DoubleLanes> low, high;
+};
+KB_INLINE D to_doubles(F a) {
+  return {hn::PromoteTo(kDoubleLanes, hn::LowerHalf(kHalfLanes, a.v)),
+          hn::PromoteTo(kDoubleLanes, hn::UpperHalf(kHalfLanes, a.v))};
+}
+KB_INLINE F to_floats(D a) {
+  return hn::Combine(kFloatLanes, hn::DemoteTo(kHalfLanes, a.high), hn::DemoteTo(kHalfLanes, a.low));
+}
+KB_INLINE D operator+(D a, D b) {
+  return {hn::Add(a.low, b.low), hn::Add(a.high, b.high)};
+}
+KB_INLINE D operator-(D a, D b) {
+  return {hn::Sub(a.low, b.low), hn::Sub(a.high, b.high)};
+}
+KB_INLINE D operator*(D a, D b) {
+  return {hn::Mul(a.low, b.low), hn::Mul(a.high, b.high)};
+}
+KB_INLINE D sqrt(D a) {
+  return {hn::Sqrt(a.low), hn::Sqrt(a.high)};
+}
+
 KB_INLINE F as_floats(U a) {
   return hn::BitCast(kFloatLanes, a.v);
 }
@@ -251,9 +284,7 @@ struct ChosenLanes {
 };
 inline constexpr ChosenLanes kChosenLanes;
 KB_INLINE auto chosen_indices(M m) {
-  uint8_t bits[8] = {};
-  hn::StoreMaskBits(kFloatLanes, m.v, bits);
-  return hn::IndicesFromVec(kFloatLanes, hn::Load(kWordLanes, kChosenLanes.lane[bits[0]]));
+  return hn::IndicesFromVec(kFloatLanes, hn::Load(kWordLanes, kChosenLanes.lane[bits_of(m)]));
 }
 KB_INLINE void store_chosen(F a, M m, float* p) {
   hn::StoreU(hn::TableLookupLanes(a.v, chosen_indices(m)), kFloatLanes, p);

@@ -16,6 +16,7 @@
 #error "one_lane.hpp and highway_lanes-inl.hpp do not go together"
 #endif
 #define KB_LANES one_lane
+#define KB_ONE_LANE 1
 #define KB_BEFORE_LANES static_assert(true, "")
 #define KB_AFTER_LANES static_assert(true, "")
 #define KB_INLINE inline __attribute__((always_inline))
@@ -55,6 +56,10 @@ KB_INLINE bool all(M a) {
   return a.v;
 }
 KB_INLINE uint32_t count(M a) {
+  return a.v ? 1 : 0;
+}
+/// Bit i is set where lane i is.
+KB_INLINE uint32_t bits_of(M a) {
   return a.v ? 1 : 0;
 }
 /// The first n lanes.
@@ -171,6 +176,30 @@ KB_INLINE U reversed_bits(U a) {
   x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
   x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
   return __builtin_bswap32(x);
+}
+
+/// A double in each lane.
+struct D {
+  double v;
+};
+KB_INLINE D to_doubles(F a) {
+  return {a.v};
+}
+/// Rounded to the nearest.
+KB_INLINE F to_floats(D a) {
+  return static_cast<float>(a.v);
+}
+KB_INLINE D operator+(D a, D b) {
+  return {a.v + b.v};
+}
+KB_INLINE D operator-(D a, D b) {
+  return {a.v - b.v};
+}
+KB_INLINE D operator*(D a, D b) {
+  return {a.v * b.v};
+}
+KB_INLINE D sqrt(D a) {
+  return {std::sqrt(a.v)};
 }
 
 KB_INLINE F as_floats(U a) {

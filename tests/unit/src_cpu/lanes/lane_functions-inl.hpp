@@ -7,6 +7,7 @@
 #endif
 
 #include "lane_functions.hpp"
+#include "src_cpu/lanes/lane_access-inl.hpp"
 #include "src_cpu/lanes/lane_math-inl.hpp"
 #include "src_cpu/lanes/lane_sampler-inl.hpp"
 #include "src_cpu/lanes/vector3-inl.hpp"
@@ -110,6 +111,27 @@ KB_ARRAY_FUNCTION(normalize, {
   put(2, n.z);
 })
 
+KB_ARRAY_FUNCTION(doubles, {
+  const D x = to_doubles(a(0));
+  const D y = to_doubles(a(1));
+  put(0, to_floats(x * y - y * y));
+  put(1, to_floats(sqrt(x * x + y * y)));
+})
+
+/// Members of records at places of in[0]'s bits; every third lane is replaced by its number.
+inline void records_of_arrays(Inputs in, Outputs out, std::size_t count) {
+  const auto* records = reinterpret_cast<const KbFloat2*>(in[1]);
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const U place = as_words(load(in[0] + i)) & U(static_cast<uint32_t>(count / 2 - 1));
+    FloatArray value(KB_GATHER_FLOAT(records, KbFloat2, y, place));
+    const U third = lane_numbers() + U(static_cast<uint32_t>(i));
+    const M chosen = to_floats(third) * F(1.0f / 3) == floor(to_floats(third) * F(1.0f / 3));
+    each_lane(chosen, [&](uint32_t lane) KB_LAMBDA { value[lane] = static_cast<float>(i + lane); });
+    store(value, out[0] + i);
+    store(as_floats(KB_GATHER_WORD(records, KbFloat2, x, place)), out[1] + i);
+  }
+}
+
 /// Chosen lanes one after another; what is left of out[0] is 0.
 inline void choose_of_arrays(Inputs in, Outputs out, std::size_t count) {
   std::vector<float> chosen(count + kLanes);
@@ -154,7 +176,9 @@ inline std::vector<test::NamedFunction> named_functions() {
           {"uniform_triangle", 2, 2, uniform_triangle_of_arrays},
           {"normalize", 2, 3, normalize_of_arrays},
           {"choose", 2, 2, choose_of_arrays},
-          {"move", 2, 3, move_of_arrays}};
+          {"move", 2, 3, move_of_arrays},
+          {"doubles", 2, 2, doubles_of_arrays},
+          {"records", 2, 2, records_of_arrays}};
 }
 
 }  // namespace kiloband::cpu::KB_LANES

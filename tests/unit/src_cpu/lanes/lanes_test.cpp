@@ -84,13 +84,13 @@ Arrays inputs_of(const std::string& name) {
         if (!(std::fabs(value) < 1e9f)) value = 3.25f;  // floor() is for such
     return in;
   }
-  if (name == "words" || name == "philox" || name == "sobol" || name == "move")
+  if (name == "words" || name == "philox" || name == "sobol" || name == "move" || name == "records")
     return {random_bits(3), random_bits(4)};
   if (name == "exp") return {with_special(random_between(5, -100, 89), 0)};
   if (name == "erf_inverse") return {random_between(6, -1, 1)};
   if (name == "erf") return {random_between(7, 0, 5)};
   if (name == "log") return {random_between(8, 1e-30, 50)};
-  if (name == "arc_tangent" || name == "normalize")
+  if (name == "arc_tangent" || name == "normalize" || name == "doubles")
     return {random_between(9, -2, 2), random_between(10, -2, 2)};
   return {random_units(11), random_units(12)};
 }
@@ -255,6 +255,15 @@ TEST(Lanes, ChosenOnesStandTogether) {
   expected.resize(kCount);
   EXPECT_EQ(chosen[0], expected);
   EXPECT_EQ(chosen[1], expected) << "the places where they stood";
+}
+
+TEST(Lanes, DoublesKeepWhatFloatsLose) {
+  const std::vector<float> x = random_between(37, -2, 2), y = random_between(38, -2, 2);
+  const Arrays result = apply_one_lane("doubles", {x, y});
+  for (std::size_t i = 0; i < kCount; ++i) {
+    ASSERT_EQ(result[0][i], static_cast<float>(double{x[i]} * y[i] - double{y[i]} * y[i])) << i;
+    ASSERT_EQ(result[1][i], static_cast<float>(std::sqrt(double{x[i]} * x[i] + double{y[i]} * y[i]))) << i;
+  }
 }
 
 }  // namespace
