@@ -6,7 +6,7 @@
 
 #include "render/backend_registry.hpp"
 #include "scene/description/derived_channels.hpp"
-#include "src_cpu/evaluate/isa.hpp"
+#include "src_cpu/lanes/isa.hpp"
 
 namespace kiloband::cpu {
 

@@ -8,7 +8,7 @@
 
 #include "scene/compile/flat_scene.hpp"
 #include "scene/description/derived_channels.hpp"
-#include "src_cpu/evaluate/isa.hpp"
+#include "src_cpu/lanes/isa.hpp"
 #include "src_cpu/path/path_buffer.hpp"
 
 namespace kiloband::cpu {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "shared/records.h"
-#include "src_cpu/evaluate/isa.hpp"
+#include "src_cpu/lanes/isa.hpp"
 
 namespace kiloband::cpu {
 

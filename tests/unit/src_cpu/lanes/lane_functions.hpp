@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src_cpu/evaluate/isa.hpp"
+#include "src_cpu/lanes/isa.hpp"
 
 namespace kiloband::test {
 

@@ -1,4 +1,4 @@
-#include "src_cpu/evaluate/isa.hpp"
+#include "src_cpu/lanes/isa.hpp"
 
 #include <hwy/targets.h>
 
