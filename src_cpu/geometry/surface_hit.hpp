@@ -1,4 +1,5 @@
-// From a ray hit to the point, its normals, texture coordinates and shading frame.
+// From a ray hit to the point, its normals, texture coordinates and shading frame, for one path: see
+// surface_hit-inl.hpp.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,7 +13,7 @@ struct SurfaceHit {
   glm::vec3 geometric_normal{0};  // unit; meshes: of the triangle's winding
   glm::vec3 shading_normal{0};    // unit; meshes: of the vertex normals, where there are any
   glm::vec3 tangent{0};           // dp/du, not normalised; zero if unknown
-  float offset = 0;               // m: how far off the surface rays begin (ray_offset.hpp)
+  float offset = 0;               // m: how far off the surface rays begin (ray_offset-inl.hpp)
   glm::vec3 departure{0};         // the point off the edges: what rays begin off
   glm::vec2 uv{0};
   uint32_t shape = KB_NONE;
@@ -32,15 +33,6 @@ SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape, uint32_t pri
 inline bool on_front(glm::vec3 shading_normal, glm::vec3 away) {
   return glm::dot(shading_normal, away) > 0;
 }
-
-/// SurfaceHit::geometric_normal of a triangle with these edges from its first corner.
-glm::vec3 triangle_normal(const KbShape& shape, glm::vec3 e1, glm::vec3 e2);
-
-/// SurfaceHit::shading_normal at a point of a triangle.
-/// index        its three vertices
-/// barycentric  weights of the second and third
-glm::vec3 triangle_shading_normal(const FlatScene& scene, const KbShape& shape, const uint32_t* index,
-                                  glm::vec2 barycentric, glm::vec3 geometric_normal);
 
 /// Orthonormal frame with z = shading normal; x along the tangent where there is one (anisotropic roughness).
 struct ShadingFrame {

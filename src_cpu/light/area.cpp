@@ -7,90 +7,50 @@
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "src_cpu/geometry/shape_geometry_warp.hpp"
+#include "src_cpu/lanes/one_lane_glm.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/light/area-inl.hpp"
 
 namespace kiloband::cpu {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586476925;
 
-/// Area to solid angle: a point chosen with density 1 / area is seen with density distance^2 / (area cos).
-/// to_light  from the shaded point to the light, unnormalised, of length `distance`
-/// returns   0 behind the light, where there is no distance, and where the density exceeds the range of float
-float area_to_solid_angle(glm::vec3 to_light, float distance, glm::vec3 front_normal, float area) {
-  const float facing = -glm::dot(to_light, front_normal);  // distance * cos
-  if (!(facing > 0)) return 0;
-  const float density = distance * distance * (distance / (facing * area));
-  return std::isfinite(density) ? density : 0;
-}
-
-float area_to_solid_angle(glm::vec3 to_light, glm::vec3 front_normal, float area) {
-  return area_to_solid_angle(to_light, glm::length(to_light), front_normal, area);
-}
-
 bool lit_on_both_sides(const KbShape& shape) {
   return shape.flags & KB_SHAPE_LIT_BOTH_SIDES;
 }
 
-/// The geometric normal of the side that is seen; 0: it does not emit to there, or is edge-on. Vertex normals
-/// may let a triangle shine to the back of its winding: the density goes with the geometric
-/// cosine all the same.
-glm::vec3 lit_side(const KbShape& shape, glm::vec3 to_light, glm::vec3 geometric_normal,
-                   glm::vec3 shading_normal) {
-  if (!lit_on_both_sides(shape) && !on_front(shading_normal, -to_light)) return glm::vec3(0);
-  const float away = glm::dot(to_light, geometric_normal);
-  if (!(std::fabs(away) > KB_EDGE_ON * glm::length(to_light))) return glm::vec3(0);
-  return away > 0 ? -geometric_normal : geometric_normal;
+float area_to_solid_angle(glm::vec3 to_light, glm::vec3 front_normal, float area) {
+  return one_lane::area_to_solid_angle(to_lane(to_light), glm::length(to_light), to_lane(front_normal), area)
+      .v;
 }
 
 /// Completes a sample whose position and geometric normal are known.
-void finish_by_area(AreaLightSample& sample, const KbShape& shape, glm::vec3 point,
-                    glm::vec3 shading_normal) {
+void finish_by_area(AreaLightSample& sample, const KbShape& shape, glm::vec3 point) {
   const glm::vec3 to_light = sample.position - point;
-  const float distance = glm::length(to_light), area = shape.area;
-  sample.normal = lit_side(shape, to_light, sample.normal, shading_normal);
-  sample.pdf = area_to_solid_angle(to_light, distance, sample.normal, area);
+  const float distance = glm::length(to_light);
+  const one_lane::V3 normal = to_lane(sample.normal);
+  sample.normal = to_glm(one_lane::lit_side(shape.flags, to_lane(to_light), distance, normal, normal));
+  sample.pdf = area_to_solid_angle(to_light, sample.normal, shape.area);
   if (sample.pdf > 0) sample.direction = to_light * (1 / distance);
 }
 
-glm::vec3 vertex(const FlatScene& scene, uint32_t index) {
-  const KbFloat3& p = scene.positions[index];
-  return {p.x, p.y, p.z};
-}
-
-glm::vec2 triangle_uv(const FlatScene& scene, const KbShape& shape, const uint32_t* indices, glm::vec2 b) {
-  if (!(shape.flags & KB_SHAPE_HAS_UVS)) return b;  // Mitsuba: barycentric coordinates
-  const KbFloat2 &a0 = scene.uvs[indices[0]], &a1 = scene.uvs[indices[1]], &a2 = scene.uvs[indices[2]];
-  const float b0 = 1 - b.x - b.y;
-  return {b0 * a0.x + b.x * a1.x + b.y * a2.x, b0 * a0.y + b.x * a1.y + b.y * a2.y};
-}
-
-/// In double, as flattening has it: slivers lose no digits.
-float triangle_area(glm::vec3 p0, glm::vec3 p1, glm::vec3 p2) {
-  const glm::dvec3 origin(p0);
-  return static_cast<float>(0.5 * glm::length(glm::cross(glm::dvec3(p1) - origin, glm::dvec3(p2) - origin)));
-}
-
-/// Triangles are chosen with the steps that lattice_cdf() gave them, which is their part of the area only up
-/// to 2^-24. The density is 1 / area of the mesh, as for hits, whose triangle is unknown, so that MIS weights
-/// sum to 1; `factor` is that density over the real one, probability of the triangle / its area.
 AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::vec3 point, float u_triangle,
                             glm::vec2 u, bool need_uv) {
-  const float* const cdf = &scene.area_cdf[shape.first_cdf];
-  const uint32_t triangle = find_interval(cdf, shape.triangle_count, u_triangle);
-  const uint32_t* indices = &scene.triangles[3 * (static_cast<std::size_t>(shape.first_triangle) + triangle)];
-  const glm::vec3 p0 = vertex(scene, indices[0]), p1 = vertex(scene, indices[1]);
-  const glm::vec3 p2 = vertex(scene, indices[2]);
-  const glm::vec3 e1 = p1 - p0, e2 = p2 - p0;
-  const glm::vec2 b = warp_uniform_triangle(u);
+  const auto index = static_cast<uint32_t>(&shape - scene.shapes.data());
+  const one_lane::AreaSample one =
+      one_lane::sample_mesh(scene, index, to_lane(point), u_triangle, u.x, u.y, need_uv, {true});
   AreaLightSample sample;
-  sample.position = p0 + b.x * e1 + b.y * e2;
-  sample.normal = triangle_normal(shape, e1, e2);
-  sample.offset = surface_offset(largest_coordinates(p0, p1, p2), sample.normal);
-  finish_by_area(sample, shape, point, triangle_shading_normal(scene, shape, indices, b, sample.normal));
-  sample.triangle = triangle;
-  sample.barycentric = b;
-  sample.factor = triangle_area(p0, p1, p2) / shape.area / (cdf[triangle + 1] - cdf[triangle]);
-  if (need_uv && sample.pdf > 0) sample.uv = triangle_uv(scene, shape, indices, b);
+  sample.pdf = one.pdf.v;
+  sample.factor = one.factor.v;
+  sample.position = to_glm(one.position);
+  sample.normal = to_glm(one.normal);
+  sample.offset = one.offset.v;
+  sample.triangle = one.triangle.v;
+  sample.barycentric = to_glm(one.barycentric);
+  if (!(sample.pdf > 0)) return sample;
+  sample.direction = to_glm(one.direction);
+  if (need_uv) sample.uv = to_glm(one.uv);
   return sample;
 }
 
@@ -100,7 +60,7 @@ AreaLightSample sample_by_area(const KbShape& shape, glm::vec3 point, glm::vec2 
   sample.position = on_light.position;
   sample.normal = on_light.normal;
   sample.offset = surface_offset(largest_coordinates(shape), sample.normal);
-  finish_by_area(sample, shape, point, sample.normal);
+  finish_by_area(sample, shape, point);
   if (need_uv && sample.pdf > 0) sample.uv = analytic_uv(shape.type, on_light.local);
   return sample;
 }
@@ -180,7 +140,9 @@ AreaLightSample sample_sphere(const KbShape& shape, glm::vec3 point, glm::vec2 u
                         : sample_by_area(shape, point, u, need_uv);
 }
 
-float sphere_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point) {
+}  // namespace
+
+float sphere_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point) {
   const SphereView view(shape, origin);
   if (!sphere_front_visible(shape, view)) return 0;
   const glm::vec3 to_light = hit_point - origin;
@@ -190,8 +152,6 @@ float sphere_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point
   // The far side, seen through an opening of the near side, shows its back.
   return glm::dot(outward, way) <= 0 ? cone_density(view.one_minus_cos()) : 0;
 }
-
-}  // namespace
 
 AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,
                                   float u_triangle, glm::vec2 u, bool need_uv) {
@@ -204,11 +164,11 @@ AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, 
 }
 
 float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin) {
-  if (shape.type == KB_SHAPE_SPHERE) return sphere_density(shape, origin, hit.point);
+  if (shape.type == KB_SHAPE_SPHERE) return sphere_light_density(shape, origin, hit.point);
   if (shape.type == KB_SHAPE_MESH && shape.first_cdf == KB_NONE) return 0;
-  const glm::vec3 to_light = hit.point - origin;
-  return area_to_solid_angle(to_light, lit_side(shape, to_light, hit.geometric_normal, hit.shading_normal),
-                             shape.area);
+  return one_lane::area_density(shape.flags, shape.area, to_lane(hit.geometric_normal),
+                                to_lane(hit.shading_normal), to_lane(hit.point - origin))
+      .v;
 }
 
 }  // namespace kiloband::cpu

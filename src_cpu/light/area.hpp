@@ -29,7 +29,7 @@ struct AreaLightSample {
   glm::vec3 direction{0};  // unit, towards the light
   glm::vec3 position{0};   // on the light
   glm::vec3 normal{0};     // unit, geometric, of the side that is seen
-  float offset = 0;        // m, of rays that leave the light there (ray_offset.hpp)
+  float offset = 0;        // m, of rays that leave the light there (ray_offset-inl.hpp)
   glm::vec2 uv{0};         // filled in if asked for
   uint32_t triangle = 0;   // meshes: in the shape, and the point's barycentric coordinates
   glm::vec2 barycentric{0};
@@ -41,5 +41,8 @@ AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, 
 /// The same density for a given hit of the shape; 0 where sample_area_light() cannot give it.
 /// Arguments as area_light_pdf().
 float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin);
+
+/// Of spheres: for a point of the surface.
+float sphere_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point);
 
 }  // namespace kiloband::cpu

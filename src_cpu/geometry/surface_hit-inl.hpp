@@ -1,0 +1,192 @@
+// From a ray hit to the point, its normals, texture coordinates and shading frame.
+//
+// For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
+#if defined(KILOBAND_SURFACE_HIT_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_SURFACE_HIT_INL
+#undef KILOBAND_SURFACE_HIT_INL
+#else
+#define KILOBAND_SURFACE_HIT_INL
+#endif
+
+#include "scene/compile/flat_scene.hpp"
+#include "src_cpu/geometry/analytic_hit.hpp"
+#include "src_cpu/geometry/ray_offset-inl.hpp"
+#include "src_cpu/lanes/lane_access-inl.hpp"
+
+KB_BEFORE_LANES;
+namespace kiloband::cpu::KB_LANES {
+
+/// SurfaceHit (surface_hit.hpp) in lanes. Lanes that were not asked for are undefined.
+struct Hit {
+  U shape, shape_flags;
+  V3 point;
+  V3 geometric_normal, shading_normal;
+  V3 tangent;
+  F offset;
+  V3 departure;
+  V2 uv;
+};
+
+KB_INLINE M winding_is_turned(U shape_flags) {
+  return has_bits((shape_flags ^ shift_right<5>(shape_flags)) & U(1u), 1u);
+}
+static_assert(KB_SHAPE_FLIP_NORMALS == 1u && KB_SHAPE_MIRRORED == 32u);
+
+KB_INLINE Triangle gather_triangle(const FlatScene& scene, const U (&index)[3]) {
+  Triangle t;
+  t.p0 = gather_vector(scene.positions.data(), index[0]);
+  t.p1 = gather_vector(scene.positions.data(), index[1]);
+  t.p2 = gather_vector(scene.positions.data(), index[2]);
+  t.e1 = t.p1 - t.p0;
+  t.e2 = t.p2 - t.p0;
+  t.area_normal = cross(t.e1, t.e2);
+  return t;
+}
+
+/// Hit::geometric_normal of a triangle.
+KB_INLINE V3 triangle_normal(const Triangle& t, U shape_flags, M active) {
+  const F turn = select(winding_is_turned(shape_flags), F(-1), F(1));
+  const F length2 = dot(t.area_normal, t.area_normal);
+  const M tiny = active & !(length2 > F(1e-30f));
+  V3 normal = t.area_normal * (turn / sqrt(length2));
+  if (any(tiny)) {
+    // Tiny triangles: the squared length may underflow where the cross product does not.
+    V3Array result(normal), e1(t.e1), e2(t.e2);
+    const FloatArray turns(turn);
+    each_lane(tiny, [&](uint32_t i) KB_LAMBDA {
+      const glm::vec3 n = tiny_normal({e1.x[i], e1.y[i], e1.z[i]}, {e2.x[i], e2.y[i], e2.z[i]}) * turns[i];
+      result.x[i] = n.x, result.y[i] = n.y, result.z[i] = n.z;
+    });
+    normal = result;
+  }
+  return normal;
+}
+
+/// Hit::shading_normal at a point of a triangle: weights of its corners; lanes without vertex normals get the
+/// geometric one.
+KB_INLINE V3 triangle_shading_normal(const FlatScene& scene, U shape_flags, const U (&index)[3], V3 weights,
+                                     V3 geometric_normal, M active) {
+  const M has_normals = active & has_bits(shape_flags, KB_SHAPE_HAS_NORMALS);
+  if (!any(has_normals)) return geometric_normal;
+  const auto normal = [&](int k) KB_LAMBDA {
+    return gather_vector(scene.normals.data(), select(has_normals, index[k], U(0u)));
+  };
+  const V3 n = normal(0) * weights.x + normal(1) * weights.y + normal(2) * weights.z;
+  const F n2 = dot(n, n);
+  const F turn = select(has_bits(shape_flags, KB_SHAPE_FLIP_NORMALS), F(-1), F(1));
+  return select(has_normals & (n2 > F(0)), n * (turn / sqrt(n2)), geometric_normal);
+}
+
+/// dp/du of triangles with texture coordinates, zero where they are degenerate; and the texture coordinates.
+KB_INLINE void triangle_uv(const FlatScene& scene, const Triangle& t, const U (&index)[3], V3 weights,
+                           M has_uvs, V2& uv, V3& tangent) {
+  const auto corner = [&](int k) KB_LAMBDA {
+    return gather_pair(scene.uvs.data(), select(has_uvs, index[k], U(0u)));
+  };
+  const V2 uv0 = corner(0), uv1 = corner(1), uv2 = corner(2);
+  uv.x = select(has_uvs, weights.x * uv0.x + weights.y * uv1.x + weights.z * uv2.x, uv.x);
+  uv.y = select(has_uvs, weights.x * uv0.y + weights.y * uv1.y + weights.z * uv2.y, uv.y);
+  const F du1 = uv1.x - uv0.x, dv1 = uv1.y - uv0.y, du2 = uv2.x - uv0.x, dv2 = uv2.y - uv0.y;
+  const F determinant = du1 * dv2 - dv1 * du2;
+  tangent = select(has_uvs & (determinant != F(0)), (t.e1 * dv2 - t.e2 * dv1) / determinant, tangent);
+}
+
+/// The vertices of triangle `primitive` of a shape.
+KB_INLINE void gather_indices(const FlatScene& scene, U shape, U primitive, M active, U (&index)[3]) {
+  const U triangle = KB_GATHER_WORD(scene.shapes.data(), KbShape, first_triangle, shape) + primitive;
+  const U first = select(active, triangle * U(3u), U(0u));
+  for (uint32_t k = 0; k < 3; ++k) index[k] = gather(scene.triangles.data() + k, first);
+}
+
+KB_INLINE void make_mesh_hit(const FlatScene& scene, U primitive, F u, F v, M active, Hit& hit) {
+  U index[3];
+  gather_indices(scene, hit.shape, primitive, active, index);
+  const Triangle t = gather_triangle(scene, index);
+  const V3 weights{F(1) - u - v, u, v};
+  hit.point = t.p0 * weights.x + t.p1 * weights.y + t.p2 * weights.z;
+  hit.geometric_normal = triangle_normal(t, hit.shape_flags, active);
+  hit.offset = surface_offset(largest_coordinates(t), hit.geometric_normal);
+  hit.departure = off_the_edges(t, hit.point, weights, hit.offset, active);
+  hit.shading_normal =
+      triangle_shading_normal(scene, hit.shape_flags, index, weights, hit.geometric_normal, active);
+  hit.uv = {u, v};
+  hit.tangent = {F(0), F(0), F(0)};
+  const M has_uvs = active & has_bits(hit.shape_flags, KB_SHAPE_HAS_UVS);
+  if (any(has_uvs)) triangle_uv(scene, t, index, weights, has_uvs, hit.uv, hit.tangent);
+}
+
+/// Spheres, disks and cylinders are few, and their geometry is in double: one lane after another.
+inline void make_analytic_hits(const FlatScene& scene, V3 origin, V3 direction, F distance, M active,
+                               Hit& hit) {
+  V3Array point(hit.point), normal(hit.geometric_normal), shading(hit.shading_normal), tangent(hit.tangent);
+  V3Array departure(hit.departure);
+  FloatArray offset(hit.offset), u(hit.uv.x), v(hit.uv.y);
+  const V3Array from(origin), along(direction);
+  const FloatArray t(distance);
+  const WordArray shape(hit.shape);
+  const auto put = [](V3Array& to, uint32_t i, glm::vec3 value)
+                       KB_LAMBDA { to.x[i] = value.x, to.y[i] = value.y, to.z[i] = value.z; };
+  each_lane(active, [&](uint32_t i) KB_LAMBDA {
+    const AnalyticHit one = analytic_hit(scene.shapes[shape[i]], {from.x[i], from.y[i], from.z[i]},
+                                         {along.x[i], along.y[i], along.z[i]}, t[i]);
+    put(point, i, one.surface.position);
+    put(normal, i, one.surface.normal);
+    put(shading, i, one.surface.normal);
+    put(tangent, i, one.surface.tangent);
+    put(departure, i, one.departure);
+    offset[i] = one.offset;
+    u[i] = one.surface.uv.x, v[i] = one.surface.uv.y;
+  });
+  hit = {hit.shape, hit.shape_flags, point, normal, shading, tangent, offset, departure, {u, v}};
+}
+
+/// The surfaces that rays have hit. Meshes: by their barycentric coordinates; analytic shapes: from
+/// origin + distance * direction.
+KB_INLINE Hit make_hit(const FlatScene& scene, U shape, U primitive, F u, F v, V3 origin, V3 direction,
+                       F distance, M active) {
+  Hit hit;
+  hit.shape = select(active, shape, U(0u));
+  hit.shape_flags = KB_GATHER_WORD(scene.shapes.data(), KbShape, flags, hit.shape);
+  if (kLanes > 1 && !scene.features.analytic_shapes) {  // one lane asks for its shape alone
+    make_mesh_hit(scene, primitive, u, v, active, hit);
+    return hit;
+  }
+  const M mesh = active & (KB_GATHER_WORD(scene.shapes.data(), KbShape, type, hit.shape) == U(KB_SHAPE_MESH));
+  hit.point = hit.geometric_normal = hit.shading_normal = hit.tangent = hit.departure = {F(0), F(0), F(0)};
+  hit.offset = hit.uv.x = hit.uv.y = F(0);
+  if (any(mesh)) make_mesh_hit(scene, primitive, u, v, mesh, hit);
+  if (any(active & !mesh)) make_analytic_hits(scene, origin, direction, distance, active & !mesh, hit);
+  return hit;
+}
+
+/// Orthonormal frame with z = shading normal; x along the tangent where there is one (anisotropic roughness).
+struct Frame {
+  V3 x, y, z;
+
+  KB_INLINE V3 to_local(V3 w) const { return {dot(w, x), dot(w, y), dot(w, z)}; }
+  KB_INLINE V3 to_world(V3 w) const { return x * w.x + y * w.y + z * w.z; }
+};
+
+/// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+KB_INLINE Frame make_frame(V3 normal) {
+  const F sign = copysign(F(1), normal.z);
+  const F a = F(-1) / (sign + normal.z), b = normal.x * normal.y * a;
+  return {{F(1) + sign * normal.x * normal.x * a, sign * b, -sign * normal.x},
+          {b, sign + normal.y * normal.y * a, -normal.y},
+          normal};
+}
+
+KB_INLINE Frame make_frame(V3 normal, V3 tangent) {
+  const V3 along = tangent - normal * dot(normal, tangent);
+  const F length2 = dot(along, along);
+  // Of a tangent along the normal only rounding is left: no direction to go by.
+  const M tangential = length2 > F(1e-6f) * dot(tangent, tangent);
+  const Frame any_frame = make_frame(normal);
+  const V3 x = along / sqrt(length2);
+  return {select(tangential, x, any_frame.x), select(tangential, cross(normal, x), any_frame.y), normal};
+}
+
+}  // namespace kiloband::cpu::KB_LANES
+KB_AFTER_LANES;
+
+#endif

@@ -1,0 +1,129 @@
+// Area lights on meshes: sampling, and its density, which disks and cylinders share. Without the probability of
+// selecting the light.
+//
+// For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
+#if defined(KILOBAND_AREA_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_AREA_LIGHT_INL
+#undef KILOBAND_AREA_LIGHT_INL
+#else
+#define KILOBAND_AREA_LIGHT_INL
+#endif
+
+#include <limits>
+
+#include "shared/estimator.h"
+#include "src_cpu/geometry/surface_hit-inl.hpp"
+#include "src_cpu/lanes/lane_sampler-inl.hpp"
+
+KB_BEFORE_LANES;
+namespace kiloband::cpu::KB_LANES {
+
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Largest i in [0, count) with cdf[first + i] <= u; intervals of zero width are never chosen. A distribution has
+/// count + 1 entries, 0 to 1.
+KB_INLINE U find_interval(const float* cdf, U first, U count, F u) {
+  U begin = first, length = count;
+  while (any(length != (length & U(1u)))) {  // until all are 1, or 0
+    const U half = shift_right<1>(length);
+    begin = select(gather(cdf, begin + half) <= u, begin + half, begin);
+    length = length - half;
+  }
+  return begin - first;
+}
+
+/// Which side of a surface is seen from `away` (a direction away from it): the rule for what area lights
+/// emit, what thermal emission and BSDFs are, for hits and light samples alike. Vertex normals decide, not
+/// the winding (Mitsuba 3). The media of a surface's sides follow the geometric normal instead: a ray that
+/// crosses the surface must find the other medium behind it.
+KB_INLINE M on_front(V3 shading_normal, V3 away) {
+  return dot(shading_normal, away) > F(0);
+}
+
+/// The geometric normal of the side that is seen; 0: it does not emit to there, or is edge-on. Vertex normals
+/// may let a triangle shine to the back of its winding: the density goes with the geometric cosine all the same.
+KB_INLINE V3 lit_side(U shape_flags, V3 to_light, F distance, V3 geometric_normal, V3 shading_normal) {
+  const M faces = has_bits(shape_flags, KB_SHAPE_LIT_BOTH_SIDES) | on_front(shading_normal, -to_light);
+  const F away = dot(to_light, geometric_normal);
+  const M seen = faces & (abs(away) > F(KB_EDGE_ON) * distance);
+  const F sign = select(seen, select(away > F(0), F(-1), F(1)), F(0));
+  return geometric_normal * sign;
+}
+
+/// Area to solid angle: a point chosen with density 1 / area is seen with density distance^2 / (area cos).
+/// to_light  from the shaded point to the light, unnormalised, of length `distance`
+/// returns   0 behind the light, where there is no distance, and where the density exceeds the range of float
+KB_INLINE F area_to_solid_angle(V3 to_light, F distance, V3 front_normal, F area) {
+  const F facing = -dot(to_light, front_normal);  // distance * cos
+  const F density = distance * distance * (distance / (facing * area));
+  return select((facing > F(0)) & (density < F(kInfinity)), density, F(0));
+}
+
+/// In double, as flattening has it: slivers lose no digits.
+KB_INLINE F triangle_area(const Triangle& t) {
+  const auto edge = [](F to, F from) KB_LAMBDA { return to_doubles(to) - to_doubles(from); };
+  const D ax = edge(t.p1.x, t.p0.x), ay = edge(t.p1.y, t.p0.y), az = edge(t.p1.z, t.p0.z);
+  const D bx = edge(t.p2.x, t.p0.x), by = edge(t.p2.y, t.p0.y), bz = edge(t.p2.z, t.p0.z);
+  const D x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+  return F(0.5f) * to_floats(sqrt(x * x + y * y + z * z));
+}
+
+/// A point on an area light as seen from a shaded point: AreaLightSample (area.hpp) in lanes.
+struct AreaSample {
+  F pdf, factor;
+  V3 direction, position, normal;
+  F offset;
+  V2 uv;
+  U triangle;
+  V2 barycentric;
+};
+
+/// Triangles are chosen with the steps that lattice_cdf() gave them, which is their part of the area only up
+/// to 2^-24. The density is 1 / area of the mesh, as for hits, whose triangle is unknown, so that MIS weights
+/// sum to 1; `factor` is that density over the real one, probability of the triangle / its area.
+/// shape  an emitting mesh in active lanes
+KB_INLINE AreaSample sample_mesh(const FlatScene& scene, U shape, V3 point, F u_triangle, F u, F v,
+                                 bool need_uv, M active) {
+  const KbShape* shapes = scene.shapes.data();
+  const float* cdf = scene.area_cdf.data();
+  const U first = select(active, KB_GATHER_WORD(shapes, KbShape, first_cdf, shape), U(0u));
+  const U count = select(active, KB_GATHER_WORD(shapes, KbShape, triangle_count, shape), U(1u));
+  const U flags = KB_GATHER_WORD(shapes, KbShape, flags, shape);
+  const F area = KB_GATHER_FLOAT(shapes, KbShape, area, shape);
+  AreaSample sample;
+  sample.triangle = find_interval(cdf, first, count, u_triangle);
+  U index[3];
+  gather_indices(scene, shape, sample.triangle, active, index);
+  const Triangle t = gather_triangle(scene, index);
+  sample.barycentric = uniform_triangle(u, v);
+  const V3 weights{F(1) - sample.barycentric.x - sample.barycentric.y, sample.barycentric.x,
+                   sample.barycentric.y};
+  sample.position = t.p0 + t.e1 * sample.barycentric.x + t.e2 * sample.barycentric.y;
+  const V3 normal = triangle_normal(t, flags, active);
+  sample.offset = surface_offset(largest_coordinates(t), normal);
+  const V3 shading_normal = triangle_shading_normal(scene, flags, index, weights, normal, active);
+  const V3 to_light = sample.position - point;
+  const F distance = length(to_light);
+  sample.normal = lit_side(flags, to_light, distance, normal, shading_normal);
+  sample.pdf = select(active, area_to_solid_angle(to_light, distance, sample.normal, area), F(0));
+  sample.direction = to_light * (F(1) / distance);
+  const U at = first + sample.triangle;
+  sample.factor = triangle_area(t) / area / (gather(cdf, at + U(1u)) - gather(cdf, at));
+  sample.uv = sample.barycentric;  // Mitsuba: barycentric coordinates
+  const M has_uvs = active & has_bits(flags, KB_SHAPE_HAS_UVS);
+  V3 tangent = normal;
+  if (need_uv && any(has_uvs)) triangle_uv(scene, t, index, weights, has_uvs, sample.uv, tangent);
+  return sample;
+}
+
+/// The density of a hit of a mesh, disk or cylinder whose points are sampled by area.
+KB_INLINE F area_density(U shape_flags, F area, V3 geometric_normal, V3 shading_normal, V3 to_light) {
+  const F distance = length(to_light);
+  return area_to_solid_angle(
+      to_light, distance, lit_side(shape_flags, to_light, distance, geometric_normal, shading_normal), area);
+}
+
+}  // namespace kiloband::cpu::KB_LANES
+KB_AFTER_LANES;
+
+#endif
