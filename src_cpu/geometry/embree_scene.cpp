@@ -9,13 +9,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 
 #include "base/error.hpp"
 #include "scene/compile/shape_bounds.hpp"
+#include "src_cpu/geometry/ray_order.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 
 namespace kiloband::cpu {
@@ -121,6 +125,7 @@ struct EmbreeScene::Impl {
   const FlatScene* flat = nullptr;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  RayBox box{};  // of the scene
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -181,6 +186,10 @@ EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int thr
     shape.type == KB_SHAPE_MESH ? impl_->add_mesh(shape, id) : impl_->add_analytic(shape, id);
   }
   rtcCommitScene(impl_->scene);
+  RTCBounds bounds;
+  rtcGetSceneBounds(impl_->scene, &bounds);
+  impl_->box = {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
+                {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
   if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
     throw DeviceError("Embree: building the scene failed");
 }
@@ -254,6 +263,135 @@ void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
 void EmbreeScene::occlusions(std::span<ShadowRay> rays) const {
   Query query(kIncoherent);
   for (ShadowRay& ray : rays) occluded1(impl_->scene, query, reinterpret_cast<RTCRay&>(ray));
+}
+
+// ---- the rays of a wave ------------------------------------------------------------------------------
+
+namespace {
+
+/// Below this many triangles sorted coherent packets are faster (measured: +35 % with 38 triangles, +12 to 18 % with
+/// 1,000 to 4,500, -15 to -19 % with 70,000 to 100,000).
+constexpr std::size_t kMostTrianglesSorted = 10000;
+
+template <int N>
+using RayPacket = std::conditional_t<N == 16, RTCRay16, RTCRay8>;
+template <int N>
+using HitPacket = std::conditional_t<N == 16, RTCRayHit16, RTCRayHit8>;
+
+void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {
+  intersect16(valid, scene, query, rays);
+}
+void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit8& rays) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect8(valid, scene, &rays, &query.intersect);
+#else
+  rtcIntersect8(valid, scene, &query.context, &rays);
+#endif
+}
+
+void occluded16(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded16(valid, scene, &rays, &query.occlude);
+#else
+  rtcOccluded16(valid, scene, &query.context, &rays);
+#endif
+}
+
+/// Lanes first .. first + N of a queue, or those that `order` names. Those past the end are not valid, and copies of the
+/// last one: Embree may look at them (with SSE4.2 it splits packets of 16, and asserts that all of them are finite).
+template <int N>
+struct Lanes {
+  uint32_t first, count;
+  bool contiguous;  // a whole packet as it stands
+  uint32_t at[N];
+
+  Lanes(const uint32_t* order, uint32_t begin, uint32_t end)
+      : first(begin), count(std::min<uint32_t>(N, end - begin)), contiguous(!order && count == N) {
+    for (uint32_t i = 0; i < N; ++i) at[i] = begin + std::min(i, count - 1);
+    if (!order) return;
+    for (uint32_t& lane : at) lane = order[lane];
+  }
+};
+
+template <int N, class Queue>
+void load_rays(const Queue& rays, const Lanes<N>& lanes, RayPacket<N>& packet, int (&valid)[N]) {
+  const auto copy = [&](const float* from, float(&to)[N]) {
+    if (lanes.contiguous) {
+      std::memcpy(to, from + lanes.first, sizeof to);
+    } else {
+      for (uint32_t i = 0; i < N; ++i) to[i] = from[lanes.at[i]];
+    }
+  };
+  copy(rays.ox, packet.org_x);
+  copy(rays.oy, packet.org_y);
+  copy(rays.oz, packet.org_z);
+  copy(rays.dx, packet.dir_x);
+  copy(rays.dy, packet.dir_y);
+  copy(rays.dz, packet.dir_z);
+  copy(rays.t_max, packet.tfar);
+  for (uint32_t i = 0; i < N; ++i) {
+    valid[i] = i < lanes.count ? -1 : 0;
+    packet.tnear[i] = packet.time[i] = 0;
+    packet.mask[i] = ~0u;
+    packet.id[i] = packet.flags[i] = 0;
+  }
+}
+
+template <int N>
+void trace_packets(RTCScene scene, Query query, const uint32_t* order, RayQueue& rays) {
+  alignas(64) HitPacket<N> packet;
+  alignas(64) int valid[N];
+  for (uint32_t first = 0; first < rays.count; first += N) {
+    const Lanes<N> lanes(order, first, rays.count);
+    load_rays(rays, lanes, packet.ray, valid);
+    for (uint32_t i = 0; i < N; ++i) {
+      packet.ray.tnear[i] = rays.t_min[lanes.at[i]];
+      packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    intersect(valid, scene, query, packet);
+    for (uint32_t i = 0; i < lanes.count; ++i) {
+      const uint32_t at = lanes.at[i];
+      rays.t_max[at] = packet.ray.tfar[i];
+      rays.u[at] = packet.hit.u[i];
+      rays.v[at] = packet.hit.v[i];
+      rays.primitive[at] = packet.hit.primID[i];
+      rays.shape[at] = packet.hit.geomID[i];
+    }
+  }
+}
+
+}  // namespace
+
+RayOrder EmbreeScene::secondary_order() const {
+  return impl_->flat->triangles.size() / 3 < kMostTrianglesSorted ? RayOrder::kSorted : RayOrder::kMixed;
+}
+
+void EmbreeScene::closest_hits(RayQueue& rays, RayOrder order) const {
+  std::array<uint32_t, kQueueCapacity> sorted;
+  switch (order) {
+    case RayOrder::kNeighbours:
+      return trace_packets<16>(impl_->scene, Query(kCoherent), nullptr, rays);
+    case RayOrder::kMixed:
+      return trace_packets<8>(impl_->scene, Query(kIncoherent), nullptr, rays);
+    case RayOrder::kSorted:
+      sort_rays(rays, impl_->box, sorted.data());
+      return trace_packets<16>(impl_->scene, Query(kCoherent), sorted.data(), rays);
+  }
+}
+
+void EmbreeScene::occlusions(ShadowQueue& rays, RayOrder order) const {
+  std::array<uint32_t, kQueueCapacity> sorted;
+  const bool coherent = order != RayOrder::kMixed;
+  if (order == RayOrder::kSorted) sort_rays(rays, impl_->box, sorted.data());
+  Query query(coherent ? kCoherent : kIncoherent);
+  alignas(64) RTCRay16 packet;
+  alignas(64) int valid[16];
+  for (uint32_t first = 0; first < rays.count; first += 16) {
+    const Lanes<16> lanes(order == RayOrder::kSorted ? sorted.data() : nullptr, first, rays.count);
+    load_rays(rays, lanes, packet, valid);
+    occluded16(valid, impl_->scene, query, packet);
+    for (uint32_t i = 0; i < lanes.count; ++i) rays.t_max[lanes.at[i]] = packet.tfar[i];
+  }
 }
 
 }  // namespace kiloband::cpu

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/compile/flat_scene.hpp"
+#include "src_cpu/geometry/ray_queue.hpp"
 
 namespace kiloband::cpu {
 
@@ -70,6 +71,12 @@ class EmbreeScene {
   /// for others, see validation/README.md).
   void closest_hits(std::span<TraceRay> rays, bool coherent) const;
   void occlusions(std::span<ShadowRay> rays) const;
+
+  /// The same for the rays of a wave.
+  void closest_hits(RayQueue& rays, RayOrder order) const;
+  void occlusions(ShadowQueue& rays, RayOrder order) const;
+  /// How secondary and shadow rays of this scene are best traced: by the number of its triangles, never by time.
+  RayOrder secondary_order() const;
 
  private:
   struct Impl;
