@@ -21,7 +21,7 @@ BlockWorker::BlockWorker(const TracerScene& scene, const DerivedChannels& derive
     : scene_(scene),
       settings_(settings),
       derived_count_(derived.names.size()),
-      tracer_(scene, settings),
+      tracer_(scene, settings, path_kernels(isa)),
       evaluator_(*scene.flat, derived, isa) {}
 
 SumRule BlockWorker::sum_rule() {
@@ -144,7 +144,7 @@ void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {
 }
 
 std::vector<TracedPath> BlockWorker::trace(const PixelRect& block, const SampleId& id) {
-  PathTracer::Recording recording;
+  Recording recording;
   tracer_.record_into(&recording);
   set_mu(block, id);
   tracer_.trace(block, id, mu_, paths_, invalid_);

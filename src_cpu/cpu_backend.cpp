@@ -60,8 +60,16 @@ class CpuBackend final : public Backend {
 
   std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
     const DenormalsToZero mode;
-    return workers_.front()->trace(
-        rect, {range.replicate + range.first * settings_.replicates, range.replicate, range.first});
+    const SampleId id{range.replicate + range.first * settings_.replicates, range.replicate, range.first};
+    std::vector<TracedPath> paths(rect.pixels());
+    for (const PixelRect& block : cut_into_blocks(rect)) {
+      std::vector<TracedPath> traced = workers_.front()->trace(block, id);
+      for (uint32_t i = 0; i < block.pixels(); ++i) {
+        const uint32_t x = block.x0 + i % block.width - rect.x0, y = block.y0 + i / block.width - rect.y0;
+        paths[std::size_t{y} * rect.width + x] = std::move(traced[i]);
+      }
+    }
+    return paths;
   }
 
   BackendInfo info() const override { return {"cpu", processor_name(), to_string(isa_)}; }

@@ -52,6 +52,17 @@ KB_INLINE void sample_rough_conductor(const Material& material, V3 wi, V2 u, M a
   put(sample, active & (value.pdf > F(0)), found);
 }
 
+/// kb_conductor_bound() of shared/material_tables.h: upper bounds of the reflectance over all channels.
+KB_INLINE F conductor_bound(const Material& material, F cosine, M active) {
+  const M bounded = active & (material.table != U(KB_NONE));
+  if (!any(bounded)) return F(1);
+  const F x = min(max(cosine, F(0)), F(1)) * F(KB_CONDUCTOR_CELLS);
+  const U cell = to_words(min(x, F(KB_CONDUCTOR_CELLS - 1)));
+  const U place = select(bounded, material.table + cell, U(0u));
+  const F bound = max(gather(material.tables, place), gather(material.tables, place + U(1u)));
+  return select(bounded, bound, F(1));
+}
+
 }  // namespace kiloband::cpu::KB_LANES
 KB_AFTER_LANES;
 

@@ -163,12 +163,16 @@ const KbSurface& blended_surface(const FlatScene& scene, const KbSurface& blend,
   return *surface;
 }
 
-float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum) {
-  if (!spectrum.textured) return scene.spectra[spectrum.row].bound;
-  const KbTexture& texture = scene.textures[spectrum.texture.texture];
-  const Corners c = corners_of(texture, texture.first_bound, spectrum.texture);
+float texel_bound(const FlatScene& scene, uint32_t index, uint32_t xy) {
+  const KbTexture& texture = scene.textures[index];
+  const Corners c = corners_of(texture, texture.first_bound, {index, xy, 0, 0});
   return std::max({scene.texel_bounds[c.at[0]], scene.texel_bounds[c.at[1]], scene.texel_bounds[c.at[2]],
                    scene.texel_bounds[c.at[3]]});
+}
+
+float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum) {
+  if (!spectrum.textured) return scene.spectra[spectrum.row].bound;
+  return texel_bound(scene, spectrum.texture.texture, spectrum.texture.xy);
 }
 
 }  // namespace kiloband::cpu

@@ -46,5 +46,7 @@ inline float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::v
 /// Upper bound of a resolved spectrum over guide bands and rendered channels
 /// (of a lookup: of its four texels).
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum);
+/// The same of a lookup's four texels. xy: KbTextureSample::xy
+float texel_bound(const FlatScene& scene, uint32_t texture, uint32_t xy);
 
 }  // namespace kiloband::cpu

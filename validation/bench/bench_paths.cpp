@@ -82,7 +82,7 @@ void generate(benchmark::State& state, const std::string& name, SamplerType samp
   SamplingSettings settings;
   settings.sampler = sampler;
   settings.replicates = 1;
-  PathTracer tracer(bench.tracer, settings);
+  PathTracer tracer(bench.tracer, settings, path_kernels(resolve_isa(Isa::kAuto)));
   PathBuffer paths;
   std::vector<uint32_t> invalid;
   const float mu[1] = {0.5f};
@@ -105,7 +105,7 @@ struct BareRays {
   std::vector<uint32_t> order;  // index << 1 | is_shadow
 };
 
-void append_in_path_order(const PathTracer::Recording& recording, BareRays& rays) {
+void append_in_path_order(const Recording& recording, BareRays& rays) {
   std::vector<std::pair<uint32_t, uint32_t>> keyed;  // (path, order code)
   const auto closest_base = static_cast<uint32_t>(rays.closest.size());
   const auto shadow_base = static_cast<uint32_t>(rays.shadow.size());
@@ -141,14 +141,14 @@ void bare(benchmark::State& state, const std::string& name) {
   SamplingSettings settings;
   settings.sampler = SamplerType::kIndependent;
   settings.replicates = 1;
-  PathTracer tracer(bench.tracer, settings);
+  PathTracer tracer(bench.tracer, settings, path_kernels(resolve_isa(Isa::kAuto)));
   PathBuffer paths;
   std::vector<uint32_t> invalid;
   const float mu[1] = {0.5f};
   BareRays rays;
   for (const PixelRect& block : bench.blocks) {
     for (uint32_t s = 0; s < kSamples; ++s) {
-      PathTracer::Recording recording;
+      Recording recording;
       tracer.record_into(&recording);
       tracer.trace(block, {s, 0, s}, mu, paths, invalid);
       append_in_path_order(recording, rays);

@@ -29,7 +29,7 @@ std::vector<double> reference_means(const RenderSpec& spec, const RenderResult& 
   const TracerScene tracer_scene{&scene, &embree};
   SamplingSettings settings = spec.sampling;
   settings.replicates = result.replicates;
-  PathTracer tracer(tracer_scene, settings);
+  PathTracer tracer(tracer_scene, settings, one_lane_path_kernels());
 
   std::vector<double> sums(result.mean.size());
   const bool shared = settings.wavelengths == WavelengthMode::kShared;

@@ -1,0 +1,229 @@
+// Boundaries whose index depends on wavelength: degradation to one channel, spectral MIS for all.
+#include <algorithm>
+#include <cmath>
+
+#include "shared/sampler.h"
+#include "src_cpu/path/rare_features.hpp"
+
+namespace kiloband::cpu::one_lane {
+namespace {
+
+/// The material that is seen, with the bounds of this very point.
+KbMaterial material_of(const Shading& s) {
+  KbMaterial material = s.scene().materials[s.side.v];
+  material.bound_a = s.material.bound_a.v;
+  material.bound_b = s.material.bound_b.v;
+  return material;
+}
+
+bool is_rough(const KbMaterial& material) {
+  return material.type == KB_MATERIAL_ROUGH_DIELECTRIC;
+}
+
+}  // namespace
+
+bool RareFeatures::shade_dispersive(Shading& s) {
+  return dispersion_ && dispersion_->shade(s, *this);
+}
+
+void DispersedPaths::start(std::span<const float> mu) {
+  mu_ = mu;
+  DispersedPath white;
+  white.carried.fill(1);
+  paths_.assign(kWavePaths, white);
+}
+
+bool DispersedPaths::shade(Shading& s, RareFeatures& rare) {
+  const KbMaterial material = material_of(s);
+  if (!(material.flags & KB_MATERIAL_DISPERSIVE)) return false;
+  PathState& path = s.wave.paths[s.path.v];
+  if (is_rough(material) && path.channel == KB_NONE) {
+    append(s.wave, s.path, s.vertex, s.vertex.has(KB_VERTEX_EMIT));
+    s.vertex.head = U(0u);
+    const HeroSet heroes = s.bounce.settings.rough_dispersion == RoughDispersion::kSpectralMis
+                               ? choose_heroes(s, material)
+                               : HeroSet{};
+    if (heroes.count > 0) {
+      const Boundary at{material, to_glm(s.wi)};
+      add_hero_light(s, at, heroes, rare);
+      const bool scattered = !s.passes.v && scatter_heroes(s, at, heroes);
+      if (s.passes.v) continue_paths(s, s.direction, F(path.bound), F(0), {true}, {true});
+      if (scattered || s.passes.v) rare.follow_ray(s);
+      return true;
+    }
+    degrade(s);
+  }
+  if (path.channel != KB_NONE) s.material.channel_eta = channel_eta(material, path.channel, mu_of(path));
+  return false;
+}
+
+/// Index of the interior over the exterior at the chosen channel's wavelength.
+float DispersedPaths::channel_eta(const KbMaterial& material, uint32_t channel, float mu) const {
+  const Channel& c = scene_.channels[channel];
+  const double lambda_nm = (1.0 - mu) * c.min_nm + mu * c.max_nm;
+  const double exterior =
+      material.ext_row == KB_NONE ? material.eta_ext : scene_.spectra[material.ext_row].table(lambda_nm);
+  return static_cast<float>(scene_.spectra[material.eta_row].table(lambda_nm) / exterior);
+}
+
+/// One channel is what the path stands for from here on. carried: what each still carries.
+/// Returns its probability.
+float DispersedPaths::survive(const Shading& s, const BinnedThroughput& carried) {
+  PathState& path = s.wave.paths[s.path.v];
+  const float u = kb_degrade_sample(path.key.seed, path.key.pixel, path.key.sample, s.bounce.number);
+  const ChannelChoice choice = choose_channel(carried, static_cast<uint32_t>(scene_.channels.size()), u);
+  path.channel = choice.channel;
+  return choice.probability;
+}
+
+void DispersedPaths::refract_one_channel(Shading& s, BsdfSample& sample) {
+  const PathState& path = s.wave.paths[s.path.v];
+  const KbMaterial material = material_of(s);
+  BinnedThroughput carried = paths_[s.path.v].carried;
+  if ((material.ref_b & KB_REF_KIND_MASK) == KB_REF_SPECTRUM) {
+    for (uint32_t b = 0; b < KB_CHANNEL_BINS; ++b)
+      carried[b] *= scene_.channel_bins[std::size_t{material.ref_b} * KB_CHANNEL_BINS + b];
+  }
+  const float probability = survive(s, carried);
+  const float eta = channel_eta(material, path.channel, mu_of(path));
+  const cpu::BsdfSample one =
+      cpu::transmit_dispersive(material, to_glm(s.wi), eta, sample.pdf.v * probability);
+  sample.wo = to_lane(one.wo);
+  sample.w0 = one.w0;
+  sample.pdf = one.pdf;
+  sample.eta = one.eta;
+  // Roulette follows the one channel that is left: its weight stands for all channels' chances, and is no
+  // gain as far as it is the mean one, K.
+  sample.bound = one.bound / static_cast<float>(scene_.channels.size());
+  sample.delta = {one.delta};
+  sample.lobe_b = {true};
+  sample.kind = U(one.kind);
+  sample.w1 = F(kb_as_f32(path.channel));
+  s.vertex.set({one.pdf > 0}, KB_VERTEX_DEGRADE);
+}
+
+/// A rough dispersive boundary: the channel is chosen on arrival, before light and BSDF samples.
+void DispersedPaths::degrade(Shading& s) {
+  PathState& path = s.wave.paths[s.path.v];
+  const float probability = survive(s, paths_[s.path.v].carried);
+  Vertex v = empty_vertex();
+  v.head = U(KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
+  v.a.row = U(scene_.unit_row);
+  v.scatter0 = 1 / probability;
+  v.scatter1 = kb_as_f32(path.channel);
+  path.bound /= probability * static_cast<float>(scene_.channels.size());
+  append(s.wave, s.path, v, {true});
+  carry(s.wave, s.path.v);
+}
+
+void DispersedPaths::carry(const Wave& wave, uint32_t path) {
+  const uint32_t entry = wave.paths[path].last_entry;
+  if (entry == KB_NONE || !(wave.entries[entry].vertex.head & KB_VERTEX_SCATTER)) return;
+  cpu::carry(paths_[path].carried, wave.entries[entry].vertex, scene_.channel_bins);
+}
+
+/// The path's hero channels at this boundary. count 0: there are none, since a lobe is too narrow for float
+/// directions and the boundary is treated as a smooth one, or the boundary is energy-compensated (surfaces
+/// that emit thermally), by a factor that depends on the index.
+HeroSet DispersedPaths::choose_heroes(const Shading& s, const KbMaterial& material) {
+  if (material.flags & KB_MATERIAL_COMPENSATED) return {};
+  const auto channels = static_cast<uint32_t>(scene_.channels.size());
+  HeroSet heroes;
+  heroes.count = std::min(KB_MAX_HEROES, channels);
+  const PathState& path = s.wave.paths[s.path.v];
+  DispersedPath& own = paths_[s.path.v];
+  if (own.heroes == 0) {
+    own.heroes = heroes.count;
+    own.hero_weights.fill(1.0f / static_cast<float>(heroes.count));
+  }
+  heroes.q = own.hero_weights;
+  const float offset = kb_hero_offset(path.key.seed, path.key.pixel, path.key.sample);
+  for (uint32_t c = 0; c < heroes.count; ++c) {
+    heroes.eta[c] = channel_eta(material, hero_channel(c, heroes.count, channels, offset), mu_of(path));
+    if (cpu::acts_smooth(material, heroes.eta[c]) || cpu::acts_smooth(material, 1 / heroes.eta[c])) return {};
+  }
+  return heroes;
+}
+
+/// Saves a vertex whose weight (nee0 or scatter0) is set, with the spectra and directions of its pair.
+void DispersedPaths::append_pair(Shading& s, const Boundary& at, const cpu::BoundaryPair& pair, glm::vec3 wo,
+                                 Vertex v) {
+  const bool light = v.has(KB_VERTEX_NEE).v;
+  v.head = v.head | U(s.side.v << KB_VERTEX_MATERIAL_SHIFT |
+                      (pair.transmission ? KB_KIND_ROUGH_TRANSMISSION : KB_KIND_DISPERSIVE));
+  v.a = s.vertex.a;
+  v.b = s.vertex.b;
+  finish_spectra(v, {true}, {pair.transmission});
+  if (pair.transmission) {
+    v.emit_weight = at.wi.x;
+    (light ? v.scatter0 : v.nee0) = at.wi.y;
+    v.nee1 = wo.x;
+    v.scatter1 = wo.y;
+    v.b.row = U(at.wi.z < 0 ? 1u : 0u);
+  } else {
+    (light ? v.nee1 : v.scatter1) = pair.cosine;
+  }
+  append(s.wave, s.path, v, {true});
+  carry(s.wave, s.path.v);
+}
+
+/// Next-event estimation at a rough dispersive boundary: a vertex of its own.
+void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSet& heroes,
+                                    RareFeatures& rare) {
+  if (scene_.emitters.empty()) return;
+  const Light light =
+      scene_.features.thermal
+          ? choose_thermal_light(s)
+          : sample_lights(scene_, s.hit.point, s.numbers(kb_block_light(s.bounce.number)), {true});
+  if (!(light.pdf.v > 0) || !(light.factor.v > 0)) return;
+  const glm::vec3 wo = to_glm(s.frame.to_local(light.direction));
+  const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
+  const HeroDensity density = hero_density(at.material, heroes, at.wi, wo);
+  const float opacity = s.opacity.v;
+  const float mis = light.delta.v ? 1 : power_heuristic(light.pdf, F(density.pdf * opacity)).v;
+  const float weight = mis * opacity * light.factor.v / light.pdf.v * pair.weight;
+  if (!(weight > 0)) return;
+  Vertex v = empty_vertex();
+  v.head = U(KB_VERTEX_NEE | (light.radiance.textured.v ? KB_VERTEX_TEX_NEE : 0u));
+  v.nee0 = weight;
+  v.light = light.radiance;
+  v.scale = density.value / pair.weight;
+  append_pair(s, at, pair, wo, v);
+  queue_shadow_rays(s, light, {true});
+  rare.note_shadow_ray(s);
+  note_shadow_rays(s.wave, {true});
+}
+
+/// Samples a direction for all channels. Returns whether the path goes on.
+bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSet& heroes) {
+  const PathState& path = s.wave.paths[s.path.v];
+  const KbFloat4 h = kb_hero_sample(path.key.seed, path.key.pixel, path.key.sample, s.bounce.number);
+  const glm::vec3 wo = sample_heroes(at.material, heroes, at.wi, {h.x, h.y}, s.u.x.v, {s.u.y.v, s.u.z.v});
+  const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
+  const HeroDensity density = hero_density(at.material, heroes, at.wi, wo);
+  if (!(density.pdf > 0) || !(pair.weight > 0)) return false;
+  // Channels between the heroes may carry a little more, or all where no hero has anything: never below
+  // delta, so that roulette does not stop them all.
+  F bound = path.bound * (std::max(density.bound / density.pdf, KB_NO_HERO) *
+                          (pair.transmission ? at.material.bound_b : at.material.bound_a));
+  if (!(bound.v > 0)) return false;
+  for (uint32_t c = 0; c < heroes.count; ++c)
+    paths_[s.path.v].hero_weights[c] = heroes.q[c] * density.hero[c] / density.pdf;
+  s.vertex = {U(KB_VERTEX_SCATTER),
+              F(0),
+              F(0),
+              F(0),
+              F(pair.weight / density.pdf),
+              F(0),
+              F(density.value / pair.weight),
+              s.vertex.a,
+              s.vertex.b,
+              s.vertex.emission,
+              s.vertex.light};
+  if (!roulette(s, bound, {true}).v) return false;
+  append_pair(s, at, pair, wo, s.vertex);
+  continue_paths(s, s.frame.to_world(to_lane(wo)), bound, F(density.pdf * s.opacity.v), {false}, {true});
+  return true;
+}
+
+}  // namespace kiloband::cpu::one_lane

@@ -1,0 +1,313 @@
+// Gas along the rays of a path: null boundaries are passed, and every segment in a gas becomes a vertex of
+// kind KB_KIND_MEDIUM (shared/records.h).
+//
+// Estimator. Gas only absorbs and emits, so with optical depth x from the segment's begin the
+// radiance there is
+//
+//   L = L_end exp(-x_end) + int_0^x_end B(T) exp(-x) dx,
+//
+// evaluated afterwards from columns and temperatures without any sampling: transmittances neither enter
+// densities nor roulette (they are at most 1, so the bound of the throughput stays a bound). Light samples
+// are multiplied by the transmittance of the shadow ray. A ray that leaves the scene is not attenuated by the
+// atmosphere: what the environment shows is as seen in the scene; what interiors emit on the way is
+// attenuated by the atmosphere in front of them.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "shared/plume.h"
+#include "src_cpu/geometry/boundary.hpp"
+#include "src_cpu/path/rare_features.hpp"
+
+namespace kiloband::cpu::one_lane {
+namespace {
+
+KbFloat3 to_record(glm::vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+bool has_gas(const FlatScene& scene, uint32_t medium) {
+  return medium != KB_NONE && scene.media[medium].type != KB_MEDIUM_EMPTY;
+}
+
+bool is_plume(const KbMedium& medium) {
+  return medium.type == KB_MEDIUM_GRID || medium.type == KB_MEDIUM_JET;
+}
+
+KbPathVertex medium_vertex(const KbMedium& medium, uint32_t flags) {
+  KbPathVertex vertex{};
+  vertex.head = KB_KIND_MEDIUM | flags;
+  vertex.row_a = static_cast<uint16_t>(medium.row);
+  return vertex;
+}
+
+/// The part of a ray in one medium, with a direction of length 1.
+struct Straight {
+  KbFloat3 origin, direction;
+  float begin, end;  // m
+};
+
+Straight straight(glm::vec3 origin, glm::vec3 direction, float t_min, float t_max) {
+  const float length = glm::length(direction);
+  return {to_record(origin), to_record(direction / length), t_min * length, t_max * length};
+}
+
+float column_of(const FlatScene& scene, const KbMedium& medium, const Straight& s) {
+  if (!is_plume(medium)) return medium.scale * (s.end - s.begin);
+  KbPlumeWalk walk;
+  const KbFloat2* nodes = scene.plume_nodes.data();
+  if (!kb_plume_begin(&walk, &medium, nodes, s.origin, s.direction, s.begin, s.end)) return 0;
+  return kb_plume_column(&walk, &medium, nodes);
+}
+
+/// A vertex of gas behind what the path has saved, and the cells that follow it.
+void append_medium(Wave& wave, uint32_t path, const KbPathVertex& medium,
+                   std::span<const KbPlumeCell> cells) {
+  Vertex v = empty_vertex();
+  v.head = medium.head;
+  v.a.row = medium.row_a;
+  v.emission.row = medium.emit_row;
+  v.emit_weight = medium.emit_weight;
+  v.nee0 = medium.nee0;
+  v.nee1 = medium.nee1;
+  v.scatter0 = medium.scatter0;
+  append(wave, path, v, {true});
+  for (std::size_t i = 0; i < cells.size(); i += 4) {
+    WaveEntry extension{};
+    extension.next = KB_NONE;
+    const auto some = cells.subspan(i, std::min<std::size_t>(4, cells.size() - i));
+    std::memcpy(static_cast<void*>(&extension.vertex), some.data(), some.size_bytes());
+    wave.entries.push_back(extension);
+  }
+}
+
+TraceRay ray_of(const RayQueue& rays, uint32_t i) {
+  TraceRay ray({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, rays.t_min[i],
+               rays.t_max[i]);
+  ray.u = rays.u[i];
+  ray.v = rays.v[i];
+  ray.primitive = rays.primitive[i];
+  ray.shape = rays.shape[i];
+  return ray;
+}
+
+void put_ray(const TraceRay& ray, RayQueue& rays, uint32_t i) {
+  rays.ox[i] = ray.ox, rays.oy[i] = ray.oy, rays.oz[i] = ray.oz;
+  rays.dx[i] = ray.dx, rays.dy[i] = ray.dy, rays.dz[i] = ray.dz;
+  rays.t_min[i] = ray.t_min, rays.t_max[i] = ray.t_max;
+  rays.u[i] = ray.u, rays.v[i] = ray.v;
+  rays.primitive[i] = ray.primitive, rays.shape[i] = ray.shape;
+}
+
+/// The last ray of a queue, or the one behind it.
+template <class Queue>
+void origin_and_direction(const Queue& rays, uint32_t i, glm::vec3& origin, glm::vec3& direction) {
+  origin = {rays.ox[i], rays.oy[i], rays.oz[i]};
+  direction = {rays.dx[i], rays.dy[i], rays.dz[i]};
+}
+
+}  // namespace
+
+void GasPaths::start(Wave& wave) {
+  const RayQueue& rays = wave.rays();
+  paths_.clear();
+  for (uint32_t i = 0; i < rays.count; ++i)
+    paths_.push_back({MediumStack(scene_.camera_media), 0, rays.t_min[i], rays.t_max[i]});
+}
+
+/// The path goes through a shape's surface. outwards: to the side of its normal.
+void GasPaths::cross(PathState& path, MediumStack& media, uint32_t shape, bool outwards) const {
+  const uint32_t medium = scene_.interiors[shape];
+  if (medium == KB_NONE) return;
+  if (outwards)
+    media.leave(medium);
+  else if (!media.enter(medium))
+    path.invalid = 1;
+}
+
+/// The media on the side of the surface that `direction` goes to, of a path that arrived there.
+MediumStack GasPaths::media_towards(const Shading& s, glm::vec3 direction) const {
+  MediumStack media = paths_[s.path.v].media;
+  const glm::vec3 normal = to_glm(s.hit.geometric_normal);
+  const bool from_front = glm::dot(normal, to_glm(s.direction)) < 0;
+  const bool to_front = glm::dot(normal, direction) >= 0;
+  if (from_front != to_front) cross(s.wave.paths[s.path.v], media, s.hit.shape.v, to_front);
+  return media;
+}
+
+void GasPaths::walk_boundaries(Wave& wave) {
+  RayQueue& rays = wave.rays();
+  segments_.clear();
+  for (uint32_t i = 0; i < rays.count; ++i) {
+    GasPath& gas = paths_[rays.path[i]];
+    TraceRay ray = ray_of(rays, i);
+    gas.first_segment = static_cast<uint32_t>(segments_.size());
+    while (ray.shape != KB_NONE) {
+      segments_.push_back(
+          {gas.media.current(scene_.atmosphere), ray.origin(), ray.direction(), gas.begin, ray.t_max});
+      if (!is_boundary(scene_, ray.shape)) break;
+      pass_boundary(wave, wave.paths[rays.path[i]], gas, ray);
+    }
+    gas.segments = static_cast<uint32_t>(segments_.size()) - gas.first_segment;
+    gas.far = kInfinity;
+    put_ray(ray, rays, i);
+  }
+}
+
+void GasPaths::pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay& ray) const {
+  const glm::vec3 direction = ray.direction();
+  const SurfaceHit hit = surface_of(scene_, ray);
+  cross(path, gas.media, hit.shape, glm::dot(hit.geometric_normal, direction) >= 0);
+  gas.far -= ray.t_max;
+  ray = TraceRay(leave_surface(hit, direction), direction, 0, gas.far);
+  gas.begin = begin_at(hit, ray.origin(), direction);
+  if (++gas.crossings >= KB_MAX_VERTICES) {
+    path.invalid = 1;
+    return;  // as if it left the scene
+  }
+  if (wave.recording) {
+    wave.recording->closest.push_back(ray);
+    wave.recording->closest_path.push_back(path.pixel);
+  }
+  ++wave.traced_rays;
+  embree_.closest_hits(std::span(&ray, 1), false);
+  if (wave.recording) wave.recording->answers.push_back(ray);
+}
+
+/// The gas between where the path was and where it is now, or on its way out of the scene.
+void GasPaths::append(Wave& wave, uint32_t path, bool escapes) {
+  const GasPath& gas = paths_[path];
+  float in_front = 0;  // atmosphere that a ray out of the scene has passed, m
+  for (uint32_t i = gas.first_segment; i < gas.first_segment + gas.segments; ++i) {
+    const Segment& segment = segments_[i];
+    if (!has_gas(scene_, segment.medium)) continue;
+    const KbMedium& medium = scene_.media[segment.medium];
+    if (escapes && segment.medium == scene_.atmosphere) {
+      in_front += column_of(scene_, medium,
+                            straight(segment.origin, segment.direction, segment.t_min, segment.t_max));
+      continue;
+    }
+    if (in_front > 0 && medium.emit_row != KB_NONE) {
+      KbPathVertex aside = medium_vertex(scene_.media[scene_.atmosphere], KB_VERTEX_DEFER);
+      aside.scatter0 = in_front;
+      append_medium(wave, path, aside, {});
+    }
+    append_segment(wave, path, medium, segment);
+  }
+}
+
+void GasPaths::append_segment(Wave& wave, uint32_t path, const KbMedium& medium,
+                              const Segment& segment) const {
+  const Straight s = straight(segment.origin, segment.direction, segment.t_min, segment.t_max);
+  const bool emits = medium.emit_row != KB_NONE;
+  KbPathVertex vertex = medium_vertex(medium, KB_VERTEX_SCATTER | (emits ? KB_VERTEX_EMIT : 0));
+  vertex.emit_weight = 1;
+  vertex.emit_row = static_cast<uint16_t>(emits ? medium.emit_row : 0);
+  if (!is_plume(medium)) {
+    vertex.scatter0 = column_of(scene_, medium, s);
+    if (vertex.scatter0 != 0) append_medium(wave, path, vertex, {});
+    return;
+  }
+  KbPlumeWalk walk;
+  KbPlumeCell cells[KB_PLUME_CELLS];
+  const KbFloat2* nodes = scene_.plume_nodes.data();
+  if (!kb_plume_begin(&walk, &medium, nodes, s.origin, s.direction, s.begin, s.end)) return;
+  uint32_t count = 0;
+  while (const uint32_t more = kb_plume_next(&walk, &medium, nodes, &cells[count])) count += more;
+  if (count == 0) return;
+  for (uint32_t i = 0; i < count; ++i) vertex.scatter0 += cells[i].column;
+  vertex.head |= count << KB_VERTEX_MATERIAL_SHIFT;
+  vertex.nee0 = walk.first_k;
+  vertex.nee1 = medium.reference_k;
+  append_medium(wave, path, vertex, std::span(cells).first(count));
+}
+
+void GasPaths::follow_ray(const Shading& s) {
+  const RayQueue& next = s.wave.next_rays();
+  glm::vec3 origin, direction;
+  origin_and_direction(next, next.count - 1, origin, direction);
+  GasPath& gas = paths_[s.path.v];
+  gas.media = media_towards(s, direction);
+  gas.begin = begin_at(surface_hit(s), origin, direction);
+}
+
+void GasPaths::note_shadow_ray(const Shading& s) {
+  glm::vec3 origin, direction;
+  origin_and_direction(s.wave.shadow_rays, s.wave.shadow_rays.count, origin, direction);
+  shadow_owners_.push_back(
+      {s.path.v, begin_at(surface_hit(s), origin, direction), media_towards(s, direction)});
+}
+
+void GasPaths::trace_shadows(Wave& wave) {
+  const ShadowQueue& rays = wave.shadow_rays;
+  for (uint32_t i = 0; i < rays.count; ++i) {
+    const uint32_t path = shadow_owners_[i].path;
+    const ShadowRay ray({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]},
+                        rays.t_max[i]);
+    Columns columns;
+    if (walk_shadow(wave, shadow_owners_[i], ray, columns))
+      append_columns(wave, path, rays.entry[i], columns);
+    else
+      wave.entries[rays.entry[i]].vertex.head &= ~KB_VERTEX_NEE;
+  }
+  shadow_owners_.clear();
+}
+
+/// Returns whether the light is visible; `columns` are then what lies in between.
+bool GasPaths::walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, Columns& columns) const {
+  PathState& path = wave.paths[at.path];
+  const glm::vec3 origin{shadow.ox, shadow.oy, shadow.oz}, direction{shadow.dx, shadow.dy, shadow.dz};
+  const bool infinite = shadow.t_max == kInfinity;
+  TraceRay ray(origin, direction, 0, shadow.t_max);
+  for (uint32_t crossings = 0;; ++crossings) {
+    ++wave.traced_rays;
+    embree_.closest_hits(std::span(&ray, 1), false);
+    const bool arrives = ray.shape == KB_NONE;
+    if (!arrives && !is_boundary(scene_, ray.shape)) return false;
+    const uint32_t medium = at.media.current(scene_.atmosphere);
+    if (infinite ? !arrives && medium != scene_.atmosphere : true)
+      add_column(path, columns, medium, ray, at.begin);
+    if (arrives) return true;
+    if (crossings >= KB_MAX_VERTICES) return path.invalid = 1, false;
+    const SurfaceHit hit = surface_of(scene_, ray);
+    cross(path, at.media, hit.shape, glm::dot(hit.geometric_normal, direction) >= 0);
+    const glm::vec3 from = leave_surface(hit, direction);
+    ray = infinite ? TraceRay(from, direction, 0, kInfinity)
+                   : TraceRay(from, origin + direction - from, 0, shadow.t_max);
+    at.begin = begin_at(hit, from, ray.direction());
+  }
+}
+
+void GasPaths::add_column(PathState& path, Columns& columns, uint32_t medium, const TraceRay& ray,
+                          float begin) const {
+  if (!has_gas(scene_, medium)) return;
+  const float column =
+      column_of(scene_, scene_.media[medium], straight(ray.origin(), ray.direction(), begin, ray.t_max));
+  if (column == 0) return;
+  uint32_t i = 0;
+  while (i < columns.count && columns.medium[i] != medium) ++i;
+  if (i == KB_SHADOW_MEDIA) {
+    path.invalid = 1;
+    return;
+  }
+  if (i == columns.count) {
+    columns.medium[columns.count++] = medium;
+    columns.column[i] = 0;
+  }
+  columns.column[i] += column;
+}
+
+/// The light goes through these columns: vertices behind the one that has it.
+void GasPaths::append_columns(Wave& wave, uint32_t path, uint32_t entry, const Columns& columns) const {
+  if (columns.count == 0) return;
+  wave.entries[entry].vertex.head |= KB_VERTEX_DEFER;
+  for (uint32_t i = 0; i < columns.count; ++i) {
+    const bool last = i + 1 == columns.count;
+    KbPathVertex vertex =
+        medium_vertex(scene_.media[columns.medium[i]], KB_VERTEX_NEE | (last ? 0 : KB_VERTEX_DEFER));
+    vertex.nee0 = columns.column[i];
+    append_medium(wave, path, vertex, {});
+  }
+}
+
+}  // namespace kiloband::cpu::one_lane

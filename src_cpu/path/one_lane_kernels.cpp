@@ -1,0 +1,13 @@
+#include "src_cpu/lanes/one_lane.hpp"
+#include "src_cpu/path/path_kernels.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/path/shade-inl.hpp"
+
+namespace kiloband::cpu {
+
+const PathKernels& one_lane_path_kernels() {
+  static constexpr PathKernels kKernels{one_lane::shade_wave};
+  return kKernels;
+}
+
+}  // namespace kiloband::cpu

@@ -1,0 +1,39 @@
+#include "src_cpu/path/path_kernels.hpp"
+
+#include <stdexcept>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src_cpu/path/path_kernels.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway asks for.
+#include "src_cpu/lanes/highway_lanes-inl.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/path/shade-inl.hpp"
+
+namespace kiloband::cpu {
+namespace HWY_NAMESPACE {
+
+inline constexpr PathKernels kPathKernels{shade_wave};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace kiloband::cpu
+
+#if HWY_ONCE
+namespace kiloband::cpu {
+
+const PathKernels& path_kernels(Isa isa) {
+  switch (isa) {
+    case Isa::kAvx512:
+      return N_AVX3::kPathKernels;
+    case Isa::kAvx2:
+      return N_AVX2::kPathKernels;
+    case Isa::kSse4:
+      return N_SSE4::kPathKernels;
+    default:
+      throw std::logic_error("path_kernels: the instruction set is not resolved");
+  }
+}
+
+}  // namespace kiloband::cpu
+#endif

@@ -1,0 +1,19 @@
+// The stages of a wave that are compiled for every instruction set.
+#pragma once
+
+#include "src_cpu/lanes/isa.hpp"
+#include "src_cpu/path/wave.hpp"
+
+namespace kiloband::cpu {
+
+struct PathKernels {
+  /// Answers of wave.rays -> saved vertices, wave.shadow_rays, wave.next_rays and the states of the paths.
+  void (*shade)(const Bounce& bounce, Wave& wave);
+};
+
+/// For an instruction set that this machine has (resolve_isa()). All give the same bits for the same answers.
+const PathKernels& path_kernels(Isa isa);
+/// One path after another, by plain numbers: for scenes with rare features, and the oracle of the others.
+const PathKernels& one_lane_path_kernels();
+
+}  // namespace kiloband::cpu

@@ -1,0 +1,172 @@
+// What few scenes have: gas, indices of refraction that depend on wavelength, thermal emission. For one path at a time,
+// in the places of a bounce (shade-inl.hpp) that call it; scenes without pay nothing.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "src_cpu/geometry/embree_scene.hpp"
+#include "src_cpu/geometry/surface_hit.hpp"
+#include "src_cpu/lanes/one_lane_glm.hpp"
+#include "src_cpu/path/channel_choice.hpp"
+#include "src_cpu/path/medium_stack.hpp"
+#include "src_cpu/path/spectral_mis.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/path/shading-inl.hpp"
+
+namespace kiloband::cpu::one_lane {
+
+// ---- thermal emission (thermal_emission.cpp) ---------------------------------------------------------
+
+/// Kirchhoff's law, for surfaces that emit by it. Returns whether this one does.
+bool add_thermal_emission(Shading& s);
+/// A metal's energy compensation has two parts, a and a F0: one of them is taken, for light and BSDF sample alike.
+void choose_compensation(Shading& s);
+/// A light sample in scenes with thermal emission.
+Light choose_thermal_light(const Shading& s);
+
+// ---- gas (gas_paths.cpp) -----------------------------------------------------------------------------
+
+/// Gas along the rays of paths: null boundaries are passed, and every segment in a gas becomes a vertex.
+class GasPaths {
+ public:
+  GasPaths(const FlatScene& scene, const EmbreeScene& embree) : scene_(scene), embree_(embree) {}
+
+  /// The wave's paths begin where the camera is.
+  void start(Wave& wave);
+  /// Follows every ray of the queue to the first surface that is one, and notes its segments.
+  void walk_boundaries(Wave& wave);
+  /// The gas between where the path was and where it is now, or on its way out of the scene.
+  void append(Wave& wave, uint32_t path, bool escapes);
+  /// The path goes on with the ray that was queued last.
+  void follow_ray(const Shading& s);
+  /// The same for the shadow ray that is queued behind the last.
+  void note_shadow_ray(const Shading& s);
+  /// Light samples, each along its shadow ray through null boundaries.
+  void trace_shadows(Wave& wave);
+
+ private:
+  /// Where a path is, and the segments of the ray at hand.
+  struct GasPath {
+    MediumStack media;
+    uint32_t crossings = 0;  // null boundaries passed
+    float begin, far;  // where the ray at hand begins (on the surface that it left) and ends: ray parameters
+    uint32_t first_segment = 0, segments = 0;
+  };
+  /// A part of a ray in one medium (KB_NONE: in none).
+  struct Segment {
+    uint32_t medium;
+    glm::vec3 origin, direction;
+    float t_min, t_max;
+  };
+  /// The gases that a shadow ray passes.
+  struct Columns {
+    uint32_t count = 0;
+    uint32_t medium[KB_SHADOW_MEDIA];
+    float column[KB_SHADOW_MEDIA];  // m
+  };
+  struct ShadowOwner {
+    uint32_t path;
+    float begin;
+    MediumStack media;
+  };
+
+  void cross(PathState& path, MediumStack& media, uint32_t shape, bool outwards) const;
+  MediumStack media_towards(const Shading& s, glm::vec3 direction) const;
+  void pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay& ray) const;
+  void append_segment(Wave& wave, uint32_t path, const KbMedium& medium, const Segment& segment) const;
+  bool walk_shadow(Wave& wave, ShadowOwner begin, const ShadowRay& shadow, Columns& columns) const;
+  void add_column(PathState& path, Columns& columns, uint32_t medium, const TraceRay& ray, float begin) const;
+  void append_columns(Wave& wave, uint32_t path, uint32_t entry, const Columns& columns) const;
+
+  const FlatScene& scene_;
+  const EmbreeScene& embree_;
+  std::vector<GasPath> paths_;
+  std::vector<Segment> segments_;
+  std::vector<ShadowOwner> shadow_owners_;
+};
+
+// ---- dispersion (dispersed_paths.cpp) ----------------------------------------------------------------
+
+/// A surface being shaded, as the BSDFs' functions for one path take it.
+struct Boundary {
+  KbMaterial material;  // with the bounds of this very point
+  glm::vec3 wi;
+};
+
+/// Boundaries whose index depends on wavelength: degradation to one channel, spectral MIS for all.
+class DispersedPaths {
+ public:
+  explicit DispersedPaths(const FlatScene& scene) : scene_(scene) {}
+
+  /// mu: wavelength offset per pixel, or one for all
+  void start(std::span<const float> mu);
+  /// A dispersive surface. Returns whether that was all: rough ones are done with light and scattering for all channels
+  /// at once. Else the material has the index of the path's channel, if there is one.
+  bool shade(Shading& s, RareFeatures& rare);
+  /// Refraction by an index that depends on wavelength: one channel goes on, with weight 1 / probability.
+  void refract_one_channel(Shading& s, BsdfSample& sample);
+  /// Multiplies what each channel still carries by the vertex that the path has saved last.
+  void carry(const Wave& wave, uint32_t path);
+
+ private:
+  /// What a path carries besides.
+  struct DispersedPath {
+    BinnedThroughput carried;                         // in each bin of channels
+    uint32_t heroes = 0;                              // of spectral MIS; 0: none chosen yet
+    std::array<float, KB_MAX_HEROES> hero_weights{};  // q_c
+  };
+
+  float mu_of(const PathState& path) const { return mu_[mu_.size() == 1 ? 0 : path.pixel]; }
+  float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
+  float survive(const Shading& s, const BinnedThroughput& carried);
+  void degrade(Shading& s);
+  HeroSet choose_heroes(const Shading& s, const KbMaterial& material);
+  void append_pair(Shading& s, const Boundary& at, const cpu::BoundaryPair& pair, glm::vec3 wo, Vertex v);
+  void add_hero_light(Shading& s, const Boundary& at, const HeroSet& heroes, RareFeatures& rare);
+  bool scatter_heroes(Shading& s, const Boundary& at, const HeroSet& heroes);
+
+  const FlatScene& scene_;
+  std::span<const float> mu_;
+  std::vector<DispersedPath> paths_;
+};
+
+/// All of them, as far as the scene has them.
+class RareFeatures {
+ public:
+  RareFeatures(const FlatScene& scene, const EmbreeScene& embree) {
+    if (scene.features.gas) gas_.emplace(scene, embree);
+    if (scene.features.dispersion) dispersion_.emplace(scene);
+  }
+
+  void start(Wave& wave, std::span<const float> mu) {
+    if (gas_) gas_->start(wave);
+    if (dispersion_) dispersion_->start(mu);
+  }
+  GasPaths* gas() { return gas_ ? &*gas_ : nullptr; }
+
+  void pass_gas(const Shading& s, bool escapes) {
+    if (gas_) gas_->append(s.wave, s.path.v, escapes);
+  }
+  bool shade_dispersive(Shading& s);
+  void refract_one_channel(Shading& s, BsdfSample& sample) { dispersion_->refract_one_channel(s, sample); }
+  void carry_channels(const Shading& s) {
+    if (dispersion_ && s.vertex.has(KB_VERTEX_SCATTER).v) dispersion_->carry(s.wave, s.path.v);
+  }
+  void note_shadow_ray(const Shading& s) {
+    if (gas_) gas_->note_shadow_ray(s);
+  }
+  void follow_ray(const Shading& s) {
+    if (gas_) gas_->follow_ray(s);
+  }
+
+ private:
+  std::optional<GasPaths> gas_;
+  std::optional<DispersedPaths> dispersion_;
+};
+
+/// The hit in glm's types.
+SurfaceHit surface_hit(const Shading& s);
+
+}  // namespace kiloband::cpu::one_lane

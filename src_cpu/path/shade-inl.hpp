@@ -1,0 +1,247 @@
+// One bounce of a wave: emission, next-event estimation, scattering, roulette.
+//
+// Estimator: path_tracer.hpp. The stages stand in the order in which kernels/path has them; what few scenes have (gas,
+// dispersion, thermal emission) is code for one path at a time (RareFeatures), which one lane alone calls.
+//
+// For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
+#if defined(KILOBAND_SHADE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef KILOBAND_SHADE_INL
+#undef KILOBAND_SHADE_INL
+#else
+#define KILOBAND_SHADE_INL
+#endif
+
+#include "src_cpu/path/shading-inl.hpp"
+#ifdef KB_ONE_LANE
+#include "src_cpu/path/rare_features.hpp"
+#endif
+
+KB_BEFORE_LANES;
+namespace kiloband::cpu::KB_LANES {
+
+/// Rays that left the scene see the environment.
+inline void add_escaped(Shading& s, M escaped) {
+  const FlatScene& scene = s.scene();
+  if (scene.environment == KB_NONE || (s.bounce.number == 0 && scene.integrator.hide_emitters)) return;
+  const Escape seen = environment_at(scene, s.direction, escaped);
+  Vertex v = empty_vertex();
+  v.set(escaped, KB_VERTEX_EMIT);
+  v.set(escaped & seen.radiance.textured, KB_VERTEX_TEX_EMIT);
+  v.emission = seen.radiance;
+  v.emit_weight = select(s.previous_delta(), F(1), power_heuristic(s.previous_pdf(), seen.pdf));
+  append(s.wave, s.path, v, escaped);
+}
+
+/// Emission of area lights that were hit.
+KB_INLINE void add_emission(Shading& s, M hit) {
+  const FlatScene& scene = s.scene();
+#ifdef KB_ONE_LANE
+  if (scene.features.thermal && add_thermal_emission(s)) return;
+#endif
+  if (s.bounce.number == 0 && scene.integrator.hide_emitters) return;
+  const U emitter = KB_GATHER_WORD(scene.shapes.data(), KbShape, emitter, s.hit.shape);
+  const M emits = hit & (emitter != U(KB_NONE)) & on_front(s.hit.shading_normal, -s.direction);
+  if (!any(emits)) return;
+  const U index = select(emits, emitter, U(0u));
+  const M weighted = emits & !s.previous_delta();
+  F weight(1);
+  if (any(weighted)) {
+    const F pdf = area_light_pdf(scene, s.hit, index, s.previous_point(), weighted);
+    weight = select(weighted, power_heuristic(s.previous_pdf(), pdf), F(1));
+  }
+  s.vertex.set(emits, KB_VERTEX_EMIT);
+  s.vertex.emit_weight = select(emits, weight, F(0));
+  s.vertex.emission =
+      resolve(scene, KB_GATHER_WORD(scene.emitters.data(), KbEmitter, ref, index), s.hit.uv, emits);
+  s.vertex.set(emits & s.vertex.emission.textured, KB_VERTEX_TEX_EMIT);
+}
+
+/// Blends choose one of their surfaces, masks whether the ray passes; both by u.x, which is uniform again afterwards.
+/// Returns the surfaces.
+inline U choose_surfaces(Shading& s, U surface, M hit) {
+  const FlatScene& scene = s.scene();
+  const KbSurface* surfaces = scene.surfaces.data();
+  WordArray chosen(surface);
+  FloatArray u(s.u.x), opacity(KB_GATHER_FLOAT(surfaces, KbSurface, opacity, surface));
+  const FloatArray uv_x(s.hit.uv.x), uv_y(s.hit.uv.y);
+  each_lane(hit, [&](uint32_t i) KB_LAMBDA {
+    const glm::vec2 uv(uv_x[i], uv_y[i]);
+    const KbSurface& one = chosen_surface(scene, chosen[i], uv, u[i]);
+    chosen[i] = static_cast<uint32_t>(&one - surfaces);
+    opacity[i] = opacity_at(scene, one, uv);
+  });
+  s.opacity = opacity;
+  const F x = u;
+  const M masked = s.opacity < F(1);
+  s.passes = hit & masked & (x >= s.opacity);
+  const F again = select(s.passes, (x - s.opacity) / (F(1) - s.opacity), x / s.opacity);
+  s.u.x = select(masked, min(again, F(KB_ONE_MINUS_EPSILON)), x);
+  return chosen;
+}
+
+/// The material that is seen, its spectra, the frame and the direction to where the path comes from. Returns the
+/// lanes that have a material which scatters.
+KB_INLINE M find_material(Shading& s, U surface, M hit) {
+  const FlatScene& scene = s.scene();
+  const KbSurface* surfaces = scene.surfaces.data();
+  s.surface_flags = KB_GATHER_WORD(surfaces, KbSurface, flags, surface);
+  const M below = dot(s.hit.shading_normal, -s.direction) < F(0);
+  const M turned = below & has_bits(s.surface_flags, KB_SURFACE_TWO_SIDED);
+  const M black = below & !has_bits(s.surface_flags, KB_SURFACE_TWO_SIDED | KB_SURFACE_TRANSMISSIVE);
+  const M seen = hit & !black;
+  const U side = select(turned, KB_GATHER_WORD(surfaces, KbSurface, back, surface),
+                        KB_GATHER_WORD(surfaces, KbSurface, front, surface));
+  s.side = select(seen, side, U(0u));
+  s.material = gather_material(scene.materials.data(), scene.tables.data(), s.side);
+  const U ref_a = KB_GATHER_WORD(scene.materials.data(), KbMaterial, ref_a, s.side);
+  const U ref_b = KB_GATHER_WORD(scene.materials.data(), KbMaterial, ref_b, s.side);
+  s.vertex.a = resolve(scene, ref_a, s.hit.uv, seen & (ref_a != U(KB_NONE)));
+  s.vertex.b = resolve(scene, ref_b, s.hit.uv, seen & (ref_b != U(KB_NONE)));
+  s.material.bound_a = bound_at(scene, ref_a, s.vertex.a, s.material.bound_a, seen & (ref_a != U(KB_NONE)));
+  s.material.bound_b = bound_at(scene, ref_b, s.vertex.b, s.material.bound_b, seen & (ref_b != U(KB_NONE)));
+  s.frame = make_frame(s.hit.shading_normal);
+  const M anisotropic = seen & (s.material.alpha_u != s.material.alpha_v);
+  if (any(anisotropic)) {
+    const Frame along = make_frame(s.hit.shading_normal, s.hit.tangent);
+    s.frame.x = select(anisotropic, along.x, s.frame.x);
+    s.frame.y = select(anisotropic, along.y, s.frame.y);
+  }
+  const F sign = select(turned, F(-1), F(1));  // the frame seen from behind stays right-handed
+  s.frame.y = s.frame.y * sign;
+  s.frame.z = s.frame.z * sign;
+  s.wi = s.frame.to_local(-s.direction);
+  return seen & ((s.material.bound_a != F(0)) | (s.material.bound_b != F(0)));
+}
+
+KB_INLINE Light choose_light(Shading& s, M smooth) {
+#ifdef KB_ONE_LANE
+  if (s.scene().features.thermal) return choose_thermal_light(s);
+#endif
+  return sample_lights(s.scene(), s.hit.point, s.numbers(kb_block_light(s.bounce.number)), smooth);
+}
+
+/// Next-event estimation: stores the weights as if the light were visible, and queues the shadow rays. Returns the
+/// lanes that have one; the vertices that they belong to are noted by note_shadow_rays().
+KB_INLINE M add_light(Shading& s, M scatters) {
+  const FlatScene& scene = s.scene();
+  if (scene.emitters.empty()) return no_lanes();
+  const M smooth = scatters & has_smooth_lobe(s.material.type);
+  if (!any(smooth)) return smooth;
+  const Light light = choose_light(s, smooth);
+  M lit = smooth & (light.pdf > F(0)) & (light.factor > F(0));
+  if (!any(lit)) return lit;
+  const BsdfValue value = eval_bsdf(s.material, s.wi, s.frame.to_local(light.direction), lit);
+  lit = lit & ((value.w0 >= F(KB_LEAST_BSDF_VALUE)) | (value.w1 >= F(KB_LEAST_BSDF_VALUE)));
+  const F mis = select(light.delta, F(1), power_heuristic(light.pdf, value.pdf * s.opacity));
+  const F weight = mis * s.opacity * light.factor / light.pdf;
+  lit = lit & (weight != F(0));
+  // A rough dielectric reflects with S_a and transmits with S_b: as two terms, one vertex carries both.
+  const M boundary = lit & (s.material.type == U(KB_MATERIAL_ROUGH_DIELECTRIC));
+  const M second = boundary & value.lobe_b;
+  const M conductor = s.vertex.kind() == U(KB_KIND_CONDUCTOR);
+  const F other = select(conductor, value.w1, select(boundary, F(0), weight * value.w1));
+  s.vertex.nee0 = select(lit & !second, weight * value.w0, F(0));
+  s.vertex.nee1 = select(lit, select(second, weight * value.w0, other), F(0));
+  s.vertex.set_kind(boundary, U(KB_KIND_TWO_TERM));
+  s.vertex.set(lit, KB_VERTEX_NEE);
+  s.vertex.light = light.radiance;
+  s.vertex.light.row = select(lit, light.radiance.row, U(0u));
+  s.vertex.set(lit & light.radiance.textured, KB_VERTEX_TEX_NEE);
+  queue_shadow_rays(s, light, lit);
+#ifdef KB_ONE_LANE
+  if (s.bounce.rare && lit.v) s.bounce.rare->note_shadow_ray(s);
+#endif
+  return lit;
+}
+
+/// Scattering, roulette, the next ray. A mask's transparent part: the ray goes on as if nothing were there. Shadow rays
+/// stop at masks, so what lies behind is found by this ray alone and gets weight 1.
+KB_INLINE void scatter(Shading& s, M hit, M scatters, M lit) {
+  const M sampled = scatters & !s.passes;
+  BsdfSample sample = sample_bsdf(s.material, s.wi, s.u.x, {s.u.y, s.u.z}, sampled);
+#ifdef KB_ONE_LANE
+  if (sample.needs_channel.v) s.bounce.rare->refract_one_channel(s, sample);
+#endif
+  const M conductor = sampled & (sample.kind == U(KB_KIND_CONDUCTOR));
+  if (any(conductor)) sample.bound = sample.bound * conductor_bound(s.material, sample.w1, conductor);
+  M alive = sampled & (sample.pdf > F(0)) & (sample.bound > F(0));
+  const M two =
+      alive & (s.material.type == U(KB_MATERIAL_ROUGH_DIELECTRIC)) & (s.vertex.kind() == U(KB_KIND_TWO_TERM));
+  s.vertex.set(alive, KB_VERTEX_SCATTER);
+  s.vertex.set_kind(alive & !two, sample.kind);
+  s.vertex.scatter0 = select(alive, select(two & sample.lobe_b, F(0), sample.w0), F(0));
+  const F second = select(two, select(sample.lobe_b, sample.w0, F(0)), sample.w1);
+  s.vertex.scatter1 = select(alive, second, F(0));
+  F bound = s.state_float(offsetof(PathState, bound)) * select(alive, sample.bound, F(1));
+  alive = roulette(s, bound, alive);
+  finish_spectra(s.vertex, lit | alive,
+                 alive & sample.lobe_b & !two & (s.material.type != U(KB_MATERIAL_DIFFUSE)));
+  V3 direction = s.frame.to_world(sample.wo);
+  const M delta = alive & sample.delta;
+  if (any(delta))
+    direction = select(delta, normalize(direction), direction);  // rounding would add up along chains
+  const M goes_on = alive | s.passes;
+  if (!any(goes_on)) return;
+  continue_paths(s, select(s.passes, s.direction, direction), bound,
+                 select(s.passes, F(0), sample.pdf * s.opacity), s.passes | delta, goes_on & hit);
+#ifdef KB_ONE_LANE
+  if (s.bounce.rare) s.bounce.rare->follow_ray(s);
+#endif
+}
+
+/// Lanes `first` .. of the wave's rays.
+inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
+  const RayQueue& rays = wave.rays();
+  const M active = first_lanes(rays.count - first);
+  const U shape = load(rays.shape + first);
+  const M hit = active & (shape != U(KB_NONE));
+  Shading s{.bounce = bounce,
+            .wave = wave,
+            .first = first,
+            .path = select(active, load(rays.path + first), U(kWavePaths)),
+            .active = active,
+            .direction = {load(rays.dx + first), load(rays.dy + first), load(rays.dz + first)},
+            .vertex = empty_vertex()};
+#ifdef KB_ONE_LANE
+  if (bounce.rare) bounce.rare->pass_gas(s, !hit.v);
+#endif
+  if (any(active & !hit)) add_escaped(s, active & !hit);
+  if (!any(hit)) return;
+  const V3 origin{load(rays.ox + first), load(rays.oy + first), load(rays.oz + first)};
+  s.hit = make_hit(bounce.scene, shape, load(rays.primitive + first), load(rays.u + first),
+                   load(rays.v + first), origin, s.direction, load(rays.t_max + first), hit);
+  add_emission(s, hit);
+  if (!bounce.goes_on()) return append(wave, s.path, s.vertex, hit & s.vertex.has(KB_VERTEX_EMIT));
+  s.u = s.numbers(kb_block_bsdf(bounce.number));
+  s.opacity = F(1);
+  s.passes = no_lanes();
+  U surface = KB_GATHER_WORD(bounce.scene.shapes.data(), KbShape, surface, s.hit.shape);
+  if (bounce.scene.features.mask || bounce.scene.features.blend) surface = choose_surfaces(s, surface, hit);
+  const M scatters = find_material(s, surface, hit);
+#ifdef KB_ONE_LANE
+  if (bounce.scene.features.compensation && scatters.v) choose_compensation(s);
+  if (bounce.rare && scatters.v && bounce.rare->shade_dispersive(s)) return;
+#endif
+  s.vertex.head = select(scatters,
+                         s.vertex.head | eval_kind(s.material.type, s.material.flags) |
+                             shift_left<KB_VERTEX_MATERIAL_SHIFT>(s.side),
+                         s.vertex.head);
+  const M lit = add_light(s, scatters);
+  scatter(s, hit, scatters, lit);
+  append(wave, s.path, s.vertex, hit & s.vertex.has(KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER));
+#ifdef KB_ONE_LANE
+  if (bounce.rare) bounce.rare->carry_channels(s);
+#endif
+  note_shadow_rays(wave, lit);
+}
+
+/// All paths of the wave at what their rays have hit: fills the queues of shadow rays and next rays.
+inline void shade_wave(const Bounce& bounce, Wave& wave) {
+  wave.shadow_rays.count = wave.next_rays().count = 0;
+  for (uint32_t first = 0; first < wave.rays().count; first += kLanes) shade_lanes(bounce, wave, first);
+}
+
+}  // namespace kiloband::cpu::KB_LANES
+KB_AFTER_LANES;
+
+#endif

@@ -1,0 +1,86 @@
+// A wave of paths: what its stages read and write (path_tracer.hpp).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/backend.hpp"
+#include "scene/compile/flat_scene.hpp"
+#include "shared/sampler.h"
+#include "src_cpu/geometry/embree_scene.hpp"
+#include "src_cpu/geometry/ray_queue.hpp"
+
+namespace kiloband::cpu {
+
+/// Which sample of every pixel: number `sample` of the pixel, `index` of its replicate.
+struct SampleId {
+  uint32_t sample = 0;
+  uint32_t replicate = 0;
+  uint32_t index = 0;
+};
+
+/// What is known of a path between bounces. Lanes gather its members.
+struct PathState {
+  float previous_point[3];  // m
+  float previous_pdf;       // solid angle [1/sr], of the BSDF sample that led here; 0 for delta lobes
+  float bound;              // upper bound of the throughput over all channels, without radiance scaling
+  float magnitude;          // product of the scatter weights: where this overflows the sample is invalid
+  uint32_t previous_delta;  // the BSDF sample was one of a delta lobe, or the camera's
+  uint32_t invalid;
+  uint32_t pixel;                    // in the block
+  uint32_t channel;                  // after degradation, else KB_NONE
+  uint32_t first_entry, last_entry;  // linked list in the wave's entries
+  KbSamplerKey key;                  // of the path's random numbers
+};
+static_assert(sizeof(PathState) == 80);
+
+/// A saved vertex, or what follows one directly: two texture samples, four cells of a plume.
+struct WaveEntry {
+  KbPathVertex vertex;
+  uint32_t next;  // the path's next vertex
+};
+
+/// Every ray that is traced, with its path's index in the block (benchmarks of bare queries, traced paths).
+struct Recording {
+  std::vector<TraceRay> closest;
+  std::vector<ShadowRay> shadow;
+  std::vector<uint32_t> closest_path, shadow_path;
+  std::vector<TraceRay> answers;  // of `closest`: what was hit
+};
+
+struct Wave {
+  std::vector<PathState> paths;  // and one behind the last that lanes without a path write to
+  std::vector<WaveEntry> entries;
+  RayQueue queues[2];  // what is traced, and what the next bounce will trace
+  uint32_t current = 0;
+  ShadowQueue shadow_rays;
+  uint64_t vertices = 0, traced_rays = 0;
+  Recording* recording = nullptr;  // appended to
+
+  RayQueue& rays() { return queues[current]; }
+  RayQueue& next_rays() { return queues[1 - current]; }
+};
+
+namespace one_lane {
+class RareFeatures;
+}
+
+/// What is the same for all paths of a bounce.
+struct Bounce {
+  const FlatScene& scene;
+  const SamplingSettings& settings;
+  SampleId id;
+  uint32_t number = 0;                     // 0: what camera rays hit
+  one_lane::RareFeatures* rare = nullptr;  // what few scenes have: one lane alone uses it
+
+  uint32_t sampler() const {
+    return settings.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
+  }
+  /// Whether paths go on from here; else they end with the emission of what they hit.
+  bool goes_on() const {
+    const int max_depth = scene.integrator.max_depth;
+    return max_depth < 0 || number + 1 < static_cast<uint32_t>(max_depth);
+  }
+};
+
+}  // namespace kiloband::cpu
