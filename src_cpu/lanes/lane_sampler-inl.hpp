@@ -60,25 +60,37 @@ KB_INLINE U mix_words(U x, U y) {
   return x ^ shift_right<16>(x);
 }
 
-/// Dimension 1, 2 or 3 of kb_sobol_reversed(); dimension 0 is a reversal of bits. Bit by bit: a vector has no fast way
-/// to many tables of its own.
-KB_INLINE U sobol_dimension(U reversed_index, uint32_t dimension) {
-  U point(0u);
+/// kb_sobol_reversed(). A vector has no fast way to many tables of its own and goes bit
+/// by bit.
+struct SobolPoint {
+  U dimension[4];
+};
+#ifdef KB_ONE_LANE
+KB_INLINE SobolPoint sobol_reversed(U reversed_index) {
+  const kb_u32x4 point = kb_sobol_reversed(reversed_index.v);
+  return {{point[0], point[1], point[2], point[3]}};
+}
+#else
+KB_INLINE SobolPoint sobol_reversed(U reversed_index) {
+  SobolPoint point{{reversed_bits(reversed_index), U(0u), U(0u), U(0u)}};
   for (uint32_t bit = 0; bit < 32; ++bit) {
-    const uint32_t direction = kb_sobol_table[4 * (256 * (bit / 8) + (1u << bit % 8)) + dimension];
-    point = select(has_bits(reversed_index, 1u << bit), point ^ U(direction), point);
+    const uint32_t* directions = &kb_sobol_table[4 * (256 * (bit / 8) + (1u << bit % 8))];
+    const M set = has_bits(reversed_index, 1u << bit);
+    for (uint32_t k = 1; k < 4; ++k)
+      point.dimension[k] = select(set, point.dimension[k] ^ U(directions[k]), point.dimension[k]);
   }
   return point;
 }
+#endif
 
 /// The four numbers of a block of kb_sampler_block() with the sobol sampler.
 KB_INLINE F4 sobol_floats(U reversed_index, U key0, U key1, U block) {
   const U base = key0 + block * U(5u * KB_GOLDEN_32);
   const U shuffled = owen_reversed(reversed_index, mix_words(base, key1));
+  const SobolPoint point = sobol_reversed(shuffled);
   const auto number = [&](uint32_t dimension) KB_LAMBDA {
-    const U point = dimension == 0 ? reversed_bits(shuffled) : sobol_dimension(shuffled, dimension);
     const U seed = mix_words(base + U((dimension + 1) * KB_GOLDEN_32), key1);
-    return unit_floats(reversed_bits(owen_reversed(point, seed)));
+    return unit_floats(reversed_bits(owen_reversed(point.dimension[dimension], seed)));
   };
   return {number(0), number(1), number(2), number(3)};
 }
