@@ -35,7 +35,7 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
   counts_.assign(block.pixels(), 0);
   add_samples(block, range, stop, events);
   finish_means(block.pixels());
-  return {block_index, range.replicate, counts_, sums_, evaluator_.stride()};
+  return {block_index, range.replicate, counts_, sums_, evaluator_.stride(), factors_};
 }
 
 void BlockWorker::go_on(SpectralFilm& film, uint32_t block_index, const SampleRange& range,
@@ -171,16 +171,16 @@ void BlockWorker::fold_sums() {
   std::ranges::fill(sums_, 0.0f);
 }
 
-/// Sums become means; derived channels move to the place behind the channels, where the film has them.
+/// What makes means of sums; derived channels move to the place behind the channels, where the film has them.
 void BlockWorker::finish_means(std::size_t pixels) {
   const std::size_t stride = evaluator_.stride();
   const std::size_t channels = scene_.flat->channels.size();
+  factors_.assign(pixels, 1.0f);
   for (std::size_t p = 0; p < pixels; ++p) {
     const double scale = counts_[p] > 0 ? 1.0 / counts_[p] : 0.0;
     float* sums = &sums_[p * stride];
     if (folded_.empty()) {
-      const auto factor = static_cast<float>(scale);
-      for (std::size_t k = 0; k < stride; ++k) sums[k] *= factor;
+      factors_[p] = static_cast<float>(scale);
     } else {
       const double* folded = &folded_[p * stride];
       for (std::size_t k = 0; k < stride; ++k) sums[k] = static_cast<float>((folded[k] + sums[k]) * scale);

@@ -65,6 +65,7 @@ class BlockWorker {
   std::vector<float> mu_, path_mu_;
   std::vector<float> sums_;     // [pixel][stride], at most kFoldInterval samples: open sums
   std::vector<double> folded_;  // the samples before those, closed sums; empty until needed
+  std::vector<float> factors_;  // [pixel]: means are these times the sums
   std::vector<uint32_t> counts_, invalid_;
 };
 

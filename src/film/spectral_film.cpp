@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "files/scratch_memory.hpp"
+#include "film/moment_kernels.hpp"
 #include "film/spectral_film_sums.hpp"
 
 namespace kiloband {
@@ -85,51 +86,53 @@ std::size_t SpectralFilm::pixel_index(const PixelRect& block, std::size_t pixel)
 void SpectralFilm::add(const BlockSamples& samples) {
   const PixelRect& block = blocks_.at(samples.block);
   if (samples.counts.size() != block.pixels() || samples.stride < options_.channels ||
+      (!samples.factors.empty() && samples.factors.size() != block.pixels()) ||
       samples.replicate >= options_.replicates) {
     throw std::logic_error("SpectralFilm::add: samples do not have the block's shape");
   }
   if (sums_) throw std::logic_error("SpectralFilm::add: the film keeps sums");
-  held_ ? add_held(samples, block) : add_folded(samples, block);
-  add_coarse(samples, block);
+  add_pixels(samples);
 }
 
-void SpectralFilm::add_folded(const BlockSamples& samples, const PixelRect& block) {
+/// Each pixel's means are read once: while they are in the first cache, all that is made of them is.
+void SpectralFilm::add_pixels(const BlockSamples& samples) {
+  const PixelRect& block = blocks_[samples.block];
+  Coarse coarse(options_.channels);
   for (std::size_t p = 0; p < block.pixels(); ++p) {
-    pixels_->add(pixel_index(block, p), samples.counts[p],
-                 samples.means.subspan(p * samples.stride, options_.channels));
+    if (pixels_) {
+      pixels_->add(pixel_index(block, p), samples.counts[p],
+                   samples.means.subspan(p * samples.stride, options_.channels), samples.factor(p));
+    } else {
+      add_held(samples, p);
+    }
+    coarse.add(samples, block, p);
   }
+  add_coarse(samples, coarse);
 }
 
-void SpectralFilm::add_held(const BlockSamples& samples, const PixelRect& block) {
-  float* means = held_->means.values().data() + samples.replicate * rect_.pixels() * options_.channels;
-  auto& counts = held_->samples[samples.replicate];
-  for (std::size_t p = 0; p < block.pixels(); ++p) {
-    if (samples.counts[p] == 0) continue;
-    const std::size_t pixel = pixel_index(block, p);
-    if (counts[pixel] > 0) throw std::logic_error("SpectralFilm::add: a replicate of a block comes twice");
-    counts[pixel] = samples.counts[p];
-    std::copy_n(&samples.means[p * samples.stride], options_.channels, &means[pixel * options_.channels]);
-  }
+void SpectralFilm::add_held(const BlockSamples& samples, std::size_t pixel_in_block) {
+  if (samples.counts[pixel_in_block] == 0) return;
+  const std::size_t pixel = pixel_index(blocks_[samples.block], pixel_in_block);
+  uint64_t& count = held_->samples[samples.replicate][pixel];
+  if (count > 0) throw std::logic_error("SpectralFilm::add: a replicate of a block comes twice");
+  count = samples.counts[pixel_in_block];
+  float* const means =
+      &held_->means.values()[(samples.replicate * rect_.pixels() + pixel) * options_.channels];
+  film::set_mean(
+      {options_.channels, &samples.means[pixel_in_block * samples.stride], samples.factor(pixel_in_block)},
+      means);
 }
 
-SpectralFilm::Coarse SpectralFilm::coarse_sums(const BlockSamples& samples, const PixelRect& block) const {
-  const std::size_t channels = options_.channels;
-  Coarse coarse{std::vector<double>(kTilesPerBlock * channels), std::vector<uint64_t>(kTilesPerBlock)};
-  for (std::size_t p = 0; p < block.pixels(); ++p) {
-    const std::size_t tile = tile_in_block(block, p);
-    const double count = samples.counts[p];
-    const float* mean = &samples.means[p * samples.stride];
-    double* sums = &coarse.sums[tile * channels];
-    for (std::size_t c = 0; c < channels; ++c) sums[c] += count * mean[c];
-    coarse.counts[tile] += samples.counts[p];
-  }
-  return coarse;
+void SpectralFilm::Coarse::add(const BlockSamples& samples, const PixelRect& block, std::size_t pixel) {
+  const std::size_t tile = tile_in_block(block, pixel);
+  film::add_samples({channels, &samples.means[pixel * samples.stride], samples.factor(pixel)},
+                    samples.counts[pixel], &sums[tile * channels]);
+  counts[tile] += samples.counts[pixel];
 }
 
 /// The block's share of the image, tile by tile: few numbers to a sum keep its rounding small.
-void SpectralFilm::add_coarse(const BlockSamples& samples, const PixelRect& block) {
+void SpectralFilm::add_coarse(const BlockSamples& samples, const Coarse& coarse) {
   const std::size_t channels = options_.channels;
-  const Coarse coarse = coarse_sums(samples, block);
   auto& block_sums = block_sums_[samples.block];
   if (block_sums.empty()) block_sums.resize(options_.replicates * channels);
   for (std::size_t tile = 0; tile < kTilesPerBlock; ++tile) {

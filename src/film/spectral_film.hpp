@@ -35,13 +35,16 @@ struct PixelRect {
 std::vector<PixelRect> cut_into_blocks(const PixelRect& rect);
 
 /// All samples of one replicate in one block: per pixel their number and mean;
-/// means are [pixel][channel], row by row.
+/// means are [pixel][channel], row by row, each times its pixel's factor: sums of samples become means on the way.
 struct BlockSamples {
   uint32_t block = 0;
   uint32_t replicate = 0;
   std::span<const uint32_t> counts;
   std::span<const float> means;
-  std::size_t stride = 0;  // floats between pixels in means, >= channels
+  std::size_t stride = 0;          // floats between pixels in means, >= channels
+  std::span<const float> factors;  // [pixel], or empty: 1
+
+  float factor(std::size_t pixel) const { return factors.empty() ? 1.0f : factors[pixel]; }
 };
 
 struct FilmOptions {
@@ -113,10 +116,9 @@ class SpectralFilm {
   void require_held() const;
   void require_sums() const;
   uint32_t attempted_at(uint32_t replicate, std::size_t pixel) const;
-  void add_folded(const BlockSamples& samples, const PixelRect& block);
-  void add_held(const BlockSamples& samples, const PixelRect& block);
-  void add_coarse(const BlockSamples& samples, const PixelRect& block);
-  Coarse coarse_sums(const BlockSamples& samples, const PixelRect& block) const;
+  void add_pixels(const BlockSamples& samples);
+  void add_held(const BlockSamples& samples, std::size_t pixel_in_block);
+  void add_coarse(const BlockSamples& samples, const Coarse& coarse);
   void fold_block(uint32_t block);
   BlockMeans means_of_block(uint32_t replicate, uint32_t block) const;
   void add_held_image_sums(std::vector<std::vector<double>>& sums, std::vector<uint64_t>& counts) const;

@@ -64,9 +64,7 @@ void SpectralFilm::fold_block(uint32_t block) {
   const uint32_t replicate = sums_->open[block];
   if (replicate == Sums::kNone) return;
   const BlockMeans means = means_of_block(replicate, block);
-  const BlockSamples samples = means.samples(block, replicate, options_.channels);
-  add_folded(samples, blocks_[block]);
-  add_coarse(samples, blocks_[block]);
+  add_pixels(means.samples(block, replicate, options_.channels));
   for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) {
     const PixelSums sums = pixel_sums(replicate, pixel_index(blocks_[block], p));
     sums.count = 0;
@@ -91,7 +89,9 @@ void SpectralFilm::add_held_image_sums(std::vector<std::vector<double>>& sums,
     for (uint32_t r = 0; r < options_.replicates; ++r) {
       if (attempted(r, block) == 0) continue;
       const BlockMeans means = means_of_block(r, block);
-      const Coarse coarse = coarse_sums(means.samples(block, r, channels), blocks_[block]);
+      const BlockSamples samples = means.samples(block, r, channels);
+      Coarse coarse(channels);
+      for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) coarse.add(samples, blocks_[block], p);
       std::ranges::fill(of_block, 0.0);
       for (std::size_t tile = 0; tile < kTilesPerBlock; ++tile) {
         if (coarse.counts[tile] == 0) continue;

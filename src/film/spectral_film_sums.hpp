@@ -10,6 +10,12 @@ inline constexpr uint32_t kTilesPerBlock = kTilesPerRow * kTilesPerRow;
 
 /// Sums over the samples of a block in double.
 struct SpectralFilm::Coarse {
+  explicit Coarse(std::size_t channel_count)
+      : channels(channel_count), sums(kTilesPerBlock * channel_count), counts(kTilesPerBlock) {}
+
+  void add(const BlockSamples& samples, const PixelRect& block, std::size_t pixel);
+
+  std::size_t channels;
   std::vector<double> sums;      // [tile][channel]
   std::vector<uint64_t> counts;  // [tile]
 };

@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "film/moment_kernels.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -13,28 +15,10 @@ namespace {
 // per unit, so that the loops over channels are fused arithmetic without divisions. All terms of M2 are >= 0:
 // nothing cancels but d, whose absolute error is an ulp of the mean.
 
-struct Weights {
-  float mean;  // n / (N + n), 1 for the first replicate
-  float m2;    // N n / (N + n)
-};
-
-Weights weights(uint64_t before, uint64_t added) {
+film::MomentWeights weights(uint64_t before, uint64_t added) {
   const double total = static_cast<double>(before) + static_cast<double>(added);
   const double fraction = static_cast<double>(added) / total;
   return {static_cast<float>(fraction), static_cast<float>(static_cast<double>(before) * fraction)};
-}
-
-void update_mean(std::size_t count, float w, const float* __restrict x, float* __restrict mean) {
-  for (std::size_t k = 0; k < count; ++k) mean[k] += w * (x[k] - mean[k]);
-}
-
-void update_both(std::size_t count, Weights w, const float* __restrict x, float* __restrict mean,
-                 float* __restrict m2) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const float d = x[k] - mean[k];
-    mean[k] += w.mean * d;
-    m2[k] += (w.m2 * d) * d;
-  }
 }
 
 std::size_t checked_product(std::size_t units, std::size_t channels) {
@@ -53,18 +37,19 @@ ReplicateMoments::ReplicateMoments(std::size_t units, std::size_t channels, bool
       samples_(units),
       replicates_(units) {}
 
-void ReplicateMoments::add(std::size_t unit, uint64_t n, std::span<const float> means) {
+void ReplicateMoments::add(std::size_t unit, uint64_t n, std::span<const float> means, float factor) {
   if (unit >= samples_.size() || means.size() != channels_)
     throw std::logic_error("ReplicateMoments::add: unit or number of channels out of range");
   if (n == 0) return;
-  const Weights w = weights(samples_[unit], n);
+  const film::MomentWeights w = weights(samples_[unit], n);
+  const film::ScaledMeans x{channels_, means.data(), factor};
   float* const mean = mean_.data() + unit * channels_;
   if (samples_[unit] == 0) {
-    std::copy(means.begin(), means.end(), mean);  // M2 stays 0
+    film::set_mean(x, mean);  // M2 stays 0
   } else if (variance_) {
-    update_both(channels_, w, means.data(), mean, m2_.data() + unit * channels_);
+    film::update_moments(x, w, mean, m2_.data() + unit * channels_);
   } else {
-    update_mean(channels_, w.mean, means.data(), mean);
+    film::update_mean(x, w.mean, mean);
   }
   samples_[unit] += n;
   ++replicates_[unit];

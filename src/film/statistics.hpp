@@ -22,8 +22,8 @@ class ReplicateMoments {
   /// variance false: only means are kept.
   ReplicateMoments(std::size_t units, std::size_t channels, bool variance);
 
-  /// Adds a replicate mean of n samples (n = 0: nothing) of a unit; means has one entry per channel.
-  void add(std::size_t unit, uint64_t n, std::span<const float> means);
+  /// Adds a replicate mean of n samples (n = 0: nothing) of a unit: `means`, one entry per channel, times `factor`.
+  void add(std::size_t unit, uint64_t n, std::span<const float> means, float factor = 1);
 
   std::size_t units() const;
   std::size_t channels() const;

@@ -82,6 +82,28 @@ TEST(SpectralFilm, FoldedAndHeldSumsGiveTheMomentsOfTheirMeans) {
   }
 }
 
+/// Sums with the factors that make means of them, against the means: moments, held means, image.
+TEST(SpectralFilm, FactorsMakeMeansOfSums) {
+  const uint32_t counts[] = {4, 3};
+  const float sums[] = {1, 3, 0, 2, 5, 0}, factors[] = {0.25f, 1.0f / 3};
+  const float means[] = {0.25f, 0.75f, 2 * factors[1], 5 * factors[1]};
+  for (const bool held : {false, true}) {
+    FilmOptions options = with_sums(2, held, 64);
+    options.sums.reset();
+    SpectralFilm from_sums({0, 0, 2, 1}, options), from_means({0, 0, 2, 1}, options);
+    for (uint32_t r = 0; r < 2; ++r) {
+      from_sums.add({0, r, counts, sums, 3, factors});
+      from_means.add({0, r, counts, means, 2, {}});
+    }
+    std::vector<float> mean(4), expected(4);
+    from_sums.row(0, mean, {});
+    from_means.row(0, expected, {});
+    EXPECT_EQ(mean, expected);
+    EXPECT_EQ(mean[1], 0.75f);
+    EXPECT_EQ(from_sums.image_moments().mean(0)[0], from_means.image_moments().mean(0)[0]);
+  }
+}
+
 TEST(SpectralFilm, SumsBeyondAChunkAreThoseOfBothKinds) {
   const float open[] = {3}, tiny = 0x1p-26f;
   const ClosedSum folded[] = {std::bit_cast<ClosedSum>(97.0)};
