@@ -10,6 +10,10 @@
 namespace kiloband::cpu {
 namespace {
 
+[[noreturn]] void throw_short_table() {
+  throw std::logic_error("dense spectra: a table has fewer than 2 entries");
+}
+
 /// Stores x as the sum of two floats: 48 bits, so that differences of rows keep float precision.
 void split(double x, float& high, float& low) {
   high = static_cast<float>(x);
@@ -48,7 +52,6 @@ DenseSpectra::DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kerne
       lambda_(aligned_zeros<double>(padded_)),
       texture_lambda_(aligned_zeros<double>(padded_)),
       unit_emission_(aligned_zeros<float>(padded_)),
-      zeros_(aligned_zeros<float>(padded_)),
       rows_(scene.spectra.size()),
       material_rows_(scene.materials.size()),
       float_tables_(scene.spectra.size()) {
@@ -60,6 +63,7 @@ DenseSpectra::DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kerne
     emission_factor_.push_back(scene.channels[k].width_nm() / scene.channel_scale[k]);
     unit_emission_[k] = static_cast<float>(emission_factor_[k]);
   }
+  emission_factor_.resize(padded_);
   for (const SpectrumRow& row : scene.spectra) is_emission_.push_back(row.is_emission);
   for (const KbTexture& texture : scene.textures) {
     if (texture.illuminant_row != KB_NONE) is_emission_.at(texture.illuminant_row) = true;
@@ -162,17 +166,23 @@ void DenseSpectra::fill_exact(uint32_t s, float* out) {
       out[k] = static_cast<float>(planck_factor(row, lambda_[k]) * radiance[k]);
     return;
   }
-  for (std::size_t k = 0; k < channels_; ++k) {
-    const double value = value_at(row, lambda_[k]);
-    out[k] = static_cast<float>(is_emission_[s] ? value * emission_factor_[k] : value);
+  if (!row.is_planck) {
+    const std::vector<double>& values = row.table.values;
+    if (values.size() < 2) throw_short_table();
+    kernels_.sample_exact(
+        {values.data(), values.size(), row.table.min_nm, row.table.step_nm, row.table.extrapolate},
+        lambda_.get(), is_emission_[s] ? emission_factor_.data() : nullptr, channels_, out);
+    std::fill(out + channels_, out + padded_, 0.0f);
+    return;
   }
+  for (std::size_t k = 0; k < channels_; ++k) out[k] = static_cast<float>(value_at(row, lambda_[k]));
 }
 
 const std::vector<float>& DenseSpectra::float_table(uint32_t s) {
   std::vector<float>& table = float_tables_[s];
   if (table.empty()) {
     const std::vector<double>& values = scene_.spectra[s].table.values;
-    if (values.size() < 2) throw std::logic_error("dense spectra: a table has fewer than 2 entries");
+    if (values.size() < 2) throw_short_table();
     table.assign(values.begin(), values.end());
   }
   return table;

@@ -41,14 +41,37 @@ struct DenseSpectra {
 
   /// Row of spectrum s.
   /// throws std::logic_error  there is no such spectrum
-  const float* spectrum(uint32_t s) {
-    if (s >= rows_.size()) throw_bad_row(s);
-    return rows_[s].generation == generation_ ? rows_[s].data : make_spectrum(s);
-  }
+  const float* spectrum(uint32_t s) { return lookup()(s); }
+
+  struct Row {
+    uint64_t generation = 0;
+    float* data = nullptr;
+  };
+  /// spectrum() for loops that ask often: what it reads of this object stays in registers. Valid until begin().
+  class Lookup {
+   public:
+    explicit Lookup(DenseSpectra& spectra)
+        : rows_(spectra.rows_.data()),
+          size_(spectra.rows_.size()),
+          generation_(spectra.generation_),
+          spectra_(spectra) {}
+
+    const float* operator()(uint32_t s) const {
+      if (s >= size_) throw_bad_row(s);
+      return rows_[s].generation == generation_ ? rows_[s].data : spectra_.make_spectrum(s);
+    }
+
+   private:
+    const Row* rows_;
+    std::size_t size_;
+    uint64_t generation_;
+    DenseSpectra& spectra_;
+  };
+  Lookup lookup() { return Lookup(*this); }
+
   /// width_k / channel_scale_k: emission of 1 W m^-2 sr^-1 nm^-1.
   const float* unit_emission() const { return unit_emission_.get(); }
   double emission_factor(std::size_t channel) const { return emission_factor_[channel]; }
-  const float* zeros() const { return zeros_.get(); }
   /// Planck's law at a temperature that no row has, in film units, times `emissivity` (null: 1). Double
   /// precision, one exponential a channel (about 4 ns): the relative error is that of the stored float.
   /// out  padded_channels() floats
@@ -74,10 +97,6 @@ struct DenseSpectra {
   uint64_t generation() const { return generation_; }
 
  private:
-  struct Row {
-    uint64_t generation = 0;
-    float* data = nullptr;
-  };
   struct PlanckRow {
     uint64_t generation = 0;
     std::vector<double> radiance;
@@ -103,12 +122,13 @@ struct DenseSpectra {
   bool fast_ = false;
   uint64_t generation_ = 0;
   uint64_t texture_generation_ = 0, planck_generation_ = 0;
-  std::vector<double> planck_a_, planck_b_;                // PlanckTerms in film units
-  std::vector<double> min_nm_, max_nm_, emission_factor_;  // emission_factor: width_k / channel_scale_k
-  std::vector<bool> is_emission_;                          // of a spectrum
+  std::vector<double> planck_a_, planck_b_;  // PlanckTerms in film units
+  std::vector<double> min_nm_, max_nm_,
+      emission_factor_;            // emission_factor: width_k / channel_scale_k, padded
+  std::vector<bool> is_emission_;  // of a spectrum
   hwy::AlignedFreeUniquePtr<double[]> lambda_, texture_lambda_;
   uint64_t planck_second_generation_ = 0;
-  hwy::AlignedFreeUniquePtr<float[]> unit_emission_, zeros_, planck_second_;
+  hwy::AlignedFreeUniquePtr<float[]> unit_emission_, planck_second_;
   std::vector<Row> rows_;                                 // by spectrum
   std::vector<MaterialRows> material_rows_;               // by material
   std::map<double, PlanckRow> planck_;                    // by temperature

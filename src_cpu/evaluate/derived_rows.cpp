@@ -80,10 +80,9 @@ void DerivedRows::fill(std::size_t d, const DenseSpectra& spectra) {
         {row.table.data(), row.table.size(), response.min_nm, response.step_nm, response.extrapolate},
         spectra.lambda_nm() + first, n, row.weights.get());
   } else {
-    for (std::size_t i = 0; i < n; ++i) {
-      row.weights[i] =
-          row.factor[i] > 0 ? static_cast<float>(response(spectra.lambda_nm()[first + i])) : 0.0f;
-    }
+    kernels_.sample_exact({response.values.data(), response.values.size(), response.min_nm, response.step_nm,
+                           response.extrapolate},
+                          spectra.lambda_nm() + first, nullptr, n, row.weights.get());
   }
   for (std::size_t i = 0; i < n; ++i) row.weights[i] *= row.factor[i] * inverse_cover_[first + i];
 }

@@ -15,9 +15,9 @@ namespace kiloband::cpu {
 
 /// Evaluates saved paths of one thread; owns scratch memory, so one per thread. `scene` must outlive it.
 ///
-/// A path's throughput and radiance stay in registers over all its vertices, for 4 vectors of channels at a
-/// time (64 channels with AVX-512); what the vertices refer to is resolved once per path. Values are film
-/// units: channel k times 1 / channel_scale[k]. A channel's bits depend on the path, mu and the instruction
+/// A path's product of reflectances, light and radiance stay in registers over all its vertices, for 4
+/// vectors of channels at a time (64 channels with AVX-512); what the vertices refer to is resolved once per
+/// path. Values are film units: channel k times 1 / channel_scale[k]. A channel's bits depend on the path, mu and the instruction
 /// set, not on the other channels. Emission rows (SpectrumRow::is_emission, and illuminants of textures)
 /// carry width_k / channel_scale_k; a textured emitter without an illuminant is taken to be
 /// in W m^-2 sr^-1 nm^-1 as it is.

@@ -1,6 +1,6 @@
 // The SIMD kernels of deferred evaluation (DPEPT paper, algorithm 1), compiled for SSE4.2, AVX2 and AVX-512.
 //
-// One path, all channels: for each block of channels, tau and L stay in registers over all steps; then one
+// One path, all channels: for each block of channels, P, S and L stay in registers over all steps; then one
 // read-modify-write of the film. Every lane is a channel, so a channel's bits do not depend
 // on its neighbours.
 #include "src_cpu/evaluate/evaluator_kernels.hpp"
@@ -29,7 +29,7 @@ HWY_BEFORE_NAMESPACE();
 namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
-/// Vectors of a full block: tau and L take 8 of the 16 (SSE4, AVX2) or 32 registers.
+/// Vectors of a full block: P, S and L take 12 of the 16 (SSE4, AVX2) or 32 registers.
 inline constexpr std::size_t kBlockVectors = 4;
 static_assert(kBlockVectors * kLanes <= kRowPadding && kLanes <= kMaxLanes);
 
@@ -39,7 +39,7 @@ HWY_INLINE Floats source(const SpectralSource& s, const double* lambda, std::siz
 
 /// B(w0, w1) of path_vertex.h from S_a and the second factor (S_b, or S_b / (1 - S_b fdr_int)).
 HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, float w1,
-                          const FresnelTerms& f, std::size_t k) {
+                          const FresnelTerms* f, std::size_t k) {
   const Floats scaled = hn::Mul(constant(w0), a);
   switch (v.kind) {
     case KB_KIND_TWO_TERM:
@@ -47,9 +47,9 @@ HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, 
       return hn::MulAdd(constant(w1), b, scaled);
     case KB_KIND_CONDUCTOR:
     case KB_KIND_DISPERSIVE:
-      return hn::Mul(scaled, fresnel(f, k));
+      return hn::Mul(scaled, fresnel(*f, k));
     case KB_KIND_ROUGH_TRANSMISSION:
-      return hn::Mul(scaled, rough_transmission(v.transmission, k));
+      return hn::Mul(scaled, rough_transmission(*v.transmission, k));
     default:
       return scaled;
   }
@@ -107,41 +107,46 @@ HWY_INLINE void unrolled(F&& f, std::index_sequence<I...>) {
   (f(std::integral_constant<std::size_t, I>{}), ...);
 }
 
-/// State of a block of V vectors of channels.
+/// State of a block of V vectors of channels: P, S and L of StepKind.
 template <std::size_t V>
 struct Block {
-  Floats tau[V], radiance[V];
+  Floats product[V], light[V], radiance[V];
 
   template <class F>
   static HWY_INLINE void each(F&& f) {
     unrolled(f, std::make_index_sequence<V>{});
   }
 
-  HWY_INLINE void scaled(const PathStep& step, std::size_t k) {
-    const Floats nee0 = constant(step.nee0), scatter0 = constant(step.scatter0);
+  HWY_INLINE void reflect(const PathStep& step, std::size_t k) {
+    each([&](auto i) HWY_ATTR { product[i] = hn::Mul(product[i], load(step.row, k + i * kLanes)); });
+    add(step);
+  }
+
+  HWY_INLINE void add(const PathStep& step) {
+    const Floats weight = constant(step.weight);
+    each([&](auto i) HWY_ATTR { light[i] = hn::MulAdd(product[i], weight, light[i]); });
+  }
+
+  HWY_INLINE void close(const float* row, std::size_t k) {
     each([&](auto i) HWY_ATTR {
-      const Floats reflected = hn::Mul(tau[i], load(step.a, k + i * kLanes));
-      radiance[i] = hn::MulAdd(reflected, hn::Mul(nee0, load(step.nee, k + i * kLanes)), radiance[i]);
-      tau[i] = hn::Mul(reflected, scatter0);
+      radiance[i] = hn::MulAdd(light[i], load(row, k + i * kLanes), radiance[i]);
+      light[i] = hn::Zero(kTag);
     });
   }
 
-  HWY_INLINE void emit(const PathStep& step, std::size_t k) {
-    const Floats weight = constant(step.nee0);
-    each([&](auto i) HWY_ATTR {
-      radiance[i] = hn::MulAdd(hn::Mul(tau[i], weight), load(step.nee, k + i * kLanes), radiance[i]);
-    });
+  HWY_INLINE void scale(const PathStep& step) {
+    each([&](auto i) HWY_ATTR { product[i] = hn::Mul(product[i], constant(step.weight)); });
   }
 
   HWY_INLINE bool general(const PathStep& step, const double* lambda, std::size_t k, float* aside) {
     alignas(64) float t[V * kLanes], l[V * kLanes];
     each([&](auto i) HWY_ATTR {
-      hn::Store(tau[i], kTag, t + i * kLanes);
+      hn::Store(hn::Mul(product[i], constant(step.weight)), kTag, t + i * kLanes);
       hn::Store(radiance[i], kTag, l + i * kLanes);
     });
     const bool goes_on = general_step(*step.general, lambda, k, V, t, l, aside);
     each([&](auto i) HWY_ATTR {
-      tau[i] = hn::Load(kTag, t + i * kLanes);
+      product[i] = hn::Load(kTag, t + i * kLanes);
       radiance[i] = hn::Load(kTag, l + i * kLanes);
     });
     return goes_on;
@@ -162,6 +167,23 @@ struct Block {
   }
 };
 
+template <std::size_t V>
+HWY_INLINE void run_steps(Block<V>& block, const PathProgram& path, std::size_t k, float* aside) {
+  for (const PathStep *step = path.steps, *end = step + path.step_count; step != end; ++step) {
+    if (step->kind == StepKind::kReflect) {
+      block.reflect(*step, k);
+    } else if (step->kind == StepKind::kAdd) {
+      block.add(*step);
+    } else if (step->kind == StepKind::kLight) {
+      block.close(step->row, k);
+    } else if (step->kind == StepKind::kScale) {
+      block.scale(*step);
+    } else if (!block.general(*step, path.texture_lambda, k, aside)) {
+      return;
+    }
+  }
+}
+
 /// Channels [k, k + V * kLanes) of the path.
 template <std::size_t V>
 HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* film) {
@@ -169,19 +191,12 @@ HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* fi
   alignas(64) float aside[V * kLanes];
   if (path.gas) std::fill_n(aside, V * kLanes, 1.0f);
   block.each([&](auto i) HWY_ATTR {
-    block.tau[i] = constant(1);
-    block.radiance[i] = hn::Zero(kTag);
+    block.product[i] = constant(1);
+    block.light[i] = block.radiance[i] = hn::Zero(kTag);
     if (path.next_film) hwy::Prefetch(path.next_film + k + i * kLanes);
   });
-  for (const PathStep *step = path.steps, *end = step + path.step_count; step != end; ++step) {
-    if (step->kind == StepKind::kScaled) {
-      block.scaled(*step, k);
-    } else if (step->kind == StepKind::kEmit) {
-      block.emit(*step, k);
-    } else if (!block.general(*step, path.texture_lambda, k, aside)) {
-      break;
-    }
-  }
+  run_steps(block, path, k, aside);
+  if (path.light) block.close(path.light, k);
   if (path.derived) block.derive(*path.derived, k);
   block.each([&](auto i) HWY_ATTR {
     float* place = film + k + i * kLanes;
@@ -214,7 +229,8 @@ void evaluate_path(const PathProgram& path, float* film) {
   if (path.derived) finish_derived(*path.derived, film);
 }
 
-inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, weighted_sum, mix_bands};
+inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, sample_exact, weighted_sum,
+                                           mix_bands};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kiloband::cpu

@@ -58,34 +58,37 @@ struct TransmissionTerms {
   bool ggx = false;
 };
 
-/// A vertex that the fast steps do not cover; see KbPathVertex.
-/// Emission from named rows is a step of its own.
+/// A vertex that the fast steps do not cover; see KbPathVertex. Emission from named rows is a step before it.
 struct GeneralVertex {
   uint32_t kind = 0;   // KbVertexKind
   uint32_t flags = 0;  // KB_VERTEX_EMIT (textured, or gas), _NEE, _SCATTER, _DEGRADE, _DEFER
   SpectralSource a, b, emit, nee;
   float emit_weight = 0, nee0 = 0, nee1 = 0, scatter0 = 0, scatter1 = 0;
   float fdr_int = 0;
-  FresnelTerms nee_fresnel, scatter_fresnel;
-  TransmissionTerms transmission;  // KB_KIND_ROUGH_TRANSMISSION
-  uint32_t survivor = 0;           // channel that goes on if KB_VERTEX_DEGRADE
+  const FresnelTerms* nee_fresnel = nullptr;  // KB_KIND_CONDUCTOR, _DISPERSIVE
+  const FresnelTerms* scatter_fresnel = nullptr;
+  const TransmissionTerms* transmission = nullptr;  // KB_KIND_ROUGH_TRANSMISSION
+  uint32_t survivor = 0;                            // channel that goes on if KB_VERTEX_DEGRADE
   // Gas, KB_KIND_MEDIUM. A plume's first cell has no column and the temperature of the near end.
   std::span<const KbPlumeCell> cells;
   float reference_k = 0;            // plume: where emit.row is Planck's law
   const float* second_k = nullptr;  // plume: row of hc / (k lambda), K
 };
 
+/// A path is a sum of terms  scalar * product of reflectances * emission.  Its scalars are multiplied once per
+/// path, so that a channel has the product P, the light S in units of one emission row, and the radiance L:
 enum class StepKind : uint32_t {
-  kScaled,  // L += tau a nee0 I; tau *= a scatter0
-  kEmit,    // L += tau nee0 I
-  kGeneral
+  kReflect,  // P *= row; S += weight P
+  kAdd,      // S += weight P
+  kLight,    // L += S row; S = 0
+  kScale,    // P *= weight
+  kGeneral   // tau = weight P; what the vertex does to tau and L; P = tau. S is 0
 };
 
 struct PathStep {
   StepKind kind;
-  float nee0, scatter0;
-  const float* a;
-  const float* nee;
+  float weight;
+  const float* row;
   const GeneralVertex* general;
 };
 
@@ -105,6 +108,7 @@ struct DerivedPlan {
 struct PathProgram {
   const PathStep* steps = nullptr;
   std::size_t step_count = 0;
+  const float* light = nullptr;  // emission row of S after the last step; null: S is 0
   std::size_t channels = 0;
   const double* texture_lambda = nullptr;  // padded, nm
   const DerivedPlan* derived = nullptr;    // null: none
@@ -120,12 +124,24 @@ struct FloatTable {
   bool extrapolate;
 };
 
+/// A RegularTable.
+struct DoubleTable {
+  const double* values;
+  std::size_t size;  // at least 2
+  double min_nm, step_nm;
+  bool extrapolate;
+};
+
 /// The kernels of one instruction set.
 struct EvaluatorKernels {
   /// Adds the path's channel values to film[0 .. channels) and its derived ones to film[offset ..).
   void (*evaluate_path)(const PathProgram& path, float* film);
   /// out[i] = table(lambda_nm[i]) for i < count rounded up to kMaxLanes; positions in double.
   void (*sample_table)(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out);
+  /// out[i] = table(lambda_nm[i]) * factor[i] (null: 1) for i < count rounded up to kMaxLanes, in double, with
+  /// the bits of RegularTable.
+  void (*sample_exact)(const DoubleTable& table, const double* lambda_nm, const double* factor,
+                       std::size_t count, float* out);
   /// out[i] = sum over r < rows of weights[r] * row[r][i], i < count.
   /// Nothing is read or written beyond count.
   void (*weighted_sum)(const float* const* row, const float* weights, std::size_t rows, std::size_t count,

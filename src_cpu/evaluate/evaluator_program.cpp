@@ -1,5 +1,7 @@
 #include "src_cpu/evaluate/evaluator_program.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -26,6 +28,40 @@ void add_texel(TextureTerms& terms, double& constant, const KbFloat4& texel, dou
   terms.weights[i] = static_cast<float>(weight * texel.w);
 }
 
+/// B = w0 S_a and nothing else that steps do not have. A light sample without a scattering event multiplies
+/// P with what the next vertices must not have.
+bool is_scaled(uint32_t head, bool last) {
+  constexpr uint32_t kOther = KB_VERTEX_KIND_MASK | KB_VERTEX_DEGRADE | KB_VERTEX_DEFER;
+  static_assert(KB_KIND_SCALED == 0);
+  return !(head & kOther) && (last || (head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER)) != KB_VERTEX_NEE);
+}
+
+bool is_plain(uint32_t head, bool last) {
+  return !(head & KB_VERTEX_TEX_MASK) && is_scaled(head, last);
+}
+
+/// Of a vertex of any kind but KB_KIND_MEDIUM.
+std::size_t sample_count(uint32_t head) {
+  return static_cast<std::size_t>(std::popcount(head & KB_VERTEX_TEX_MASK));
+}
+
+/// A prefetch that stays: functions that do nothing else are taken for pure by GCC, which drops their calls.
+void fetch(const KbFloat4* texel) {
+  hwy::Prefetch(texel);
+  asm volatile("");
+}
+
+/// Both rows of the texels of a lookup, with their right neighbours if these are in the texture.
+void fetch_square(const KbFloat4* texels, const KbTexture& texture, uint32_t xy) {
+  const uint32_t x = xy & 0xffffu, y = xy >> 16, below = std::min(y + 1, texture.height - 1);
+  if (x >= texture.width || y >= texture.height) return;
+  const uint32_t right = std::min(x + 1, texture.width - 1);
+  for (const uint32_t row : {y, below}) {
+    fetch(texels + std::size_t{row} * texture.width + x);
+    fetch(texels + std::size_t{row} * texture.width + right);
+  }
+}
+
 FresnelTerms fresnel_terms(float cosine) {
   FresnelTerms terms;
   const double c = std::fabs(static_cast<double>(cosine));
@@ -38,26 +74,82 @@ FresnelTerms fresnel_terms(float cosine) {
 
 }  // namespace
 
-/// Pointers into generals_ and textures_ must stay valid while the program is built.
+/// Pointers into these arrays must stay valid while the program is built.
 void ProgramBuilder::reserve(std::size_t entries) {
-  steps_.clear();
-  generals_.clear();
-  textures_.clear();
+  general_count_ = texture_count_ = 0;
+  fresnels_.clear();
+  transmissions_.clear();
   textured_ = gas_ = false;
   spectral_.begin_path();
   scratch_used_ = 0;
   cells_.clear();
-  if (generals_.capacity() >= entries) return;
-  entries = std::max<std::size_t>(64, 2 * entries);
-  steps_.reserve(2 * entries);
-  generals_.reserve(entries);
-  textures_.reserve(2 * entries);
+  if (generals_.size() < entries) grow(std::max<std::size_t>(64, 2 * entries));
+  writer_ = StepWriter(steps_.data());
+}
+
+void ProgramBuilder::grow(std::size_t entries) {
+  steps_.resize(StepWriter::kMostSteps * entries);
+  generals_.resize(entries);
+  textures_.resize(4 * entries);
+  fresnels_.reserve(2 * entries);
+  transmissions_.reserve(entries);
   cells_.reserve(5 * entries);
+}
+
+/// What its kind does not use is that of a vertex before.
+GeneralVertex& ProgramBuilder::new_general() {
+  return generals_[general_count_++];
+}
+
+/// Its coefficients and weights are those of a lookup before.
+TextureTerms& ProgramBuilder::new_texture() {
+  TextureTerms& terms = textures_[texture_count_++];
+  terms.count = 0;
+  terms.factor = nullptr;
+  return terms;
+}
+
+/// The vertices from `first` on that refer to nothing but spectra, as most do. Returns where the first other one is.
+inline std::size_t ProgramBuilder::add_plain(std::span<const KbPathVertex> entries, std::size_t first,
+                                             DenseSpectra& spectra) {
+  StepWriter writer = writer_;
+  const DenseSpectra::Lookup spectrum = spectra.lookup();
+  std::size_t i = first;
+  for (; i < entries.size() && is_plain(entries[i].head, i + 1 == entries.size()); ++i) {
+    const KbPathVertex& vertex = entries[i];
+    const uint32_t head = vertex.head;
+    if (head & KB_VERTEX_EMIT) writer.emit(spectrum(vertex.emit_row), vertex.emit_weight);
+    if (!(head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER))) continue;
+    // Whether a light sample is there is as good as random: no branch.
+    const bool nee = head & KB_VERTEX_NEE;
+    const float* const light = spectrum(nee ? vertex.nee_row : vertex.row_a);
+    writer.reflect(spectrum(vertex.row_a), nee ? light : writer.light(), nee ? vertex.nee0 : 0);
+    writer.scatter(head & KB_VERTEX_SCATTER ? vertex.scatter0 : 1);
+  }
+  writer_ = writer;
+  return i;
+}
+
+void ProgramBuilder::fetch_texels(std::span<const KbPathVertex> entries) const {
+  for (std::size_t i = 0; i < entries.size();) {
+    const uint32_t head = entries[i].head;
+    const std::size_t samples = sample_count(head), next = i + 1 + kb_vertex_extensions(head);
+    if (next > entries.size()) return;
+    for (std::size_t n = 0; n < samples; ++n) {
+      KbTextureSample sample;
+      std::memcpy(&sample, reinterpret_cast<const char*>(&entries[i] + 1) + n * sizeof sample, sizeof sample);
+      if (sample.texture >= scene_.textures.size()) continue;  // a temperature's, or none
+      const KbTexture& t = scene_.textures[sample.texture];
+      if (t.flags & KB_TEXTURE_SPECTRAL) continue;
+      fetch_square(&scene_.texels[t.first_texel], t, sample.xy);
+    }
+    i = next;
+  }
 }
 
 PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSpectra& spectra) {
   reserve(entries.size());
-  for (std::size_t i = 0; i < entries.size();) {
+  for (std::size_t i = 0; (i = add_plain(entries, i, spectra)) < entries.size();) {
     const KbPathVertex& vertex = entries[i];
     const std::size_t next = i + 1 + kb_vertex_extensions(vertex.head);
     if (next > entries.size()) throw std::logic_error("saved path: texture samples or cells are missing");
@@ -66,7 +158,7 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSp
       i = next;
       continue;
     }
-    const std::size_t samples = static_cast<std::size_t>(std::popcount(vertex.head & KB_VERTEX_TEX_MASK));
+    const std::size_t samples = sample_count(vertex.head);
     KbTextureSample copies[4];
     if (samples > 0) std::memcpy(copies, &entries[i] + 1, samples * sizeof(KbTextureSample));
     add_vertex(vertex, sources(vertex, copies, spectra), next == entries.size(), spectra);
@@ -74,7 +166,8 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSp
   }
   PathProgram program;
   program.steps = steps_.data();
-  program.step_count = steps_.size();
+  program.step_count = writer_.count();
+  program.light = writer_.light();
   program.channels = spectra.channels();
   program.gas = gas_;
   program.texture_lambda = textured_ ? spectra.texture_lambda() : nullptr;
@@ -101,26 +194,19 @@ ProgramBuilder::Sources ProgramBuilder::sources(const KbPathVertex& vertex, cons
 void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const Sources& from, bool last,
                                 DenseSpectra& spectra) {
   const uint32_t head = vertex.head;
-  if ((head & KB_VERTEX_EMIT) && !from.emit.texture)
-    steps_.push_back({StepKind::kEmit, vertex.emit_weight, 0, nullptr, from.emit.row, nullptr});
-  const bool nee = head & KB_VERTEX_NEE;
-  const bool scatter = head & KB_VERTEX_SCATTER;
-  if ((head & (KB_VERTEX_DEGRADE | KB_VERTEX_DEFER)) || from.any_colour() ||
-      (head & KB_VERTEX_KIND_MASK) != KB_KIND_SCALED || (nee && !scatter && !last)) {
-    add_general(vertex, from, spectra);
-    return;
-  }
-  if (!nee && !scatter) return;
-  // No light sample: a row of zeros costs less than a branch.
-  // After the last vertex nobody reads the throughput.
-  steps_.push_back({StepKind::kScaled, nee ? vertex.nee0 : 0, scatter ? vertex.scatter0 : 0, from.a.row,
-                    nee ? from.nee.row : spectra.zeros(), nullptr});
+  if ((head & KB_VERTEX_EMIT) && !from.emit.texture) writer_.emit(from.emit.row, vertex.emit_weight);
+  if (from.any_colour() || !is_scaled(head, last)) return add_general(vertex, from, spectra);
+  if (head & KB_VERTEX_NEE)
+    writer_.reflect(from.a.row, from.nee.row, vertex.nee0);
+  else if (head & KB_VERTEX_SCATTER)
+    writer_.reflect(from.a.row);
+  if (head & KB_VERTEX_SCATTER) writer_.scatter(vertex.scatter0);
 }
 
 void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra) {
   const uint32_t head = vertex.head;
   const uint32_t material = head >> KB_VERTEX_MATERIAL_SHIFT;
-  GeneralVertex& out = generals_.emplace_back();
+  GeneralVertex& out = new_general();
   out.kind = head & KB_VERTEX_KIND_MASK;
   out.flags = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE | KB_VERTEX_DEFER);
   if (from.emit.texture) out.flags |= head & KB_VERTEX_EMIT;
@@ -141,19 +227,20 @@ void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from
     out.fdr_int = scene_.materials[material].fdr_int;
   }
   if (reflects && (out.kind == KB_KIND_CONDUCTOR || out.kind == KB_KIND_DISPERSIVE))
-    add_fresnel(out, material, spectra);
+    add_fresnel(out, vertex, spectra);
   if (reflects && out.kind == KB_KIND_ROUGH_TRANSMISSION) add_transmission(out, vertex, spectra);
-  steps_.push_back({StepKind::kGeneral, 0, 0, nullptr, nullptr, &out});
+  writer_.general(out);
 }
 
 /// Gas along a ray. The cells get the near end's temperature in front.
 void ProgramBuilder::add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions,
                                 DenseSpectra& spectra) {
-  GeneralVertex& out = generals_.emplace_back();
+  GeneralVertex& out = new_general();
   out.kind = KB_KIND_MEDIUM;
   out.flags = vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEFER);
-  out.a.row = spectra.spectrum(vertex.row_a);
-  if (out.flags & KB_VERTEX_EMIT) out.emit.row = spectra.spectrum(vertex.emit_row);
+  out.a = {spectra.spectrum(vertex.row_a), nullptr};
+  out.cells = {};
+  if (out.flags & KB_VERTEX_EMIT) out.emit = {spectra.spectrum(vertex.emit_row), nullptr};
   out.emit_weight = vertex.emit_weight;
   out.nee0 = vertex.nee0;
   out.scatter0 = vertex.scatter0;
@@ -169,17 +256,18 @@ void ProgramBuilder::add_medium(const KbPathVertex& vertex, const KbPathVertex* 
     out.reference_k = vertex.nee1;
     out.second_k = spectra.planck_second();
   }
-  steps_.push_back({StepKind::kGeneral, 0, 0, nullptr, nullptr, &out});
+  writer_.general(out);
 }
 
-void ProgramBuilder::add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const {
+void ProgramBuilder::add_fresnel(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) {
+  const uint32_t material = vertex.head >> KB_VERTEX_MATERIAL_SHIFT;
   if (material >= scene_.materials.size()) throw std::logic_error("saved path: material does not exist");
   if (scene_.materials[material].flags & KB_MATERIAL_PERFECT_MIRROR) {
     out.kind = KB_KIND_SCALED;  // F = 1
     return;
   }
   const auto side = [&](float cosine) {
-    FresnelTerms terms = fresnel_terms(cosine);
+    FresnelTerms& terms = fresnels_.emplace_back(fresnel_terms(cosine));
     if (out.kind == KB_KIND_CONDUCTOR) {
       const auto rows = spectra.conductor(material);
       terms.high = rows[0], terms.low = rows[1], terms.nk = rows[2];
@@ -190,14 +278,13 @@ void ProgramBuilder::add_fresnel(GeneralVertex& out, uint32_t material, DenseSpe
       if (thin) terms.of = cosine < 0 ? Of::kPaneTransmittance : Of::kPaneReflectance;
       terms.high = rows[0], terms.low = rows[1];
     }
-    return terms;
+    return &terms;
   };
-  if (out.flags & KB_VERTEX_NEE) out.nee_fresnel = side(out.nee1);
-  if (out.flags & KB_VERTEX_SCATTER) out.scatter_fresnel = side(out.scatter1);
+  if (out.flags & KB_VERTEX_NEE) out.nee_fresnel = side(vertex.nee1);
+  if (out.flags & KB_VERTEX_SCATTER) out.scatter_fresnel = side(vertex.scatter1);
 }
 
-void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& vertex,
-                                      DenseSpectra& spectra) const {
+void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) {
   const uint32_t material = vertex.head >> KB_VERTEX_MATERIAL_SHIFT;
   if (material >= scene_.materials.size()) throw std::logic_error("saved path: material does not exist");
   const KbMaterial& m = scene_.materials[material];
@@ -205,14 +292,16 @@ void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& ve
   const float alpha_u = std::max(m.alpha_u, KB_MIN_ALPHA), alpha_v = std::max(m.alpha_v, KB_MIN_ALPHA);
   const auto rows = spectra.dispersive(material, pair.inside != 0);
   const double cosine = double{pair.ix} * pair.ox + double{pair.iy} * pair.oy + double{pair.iz} * pair.oz;
-  out.transmission = {rows[0],           rows[1], pair.ix + pair.ox, pair.iy + pair.oy,
-                      pair.iz + pair.oz, pair.ox, pair.oy,           pair.oz};
-  out.transmission.cosine = static_cast<float>(cosine);
-  out.transmission.one_plus_cosine = static_cast<float>(1 + cosine);
-  out.transmission.inverse_alpha_u = 1 / alpha_u;
-  out.transmission.inverse_alpha_v = 1 / alpha_v;
-  out.transmission.norm = KB_INV_PI / (alpha_u * alpha_v);
-  out.transmission.ggx = (m.flags & KB_MATERIAL_GGX) != 0;
+  TransmissionTerms& terms = transmissions_.emplace_back();
+  terms = {rows[0],           rows[1], pair.ix + pair.ox, pair.iy + pair.oy,
+           pair.iz + pair.oz, pair.ox, pair.oy,           pair.oz};
+  terms.cosine = static_cast<float>(cosine);
+  terms.one_plus_cosine = static_cast<float>(1 + cosine);
+  terms.inverse_alpha_u = 1 / alpha_u;
+  terms.inverse_alpha_v = 1 / alpha_v;
+  terms.norm = KB_INV_PI / (alpha_u * alpha_v);
+  terms.ggx = (m.flags & KB_MATERIAL_GGX) != 0;
+  out.transmission = &terms;
 }
 
 /// corners: of texels of colours.
@@ -241,7 +330,7 @@ SpectralSource ProgramBuilder::thermal(const KbThermalSample& sample, DenseSpect
   constexpr float kUnit = 1.0f / 65535;
   const KbTextureSample lookup{index, sample.xy, static_cast<float>(sample.fractions & 0xffffu) * kUnit,
                                static_cast<float>(sample.fractions >> 16) * kUnit};
-  TextureTerms& terms = textures_.emplace_back();
+  TextureTerms& terms = new_texture();
   add_texels(terms, index, TexelCorners(scene_.textures[index], lookup));
   spectra.fill_planck(sample.temperature_k, nullptr, factor);
   terms.factor = factor;
@@ -259,7 +348,7 @@ SpectralSource ProgramBuilder::texture(const KbTextureSample& sample, bool emiss
   if (sample.texture >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
   const KbTexture& t = scene_.textures[sample.texture];
   if (t.flags & KB_TEXTURE_SPECTRAL) return {spectral_.row(sample, spectra), nullptr};
-  TextureTerms& terms = textures_.emplace_back();
+  TextureTerms& terms = new_texture();
   add_texels(terms, sample.texture, TexelCorners(t, sample));
   if (t.illuminant_row != KB_NONE)
     terms.factor = spectra.spectrum(t.illuminant_row);

@@ -7,6 +7,7 @@
 
 #include "src_cpu/evaluate/dense_spectra.hpp"
 #include "src_cpu/evaluate/spectral_textures.hpp"
+#include "src_cpu/evaluate/step_writer.hpp"
 #include "src_cpu/geometry/texel_corners.hpp"
 #include "src_cpu/path/path_buffer.hpp"
 
@@ -20,6 +21,8 @@ class ProgramBuilder {
   /// The program of the path in `entries` at the offset of `spectra`; valid until the next call.
   /// throws std::logic_error if the path refers to what the scene does not have
   PathProgram build(std::span<const KbPathVertex> entries, DenseSpectra& spectra);
+  /// Asks the caches for the texels of a path that will be built soon.
+  void fetch_texels(std::span<const KbPathVertex> entries) const;
 
  private:
   /// The spectral factors that a vertex uses.
@@ -31,21 +34,30 @@ class ProgramBuilder {
   };
 
   void reserve(std::size_t entries);
+  void grow(std::size_t entries);
   Sources sources(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
   void add_vertex(const KbPathVertex& vertex, const Sources& from, bool last, DenseSpectra& spectra);
+  std::size_t add_plain(std::span<const KbPathVertex> entries, std::size_t first, DenseSpectra& spectra);
+  GeneralVertex& new_general();
+  TextureTerms& new_texture();
   void add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra);
   void add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions, DenseSpectra& spectra);
-  void add_fresnel(GeneralVertex& out, uint32_t material, DenseSpectra& spectra) const;
-  void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) const;
+  void add_fresnel(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra);
+  void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra);
   SpectralSource texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
   SpectralSource thermal(const KbThermalSample& sample, DenseSpectra& spectra);
   void add_texels(TextureTerms& terms, uint32_t texture, const TexelCorners& corners) const;
   float* scratch_row(const DenseSpectra& spectra);
 
   const FlatScene& scene_;
+  // Of the path at hand; these arrays have room for all that its entries can need, and others point into them.
   std::vector<PathStep> steps_;
-  std::vector<GeneralVertex> generals_;  // reserved: steps point into it
-  std::vector<TextureTerms> textures_;   // reserved: generals point into it
+  std::vector<GeneralVertex> generals_;
+  std::vector<TextureTerms> textures_;
+  std::size_t general_count_ = 0, texture_count_ = 0;
+  StepWriter writer_;
+  std::vector<FresnelTerms> fresnels_;
+  std::vector<TransmissionTerms> transmissions_;
   SpectralTextures spectral_;
   std::vector<hwy::AlignedFreeUniquePtr<float[]>>
       scratch_;  // rows of this path; the first scratch_used_ are taken

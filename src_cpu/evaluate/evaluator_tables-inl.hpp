@@ -59,6 +59,37 @@ inline void sample_table(const FloatTable& table, const double* lambda_nm, std::
   }
 }
 
+/// RegularTable::operator(), operation by operation.
+HWY_INLINE Doubles exact_value(const DoubleTable& table, Doubles lambda_nm) {
+  const hn::RebindToSigned<DoubleTag> index_tag;
+  const double last = static_cast<double>(table.size - 1);
+  const Doubles position =
+      hn::Div(hn::Sub(lambda_nm, hn::Set(kDoubleTag, table.min_nm)), hn::Set(kDoubleTag, table.step_nm));
+  const auto starts = hn::Ge(position, hn::Zero(kDoubleTag)),
+             ends = hn::Ge(position, hn::Set(kDoubleTag, last));
+  const Doubles index =
+      hn::Min(hn::Floor(hn::IfThenElseZero(starts, position)), hn::Set(kDoubleTag, last - 1));
+  const auto entry = hn::ConvertTo(index_tag, index);
+  const Doubles t = hn::Sub(position, index), rest = hn::Sub(hn::Set(kDoubleTag, 1.0), t);
+  const Doubles inner = hn::Add(hn::Mul(rest, hn::GatherIndex(kDoubleTag, table.values, entry)),
+                                hn::Mul(t, hn::GatherIndex(kDoubleTag, table.values + 1, entry)));
+  const double front = table.extrapolate ? table.values[0] : 0;
+  const double back = table.values[table.size - 1], beyond = table.extrapolate ? back : 0;
+  const auto kept = hn::Le(position, hn::Set(kDoubleTag, last * (1 + 1e-12)));
+  const Doubles end = hn::IfThenElse(kept, hn::Set(kDoubleTag, back), hn::Set(kDoubleTag, beyond));
+  return hn::IfThenElse(starts, hn::IfThenElse(ends, end, inner), hn::Set(kDoubleTag, front));
+}
+
+inline void sample_exact(const DoubleTable& table, const double* lambda_nm, const double* factor,
+                         std::size_t count, float* out) {
+  const std::size_t n = hn::Lanes(kDoubleTag), end = (count + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+  for (std::size_t k = 0; k < end; k += n) {
+    Doubles value = exact_value(table, hn::LoadU(kDoubleTag, lambda_nm + k));
+    if (factor) value = hn::Mul(value, hn::LoadU(kDoubleTag, factor + k));
+    hn::StoreU(hn::DemoteTo(HalfTag(), value), HalfTag(), out + k);
+  }
+}
+
 inline void weighted_sum(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
                          float* out) {
   std::size_t i = 0;

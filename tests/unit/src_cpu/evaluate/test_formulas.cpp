@@ -63,6 +63,34 @@ TEST_P(Formulas, VerticesByHand) {
   EXPECT_NEAR(channel(scene, paths, GetParam(), 1), 20 * expected, 2e-5);
 }
 
+/// Light of two emission rows by turns, from light samples and from emitters that paths hit, and weights that would
+/// leave the range of floats if they were multiplied apart from the reflectances.
+TEST_P(Formulas, LightsByTurnsAndFarWeights) {
+  FlatScene scene = constant_scene({{400, 410, {}}});
+  scene.spectra.push_back(row(table(300, 1000, {5.0, 5.0}), true));  // row 3
+  scene.spectra.push_back(row(table(300, 1000, {1e-9, 1e-9})));      // row 4
+  KbPathVertex v = vertex_of(KB_KIND_SCALED | KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER);
+  v.emit_weight = 0.5f;
+  v.nee0 = 0.25f;
+  v.scatter0 = 2;
+  const auto lit_by = [&](uint16_t emit, uint16_t nee) {
+    v.emit_row = emit;
+    v.nee_row = nee;
+    return v;
+  };
+  // tau is 1 throughout: E/2 + I/8 each, 10 nm wide.
+  const PathBuffer turns = one_path({lit_by(2, 2), lit_by(2, 3), lit_by(3, 3), lit_by(2, 3), lit_by(2, 2)});
+  EXPECT_NEAR(channel(scene, turns, GetParam(), 0), 10 * ((4 * 3 + 5) / 2.0 + (2 * 3 + 3 * 5) / 8.0),
+              1e-5 * 90);
+  KbPathVertex dark = v;
+  dark.head &= ~(KB_VERTEX_EMIT | KB_VERTEX_NEE);
+  dark.row_a = 4;
+  dark.scatter0 = 1e9f;
+  std::vector<KbPathVertex> far(12, dark);
+  far.push_back(lit_by(3, 2));
+  EXPECT_NEAR(channel(scene, one_path(far), GetParam(), 0), 10 * (5 / 2.0 + 3 / 8.0), 1e-5 * 30);
+}
+
 TEST_P(Formulas, NonlinearAndDegraded) {
   FlatScene scene = constant_scene({{500, 501, {}}, {600, 601, {}}, {700, 701, {}}});
   KbMaterial plastic{};
