@@ -202,6 +202,9 @@ inline constexpr HalfLanes kHalfLanes;
 struct D {
   hn::Vec<DoubleLanes> low, high;
 };
+KB_INLINE D to_doubles(double a) {
+  return {hn::Set(kDoubleLanes, a), hn::Set(kDoubleLanes, a)};
+}
 KB_INLINE D to_doubles(F a) {
   return {hn::PromoteTo(kDoubleLanes, hn::LowerHalf(kHalfLanes, a.v)),
           hn::PromoteTo(kDoubleLanes, hn::UpperHalf(kHalfLanes, a.v))};
@@ -218,8 +221,25 @@ KB_INLINE D operator-(D a, D b) {
 KB_INLINE D operator*(D a, D b) {
   return {hn::Mul(a.low, b.low), hn::Mul(a.high, b.high)};
 }
+KB_INLINE D operator/(D a, D b) {
+  return {hn::Div(a.low, b.low), hn::Div(a.high, b.high)};
+}
 KB_INLINE D sqrt(D a) {
   return {hn::Sqrt(a.low), hn::Sqrt(a.high)};
+}
+KB_INLINE D floor(D a) {
+  return {hn::Floor(a.low), hn::Floor(a.high)};
+}
+KB_INLINE D min(D a, D b) {
+  return {hn::Min(a.low, b.low), hn::Min(a.high, b.high)};
+}
+KB_INLINE D max(D a, D b) {
+  return {hn::Max(a.low, b.low), hn::Max(a.high, b.high)};
+}
+KB_INLINE D zero_beyond(D a, double limit) {
+  const auto end = hn::Set(kDoubleLanes, limit);
+  return {hn::IfThenElseZero(hn::Lt(hn::Abs(a.low), end), a.low),
+          hn::IfThenElseZero(hn::Lt(hn::Abs(a.high), end), a.high)};
 }
 
 KB_INLINE F as_floats(U a) {
@@ -252,6 +272,31 @@ KB_INLINE F gather(const float* p, U index) {
 }
 KB_INLINE U gather(const uint32_t* p, U index) {
   return hn::GatherIndex(kWordLanes, p, hn::BitCast(kSignedLanes, index.v));
+}
+
+/// Blocks of four words from every fourth address.
+template <class Words>
+KB_INLINE hn::Vec<Words> load_blocks(Words words, const uint32_t* const* from) {
+  if constexpr (hn::MaxLanes(Words()) == 4) {
+    return hn::LoadU(words, *from);
+  } else {
+    const hn::Half<Words> half;
+    return hn::Combine(words, load_blocks(half, from + hn::MaxLanes(Words()) / 2), load_blocks(half, from));
+  }
+}
+KB_INLINE void load_fours(const uint32_t* const (&from)[kLanes], U (&words)[4]) {
+  const hn::RepartitionToWide<WordLanes> pairs;
+  const auto block = [&](uint32_t i) KB_LAMBDA { return load_blocks(kWordLanes, from + i); };
+  const auto paired = [&](auto a) KB_LAMBDA { return hn::BitCast(pairs, a); };
+  const auto r0 = block(0), r1 = block(1), r2 = block(2), r3 = block(3);
+  const auto low01 = paired(hn::InterleaveLower(kWordLanes, r0, r1));
+  const auto high01 = paired(hn::InterleaveUpper(kWordLanes, r0, r1));
+  const auto low23 = paired(hn::InterleaveLower(kWordLanes, r2, r3));
+  const auto high23 = paired(hn::InterleaveUpper(kWordLanes, r2, r3));
+  words[0] = hn::BitCast(kWordLanes, hn::InterleaveLower(pairs, low01, low23));
+  words[1] = hn::BitCast(kWordLanes, hn::InterleaveUpper(pairs, low01, low23));
+  words[2] = hn::BitCast(kWordLanes, hn::InterleaveLower(pairs, high01, high23));
+  words[3] = hn::BitCast(kWordLanes, hn::InterleaveUpper(pairs, high01, high23));
 }
 KB_INLINE void scatter(U a, uint32_t* p, U index) {
   hn::ScatterIndex(a.v, kWordLanes, p, hn::BitCast(kSignedLanes, index.v));
@@ -293,6 +338,10 @@ KB_INLINE void store_chosen(U a, M m, uint32_t* p) {
   store_chosen(as_floats(a), m, reinterpret_cast<float*>(p));
 }
 #endif
+/// a[lane] in each lane.
+KB_INLINE U chosen_lanes(U a, U lane) {
+  return hn::TableLookupLanes(a.v, hn::IndicesFromVec(kWordLanes, lane.v));
+}
 KB_INLINE U lane_numbers() {
   return hn::Iota(kWordLanes, 0u);
 }

@@ -40,15 +40,21 @@ KB_INLINE U gather_word(const Record* records, std::size_t offset, U index) {
 #define KB_GATHER_WORD(records, Record, member, index) \
   gather_word<Record>(records, offsetof(Record, member), index)
 
-KB_INLINE V3 gather_vector(const KbFloat3* vectors, U index) {
-  const float* first = &vectors->x;
-  const U at = index * U(3u);
-  return {gather(first, at), gather(first + 1, at), gather(first + 2, at)};
-}
 KB_INLINE V2 gather_pair(const KbFloat2* pairs, U index) {
   const float* first = &pairs->x;
   const U at = index * U(2u);
   return {gather(first, at), gather(first + 1, at)};
+}
+
+/// Of arrays of up to 2^32 numbers. A vector's places are signed: it is given the middle of the array, and places that
+/// count from there.
+#ifdef KB_ONE_LANE
+inline constexpr uint32_t kArrayMiddle = 0;
+#else
+inline constexpr uint32_t kArrayMiddle = 1u << 31;
+#endif
+KB_INLINE F gather_from_large(const float* p, U index) {
+  return gather(p + kArrayMiddle, index - U(kArrayMiddle));
 }
 
 /// Calls f(lane) for every lane of m, in order.
@@ -75,12 +81,64 @@ struct WordArray {
   KB_INLINE uint32_t& operator[](uint32_t lane) { return at[lane]; }
   KB_INLINE uint32_t operator[](uint32_t lane) const { return at[lane]; }
 };
+/// Calls f(word, lanes) for every word that lanes of m have. Lanes of a vector often share what they look up: it is read
+/// once then, and tested by ordinary branches.
+template <class Function>
+KB_INLINE void each_distinct(M m, U word, const Function& f) {
+  const WordArray words(word);
+  while (any(m)) {
+    const uint32_t one = words[static_cast<uint32_t>(std::countr_zero(bits_of(m)))];
+    const M lanes = m & (word == U(one));
+    f(one, lanes);
+    m = m & !lanes;
+  }
+}
+
 struct V3Array {
   FloatArray x, y, z;
   V3Array() = default;
   KB_INLINE V3Array(V3 v) : x(v.x), y(v.y), z(v.z) {}
   KB_INLINE operator V3() const { return {x, y, z}; }
 };
+
+// ---- records ----------------------------------------------------------------------------------------
+
+/// Where records lie, one for each lane.
+struct Addresses {
+  const uint32_t* at[kLanes];
+
+  /// bytes: of a record; index * bytes may exceed 32 bits
+  KB_INLINE Addresses(const void* records, std::size_t bytes, U index) {
+    const WordArray indices(index);
+    for (uint32_t i = 0; i < kLanes; ++i)
+      at[i] = reinterpret_cast<const uint32_t*>(static_cast<const char*>(records) + indices[i] * bytes);
+  }
+  template <class Record>
+  KB_INLINE Addresses(const Record* records, U index) : Addresses(records, sizeof(Record), index) {}
+
+  /// Four words of each record from byte `offset` on.
+  KB_INLINE void load(std::size_t offset, U (&words)[4]) const {
+    const uint32_t* from[kLanes];
+    for (uint32_t i = 0; i < kLanes; ++i) from[i] = at[i] + offset / 4;
+    load_fours(from, words);
+  }
+};
+
+/// Triples of 32-bit numbers. Behind the last one there is another number: lanes read four.
+KB_INLINE void gather_triple(const void* triples, U index, U (&words)[3]) {
+#ifdef KB_ONE_LANE
+  std::memcpy(words, static_cast<const char*>(triples) + std::size_t{index.v} * sizeof words, sizeof words);
+#else
+  U four[4];
+  Addresses(triples, 12, index).load(0, four);
+  for (uint32_t k = 0; k < 3; ++k) words[k] = four[k];
+#endif
+}
+KB_INLINE V3 gather_vector(const KbFloat3* vectors, U index) {
+  U words[3];
+  gather_triple(vectors, index, words);
+  return {as_floats(words[0]), as_floats(words[1]), as_floats(words[2])};
+}
 
 }  // namespace kiloband::cpu::KB_LANES
 KB_AFTER_LANES;

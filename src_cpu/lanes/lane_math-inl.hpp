@@ -90,7 +90,7 @@ KB_INLINE SinCos sin_cos_of_eighth(F x) {
           polynomial(x2, 1.0f, -0.5f, 0.041666616f, -0.0013886619f, 2.437993e-05f)};
 }
 
-/// Sine and cosine of 2 pi turns, for turns in [0, 1]. Absolute error below 3e-7.
+/// Sine and cosine of 2 pi turns, for turns in [0, 2]. Absolute error below 3e-7.
 KB_INLINE SinCos sin_cos_of_turns(F turns) {
   const F quarter = floor(F(4) * turns + F(0.5f));
   const SinCos r = sin_cos_of_eighth((turns - F(0.25f) * quarter) * F(2 * KB_PI));

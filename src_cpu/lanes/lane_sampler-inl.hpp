@@ -60,8 +60,7 @@ KB_INLINE U mix_words(U x, U y) {
   return x ^ shift_right<16>(x);
 }
 
-/// kb_sobol_reversed(). A vector has no fast way to many tables of its own and goes bit
-/// by bit.
+/// kb_sobol_reversed(). The first dimension is the index itself.
 struct SobolPoint {
   U dimension[4];
 };
@@ -71,13 +70,37 @@ KB_INLINE SobolPoint sobol_reversed(U reversed_index) {
   return {{point[0], point[1], point[2], point[3]}};
 }
 #else
+/// The point is the sum (xor) of what the digits of the index contribute. A digit has as many values as a vector has
+/// lanes, so that its table is a register.
+struct SobolDigits {
+  static constexpr uint32_t kBits = kLanes == 16 ? 4 : kLanes == 8 ? 3 : 2;
+  static constexpr uint32_t kDigits = (32 + kBits - 1) / kBits;
+  alignas(64) uint32_t value[3][kDigits][kLanes] = {};  // dimensions 1 to 3
+
+  constexpr SobolDigits() {
+    for (uint32_t k = 0; k < 3; ++k)
+      for (uint32_t digit = 0; digit < kDigits; ++digit)
+        for (uint32_t lane = 0; lane < kLanes; ++lane)
+          value[k][digit][lane] = sum(k + 1, uint64_t{lane} << (kBits * digit));
+  }
+  static constexpr uint32_t sum(uint32_t dimension, uint64_t bits) {
+    uint32_t total = 0;
+    for (uint32_t bit = 0; bit < 32; ++bit)
+      if (bits >> bit & 1) total ^= kb_sobol_table[4 * (256 * (bit / 8) + (1u << bit % 8)) + dimension];
+    return total;
+  }
+};
+inline constexpr SobolDigits kSobolDigits;
+
 KB_INLINE SobolPoint sobol_reversed(U reversed_index) {
   SobolPoint point{{reversed_bits(reversed_index), U(0u), U(0u), U(0u)}};
-  for (uint32_t bit = 0; bit < 32; ++bit) {
-    const uint32_t* directions = &kb_sobol_table[4 * (256 * (bit / 8) + (1u << bit % 8))];
-    const M set = has_bits(reversed_index, 1u << bit);
-    for (uint32_t k = 1; k < 4; ++k)
-      point.dimension[k] = select(set, point.dimension[k] ^ U(directions[k]), point.dimension[k]);
+  U rest = reversed_index;
+  for (uint32_t digit = 0; digit < SobolDigits::kDigits; ++digit) {
+    const U lane = rest & U(kLanes - 1);
+    for (uint32_t k = 0; k < 3; ++k)
+      point.dimension[k + 1] =
+          point.dimension[k + 1] ^ chosen_lanes(load(kSobolDigits.value[k][digit]), lane);
+    rest = shift_right<SobolDigits::kBits>(rest);
   }
   return point;
 }
@@ -95,12 +118,41 @@ KB_INLINE F4 sobol_floats(U reversed_index, U key0, U key1, U block) {
   return {number(0), number(1), number(2), number(3)};
 }
 
+/// A 64-bit word of each lane.
+struct LongWord {
+  U high, low;
+};
+KB_INLINE LongWord operator*(LongWord a, uint64_t b) {
+  U high, low;
+  multiply_wide(a.low, kb_low32(b), high, low);
+  return {high + a.low * U(kb_high32(b)) + a.high * U(kb_low32(b)), low};
+}
+/// a ^ (a >> S), for S in (0, 32).
+template <int S>
+KB_INLINE LongWord folded(LongWord a) {
+  return {a.high ^ shift_right<S>(a.high), a.low ^ (shift_right<S>(a.low) | shift_left<32 - S>(a.high))};
+}
+/// kb_mix64().
+KB_INLINE LongWord mix_long_words(LongWord x) {
+  x = folded<30>(x) * 0xbf58476d1ce4e5b9u;
+  x = folded<27>(x) * 0x94d049bb133111ebu;
+  return folded<31>(x);
+}
+
 /// KbSamplerKey of each lane; the seed and the kind of sampler are those of the whole render.
 struct SamplerKeys {
   U pixel, sample;   // independent
   U reversed_index;  // sobol
   U key0, key1;      // sobol
 };
+
+/// kb_sampler_key().
+KB_INLINE SamplerKeys sampler_keys(uint64_t seed, U pixel, uint32_t sample, uint32_t replicate,
+                                   uint32_t index_in_replicate) {
+  const uint64_t parent = kb_domain_key(seed, KB_DOMAIN_SOBOL);
+  const LongWord key = mix_long_words({U(kb_high32(parent) ^ replicate), U(kb_low32(parent)) ^ pixel});
+  return {pixel, U(sample), U(kb_reverse_bits(index_in_replicate)), key.low, key.high};
+}
 
 /// kb_sampler_block().
 KB_INLINE F4 sampler_block(uint32_t sampler, uint64_t seed, const SamplerKeys& key, U block) {

@@ -87,6 +87,14 @@ KB_ARRAY_FUNCTION(sobol, {
   put(2, u.z);
   put(3, u.w);
 })
+KB_ARRAY_FUNCTION(sampler_keys, {
+  const SamplerKeys keys = sampler_keys(0xfedcba9876543210ull, as_words(a(0)), 5, 3, 11);
+  put(0, as_floats(keys.pixel));
+  put(1, as_floats(keys.sample));
+  put(2, as_floats(keys.reversed_index));
+  put(3, as_floats(keys.key0));
+  put(4, as_floats(keys.key1));
+})
 KB_ARRAY_FUNCTION(cosine_hemisphere, {
   const V3 w = cosine_hemisphere(a(0), a(1));
   put(0, w.x);
@@ -116,6 +124,11 @@ KB_ARRAY_FUNCTION(doubles, {
   const D y = to_doubles(a(1));
   put(0, to_floats(x * y - y * y));
   put(1, to_floats(sqrt(x * x + y * y)));
+  const D third = x / to_doubles(3.0);
+  put(2, to_floats(third - floor(third)));
+  put(3, to_floats(zero_beyond(third * y, 0.5)));
+  put(4, to_floats(min(third, y) - third));
+  put(5, to_floats(max(third, y) - third));
 })
 
 /// Members of records at places of in[0]'s bits; every third lane is replaced by its number.
@@ -157,6 +170,7 @@ inline void move_of_arrays(Inputs in, Outputs out, std::size_t count) {
     store(gather(in[0], at), out[0] + i);
     scatter(load(in[0] + i), out[1], at);
     store(as_floats(gather(reinterpret_cast<const uint32_t*>(in[1]), at)), out[2] + i);
+    store(gather_from_large(in[0], at), out[3] + i);
   }
 }
 
@@ -171,13 +185,14 @@ inline std::vector<test::NamedFunction> named_functions() {
           {"words", 2, 10, words_of_arrays},
           {"philox", 2, 4, philox_of_arrays},
           {"sobol", 2, 4, sobol_of_arrays},
+          {"sampler_keys", 1, 5, sampler_keys_of_arrays},
           {"cosine_hemisphere", 2, 3, cosine_hemisphere_of_arrays},
           {"uniform_sphere", 2, 3, uniform_sphere_of_arrays},
           {"uniform_triangle", 2, 2, uniform_triangle_of_arrays},
           {"normalize", 2, 3, normalize_of_arrays},
           {"choose", 2, 2, choose_of_arrays},
-          {"move", 2, 3, move_of_arrays},
-          {"doubles", 2, 2, doubles_of_arrays},
+          {"move", 2, 4, move_of_arrays},
+          {"doubles", 2, 6, doubles_of_arrays},
           {"records", 2, 2, records_of_arrays}};
 }
 

@@ -84,7 +84,8 @@ Arrays inputs_of(const std::string& name) {
         if (!(std::fabs(value) < 1e9f)) value = 3.25f;  // floor() is for such
     return in;
   }
-  if (name == "words" || name == "philox" || name == "sobol" || name == "move" || name == "records")
+  if (name == "words" || name == "philox" || name == "sobol" || name == "sampler_keys" || name == "move" ||
+      name == "records")
     return {random_bits(3), random_bits(4)};
   if (name == "exp") return {with_special(random_between(5, -100, 89), 0)};
   if (name == "erf_inverse") return {random_between(6, -1, 1)};
@@ -144,7 +145,7 @@ TEST(LaneMath, ErrorsAreThoseStated) {
   EXPECT_LT(largest_error(apply_one_lane("erf", {positive})[0], positive, true,
                           [](double x) { return std::erf(x); }),
             3e-7);
-  const std::vector<float> turns = random_units(24);
+  const std::vector<float> turns = random_between(24, 0, 2);
   const Arrays sine_cosine = apply_one_lane("turns", {turns});
   const double two_pi = 2 * std::numbers::pi;
   EXPECT_LT(largest_error(sine_cosine[0], turns, false, [&](double x) { return std::sin(two_pi * x); }),
@@ -187,6 +188,16 @@ TEST(LaneMath, TheInverseErrorFunctionInvertsIt) {
   EXPECT_LT(largest, 1e-6);
 }
 
+/// Near the axes angles are as exact as their size asks: poles of maps, and the beams of narrow spots.
+TEST(LaneMath, SmallAnglesKeepTheirDigits) {
+  std::vector<float> y = random_between(39, 1e-6, 1e-2), x = random_between(40, 0.5, 2);
+  const std::vector<float> angle = apply_one_lane("arc_tangent", {y, x})[0];
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double right = std::atan2(double(y[i]), double(x[i]));
+    ASSERT_LT(std::abs(angle[i] - right), 2e-7 * right) << y[i] << " " << x[i];
+  }
+}
+
 TEST(LaneMath, AnglesLieInTheRightQuadrant) {
   const std::vector<float> y = random_between(27, -2, 2), x = random_between(28, -2, 2);
   const std::vector<float> angle = apply_one_lane("arc_tangent", {y, x})[0];
@@ -223,6 +234,17 @@ TEST(LaneSampler, RandomNumbersAreThoseOfTheSharedSampler) {
     key.key1 = second ^ 0x9e3779b9u;
     const KbFloat4 s = kb_sampler_block(key, 5);
     ASSERT_TRUE(s.x == sobol[0][i] && s.y == sobol[1][i] && s.z == sobol[2][i] && s.w == sobol[3][i]) << i;
+  }
+}
+
+TEST(LaneSampler, KeysAreThoseOfTheSharedSampler) {
+  const std::vector<float> pixels = random_bits(41);
+  const Arrays keys = apply_one_lane("sampler_keys", {pixels});
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const KbSamplerKey key =
+        kb_sampler_key(KB_SAMPLER_SOBOL, 0xfedcba9876543210ull, kb_as_u32(pixels[i]), 5, 3, 11);
+    const kb_u32 expected[] = {key.pixel, key.sample, key.reversed_index, key.key0, key.key1};
+    for (std::size_t k = 0; k < 5; ++k) ASSERT_EQ(kb_as_u32(keys[k][i]), expected[k]) << k << " " << i;
   }
 }
 
@@ -263,6 +285,11 @@ TEST(Lanes, DoublesKeepWhatFloatsLose) {
   for (std::size_t i = 0; i < kCount; ++i) {
     ASSERT_EQ(result[0][i], static_cast<float>(double{x[i]} * y[i] - double{y[i]} * y[i])) << i;
     ASSERT_EQ(result[1][i], static_cast<float>(std::sqrt(double{x[i]} * x[i] + double{y[i]} * y[i]))) << i;
+    const double third = x[i] / 3.0, product = third * y[i];
+    ASSERT_EQ(result[2][i], static_cast<float>(third - std::floor(third))) << i;
+    ASSERT_EQ(result[3][i], std::fabs(product) < 0.5 ? static_cast<float>(product) : 0.0f) << i;
+    ASSERT_EQ(result[4][i], static_cast<float>(std::fmin(third, double{y[i]}) - third)) << i;
+    ASSERT_EQ(result[5][i], static_cast<float>(std::fmax(third, double{y[i]}) - third)) << i;
   }
 }
 
