@@ -21,8 +21,8 @@ one_lane::V3 lane_of(glm::vec3 v) {
 }
 
 one_lane::Material lane_of(const KbMaterial& m) {
-  return {m.type,    m.flags,    m.alpha_u,  m.alpha_v, m.eta,  m.specular_weight, m.fdr_int, m.bound_a,
-          m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr};
+  return {m.type,    m.flags,   m.ref_a,   m.ref_b,    m.alpha_u,  m.alpha_v, m.eta,  m.specular_weight,
+          m.fdr_int, m.bound_a, m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr};
 }
 
 /// Offsets count from the first of its tables.

@@ -18,7 +18,7 @@ namespace kiloband::cpu::KB_LANES {
 
 /// What the BSDFs read of a KbMaterial, which is described there.
 struct Material {
-  U type, flags;
+  U type, flags, ref_a, ref_b;
   F alpha_u, alpha_v, eta, specular_weight, fdr_int, bound_a, bound_b;
   U table;              // where its tables begin in `tables`, or KB_NONE
   U compensation;       // where its table of energy compensation begins there, or KB_NONE
@@ -85,17 +85,25 @@ KB_INLINE U compensation_offset(U type, U flags, U table) {
 
 /// Material `index` of each lane, not degraded. index: that of a record in every lane, in use or not
 KB_INLINE Material gather_material(const KbMaterial* materials, const float* tables, U index) {
+  static_assert(offsetof(KbMaterial, alpha_u) == 28 && offsetof(KbMaterial, table) == 60);
+  const Addresses records(materials, index);
+  U words[4];
   Material m;
-  m.type = KB_GATHER_WORD(materials, KbMaterial, type, index);
-  m.flags = KB_GATHER_WORD(materials, KbMaterial, flags, index);
-  m.alpha_u = KB_GATHER_FLOAT(materials, KbMaterial, alpha_u, index);
-  m.alpha_v = KB_GATHER_FLOAT(materials, KbMaterial, alpha_v, index);
-  m.eta = KB_GATHER_FLOAT(materials, KbMaterial, eta, index);
-  m.specular_weight = KB_GATHER_FLOAT(materials, KbMaterial, specular_weight, index);
-  m.fdr_int = KB_GATHER_FLOAT(materials, KbMaterial, fdr_int, index);
-  m.bound_a = KB_GATHER_FLOAT(materials, KbMaterial, bound_a, index);
-  m.bound_b = KB_GATHER_FLOAT(materials, KbMaterial, bound_b, index);
-  m.table = KB_GATHER_WORD(materials, KbMaterial, table, index);
+  records.load(0, words);
+  m.type = words[0];
+  m.flags = words[1];
+  m.ref_a = words[2];
+  m.ref_b = words[3];
+  records.load(28, words);
+  m.alpha_u = as_floats(words[0]);
+  m.alpha_v = as_floats(words[1]);
+  m.eta = as_floats(words[2]);
+  records.load(44, words);
+  m.fdr_int = as_floats(words[0]);
+  m.specular_weight = as_floats(words[1]);
+  m.bound_a = as_floats(words[2]);
+  m.bound_b = as_floats(words[3]);
+  m.table = gather_word<KbMaterial>(materials, offsetof(KbMaterial, table), index);
   m.compensation = compensation_offset(m.type, m.flags, m.table);
   m.channel_eta = F(0);
   m.tables = tables;

@@ -19,7 +19,6 @@
 
 #include "base/error.hpp"
 #include "scene/compile/shape_bounds.hpp"
-#include "src_cpu/geometry/ray_order.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 
 namespace kiloband::cpu {
@@ -125,7 +124,7 @@ struct EmbreeScene::Impl {
   const FlatScene* flat = nullptr;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  RayBox box{};  // of the scene
+  RayGrid grid;  // of the geometry
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -188,8 +187,8 @@ EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int thr
   rtcCommitScene(impl_->scene);
   RTCBounds bounds;
   rtcGetSceneBounds(impl_->scene, &bounds);
-  impl_->box = {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
-                {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+  impl_->grid = RayGrid({bounds.lower_x, bounds.lower_y, bounds.lower_z},
+                        {bounds.upper_x, bounds.upper_y, bounds.upper_z});
   if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
     throw DeviceError("Embree: building the scene failed");
 }
@@ -297,31 +296,31 @@ void occluded16(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) 
 #endif
 }
 
-/// Lanes first .. first + N of a queue, or those that `order` names. Those past the end are not valid, and copies of the
-/// last one: Embree may look at them (with SSE4.2 it splits packets of 16, and asserts that all of them are finite).
-template <int N>
-struct Lanes {
-  uint32_t first, count;
-  bool contiguous;  // a whole packet as it stands
-  uint32_t at[N];
+constexpr uint32_t whole_packets(uint32_t count, uint32_t size) {
+  return (count + size - 1) / size * size;
+}
 
-  Lanes(const uint32_t* order, uint32_t begin, uint32_t end)
-      : first(begin), count(std::min<uint32_t>(N, end - begin)), contiguous(!order && count == N) {
-    for (uint32_t i = 0; i < N; ++i) at[i] = begin + std::min(i, count - 1);
-    if (!order) return;
-    for (uint32_t& lane : at) lane = order[lane];
-  }
-};
+/// Lanes past the end are not valid, and copies of the last ray: Embree may look at them (with SSE4.2 it splits packets
+/// of 16, and asserts that all of them are finite).
+template <class Queue>
+void fill_last_packet(Queue& rays, uint32_t size) {
+  for (uint32_t i = rays.count; i < whole_packets(rays.count, size); ++i)
+    copy_query(rays, rays.count - 1, rays, i);
+}
+
+/// What is the same for all packets of a queue. Rays begin at 0, unless others are loaded.
+template <int N>
+void prepare(RayPacket<N>& packet) {
+  std::fill_n(packet.tnear, N, 0.0f);
+  std::fill_n(packet.time, N, 0.0f);
+  std::fill_n(packet.mask, N, ~0u);
+  std::fill_n(packet.id, N, 0u);
+  std::fill_n(packet.flags, N, 0u);
+}
 
 template <int N, class Queue>
-void load_rays(const Queue& rays, const Lanes<N>& lanes, RayPacket<N>& packet, int (&valid)[N]) {
-  const auto copy = [&](const float* from, float(&to)[N]) {
-    if (lanes.contiguous) {
-      std::memcpy(to, from + lanes.first, sizeof to);
-    } else {
-      for (uint32_t i = 0; i < N; ++i) to[i] = from[lanes.at[i]];
-    }
-  };
+void load_rays(const Queue& rays, uint32_t first, RayPacket<N>& packet, int (&valid)[N]) {
+  const auto copy = [&](const float* from, float(&to)[N]) { std::memcpy(to, from + first, sizeof to); };
   copy(rays.ox, packet.org_x);
   copy(rays.oy, packet.org_y);
   copy(rays.oz, packet.org_z);
@@ -329,68 +328,62 @@ void load_rays(const Queue& rays, const Lanes<N>& lanes, RayPacket<N>& packet, i
   copy(rays.dy, packet.dir_y);
   copy(rays.dz, packet.dir_z);
   copy(rays.t_max, packet.tfar);
-  for (uint32_t i = 0; i < N; ++i) {
-    valid[i] = i < lanes.count ? -1 : 0;
-    packet.tnear[i] = packet.time[i] = 0;
-    packet.mask[i] = ~0u;
-    packet.id[i] = packet.flags[i] = 0;
-  }
+  for (uint32_t i = 0; i < N; ++i) valid[i] = first + i < rays.count ? -1 : 0;
 }
 
 template <int N>
-void trace_packets(RTCScene scene, Query query, const uint32_t* order, RayQueue& rays) {
+void store_hits(const HitPacket<N>& packet, uint32_t first, RayQueue& rays) {
+  const auto copy = [&](const auto(&from)[N], auto* to) { std::memcpy(to + first, from, sizeof from); };
+  copy(packet.ray.tfar, rays.t_max);
+  copy(packet.hit.u, rays.u);
+  copy(packet.hit.v, rays.v);
+  copy(packet.hit.primID, rays.primitive);
+  copy(packet.hit.geomID, rays.shape);
+}
+
+template <int N>
+void trace_packets(RTCScene scene, Query query, RayQueue& rays) {
   alignas(64) HitPacket<N> packet;
   alignas(64) int valid[N];
+  fill_last_packet(rays, N);
+  prepare<N>(packet.ray);
   for (uint32_t first = 0; first < rays.count; first += N) {
-    const Lanes<N> lanes(order, first, rays.count);
-    load_rays(rays, lanes, packet.ray, valid);
-    for (uint32_t i = 0; i < N; ++i) {
-      packet.ray.tnear[i] = rays.t_min[lanes.at[i]];
-      packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
+    load_rays(rays, first, packet.ray, valid);
+    std::memcpy(packet.ray.tnear, rays.t_min + first, sizeof packet.ray.tnear);
+    std::fill_n(packet.hit.geomID, N, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(packet.hit.instID[0], N, RTC_INVALID_GEOMETRY_ID);
     intersect(valid, scene, query, packet);
-    for (uint32_t i = 0; i < lanes.count; ++i) {
-      const uint32_t at = lanes.at[i];
-      rays.t_max[at] = packet.ray.tfar[i];
-      rays.u[at] = packet.hit.u[i];
-      rays.v[at] = packet.hit.v[i];
-      rays.primitive[at] = packet.hit.primID[i];
-      rays.shape[at] = packet.hit.geomID[i];
-    }
+    store_hits<N>(packet, first, rays);
   }
 }
 
 }  // namespace
 
-RayOrder EmbreeScene::secondary_order() const {
-  return impl_->flat->triangles.size() / 3 < kMostTrianglesSorted ? RayOrder::kSorted : RayOrder::kMixed;
+bool EmbreeScene::sorting_pays() const {
+  return impl_->flat->triangles.size() / 3 < kMostTrianglesSorted;
 }
 
-void EmbreeScene::closest_hits(RayQueue& rays, RayOrder order) const {
-  std::array<uint32_t, kQueueCapacity> sorted;
-  switch (order) {
-    case RayOrder::kNeighbours:
-      return trace_packets<16>(impl_->scene, Query(kCoherent), nullptr, rays);
-    case RayOrder::kMixed:
-      return trace_packets<8>(impl_->scene, Query(kIncoherent), nullptr, rays);
-    case RayOrder::kSorted:
-      sort_rays(rays, impl_->box, sorted.data());
-      return trace_packets<16>(impl_->scene, Query(kCoherent), sorted.data(), rays);
-  }
+const RayGrid& EmbreeScene::grid() const {
+  return impl_->grid;
 }
 
-void EmbreeScene::occlusions(ShadowQueue& rays, RayOrder order) const {
-  std::array<uint32_t, kQueueCapacity> sorted;
-  const bool coherent = order != RayOrder::kMixed;
-  if (order == RayOrder::kSorted) sort_rays(rays, impl_->box, sorted.data());
-  Query query(coherent ? kCoherent : kIncoherent);
+void EmbreeScene::closest_hits(RayQueue& rays, RayPackets packets) const {
+  if (packets == RayPackets::kCoherent)
+    trace_packets<16>(impl_->scene, Query(kCoherent), rays);
+  else
+    trace_packets<8>(impl_->scene, Query(kIncoherent), rays);
+}
+
+void EmbreeScene::occlusions(ShadowQueue& rays, RayPackets packets) const {
+  Query query(packets == RayPackets::kCoherent ? kCoherent : kIncoherent);
   alignas(64) RTCRay16 packet;
   alignas(64) int valid[16];
+  fill_last_packet(rays, 16);
+  prepare<16>(packet);
   for (uint32_t first = 0; first < rays.count; first += 16) {
-    const Lanes<16> lanes(order == RayOrder::kSorted ? sorted.data() : nullptr, first, rays.count);
-    load_rays(rays, lanes, packet, valid);
+    load_rays(rays, first, packet, valid);
     occluded16(valid, impl_->scene, query, packet);
-    for (uint32_t i = 0; i < lanes.count; ++i) rays.t_max[lanes.at[i]] = packet.tfar[i];
+    std::memcpy(rays.t_max + first, packet.tfar, sizeof packet.tfar);
   }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scene/compile/flat_scene.hpp"
-#include "src_cpu/geometry/ray_queue.hpp"
+#include "src_cpu/geometry/ray_order.hpp"
 
 namespace kiloband::cpu {
 
@@ -72,11 +72,13 @@ class EmbreeScene {
   void closest_hits(std::span<TraceRay> rays, bool coherent) const;
   void occlusions(std::span<ShadowRay> rays) const;
 
-  /// The same for the rays of a wave.
-  void closest_hits(RayQueue& rays, RayOrder order) const;
-  void occlusions(ShadowQueue& rays, RayOrder order) const;
-  /// How secondary and shadow rays of this scene are best traced: by the number of its triangles, never by time.
-  RayOrder secondary_order() const;
+  /// The same for the rays of a wave. What lies behind the last ray is overwritten, up to a whole packet.
+  void closest_hits(RayQueue& rays, RayPackets packets) const;
+  void occlusions(ShadowQueue& rays, RayPackets packets) const;
+  /// Whether secondary and shadow rays of this scene are best sorted and then coherent: by the number of its
+  /// triangles, never by time.
+  bool sorting_pays() const;
+  const RayGrid& grid() const;
 
  private:
   struct Impl;

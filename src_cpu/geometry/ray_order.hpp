@@ -1,45 +1,76 @@
 // Rays of a wave in an order in which neighbours go similar ways.
 #pragma once
 
-#include <algorithm>
-#include <array>
+#include <bit>
 
 #include "src_cpu/geometry/ray_queue.hpp"
 
 namespace kiloband::cpu {
 
-/// The box of the geometry, m.
-struct RayBox {
-  float low[3], high[3];
+inline constexpr uint32_t kRayCells = 4;  // along each axis of the box of the geometry
+
+/// The cells of a box, which rays begin in.
+struct RayGrid {
+  float low[3] = {};    // m
+  float scale[3] = {};  // cells per m
+
+  RayGrid() = default;
+  RayGrid(const float (&lowest)[3], const float (&highest)[3]) {
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = lowest[axis];
+      const float extent = highest[axis] - lowest[axis];
+      scale[axis] = extent > 0 ? static_cast<float>(kRayCells) / extent : 0;
+    }
+  }
 };
 
-inline constexpr uint32_t kRayCells = 4;  // along each axis of the box
-
-/// Which of the box's cells a coordinate lies in; outside of the box, and for NaN, one at its border.
-inline uint32_t ray_cell(float x, float low, float high) {
-  const float place = (x - low) / (high - low) * kRayCells;
-  return place >= 1 ? static_cast<uint32_t>(std::min(place, static_cast<float>(kRayCells - 1))) : 0u;
+/// Which cell along an axis; outside of the box one at its border, for NaN the first.
+inline int32_t ray_cell(float x, float low, float scale) {
+  const float place = (x - low) * scale;
+  const float within = place > 0 ? place : 0;
+  constexpr float kLast = kRayCells - 1;
+  return static_cast<int32_t>(within < kLast ? within : kLast);
 }
 
-/// Fills order[0 .. rays.count): by the octant of the direction, then by the cell that the ray begins in. Stable, so that
-/// the order follows from the rays alone.
+/// The octant of a ray's direction, then the cell that it begins in.
+template <class Queue>
+void fill_ray_keys(const Queue& rays, const RayGrid& grid, uint32_t* key) {
+  const auto sign = [](float d) { return std::bit_cast<uint32_t>(d) >> 31; };
+  for (uint32_t i = 0; i < rays.count; ++i) {
+    const uint32_t octant = sign(rays.dx[i]) | sign(rays.dy[i]) << 1 | sign(rays.dz[i]) << 2;
+    const auto x = static_cast<uint32_t>(ray_cell(rays.ox[i], grid.low[0], grid.scale[0]));
+    const auto y = static_cast<uint32_t>(ray_cell(rays.oy[i], grid.low[1], grid.scale[1]));
+    const auto z = static_cast<uint32_t>(ray_cell(rays.oz[i], grid.low[2], grid.scale[2]));
+    key[i] = ((octant * kRayCells + z) * kRayCells + y) * kRayCells + x;
+  }
+}
+
+/// Copies what is asked, not the answers.
+inline void copy_query(const RayQueue& from, uint32_t i, RayQueue& to, uint32_t at) {
+  to.ox[at] = from.ox[i], to.oy[at] = from.oy[i], to.oz[at] = from.oz[i];
+  to.dx[at] = from.dx[i], to.dy[at] = from.dy[i], to.dz[at] = from.dz[i];
+  to.t_min[at] = from.t_min[i], to.t_max[at] = from.t_max[i];
+  to.path[at] = from.path[i];
+}
+inline void copy_query(const ShadowQueue& from, uint32_t i, ShadowQueue& to, uint32_t at) {
+  to.ox[at] = from.ox[i], to.oy[at] = from.oy[i], to.oz[at] = from.oz[i];
+  to.dx[at] = from.dx[i], to.dy[at] = from.dy[i], to.dz[at] = from.dz[i];
+  to.t_max[at] = from.t_max[i];
+  to.entry[at] = from.entry[i], to.path[at] = from.path[i];
+}
+
+/// Copies the queries to `to`, by octant and cell. Stable, so that the order follows from the rays alone.
 /// Queue  RayQueue or ShadowQueue
 template <class Queue>
-void sort_rays(const Queue& rays, const RayBox& box, uint32_t* order) {
+void sort_rays(const Queue& from, const RayGrid& grid, Queue& to) {
   constexpr uint32_t kKeys = 8 * kRayCells * kRayCells * kRayCells;
-  std::array<uint16_t, kQueueCapacity> key;
-  std::array<uint32_t, kKeys + 1> begin{};
-  for (uint32_t i = 0; i < rays.count; ++i) {
-    const uint32_t octant =
-        (rays.dx[i] < 0 ? 1u : 0u) | (rays.dy[i] < 0 ? 2u : 0u) | (rays.dz[i] < 0 ? 4u : 0u);
-    const uint32_t x = ray_cell(rays.ox[i], box.low[0], box.high[0]);
-    const uint32_t y = ray_cell(rays.oy[i], box.low[1], box.high[1]);
-    const uint32_t z = ray_cell(rays.oz[i], box.low[2], box.high[2]);
-    key[i] = static_cast<uint16_t>(((octant * kRayCells + z) * kRayCells + y) * kRayCells + x);
-    ++begin[key[i] + 1u];
-  }
+  alignas(64) uint32_t key[kQueueCapacity];
+  uint32_t begin[kKeys + 1] = {};
+  fill_ray_keys(from, grid, key);
+  for (uint32_t i = 0; i < from.count; ++i) ++begin[key[i] + 1];
   for (uint32_t k = 0; k < kKeys; ++k) begin[k + 1] += begin[k];
-  for (uint32_t i = 0; i < rays.count; ++i) order[begin[key[i]]++] = i;
+  for (uint32_t i = 0; i < from.count; ++i) copy_query(from, i, to, begin[key[i]]++);
+  to.count = from.count;
 }
 
 }  // namespace kiloband::cpu

@@ -32,11 +32,17 @@ struct alignas(64) ShadowQueue {
   uint32_t count = 0;
 };
 
-/// Which rays go together. Answers of packets that are not coherent are those of single rays, bit for bit.
-enum class RayOrder {
-  kNeighbours,  // camera rays, as they stand: coherent packets of 16
-  kMixed,       // secondary rays: packets of 8 that are not coherent, shadow rays 16
-  kSorted       // by octant and cell, coherent packets of 16: pays in small scenes
+/// Rays that have hit nothing.
+struct alignas(64) EscapeQueue {
+  float dx[kQueueCapacity], dy[kQueueCapacity], dz[kQueueCapacity];
+  uint32_t path[kQueueCapacity];
+  uint32_t count = 0;
+};
+
+/// How rays are put into packets.
+enum class RayPackets {
+  kCoherent,   // of 16: camera rays as they stand, and sorted rays (ray_order.hpp)
+  kIncoherent  // of 8, shadow rays 16: the answers are those of single rays, bit for bit
 };
 
 }  // namespace kiloband::cpu

@@ -1,4 +1,4 @@
-// Maps from the unit square to disk, sphere and triangle: those of shared/warp.h, for glm vectors.
+// Maps from the unit square to disk and sphere: those of shared/warp.h, for glm vectors.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -17,12 +17,6 @@ inline glm::vec2 warp_concentric_disk(glm::vec2 u) {
 inline glm::vec3 warp_uniform_sphere(glm::vec2 u) {
   const KbFloat3 w = kb_sphere_uniform(u.x, u.y);
   return {w.x, w.y, w.z};
-}
-
-/// Uniform barycentric coordinates (b1, b2) of a triangle.
-inline glm::vec2 warp_uniform_triangle(glm::vec2 u) {
-  const KbFloat2 b = kb_triangle_uniform(u.x, u.y);
-  return {b.x, b.y};
 }
 
 }  // namespace kiloband::cpu

@@ -11,6 +11,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "src_cpu/geometry/analytic_hit.hpp"
 #include "src_cpu/geometry/ray_offset-inl.hpp"
+#include "src_cpu/geometry/triangle_records.hpp"
 #include "src_cpu/lanes/lane_access-inl.hpp"
 
 KB_BEFORE_LANES;
@@ -18,7 +19,7 @@ namespace kiloband::cpu::KB_LANES {
 
 /// SurfaceHit (surface_hit.hpp) in lanes. Lanes that were not asked for are undefined.
 struct Hit {
-  U shape, shape_flags;
+  U shape, shape_flags, surface, emitter;  // emitter: of an area light, or KB_NONE
   V3 point;
   V3 geometric_normal, shading_normal;
   V3 tangent;
@@ -27,20 +28,25 @@ struct Hit {
   V2 uv;
 };
 
+/// What hits are made of.
+struct Surfaces {
+  const FlatScene& scene;
+  const TriangleRecord* records;  // make_triangle_records(), or null; the bits of hits are the same
+};
+
 KB_INLINE M winding_is_turned(U shape_flags) {
   return has_bits((shape_flags ^ shift_right<5>(shape_flags)) & U(1u), 1u);
 }
 static_assert(KB_SHAPE_FLIP_NORMALS == 1u && KB_SHAPE_MIRRORED == 32u);
 
+KB_INLINE Triangle triangle_of(V3 p0, V3 p1, V3 p2) {
+  const V3 e1 = p1 - p0, e2 = p2 - p0;
+  return {p0, p1, p2, e1, e2, cross(e1, e2)};
+}
 KB_INLINE Triangle gather_triangle(const FlatScene& scene, const U (&index)[3]) {
-  Triangle t;
-  t.p0 = gather_vector(scene.positions.data(), index[0]);
-  t.p1 = gather_vector(scene.positions.data(), index[1]);
-  t.p2 = gather_vector(scene.positions.data(), index[2]);
-  t.e1 = t.p1 - t.p0;
-  t.e2 = t.p2 - t.p0;
-  t.area_normal = cross(t.e1, t.e2);
-  return t;
+  const KbFloat3* positions = scene.positions.data();
+  return triangle_of(gather_vector(positions, index[0]), gather_vector(positions, index[1]),
+                     gather_vector(positions, index[2]));
 }
 
 /// Hit::geometric_normal of a triangle.
@@ -91,28 +97,75 @@ KB_INLINE void triangle_uv(const FlatScene& scene, const Triangle& t, const U (&
   tangent = select(has_uvs & (determinant != F(0)), (t.e1 * dv2 - t.e2 * dv1) / determinant, tangent);
 }
 
-/// The vertices of triangle `primitive` of a shape.
-KB_INLINE void gather_indices(const FlatScene& scene, U shape, U primitive, M active, U (&index)[3]) {
-  const U triangle = KB_GATHER_WORD(scene.shapes.data(), KbShape, first_triangle, shape) + primitive;
-  const U first = select(active, triangle * U(3u), U(0u));
-  for (uint32_t k = 0; k < 3; ++k) index[k] = gather(scene.triangles.data() + k, first);
+/// The members of KbShape before its matrices.
+struct ShapeHead {
+  U type, flags, surface, emitter, first_triangle, triangle_count, first_cdf;
+  F area;
+};
+KB_INLINE ShapeHead gather_shape(const FlatScene& scene, U shape) {
+  static_assert(offsetof(KbShape, emitter) == 12 && offsetof(KbShape, area) == 28);
+  const Addresses records(scene.shapes.data(), shape);
+  U a[4], b[4];
+  records.load(0, a);
+  records.load(16, b);
+  return {a[0], a[1], a[2], a[3], b[0], b[1], b[2], as_floats(b[3])};
 }
 
-KB_INLINE void make_mesh_hit(const FlatScene& scene, U primitive, F u, F v, M active, Hit& hit) {
-  U index[3];
-  gather_indices(scene, hit.shape, primitive, active, index);
-  const Triangle t = gather_triangle(scene, index);
+/// The vertices of triangle `primitive` of a shape.
+KB_INLINE void gather_indices(const FlatScene& scene, U first_triangle, U primitive, M active,
+                              U (&index)[3]) {
+  gather_triple(scene.triangles.data(), select(active, first_triangle + primitive, U(0u)), index);
+}
+
+/// A triangle that was hit.
+struct HitTriangle {
+  Triangle t;
+  U vertices[3];
+  V3 normal;
+  F offset;
+};
+KB_INLINE HitTriangle gather_record(const TriangleRecord* records, U index) {
+  static_assert(offsetof(TriangleRecord, vertices) == 36 && offsetof(TriangleRecord, normal) == 48);
+  const Addresses at(records, index);
+  U a[4], b[4], c[4], d[4];
+  at.load(0, a);
+  at.load(16, b);
+  at.load(32, c);
+  at.load(48, d);
+  const auto vector = [](U x, U y, U z) KB_LAMBDA { return V3{as_floats(x), as_floats(y), as_floats(z)}; };
+  return {triangle_of(vector(a[0], a[1], a[2]), vector(a[3], b[0], b[1]), vector(b[2], b[3], c[0])),
+          {c[1], c[2], c[3]},
+          vector(d[0], d[1], d[2]),
+          as_floats(d[3])};
+}
+/// The same without records.
+KB_INLINE HitTriangle gather_hit_triangle(const FlatScene& scene, U shape_flags, U index, M active) {
+  HitTriangle hit;
+  gather_triple(scene.triangles.data(), index, hit.vertices);
+  hit.t = gather_triangle(scene, hit.vertices);
+  hit.normal = triangle_normal(hit.t, shape_flags, active);
+  hit.offset = surface_offset(largest_coordinates(hit.t), hit.normal);
+  return hit;
+}
+
+/// triangle  of those of the scene
+KB_INLINE void make_mesh_hit(const Surfaces& surfaces, U triangle, F u, F v, M active, Hit& hit) {
+  const FlatScene& scene = surfaces.scene;
+  const U safe = select(active, triangle, U(0u));
+  const HitTriangle on = surfaces.records ? gather_record(surfaces.records, safe)
+                                          : gather_hit_triangle(scene, hit.shape_flags, safe, active);
+  const Triangle& t = on.t;
   const V3 weights{F(1) - u - v, u, v};
   hit.point = t.p0 * weights.x + t.p1 * weights.y + t.p2 * weights.z;
-  hit.geometric_normal = triangle_normal(t, hit.shape_flags, active);
-  hit.offset = surface_offset(largest_coordinates(t), hit.geometric_normal);
+  hit.geometric_normal = on.normal;
+  hit.offset = on.offset;
   hit.departure = off_the_edges(t, hit.point, weights, hit.offset, active);
   hit.shading_normal =
-      triangle_shading_normal(scene, hit.shape_flags, index, weights, hit.geometric_normal, active);
+      triangle_shading_normal(scene, hit.shape_flags, on.vertices, weights, hit.geometric_normal, active);
   hit.uv = {u, v};
   hit.tangent = {F(0), F(0), F(0)};
   const M has_uvs = active & has_bits(hit.shape_flags, KB_SHAPE_HAS_UVS);
-  if (any(has_uvs)) triangle_uv(scene, t, index, weights, has_uvs, hit.uv, hit.tangent);
+  if (any(has_uvs)) triangle_uv(scene, t, on.vertices, weights, has_uvs, hit.uv, hit.tangent);
 }
 
 /// Spheres, disks and cylinders are few, and their geometry is in double: one lane after another.
@@ -137,26 +190,42 @@ inline void make_analytic_hits(const FlatScene& scene, V3 origin, V3 direction, 
     offset[i] = one.offset;
     u[i] = one.surface.uv.x, v[i] = one.surface.uv.y;
   });
-  hit = {hit.shape, hit.shape_flags, point, normal, shading, tangent, offset, departure, {u, v}};
+  hit.point = point;
+  hit.geometric_normal = normal;
+  hit.shading_normal = shading;
+  hit.tangent = tangent;
+  hit.offset = offset;
+  hit.departure = departure;
+  hit.uv = {u, v};
 }
 
 /// The surfaces that rays have hit. Meshes: by their barycentric coordinates; analytic shapes: from
 /// origin + distance * direction.
-KB_INLINE Hit make_hit(const FlatScene& scene, U shape, U primitive, F u, F v, V3 origin, V3 direction,
-                       F distance, M active) {
-  Hit hit;
+KB_INLINE void make_hit(const Surfaces& surfaces, U shape, U primitive, F u, F v, V3 origin, V3 direction,
+                        F distance, M active, Hit& hit) {
+  const FlatScene& scene = surfaces.scene;
   hit.shape = select(active, shape, U(0u));
-  hit.shape_flags = KB_GATHER_WORD(scene.shapes.data(), KbShape, flags, hit.shape);
-  if (kLanes > 1 && !scene.features.analytic_shapes) {  // one lane asks for its shape alone
-    make_mesh_hit(scene, primitive, u, v, active, hit);
-    return hit;
-  }
-  const M mesh = active & (KB_GATHER_WORD(scene.shapes.data(), KbShape, type, hit.shape) == U(KB_SHAPE_MESH));
+  const ShapeHead record = gather_shape(scene, hit.shape);
+  hit.shape_flags = record.flags;
+  hit.surface = record.surface;
+  hit.emitter = record.emitter;
+  const U triangle = record.first_triangle + primitive;
+  if (kLanes > 1 && !scene.features.analytic_shapes)  // one lane asks for its shape alone
+    return make_mesh_hit(surfaces, triangle, u, v, active, hit);
+  const M mesh = active & (record.type == U(KB_SHAPE_MESH));
   hit.point = hit.geometric_normal = hit.shading_normal = hit.tangent = hit.departure = {F(0), F(0), F(0)};
   hit.offset = hit.uv.x = hit.uv.y = F(0);
-  if (any(mesh)) make_mesh_hit(scene, primitive, u, v, mesh, hit);
+  if (any(mesh)) make_mesh_hit(surfaces, triangle, u, v, mesh, hit);
   if (any(active & !mesh)) make_analytic_hits(scene, origin, direction, distance, active & !mesh, hit);
-  return hit;
+}
+
+/// Asks for the records of triangles before they are needed.
+KB_INLINE void prefetch_records(const Surfaces& surfaces, U shape, U primitive, M active) {
+  const M hit = active & (shape != U(KB_NONE));
+  const U safe = select(hit, shape, U(0u));
+  const U first = KB_GATHER_WORD(surfaces.scene.shapes.data(), KbShape, first_triangle, safe);
+  const WordArray triangle(select(hit, first + primitive, U(0u)));
+  for (uint32_t i = 0; i < kLanes; ++i) __builtin_prefetch(surfaces.records + triangle[i]);
 }
 
 /// Orthonormal frame with z = shading normal; x along the tangent where there is one (anisotropic roughness).

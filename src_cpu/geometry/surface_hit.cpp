@@ -24,8 +24,9 @@ glm::vec3 tiny_normal(glm::vec3 e1, glm::vec3 e2) {
 
 SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape, uint32_t primitive, float u, float v,
                             glm::vec3 ray_origin, glm::vec3 direction, float t) {
-  const one_lane::Hit hit =
-      one_lane::make_hit(scene, shape, primitive, u, v, to_lane(ray_origin), to_lane(direction), t, {true});
+  one_lane::Hit hit;
+  one_lane::make_hit({scene, nullptr}, shape, primitive, u, v, to_lane(ray_origin), to_lane(direction), t,
+                     {true}, hit);
   SurfaceHit result;
   result.shape = shape;
   result.point = to_glm(hit.point);

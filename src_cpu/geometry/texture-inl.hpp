@@ -8,17 +8,11 @@
 #define KILOBAND_TEXTURE_INL
 #endif
 
+#include "src_cpu/geometry/texture_lookup-inl.hpp"
 #include "src_cpu/geometry/texture_lookup.hpp"
-#include "src_cpu/lanes/lane_access-inl.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
-
-/// KbTextureSample in lanes.
-struct TextureSample {
-  U texture, xy;
-  F fx, fy;
-};
 
 /// A row of the spectra, or where `textured` a lookup in a texture.
 struct Resolved {
@@ -31,23 +25,26 @@ KB_INLINE Resolved resolved_row(U row) {
   return {row, no_lanes(), {U(0u), U(0u), F(0), F(0)}};
 }
 
-/// Bitmaps and checkerboards, whose coordinates are in double: one lane after another.
+KB_INLINE Resolved select(M m, const Resolved& yes, const Resolved& no) {
+  return {select(m, yes.row, no.row),
+          select(m, yes.textured, no.textured),
+          {select(m, yes.sample.texture, no.sample.texture), select(m, yes.sample.xy, no.sample.xy),
+           select(m, yes.sample.fx, no.sample.fx), select(m, yes.sample.fy, no.sample.fy)}};
+}
+
+/// Bitmaps and checkerboards.
 inline Resolved resolve_textures(const FlatScene& scene, U ref, V2 uv, U row, M active) {
-  WordArray rows(row), texture(U(0u)), xy(U(0u)), textured(U(0u));
-  FloatArray fx(F(0)), fy(F(0));
-  const WordArray refs(ref);
-  const FloatArray u(uv.x), v(uv.y);
-  each_lane(active, [&](uint32_t i) KB_LAMBDA {
-    const ResolvedSpectrum one = resolve_spectrum(scene, refs[i], {u[i], v[i]});
-    rows[i] = one.row;
-    if (!one.textured) return;
-    textured[i] = 1;
-    texture[i] = one.texture.texture;
-    xy[i] = one.texture.xy;
-    fx[i] = one.texture.fx;
-    fy[i] = one.texture.fy;
+  Resolved resolved = resolved_row(row);
+  each_distinct(active, ref, [&](uint32_t one, M lanes) KB_LAMBDA {
+    const uint32_t index = one & KB_REF_INDEX_MASK;
+    if ((one & KB_REF_KIND_MASK) == KB_REF_CHECKERBOARD) {
+      resolved.row = select(lanes, checkerboard_row(scene.checkerboards[index], uv), resolved.row);
+    } else {
+      const Resolved lookup{U(0u), lanes, sample_bitmap(scene.textures[index], index, uv)};
+      resolved = select(lanes, lookup, resolved);
+    }
   });
-  return {rows, has_bits(textured, 1u), {texture, xy, fx, fy}};
+  return resolved;
 }
 
 /// Spectra by reference. Lanes that are not active get row 0.
@@ -58,26 +55,21 @@ KB_INLINE Resolved resolve(const FlatScene& scene, U ref, V2 uv, M active) {
   return resolve_textures(scene, ref, uv, row, other);
 }
 
-KB_INLINE Resolved select(M m, const Resolved& yes, const Resolved& no) {
-  return {select(m, yes.row, no.row),
-          select(m, yes.textured, no.textured),
-          {select(m, yes.sample.texture, no.sample.texture), select(m, yes.sample.xy, no.sample.xy),
-           select(m, yes.sample.fx, no.sample.fx), select(m, yes.sample.fy, no.sample.fy)}};
-}
-
 /// Upper bounds of resolved spectra at this very point: the bounds of a whole image would keep paths alive for ever
 /// where one texel is white.
 /// bound  of the reference, which named spectra have everywhere
 KB_INLINE F bound_at(const FlatScene& scene, U ref, const Resolved& spectrum, F bound, M active) {
   const M local = active & has_bits(ref, KB_REF_KIND_MASK);
   if (!any(local)) return bound;
-  FloatArray bounds(bound);
-  const WordArray row(spectrum.row), texture(spectrum.sample.texture), xy(spectrum.sample.xy);
-  const uint32_t textured = bits_of(spectrum.textured);
-  each_lane(local, [&](uint32_t i) KB_LAMBDA {
-    bounds[i] = textured >> i & 1 ? texel_bound(scene, texture[i], xy[i]) : scene.spectra[row[i]].bound;
+  F local_bound = bound;
+  each_distinct(local & spectrum.textured, spectrum.sample.texture, [&](uint32_t texture, M lanes) KB_LAMBDA {
+    const U xy = select(lanes, spectrum.sample.xy, U(0u));
+    local_bound = select(lanes, texel_bounds(scene, texture, xy), local_bound);
   });
-  return bounds;
+  each_distinct(local & !spectrum.textured, spectrum.row, [&](uint32_t row, M lanes) KB_LAMBDA {
+    local_bound = select(lanes, F(scene.spectra[row].bound), local_bound);
+  });
+  return local_bound;
 }
 
 }  // namespace kiloband::cpu::KB_LANES

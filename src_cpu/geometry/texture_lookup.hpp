@@ -1,4 +1,5 @@
-// Texture addressing: which texels, with which weights. Evaluation per channel is deferred.
+// Texture addressing: which texels, with which weights. Evaluation per channel is deferred. texture-inl.hpp and
+// texture_lookup-inl.hpp have it over lanes, this is one lane.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -46,7 +47,5 @@ inline float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::v
 /// Upper bound of a resolved spectrum over guide bands and rendered channels
 /// (of a lookup: of its four texels).
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum);
-/// The same of a lookup's four texels. xy: KbTextureSample::xy
-float texel_bound(const FlatScene& scene, uint32_t texture, uint32_t xy);
 
 }  // namespace kiloband::cpu

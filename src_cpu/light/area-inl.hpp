@@ -84,16 +84,16 @@ struct AreaSample {
 /// shape  an emitting mesh in active lanes
 KB_INLINE AreaSample sample_mesh(const FlatScene& scene, U shape, V3 point, F u_triangle, F u, F v,
                                  bool need_uv, M active) {
-  const KbShape* shapes = scene.shapes.data();
   const float* cdf = scene.area_cdf.data();
-  const U first = select(active, KB_GATHER_WORD(shapes, KbShape, first_cdf, shape), U(0u));
-  const U count = select(active, KB_GATHER_WORD(shapes, KbShape, triangle_count, shape), U(1u));
-  const U flags = KB_GATHER_WORD(shapes, KbShape, flags, shape);
-  const F area = KB_GATHER_FLOAT(shapes, KbShape, area, shape);
+  const ShapeHead record = gather_shape(scene, shape);
+  const U first = select(active, record.first_cdf, U(0u));
+  const U count = select(active, record.triangle_count, U(1u));
+  const U flags = record.flags;
+  const F area = record.area;
   AreaSample sample;
   sample.triangle = find_interval(cdf, first, count, u_triangle);
   U index[3];
-  gather_indices(scene, shape, sample.triangle, active, index);
+  gather_indices(scene, record.first_triangle, sample.triangle, active, index);
   const Triangle t = gather_triangle(scene, index);
   sample.barycentric = uniform_triangle(u, v);
   const V3 weights{F(1) - sample.barycentric.x - sample.barycentric.y, sample.barycentric.x,

@@ -6,7 +6,6 @@
 #include "shared/estimator.h"
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
-#include "src_cpu/geometry/shape_geometry_warp.hpp"
 #include "src_cpu/lanes/one_lane_glm.hpp"
 // After the lanes that it is to be compiled for.
 #include "src_cpu/light/area-inl.hpp"

@@ -47,6 +47,10 @@ struct LightSample {
 /// over the sphere. Points that a one-sided area light does not shine to give pdf 0.
 LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position);
 
+/// The same of an area light or a thermal one that has been selected. Lanes (light-inl.hpp) sample meshes themselves.
+LightSample sample_shape_light(const FlatScene& scene, const KbEmitter& emitter, glm::vec3 point,
+                               float u_triangle, glm::vec2 u);
+
 /// The surface that a thermal light's sample lies on; apart from the sample, which most lights do without.
 SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on);
 

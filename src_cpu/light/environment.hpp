@@ -1,4 +1,4 @@
-// Environment emitters: constant radiance and lat-long maps.
+// Environment emitters: constant radiance and lat-long maps. environment-inl.hpp has them over lanes, this is one lane.
 // Densities are without the probability of selection.
 //
 // The map (emitter's local frame, +Y up): u = atan2(x, -z) / 2 pi mod 1, v = acos(y) / pi, as in Mitsuba 3.
@@ -14,9 +14,6 @@ namespace kiloband::cpu {
 
 /// Map coordinates of a world direction: u in [0, 1), v in [0, 1].
 glm::vec2 envmap_coordinates(const KbEmitter& emitter, glm::vec3 direction);
-
-/// Unit world direction; u uniform in [0,1)^2.
-glm::vec3 sample_envmap_direction(const EnvmapSampling& sampling, const KbEmitter& emitter, glm::vec2 u);
 
 /// Density at map coordinates [1/sr].
 float envmap_density(const EnvmapSampling& sampling, glm::vec2 uv);

@@ -1,4 +1,4 @@
-// Light selection, sampling and densities: emitter.hpp in lanes. Meshes in lanes, others one lane after another.
+// Light selection, sampling and densities: emitter.hpp in lanes. Spheres, disks and cylinders one lane after another.
 //
 // For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
 #if defined(KILOBAND_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
@@ -8,10 +8,10 @@
 #define KILOBAND_LIGHT_INL
 #endif
 
-#include "src_cpu/geometry/texture-inl.hpp"
-#include "src_cpu/light/area-inl.hpp"
 #include "src_cpu/light/area.hpp"
+#include "src_cpu/light/delta-inl.hpp"
 #include "src_cpu/light/emitter.hpp"
+#include "src_cpu/light/environment-inl.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
@@ -23,6 +23,20 @@ struct Light {
   M infinite, delta;
   Resolved radiance;
 };
+
+KB_INLINE Light select(M m, const Light& yes, const Light& no) {
+  return {select(m, yes.direction, no.direction),
+          select(m, yes.target, no.target),
+          select(m, yes.pdf, no.pdf),
+          select(m, yes.factor, no.factor),
+          select(m, yes.infinite, no.infinite),
+          select(m, yes.delta, no.delta),
+          select(m, yes.radiance, no.radiance)};
+}
+
+KB_INLINE V3 no_vector() {
+  return {F(0), F(0), F(0)};
+}
 
 /// Area lights on meshes.
 KB_INLINE Light sample_mesh_light(const FlatScene& scene, U emitter, U shape, V3 point, const F4& u,
@@ -42,8 +56,46 @@ KB_INLINE Light sample_mesh_light(const FlatScene& scene, U emitter, U shape, V3
   return light;
 }
 
-/// Lights of other kinds.
-inline void sample_other_lights(const FlatScene& scene, V3 point, const F4& u, M active, Light& light) {
+/// Constant environments and maps. A map's density and radiance are those of the final direction, so that they are the
+/// ones that a ray finds which leaves in the same direction.
+KB_INLINE Light sample_environment(const FlatScene& scene, const F4& u, M active) {
+  const V3 direction = sample_environment_direction(scene, u.z, u.w);
+  const V2 uv = environment_coordinates(scene, direction);
+  return {direction,
+          no_vector(),
+          environment_pdf(scene, uv),
+          F(1),
+          active,
+          no_lanes(),
+          environment_radiance(scene, uv, active)};
+}
+
+/// Points, spots and directional lights.
+/// type  of the emitters
+KB_INLINE Light sample_delta_lights(const FlatScene& scene, U emitter, U type, V3 point, M active) {
+  const M infinite = active & (type == U(KB_EMITTER_DIRECTIONAL)), near = active & !infinite;
+  DeltaSample sample{no_vector(), no_vector(), F(0)};
+  if (any(near)) sample = sample_position(scene, emitter, near & (type == U(KB_EMITTER_SPOT)), point);
+  if (any(infinite)) {
+    const DeltaSample far = sample_directional(scene, emitter);
+    sample = {select(infinite, far.direction, sample.direction), select(infinite, far.target, sample.target),
+              select(infinite, far.factor, sample.factor)};
+  }
+  const KbEmitter* emitters = scene.emitters.data();
+  const M lit = active & (sample.factor > F(0));
+  const U ref = KB_GATHER_WORD(emitters, KbEmitter, ref, emitter);
+  return {sample.direction,
+          sample.target,
+          select(lit, KB_GATHER_FLOAT(emitters, KbEmitter, select_pdf, emitter), F(0)),
+          sample.factor,
+          infinite,
+          active,
+          resolve(scene, ref, {F(0), F(0)}, lit)};
+}
+
+/// Area lights on shapes of other kinds.
+inline void sample_shape_lights(const FlatScene& scene, U emitter, V3 point, const F4& u, M active,
+                                Light& light) {
   V3Array direction(light.direction), target(light.target);
   FloatArray pdf(light.pdf), factor(light.factor), fx(light.radiance.sample.fx), fy(light.radiance.sample.fy);
   WordArray row(light.radiance.row), texture(light.radiance.sample.texture), xy(light.radiance.sample.xy);
@@ -51,9 +103,11 @@ inline void sample_other_lights(const FlatScene& scene, V3 point, const F4& u, M
   WordArray infinite(words(light.infinite)), delta(words(light.delta)),
       textured(words(light.radiance.textured));
   const V3Array at(point);
-  const FloatArray u0(u.x), u1(u.y), u2(u.z), u3(u.w);
+  const FloatArray u1(u.y), u2(u.z), u3(u.w);
+  const WordArray emitters(emitter);
   each_lane(active, [&](uint32_t i) KB_LAMBDA {
-    const LightSample one = sample_light(scene, {at.x[i], at.y[i], at.z[i]}, {u0[i], u1[i]}, {u2[i], u3[i]});
+    const LightSample one = sample_shape_light(scene, scene.emitters[emitters[i]],
+                                               {at.x[i], at.y[i], at.z[i]}, u1[i], {u2[i], u3[i]});
     direction.x[i] = one.direction.x, direction.y[i] = one.direction.y, direction.z[i] = one.direction.z;
     target.x[i] = one.target.x, target.y[i] = one.target.y, target.z[i] = one.target.z;
     pdf[i] = one.pdf;
@@ -78,16 +132,24 @@ KB_INLINE Light sample_lights(const FlatScene& scene, V3 point, const F4& u, M a
   const auto emitters = static_cast<uint32_t>(scene.emitters.size());
   U emitter(0u);
   if (emitters > 1) emitter = find_interval(scene.emitter_cdf.data(), U(0u), U(emitters), u.x);
-  const KbEmitter* records = scene.emitters.data();
-  const M on_shape = KB_GATHER_WORD(records, KbEmitter, type, emitter) == U(KB_EMITTER_AREA);
-  const U shape = select(on_shape, KB_GATHER_WORD(records, KbEmitter, shape, emitter), U(0u));
-  const M mesh = active & on_shape &
-                 (KB_GATHER_WORD(scene.shapes.data(), KbShape, type, shape) == U(KB_SHAPE_MESH)) &
-                 (KB_GATHER_WORD(scene.shapes.data(), KbShape, first_cdf, shape) != U(KB_NONE));
-  Light light{{F(0), F(0), F(0)}, {F(0), F(0), F(0)}, F(0), F(0), no_lanes(),
-              no_lanes(),         resolved_row(U(0u))};
+  const U type = KB_GATHER_WORD(scene.emitters.data(), KbEmitter, type, emitter);
+  const M on_shape = active & (type == U(KB_EMITTER_AREA));
+  M mesh = on_shape;
+  U shape(0u);
+  if (any(on_shape)) {
+    shape = select(on_shape, KB_GATHER_WORD(scene.emitters.data(), KbEmitter, shape, emitter), U(0u));
+    mesh = on_shape & (KB_GATHER_WORD(scene.shapes.data(), KbShape, type, shape) == U(KB_SHAPE_MESH)) &
+           (KB_GATHER_WORD(scene.shapes.data(), KbShape, first_cdf, shape) != U(KB_NONE));
+  }
+  const M sky = active & (emitter == U(scene.environment));
+  Light light{no_vector(), no_vector(), F(0), F(0), no_lanes(), no_lanes(), resolved_row(U(0u))};
   if (any(mesh)) light = sample_mesh_light(scene, emitter, shape, point, u, mesh);
-  if (any(active & !mesh)) sample_other_lights(scene, point, u, active & !mesh, light);
+  if (any(sky)) light = select(sky, sample_environment(scene, u, sky), light);
+  const M delta = active & ((type == U(KB_EMITTER_POINT)) | (type == U(KB_EMITTER_SPOT)) |
+                            (type == U(KB_EMITTER_DIRECTIONAL)));
+  if (any(delta)) light = select(delta, sample_delta_lights(scene, emitter, type, point, delta), light);
+  const M others = active & !mesh & !sky & !delta;
+  if (any(others)) sample_shape_lights(scene, emitter, point, u, others, light);
   return light;
 }
 
@@ -114,28 +176,15 @@ KB_INLINE F area_light_pdf(const FlatScene& scene, const Hit& hit, U emitter, V3
   return result;
 }
 
-/// What escaped rays find: density of sample_lights() and radiance of the environment, which there is.
+/// What rays find that leave the scene: the density of sample_lights() and the radiance of the environment, which there
+/// is.
 struct Escape {
   F pdf;
   Resolved radiance;
 };
-inline Escape environment_at(const FlatScene& scene, V3 direction, M active) {
-  const KbEmitter& emitter = scene.emitters[scene.environment];
-  if (emitter.type == KB_EMITTER_CONSTANT) {
-    const F pdf(environment_pdf(scene, glm::vec3(0, 0, 1)));
-    return {pdf, resolve(scene, U(emitter.ref), {F(0), F(0)}, active)};
-  }
-  FloatArray pdf(F(0)), fx(F(0)), fy(F(0));
-  WordArray texture(U(0u)), xy(U(0u));
-  const V3Array w(direction);
-  each_lane(active, [&](uint32_t i) KB_LAMBDA {
-    const glm::vec3 one(w.x[i], w.y[i], w.z[i]);
-    pdf[i] = environment_pdf(scene, one);
-    const KbTextureSample sample = environment_radiance(scene, one).texture;
-    texture[i] = sample.texture, xy[i] = sample.xy;
-    fx[i] = sample.fx, fy[i] = sample.fy;
-  });
-  return {pdf, {U(0u), active, {texture, xy, fx, fy}}};
+KB_INLINE Escape environment_at(const FlatScene& scene, V3 direction, M active) {
+  const V2 uv = environment_coordinates(scene, direction);
+  return {environment_pdf(scene, uv), environment_radiance(scene, uv, active)};
 }
 
 }  // namespace kiloband::cpu::KB_LANES

@@ -1,4 +1,4 @@
-// Camera rays.
+// Camera rays. camera-inl.hpp has them over lanes, this is one lane.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -18,6 +18,9 @@ struct CameraRay {
 /// so every sample has weight 1.
 /// u  x, y: film position; z, w: lens; uniform in [0,1)
 CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u);
+/// The table of gaussian_distance() (film/filter_table.hpp) for a gaussian filter of this radius / standard deviation; null
+/// unless it is Mitsuba's, 4.
+const KbFloat2* gaussian_table(float ratio);
 /// The ray through the pixel's centre and the lens's centre, for auxiliary images.
 CameraRay centre_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y);
 

@@ -2,11 +2,12 @@
 #include "src_cpu/path/path_kernels.hpp"
 // After the lanes that it is to be compiled for.
 #include "src_cpu/path/shade-inl.hpp"
+#include "src_cpu/path/start-inl.hpp"
 
 namespace kiloband::cpu {
 
 const PathKernels& one_lane_path_kernels() {
-  static constexpr PathKernels kKernels{one_lane::shade_wave};
+  static constexpr PathKernels kKernels{one_lane::start_wave, one_lane::shade_wave};
   return kKernels;
 }
 

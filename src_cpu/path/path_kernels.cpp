@@ -10,11 +10,12 @@
 #include "src_cpu/lanes/highway_lanes-inl.hpp"
 // After the lanes that it is to be compiled for.
 #include "src_cpu/path/shade-inl.hpp"
+#include "src_cpu/path/start-inl.hpp"
 
 namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
-inline constexpr PathKernels kPathKernels{shade_wave};
+inline constexpr PathKernels kPathKernels{start_wave, shade_wave};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kiloband::cpu

@@ -7,6 +7,9 @@
 namespace kiloband::cpu {
 
 struct PathKernels {
+  /// Camera rays of the whole block of the film in which `block` lies -> wave.rays() and the states of the paths, which
+  /// outside of `block` have no pixel.
+  void (*start)(const Bounce& bounce, const PixelRect& block, Wave& wave);
   /// Answers of wave.rays -> saved vertices, wave.shadow_rays, wave.next_rays and the states of the paths.
   void (*shade)(const Bounce& bounce, Wave& wave);
 };

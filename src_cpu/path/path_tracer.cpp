@@ -1,18 +1,13 @@
 #include "src_cpu/path/path_tracer.hpp"
 
-#include <algorithm>
-
 #include "shared/estimator.h"
-#include "shared/sampler.h"
-#include "src_cpu/path/camera.hpp"
 #include "src_cpu/path/rare_features.hpp"
 
 namespace kiloband::cpu {
 namespace {
 
-/// What the lanes without a path and the pixels that a block lacks have.
-constexpr PathState kNoPath{
-    .bound = 1, .pixel = KB_NONE, .channel = KB_NONE, .first_entry = KB_NONE, .last_entry = KB_NONE};
+/// 512 KiB: about as much as the second-level cache has for them.
+constexpr std::size_t kMostCachedRecords = 8192;
 
 bool has_rare_features(const SceneFeatures& f) {
   return f.gas || f.dispersion || f.thermal || f.compensation;
@@ -31,6 +26,7 @@ void record_closest(const Wave& wave, const RayQueue& rays) {
                                          rays.t_max[i]);
     wave.recording->closest_path.push_back(wave.paths[rays.path[i]].pixel);
   }
+  wave.recording->closest_ends.push_back(wave.recording->closest.size());
 }
 
 void record_answers(const Wave& wave, const RayQueue& rays) {
@@ -46,14 +42,14 @@ void record_answers(const Wave& wave, const RayQueue& rays) {
   }
 }
 
-void record_shadows(const Wave& wave) {
-  const ShadowQueue& rays = wave.shadow_rays;
+void record_shadows(const Wave& wave, const ShadowQueue& rays) {
   for (uint32_t i = 0; i < rays.count; ++i) {
     if (!is_recorded(wave, rays.path[i])) continue;
     wave.recording->shadow.emplace_back(glm::vec3(rays.ox[i], rays.oy[i], rays.oz[i]),
                                         glm::vec3(rays.dx[i], rays.dy[i], rays.dz[i]), rays.t_max[i]);
     wave.recording->shadow_path.push_back(wave.paths[rays.path[i]].pixel);
   }
+  wave.recording->shadow_ends.push_back(wave.recording->shadow.size());
 }
 
 }  // namespace
@@ -65,7 +61,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
       rare_(has_rare_features(flat_.features) ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree)
                                               : nullptr),
       kernels_(rare_ ? one_lane_path_kernels() : kernels),
-      secondary_order_(rare_ ? RayOrder::kMixed : scene.embree->secondary_order()) {}
+      sorts_(!rare_ && scene.embree->sorting_pays()) {}
 
 PathTracer::~PathTracer() = default;
 
@@ -74,55 +70,31 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
   out.clear();
   invalid.clear();
   if (flat_.integrator.max_depth == 0) return;
-  start(block, id);
+  const std::span<const TriangleRecord> records = scene_.records;
+  Bounce bounce{flat_,
+                settings_,
+                id,
+                0,
+                rare_.get(),
+                records.empty() ? nullptr : records.data(),
+                records.size() > kMostCachedRecords};
+  wave_.paths.resize(kWavePaths + 1);
+  wave_.entries.clear();
+  kernels_.start(bounce, block, wave_);
   if (rare_) rare_->start(wave_, mu);
-  Bounce bounce{flat_, settings_, id, 0, rare_.get()};
+  const bool in_part = block.pixels() < wave_.rays().count;
   for (; wave_.rays().count > 0; ++bounce.number) {
     if (bounce.number >= KB_MAX_VERTICES) {
       const RayQueue& rays = wave_.rays();
       for (uint32_t i = 0; i < rays.count; ++i) wave_.paths[rays.path[i]].invalid = 1;
       break;
     }
-    trace_closest(bounce.number);
+    trace_closest(bounce.number, in_part);
     kernels_.shade(bounce, wave_);
     trace_shadows();
     wave_.current = 1 - wave_.current;
   }
   gather(out, invalid);
-}
-
-/// The paths of the whole block of the film in which `block` lies; outside of `block` they have no pixel.
-void PathTracer::start(const PixelRect& block, const SampleId& id) {
-  const KbCamera& camera = flat_.camera;
-  const uint32_t x0 = block.x0 / kBlockSize * kBlockSize, y0 = block.y0 / kBlockSize * kBlockSize;
-  const uint32_t width = std::min(kBlockSize, camera.film_width - x0);
-  const uint32_t height = std::min(kBlockSize, camera.film_height - y0);
-  const uint32_t sampler =
-      settings_.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
-  wave_.paths.assign(kWavePaths + 1, kNoPath);
-  wave_.entries.clear();
-  RayQueue& rays = wave_.rays();
-  rays.count = width * height;
-  for (uint32_t i = 0; i < rays.count; ++i) {
-    const uint32_t x = x0 + i % width, y = y0 + i / width;
-    const bool inside = x - block.x0 < block.width && y - block.y0 < block.height;
-    PathState& path = wave_.paths[i];
-    path.pixel = inside ? (y - block.y0) * block.width + (x - block.x0) : KB_NONE;
-    path.key =
-        kb_sampler_key(sampler, settings_.seed, y * camera.film_width + x, id.sample, id.replicate, id.index);
-    path.magnitude = 1;
-    path.previous_delta = 1;
-    const CameraRay ray = sample_camera_ray(camera, x, y, kb_sampler_block(path.key, KB_BLOCK_CAMERA));
-    rays.ox[i] = path.previous_point[0] = ray.origin.x;
-    rays.oy[i] = path.previous_point[1] = ray.origin.y;
-    rays.oz[i] = path.previous_point[2] = ray.origin.z;
-    rays.dx[i] = ray.direction.x;
-    rays.dy[i] = ray.direction.y;
-    rays.dz[i] = ray.direction.z;
-    rays.t_min[i] = ray.t_min;
-    rays.t_max[i] = ray.t_max;
-    rays.path[i] = i;
-  }
 }
 
 /// Where packets are not coherent, paths without a pixel have done their part once camera rays are traced.
@@ -140,22 +112,35 @@ void PathTracer::drop_paths_outside() {
   rays.count = kept;
 }
 
-void PathTracer::trace_closest(uint32_t bounce) {
+/// in_part: only some of the wave's paths have a pixel
+void PathTracer::trace_closest(uint32_t bounce, bool in_part) {
+  const bool sorted = sorts_ && bounce > 0;
+  if (sorted) {
+    sort_rays(wave_.rays(), scene_.embree->grid(), wave_.next_rays());
+    wave_.current = 1 - wave_.current;
+  }
   RayQueue& rays = wave_.rays();
   wave_.traced_rays += rays.count;
   if (wave_.recording) record_closest(wave_, rays);
-  scene_.embree->closest_hits(rays, bounce == 0 ? RayOrder::kNeighbours : secondary_order_);
+  scene_.embree->closest_hits(rays, sorted || bounce == 0 ? RayPackets::kCoherent : RayPackets::kIncoherent);
   if (wave_.recording) record_answers(wave_, rays);
-  if (bounce == 0 && secondary_order_ != RayOrder::kSorted) drop_paths_outside();
+  if (bounce == 0 && !sorts_ && in_part) drop_paths_outside();
   if (rare_ && rare_->gas()) rare_->gas()->walk_boundaries(wave_);
+}
+
+/// Traces the wave's shadow rays. Returns where their answers are.
+const ShadowQueue& PathTracer::answered_shadows() {
+  if (sorts_) sort_rays(wave_.shadow_rays, scene_.embree->grid(), wave_.sorted_shadow_rays);
+  ShadowQueue& rays = sorts_ ? wave_.sorted_shadow_rays : wave_.shadow_rays;
+  wave_.traced_rays += rays.count;
+  if (wave_.recording) record_shadows(wave_, rays);
+  scene_.embree->occlusions(rays, sorts_ ? RayPackets::kCoherent : RayPackets::kIncoherent);
+  return rays;
 }
 
 void PathTracer::trace_shadows() {
   if (rare_ && rare_->gas()) return rare_->gas()->trace_shadows(wave_);
-  ShadowQueue& rays = wave_.shadow_rays;
-  wave_.traced_rays += rays.count;
-  if (wave_.recording) record_shadows(wave_);
-  scene_.embree->occlusions(rays, secondary_order_);
+  const ShadowQueue& rays = answered_shadows();
   for (uint32_t i = 0; i < rays.count; ++i)
     if (rays.t_max[i] < 0) wave_.entries[rays.entry[i]].vertex.head &= ~KB_VERTEX_NEE;
 }

@@ -32,6 +32,7 @@ namespace kiloband::cpu {
 struct TracerScene {
   const FlatScene* flat = nullptr;
   const EmbreeScene* embree = nullptr;
+  std::span<const TriangleRecord> records{};  // or none
 };
 
 /// Builds the paths of one block and sample. One object per thread: it owns all scratch memory.
@@ -54,10 +55,10 @@ class PathTracer {
   void record_into(Recording* recording) { wave_.recording = recording; }
 
  private:
-  void start(const PixelRect& block, const SampleId& id);
   void drop_paths_outside();
-  void trace_closest(uint32_t bounce);
+  void trace_closest(uint32_t bounce, bool in_part);
   void trace_shadows();
+  const ShadowQueue& answered_shadows();
   void gather(PathBuffer& out, std::vector<uint32_t>& invalid) const;
 
   const TracerScene& scene_;
@@ -65,7 +66,7 @@ class PathTracer {
   SamplingSettings settings_;
   std::unique_ptr<one_lane::RareFeatures> rare_;  // null: the scene has none
   const PathKernels& kernels_;
-  RayOrder secondary_order_;
+  bool sorts_;  // secondary and shadow rays
   Wave wave_;
 };
 

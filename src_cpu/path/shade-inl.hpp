@@ -20,8 +20,9 @@ KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
 
 /// Rays that left the scene see the environment.
-inline void add_escaped(Shading& s, M escaped) {
+KB_INLINE void add_escaped(Shading& s) {
   const FlatScene& scene = s.scene();
+  const M escaped = s.active;
   if (scene.environment == KB_NONE || (s.bounce.number == 0 && scene.integrator.hide_emitters)) return;
   const Escape seen = environment_at(scene, s.direction, escaped);
   Vertex v = empty_vertex();
@@ -39,10 +40,9 @@ KB_INLINE void add_emission(Shading& s, M hit) {
   if (scene.features.thermal && add_thermal_emission(s)) return;
 #endif
   if (s.bounce.number == 0 && scene.integrator.hide_emitters) return;
-  const U emitter = KB_GATHER_WORD(scene.shapes.data(), KbShape, emitter, s.hit.shape);
-  const M emits = hit & (emitter != U(KB_NONE)) & on_front(s.hit.shading_normal, -s.direction);
+  const M emits = hit & (s.hit.emitter != U(KB_NONE)) & on_front(s.hit.shading_normal, -s.direction);
   if (!any(emits)) return;
-  const U index = select(emits, emitter, U(0u));
+  const U index = select(emits, s.hit.emitter, U(0u));
   const M weighted = emits & !s.previous_delta();
   F weight(1);
   if (any(weighted)) {
@@ -83,18 +83,17 @@ inline U choose_surfaces(Shading& s, U surface, M hit) {
 /// lanes that have a material which scatters.
 KB_INLINE M find_material(Shading& s, U surface, M hit) {
   const FlatScene& scene = s.scene();
-  const KbSurface* surfaces = scene.surfaces.data();
-  s.surface_flags = KB_GATHER_WORD(surfaces, KbSurface, flags, surface);
+  static_assert(offsetof(KbSurface, front) == 0 && offsetof(KbSurface, flags) == 8);
+  U record[4];
+  Addresses(scene.surfaces.data(), surface).load(0, record);
+  s.surface_flags = record[2];
   const M below = dot(s.hit.shading_normal, -s.direction) < F(0);
   const M turned = below & has_bits(s.surface_flags, KB_SURFACE_TWO_SIDED);
   const M black = below & !has_bits(s.surface_flags, KB_SURFACE_TWO_SIDED | KB_SURFACE_TRANSMISSIVE);
   const M seen = hit & !black;
-  const U side = select(turned, KB_GATHER_WORD(surfaces, KbSurface, back, surface),
-                        KB_GATHER_WORD(surfaces, KbSurface, front, surface));
-  s.side = select(seen, side, U(0u));
+  s.side = select(seen, select(turned, record[1], record[0]), U(0u));
   s.material = gather_material(scene.materials.data(), scene.tables.data(), s.side);
-  const U ref_a = KB_GATHER_WORD(scene.materials.data(), KbMaterial, ref_a, s.side);
-  const U ref_b = KB_GATHER_WORD(scene.materials.data(), KbMaterial, ref_b, s.side);
+  const U ref_a = s.material.ref_a, ref_b = s.material.ref_b;
   s.vertex.a = resolve(scene, ref_a, s.hit.uv, seen & (ref_a != U(KB_NONE)));
   s.vertex.b = resolve(scene, ref_b, s.hit.uv, seen & (ref_b != U(KB_NONE)));
   s.material.bound_a = bound_at(scene, ref_a, s.vertex.a, s.material.bound_a, seen & (ref_a != U(KB_NONE)));
@@ -189,33 +188,63 @@ KB_INLINE void scatter(Shading& s, M hit, M scatters, M lit) {
 #endif
 }
 
-/// Lanes `first` .. of the wave's rays.
+/// Moves the rays that have hit something together, in their order, and those that have not to `escaped`: so vectors of
+/// either are full.
+inline void part_rays(RayQueue& rays, EscapeQueue& escaped) {
+  uint32_t hits = 0;
+  escaped.count = 0;
+  for (uint32_t first = 0; first < rays.count; first += kLanes) {
+    const M active = first_lanes(rays.count - first);
+    const U shape = load(rays.shape + first);
+    const M hit = active & (shape != U(KB_NONE)), miss = active & !hit;
+    const U path = load(rays.path + first);
+    if (any(miss)) {
+      const uint32_t n = escaped.count;
+      store_chosen(load(rays.dx + first), miss, escaped.dx + n);
+      store_chosen(load(rays.dy + first), miss, escaped.dy + n);
+      store_chosen(load(rays.dz + first), miss, escaped.dz + n);
+      store_chosen(path, miss, escaped.path + n);
+      escaped.count += count(miss);
+    }
+    if (hits != first || any(miss)) {
+      const auto move = [&](auto* array) KB_LAMBDA { store_chosen(load(array + first), hit, array + hits); };
+      for (float* array : {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz, rays.t_max, rays.u, rays.v})
+        move(array);
+      for (uint32_t* array : {rays.primitive, rays.shape, rays.path}) move(array);
+    }
+    hits += count(hit);
+  }
+  rays.count = hits;
+}
+
+/// Lanes `first` .. of the rays that have hit nothing.
+inline void leave_scene(const Bounce& bounce, Wave& wave, uint32_t first) {
+  Shading s(bounce, wave, wave.escaped, first);
+#ifdef KB_ONE_LANE
+  if (bounce.rare) bounce.rare->pass_gas(s, true);
+#endif
+  add_escaped(s);
+}
+
+/// Lanes `first` .. of the wave's rays, which have all hit something.
 inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
   const RayQueue& rays = wave.rays();
-  const M active = first_lanes(rays.count - first);
-  const U shape = load(rays.shape + first);
-  const M hit = active & (shape != U(KB_NONE));
-  Shading s{.bounce = bounce,
-            .wave = wave,
-            .first = first,
-            .path = select(active, load(rays.path + first), U(kWavePaths)),
-            .active = active,
-            .direction = {load(rays.dx + first), load(rays.dy + first), load(rays.dz + first)},
-            .vertex = empty_vertex()};
+  Shading s(bounce, wave, rays, first);
+  const M hit = s.active;
 #ifdef KB_ONE_LANE
-  if (bounce.rare) bounce.rare->pass_gas(s, !hit.v);
+  if (bounce.rare) bounce.rare->pass_gas(s, false);
 #endif
-  if (any(active & !hit)) add_escaped(s, active & !hit);
-  if (!any(hit)) return;
   const V3 origin{load(rays.ox + first), load(rays.oy + first), load(rays.oz + first)};
-  s.hit = make_hit(bounce.scene, shape, load(rays.primitive + first), load(rays.u + first),
-                   load(rays.v + first), origin, s.direction, load(rays.t_max + first), hit);
+  make_hit({bounce.scene, bounce.records}, load(rays.shape + first), load(rays.primitive + first),
+           load(rays.u + first), load(rays.v + first), origin, s.direction, load(rays.t_max + first), hit,
+           s.hit);
   add_emission(s, hit);
   if (!bounce.goes_on()) return append(wave, s.path, s.vertex, hit & s.vertex.has(KB_VERTEX_EMIT));
+  s.keys = s.sampler_keys();
   s.u = s.numbers(kb_block_bsdf(bounce.number));
   s.opacity = F(1);
   s.passes = no_lanes();
-  U surface = KB_GATHER_WORD(bounce.scene.shapes.data(), KbShape, surface, s.hit.shape);
+  U surface = s.hit.surface;
   if (bounce.scene.features.mask || bounce.scene.features.blend) surface = choose_surfaces(s, surface, hit);
   const M scatters = find_material(s, surface, hit);
 #ifdef KB_ONE_LANE
@@ -238,7 +267,17 @@ inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
 /// All paths of the wave at what their rays have hit: fills the queues of shadow rays and next rays.
 inline void shade_wave(const Bounce& bounce, Wave& wave) {
   wave.shadow_rays.count = wave.next_rays().count = 0;
-  for (uint32_t first = 0; first < wave.rays().count; first += kLanes) shade_lanes(bounce, wave, first);
+  part_rays(wave.rays(), wave.escaped);
+  if (bounce.scene.environment != KB_NONE || bounce.rare)
+    for (uint32_t first = 0; first < wave.escaped.count; first += kLanes) leave_scene(bounce, wave, first);
+  const RayQueue& rays = wave.rays();
+  for (uint32_t first = 0; first < rays.count; first += kLanes) {
+    const uint32_t next = first + kLanes;
+    if (bounce.prefetches && next < rays.count)
+      prefetch_records({bounce.scene, bounce.records}, load(rays.shape + next), load(rays.primitive + next),
+                       first_lanes(rays.count - next));
+    shade_lanes(bounce, wave, first);
+  }
 }
 
 }  // namespace kiloband::cpu::KB_LANES

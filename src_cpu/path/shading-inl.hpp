@@ -26,13 +26,14 @@ KB_INLINE F power_heuristic(F pdf, F other) {
 struct Shading {
   const Bounce& bounce;
   Wave& wave;
-  uint32_t first;  // in the queues
+  uint32_t first;  // in the queue
   U path;
   M active;  // lanes that have a path
   V3 direction;
   Vertex vertex;
 
   Hit hit;
+  SamplerKeys keys;
   F4 u;  // of the BSDF: lobe, direction, roulette
   U surface_flags;
   M passes;  // through a mask
@@ -42,14 +43,34 @@ struct Shading {
   Frame frame;
   V3 wi;
 
+  /// What is not set here is left as it is: the compiler would fill 2 KiB with zeros.
+  /// Queue: RayQueue or EscapeQueue; lanes `from` .. of it
+  template <class Queue>
+  KB_INLINE Shading(const Bounce& at, Wave& of, const Queue& queue, uint32_t from)
+      : bounce(at),
+        wave(of),
+        first(from),
+        path(select(first_lanes(queue.count - from), load(queue.path + from), U(kWavePaths))),
+        active(first_lanes(queue.count - from)),
+        direction{load(queue.dx + from), load(queue.dy + from), load(queue.dz + from)},
+        vertex(empty_vertex()) {}
+
   KB_INLINE const FlatScene& scene() const { return bounce.scene; }
   KB_INLINE F state_float(std::size_t offset) const { return gather_float(wave.paths.data(), offset, path); }
   KB_INLINE U state_word(std::size_t offset) const { return gather_word(wave.paths.data(), offset, path); }
+  /// What of the paths' keys differs between paths is all that is read of them.
+  KB_INLINE SamplerKeys sampler_keys() const {
+    SamplerKeys read{U(0u), U(bounce.id.sample), U(kb_reverse_bits(bounce.id.index)), U(0u), U(0u)};
+    constexpr std::size_t kKey = offsetof(PathState, key);
+    if (bounce.sampler() == KB_SAMPLER_INDEPENDENT) {
+      read.pixel = state_word(kKey + offsetof(KbSamplerKey, pixel));
+    } else {
+      read.key0 = state_word(kKey + offsetof(KbSamplerKey, key0));
+      read.key1 = state_word(kKey + offsetof(KbSamplerKey, key1));
+    }
+    return read;
+  }
   KB_INLINE F4 numbers(uint32_t block) const {
-    const SamplerKeys keys{state_word(offsetof(PathState, key) + offsetof(KbSamplerKey, pixel)),
-                           U(bounce.id.sample), U(kb_reverse_bits(bounce.id.index)),
-                           state_word(offsetof(PathState, key) + offsetof(KbSamplerKey, key0)),
-                           state_word(offsetof(PathState, key) + offsetof(KbSamplerKey, key1))};
     return sampler_block(bounce.sampler(), bounce.settings.seed, keys, U(block));
   }
   KB_INLINE M previous_delta() const { return has_bits(state_word(offsetof(PathState, previous_delta)), 1u); }

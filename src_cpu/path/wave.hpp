@@ -9,6 +9,7 @@
 #include "shared/sampler.h"
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/ray_queue.hpp"
+#include "src_cpu/geometry/triangle_records.hpp"
 
 namespace kiloband::cpu {
 
@@ -34,6 +35,10 @@ struct PathState {
 };
 static_assert(sizeof(PathState) == 80);
 
+/// What the lanes without a path and the pixels that a block lacks have.
+inline constexpr PathState kNoPath{
+    .bound = 1, .pixel = KB_NONE, .channel = KB_NONE, .first_entry = KB_NONE, .last_entry = KB_NONE};
+
 /// A saved vertex, or what follows one directly: two texture samples, four cells of a plume.
 struct WaveEntry {
   KbPathVertex vertex;
@@ -45,7 +50,8 @@ struct Recording {
   std::vector<TraceRay> closest;
   std::vector<ShadowRay> shadow;
   std::vector<uint32_t> closest_path, shadow_path;
-  std::vector<TraceRay> answers;  // of `closest`: what was hit
+  std::vector<std::size_t> closest_ends, shadow_ends;  // of the queues that were traced
+  std::vector<TraceRay> answers;                       // of `closest`: what was hit
 };
 
 struct Wave {
@@ -53,7 +59,8 @@ struct Wave {
   std::vector<WaveEntry> entries;
   RayQueue queues[2];  // what is traced, and what the next bounce will trace
   uint32_t current = 0;
-  ShadowQueue shadow_rays;
+  EscapeQueue escaped;
+  ShadowQueue shadow_rays, sorted_shadow_rays;
   uint64_t vertices = 0, traced_rays = 0;
   Recording* recording = nullptr;  // appended to
 
@@ -70,8 +77,10 @@ struct Bounce {
   const FlatScene& scene;
   const SamplingSettings& settings;
   SampleId id;
-  uint32_t number = 0;                     // 0: what camera rays hit
-  one_lane::RareFeatures* rare = nullptr;  // what few scenes have: one lane alone uses it
+  uint32_t number = 0;                      // 0: what camera rays hit
+  one_lane::RareFeatures* rare = nullptr;   // what few scenes have: one lane alone uses it
+  const TriangleRecord* records = nullptr;  // null: hits are made from the arrays of the scene
+  bool prefetches = false;                  // records, which are more than the caches hold
 
   uint32_t sampler() const {
     return settings.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;

@@ -3,9 +3,11 @@
 //
 //   bench_paths --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 //
-// Counter paths_per_second. "bare" sends the recorded rays of the same paths, path by path in the order of a
-// scalar tracer (closest hit and shadow ray of each bounce), through rtcIntersect1 / rtcOccluded1 on the same
-// scene: the rate of a tracer whose shading and random numbers cost nothing.
+// Counter paths_per_second. "bare" sends the recorded rays of the same paths through Embree on the same scene: the rate
+// of a tracer whose shading and random numbers cost nothing.
+//   single   path by path in the order of a scalar tracer (closest hit and shadow ray of each bounce), single rays
+//   packets  bounce by bounce: camera rays in coherent packets of 16, secondary rays in packets of 8, shadow rays 16
+//   sorted   the same with secondary and shadow rays sorted (not timed) and coherent
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -41,22 +43,29 @@ std::filesystem::path data_directory() {
   return std::filesystem::path(KILOBAND_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-/// A scene made ready once: "cornell" from the repository, "conference" from the folder of public data.
+/// "cornell" from the repository, others from the folder of public data.
+SceneDescription read_bench_scene(const std::string& name) {
+  if (name == "cornell")
+    return read_scene(std::filesystem::path(KILOBAND_SOURCE_DIR) / "scenes/cornell_box/cornell_box.xml");
+  if (name == "matpreview") return read_scene(data_directory() / "scenes/mitsuba/matpreview/matpreview.xml");
+  return read_scene_text(kConferenceScene, name, data_directory());
+}
+
+/// A scene made ready once.
 struct Bench {
   std::shared_ptr<const FlatScene> compiled;
   std::unique_ptr<EmbreeScene> embree;
+  std::vector<TriangleRecord> records;
   TracerScene tracer;
   std::vector<PixelRect> blocks;
 
   Bench(const std::string& name, std::size_t channels) {
-    const SceneDescription scene =
-        name == "cornell"
-            ? read_scene(std::filesystem::path(KILOBAND_SOURCE_DIR) / "scenes/cornell_box/cornell_box.xml")
-            : read_scene_text(kConferenceScene, name, data_directory());
+    const SceneDescription scene = read_bench_scene(name);
     compiled = compile_scene(scene, {parse_channels("400:700:" + std::to_string(channels)), {}, {}});
     const FlatScene& flat = *compiled;
     embree = std::make_unique<EmbreeScene>(flat, "avx512", 1);
-    tracer = {&flat, embree.get()};
+    records = make_triangle_records(flat);
+    tracer = {&flat, embree.get(), records};
     blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
   }
 };
@@ -136,8 +145,10 @@ std::size_t query_all(const EmbreeScene& embree, const BareRays& rays) {
   return hits;
 }
 
-void bare(benchmark::State& state, const std::string& name) {
-  Bench& bench = bench_of(name, 8);
+/// The rays of one sample of every block.
+/// use(recording): called for each
+template <class Use>
+void record_rays(const Bench& bench, const Use& use) {
   SamplingSettings settings;
   settings.sampler = SamplerType::kIndependent;
   settings.replicates = 1;
@@ -145,17 +156,92 @@ void bare(benchmark::State& state, const std::string& name) {
   PathBuffer paths;
   std::vector<uint32_t> invalid;
   const float mu[1] = {0.5f};
-  BareRays rays;
   for (const PixelRect& block : bench.blocks) {
-    for (uint32_t s = 0; s < kSamples; ++s) {
-      Recording recording;
-      tracer.record_into(&recording);
-      tracer.trace(block, {s, 0, s}, mu, paths, invalid);
-      append_in_path_order(recording, rays);
+    Recording recording;
+    tracer.record_into(&recording);
+    tracer.trace(block, {0, 0, 0}, mu, paths, invalid);
+    use(recording);
+  }
+}
+
+void bare(benchmark::State& state, const std::string& name) {
+  Bench& bench = bench_of(name, 8);
+  BareRays rays;
+  record_rays(bench, [&](const Recording& recording) { append_in_path_order(recording, rays); });
+  for (auto _ : state) benchmark::DoNotOptimize(query_all(*bench.embree, rays));
+  count_paths(state, pixels_of(bench));
+}
+
+/// The rays that a wave traced at once, in the order of their paths, or sorted.
+struct BareQueue {
+  std::vector<float> columns[8];  // of the queue that traces them
+  bool shadow = false, camera = false;
+
+  /// first .. end of `rays`, whose paths are `path`.
+  template <class Ray>
+  BareQueue(const std::vector<Ray>& rays, const std::vector<uint32_t>& path, std::size_t first,
+            std::size_t end, const RayGrid* grid)
+      : shadow(std::is_same_v<Ray, ShadowRay>), camera(!shadow && first == 0) {
+    std::vector<std::size_t> order(end - first);
+    std::iota(order.begin(), order.end(), first);
+    std::ranges::sort(order, {}, [&](std::size_t i) { return path[i]; });
+    const auto queue = std::make_unique<RayQueue>(), sorted = std::make_unique<RayQueue>();
+    for (const std::size_t i : order) {
+      const Ray& ray = rays[i];
+      const uint32_t n = queue->count++;
+      queue->ox[n] = ray.ox, queue->oy[n] = ray.oy, queue->oz[n] = ray.oz, queue->t_min[n] = ray.t_min;
+      queue->dx[n] = ray.dx, queue->dy[n] = ray.dy, queue->dz[n] = ray.dz, queue->t_max[n] = ray.t_max;
+    }
+    const bool sorts = grid && !camera;
+    if (sorts) sort_rays(*queue, *grid, *sorted);
+    const RayQueue& from = sorts ? *sorted : *queue;
+    const float* arrays[8] = {from.ox, from.oy, from.oz, from.dx, from.dy, from.dz, from.t_max, from.t_min};
+    for (int c = 0; c < 8; ++c) columns[c].assign(arrays[c], arrays[c] + from.count);
+  }
+
+  template <class Queue>
+  void load(Queue& queue) const {
+    queue.count = static_cast<uint32_t>(columns[0].size());
+    float* arrays[7] = {queue.ox, queue.oy, queue.oz, queue.dx, queue.dy, queue.dz, queue.t_max};
+    for (int c = 0; c < 7; ++c) std::ranges::copy(columns[c], arrays[c]);
+    if constexpr (requires { queue.t_min; }) std::ranges::copy(columns[7], queue.t_min);
+  }
+};
+
+template <class Ray>
+void append_queues(const std::vector<Ray>& rays, const std::vector<uint32_t>& path,
+                   const std::vector<std::size_t>& ends, const RayGrid* grid,
+                   std::vector<BareQueue>& queues) {
+  std::size_t first = 0;
+  for (const std::size_t end : ends) {
+    if (end > first) queues.emplace_back(rays, path, first, end, grid);
+    first = end;
+  }
+}
+
+void bare_packets(benchmark::State& state, const std::string& name, bool sorted) {
+  Bench& bench = bench_of(name, 8);
+  const RayGrid* grid = sorted ? &bench.embree->grid() : nullptr;
+  std::vector<BareQueue> queues;
+  record_rays(bench, [&](const Recording& r) {
+    append_queues(r.closest, r.closest_path, r.closest_ends, grid, queues);
+    append_queues(r.shadow, r.shadow_path, r.shadow_ends, grid, queues);
+  });
+  const auto rays = std::make_unique<RayQueue>();
+  const auto shadows = std::make_unique<ShadowQueue>();
+  for (auto _ : state) {
+    for (const BareQueue& queue : queues) {
+      const RayPackets packets = sorted || queue.camera ? RayPackets::kCoherent : RayPackets::kIncoherent;
+      if (queue.shadow) {
+        queue.load(*shadows);
+        bench.embree->occlusions(*shadows, packets);
+      } else {
+        queue.load(*rays);
+        bench.embree->closest_hits(*rays, packets);
+      }
     }
   }
-  for (auto _ : state) benchmark::DoNotOptimize(query_all(*bench.embree, rays));
-  count_paths(state, pixels_of(bench) * kSamples);
+  count_paths(state, pixels_of(bench));
 }
 
 void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) {
@@ -181,9 +267,11 @@ void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) 
 
 void register_all() {
   const bool data = std::filesystem::exists(data_directory() / "meshes" / "conference.ply");
-  for (const std::string name : {"cornell", "conference"}) {
-    if (name == "conference" && !data) continue;
-    benchmark::RegisterBenchmark(("bare/" + name).c_str(), bare, name);
+  for (const std::string name : {"cornell", "conference", "matpreview"}) {
+    if (name != "cornell" && !data) continue;
+    benchmark::RegisterBenchmark(("bare/" + name + "/single").c_str(), bare, name);
+    benchmark::RegisterBenchmark(("bare/" + name + "/packets").c_str(), bare_packets, name, false);
+    benchmark::RegisterBenchmark(("bare/" + name + "/sorted").c_str(), bare_packets, name, true);
     benchmark::RegisterBenchmark(("paths/" + name + "/independent").c_str(), generate, name,
                                  SamplerType::kIndependent);
     benchmark::RegisterBenchmark(("paths/" + name + "/sobol").c_str(), generate, name, SamplerType::kSobol);

@@ -50,8 +50,8 @@ struct BandSet {
 /// The numbers of spectral texels, [y][x][value]; shared with the image that they were read from.
 using SpectralTexels = std::shared_ptr<const std::vector<float>>;
 
-/// The flattened scene. Positions carry one spare vertex at the end:
-/// ray tracers read vertices with 16-byte loads.
+/// The flattened scene. Positions and normals carry one spare vertex at the end, triangles a spare index: triples are
+/// read with 16-byte loads.
 struct FlatScene {
   ChannelList channels;  // K rendered channels
   ChannelList guide;     // guide bands

@@ -38,8 +38,15 @@ FlatScene Flattener::run() {
   set_channel_scales();
   set_camera();
   set_channel_bins();
-  out_.positions.push_back({0, 0, 0});  // see FlatScene
+  add_spares();
   return std::move(out_);
+}
+
+/// See FlatScene.
+void Flattener::add_spares() {
+  out_.positions.push_back({0, 0, 0});
+  if (!out_.normals.empty()) out_.normals.push_back({0, 0, 0});
+  if (!out_.triangles.empty()) out_.triangles.push_back(0);
 }
 
 std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, const CompileOptions& options) {

@@ -137,6 +137,7 @@ class Flattener {
 
   // channel_bins.cpp
   void set_channel_bins();
+  void add_spares();
 
   const SceneDescription& in_;
   const CompileOptions& options_;

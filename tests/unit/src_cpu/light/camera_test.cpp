@@ -201,5 +201,23 @@ TEST(Filter, LargeFilmsKeepSubPixelPositions) {
   EXPECT_NEAR((a - b) / (2 * std::tan(0.005) / 60000), 0.5, 1e-3);
 }
 
+TEST(Filter, PositionsOfLargeFilmsAreThoseOfDoublePrecision) {
+  // The image plane's coordinates are rounded once, and once more by each of the projection's few steps.
+  KbCamera camera = make_camera(KB_CAMERA_PERSPECTIVE, 60001, 40000, 1);
+  camera.principal_x = 0.125f;
+  camera.principal_y = -0.25f;
+  Uniform uniform(6);
+  for (int i = 0; i < 20000; ++i) {
+    const auto x = static_cast<uint32_t>(uniform() * 60001), y = static_cast<uint32_t>(uniform() * 40000);
+    const glm::vec2 u = uniform.pair();
+    const glm::dvec3 d(sample_camera_ray(camera, x, y, {u.x, u.y, 0, 0}).direction);
+    const double s_x = (x + double{u.x}) / 60001 + 0.125, s_y = (y + double{u.y}) / 40000 - 0.25;
+    const double plane_x = (1 - 2 * s_x) * camera.tan_half_fov_x;
+    const double plane_y = (1 - 2 * s_y) * 40000 / 60001 * camera.tan_half_fov_x;
+    ASSERT_NEAR(d.x / d.z, plane_x, 4e-7 * std::fabs(plane_x) + 1e-12) << x << " " << u.x;
+    ASSERT_NEAR(d.y / d.z, plane_y, 4e-7 * std::fabs(plane_y) + 1e-12) << y << " " << u.y;
+  }
+}
+
 }  // namespace
 }  // namespace kiloband::test

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "src_cpu/path/camera.hpp"
 #include "src_cpu/path/path_tracer.hpp"
 #include "tests/support/scene_zoo.hpp"
 
@@ -21,8 +22,8 @@ struct Traced {
 };
 
 Traced trace(const FlatScene& scene, const EmbreeScene& embree, SamplerType sampler,
-             const PathKernels& kernels) {
-  const TracerScene tracer_scene{&scene, &embree};
+             const PathKernels& kernels, std::span<const TriangleRecord> records = {}) {
+  const TracerScene tracer_scene{&scene, &embree, records};
   SamplingSettings settings;
   settings.sampler = sampler;
   settings.replicates = 1;
@@ -73,6 +74,63 @@ TEST_P(PathsOfLanes, AreThoseOfOneLane) {
       if (!is_available(isa)) continue;
       SCOPED_TRACE(to_string(isa));
       expect_same_bits(one, trace(scene, embree, sampler, path_kernels(isa)));
+    }
+  }
+}
+
+TEST_P(PathsOfLanes, AreThoseWithRecordsOfTriangles) {
+  const ZooFolder folder;
+  const FlatScene scene = folder.flatten(GetParam());
+  const std::vector<TriangleRecord> records = make_triangle_records(scene);
+  ASSERT_EQ(records.size(), scene.triangles.size() / 3);
+  const EmbreeScene embree(scene, "sse4.2", 1);
+  const PathKernels& kernels = path_kernels(resolve_isa(Isa::kAuto));
+  const SamplerType sampler = SamplerType::kIndependent;
+  expect_same_bits(trace(scene, embree, sampler, kernels), trace(scene, embree, sampler, kernels, records));
+}
+
+TEST(TriangleRecords, AreLeftOutOfScenesWithTooMany) {
+  const ZooFolder folder;
+  const FlatScene scene = folder.flatten(zoo_scene("diffuse_room"));
+  const std::size_t count = scene.triangles.size() / 3;
+  ASSERT_GT(count, 1u);
+  EXPECT_EQ(make_triangle_records(scene, count).size(), count);
+  EXPECT_TRUE(make_triangle_records(scene, count - 1).empty());
+}
+
+/// Camera rays of blocks at the edges of a film, and of parts of blocks.
+TEST(StartOfLanes, CameraRaysAreThoseOfTheirPixels) {
+  FlatScene scene = ZooFolder().flatten(zoo_scene("constant_sky"));
+  scene.camera.film_width = 45, scene.camera.film_height = 39;
+  const EmbreeScene embree(scene, "sse4.2", 1);
+  const TracerScene tracer_scene{&scene, &embree};
+  SamplingSettings settings;
+  settings.sampler = SamplerType::kSobol;
+  for (const PixelRect& block :
+       {PixelRect{0, 0, 32, 32}, PixelRect{32, 0, 13, 32}, PixelRect{0, 32, 32, 7}, PixelRect{32, 32, 13, 7},
+        PixelRect{35, 3, 9, 20}, PixelRect{1, 30, 31, 2}}) {
+    std::vector<const PathKernels*> kernels{&one_lane_path_kernels()};
+    for (const Isa isa : {Isa::kSse4, Isa::kAvx2, Isa::kAvx512})
+      if (is_available(isa)) kernels.push_back(&path_kernels(isa));
+    for (const PathKernels* kernel : kernels) {
+      PathTracer tracer(tracer_scene, settings, *kernel);
+      Recording recording;
+      tracer.record_into(&recording);
+      PathBuffer paths;
+      std::vector<uint32_t> invalid;
+      tracer.trace(block, {7, 1, 3}, {}, paths, invalid);
+      ASSERT_GE(recording.closest.size(), block.pixels());
+      for (uint32_t i = 0; i < block.pixels(); ++i) {
+        ASSERT_EQ(recording.closest_path[i], i);
+        const uint32_t x = block.x0 + i % block.width, y = block.y0 + i / block.width;
+        const KbSamplerKey key = kb_sampler_key(KB_SAMPLER_SOBOL, settings.seed, y * 45 + x, 7, 1, 3);
+        const CameraRay ray = sample_camera_ray(scene.camera, x, y, kb_sampler_block(key, KB_BLOCK_CAMERA));
+        const TraceRay& traced = recording.closest[i];
+        ASSERT_EQ(traced.origin(), ray.origin) << x << " " << y;
+        ASSERT_EQ(traced.direction(), ray.direction) << x << " " << y;
+        ASSERT_EQ(traced.t_min, ray.t_min);
+        ASSERT_EQ(traced.t_max, ray.t_max);
+      }
     }
   }
 }

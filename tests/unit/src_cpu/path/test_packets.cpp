@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -45,6 +47,13 @@ TraceRay single(const RayQueue& rays, uint32_t i) {
           rays.t_max[i]};
 }
 
+std::vector<TraceRay> traced_one_by_one(const EmbreeScene& embree, const RayQueue& rays) {
+  std::vector<TraceRay> traced;
+  for (uint32_t i = 0; i < rays.count; ++i) traced.push_back(single(rays, i));
+  embree.closest_hits(traced, false);
+  return traced;
+}
+
 struct Differences {
   uint32_t shapes = 0, bits = 0, hits = 0;
 };
@@ -80,15 +89,14 @@ TEST_P(Packets, GiveTheAnswersOfSingleRays) {
     std::mt19937 random(7);
     const auto rays = std::make_unique<RayQueue>(), sorted = std::make_unique<RayQueue>();
     fill(*rays, scene, random);
-    *sorted = *rays;
-    std::vector<TraceRay> expected;
-    for (uint32_t i = 0; i < kRays; ++i) expected.push_back(single(*rays, i));
-    embree.closest_hits(expected, false);
-    embree.closest_hits(*rays, RayOrder::kMixed);
-    embree.closest_hits(*sorted, RayOrder::kSorted);
-    const Differences mixed = compare(*rays, expected), coherent = compare(*sorted, expected);
-    EXPECT_GT(mixed.hits, kRays / 2) << name;
-    EXPECT_EQ(mixed.shapes + mixed.bits, 0u) << name;
+    sort_rays(*rays, embree.grid(), *sorted);
+    const std::vector<TraceRay> expected = traced_one_by_one(embree, *rays);
+    const std::vector<TraceRay> expected_sorted = traced_one_by_one(embree, *sorted);
+    embree.closest_hits(*rays, RayPackets::kIncoherent);
+    embree.closest_hits(*sorted, RayPackets::kCoherent);
+    const Differences incoherent = compare(*rays, expected), coherent = compare(*sorted, expected_sorted);
+    EXPECT_GT(incoherent.hits, kRays / 2) << name;
+    EXPECT_EQ(incoherent.shapes + incoherent.bits, 0u) << name;
     // Coherent packets may choose the other primitive of an edge that a ray meets: 71 in 3 million at most.
     EXPECT_LE(coherent.shapes + coherent.bits, 2u) << name;
   }
@@ -102,7 +110,7 @@ TEST_P(Packets, FindWhatIsInBetween) {
   std::mt19937 random(9);
   const auto rays = std::make_unique<RayQueue>();
   fill(*rays, scene, random);
-  const auto shadows = std::make_unique<ShadowQueue>();
+  const auto shadows = std::make_unique<ShadowQueue>(), sorted = std::make_unique<ShadowQueue>();
   std::vector<ShadowRay> expected;
   shadows->count = kRays;
   for (uint32_t i = 0; i < kRays; ++i) {
@@ -113,18 +121,21 @@ TEST_P(Packets, FindWhatIsInBetween) {
                           glm::vec3(rays->dx[i], rays->dy[i], rays->dz[i]), shadows->t_max[i]);
   }
   embree.occlusions(expected);
-  for (const RayOrder order : {RayOrder::kMixed, RayOrder::kSorted}) {
-    const auto traced = std::make_unique<ShadowQueue>(*shadows);
-    embree.occlusions(*traced, order);
-    uint32_t differ = 0, occluded = 0;
-    for (uint32_t i = 0; i < kRays; ++i) {
-      occluded += expected[i].occluded();
-      differ += expected[i].occluded() != (traced->t_max[i] < 0);
-    }
-    EXPECT_GT(occluded, kRays / 10);
-    EXPECT_LT(occluded, kRays * 9 / 10);
-    EXPECT_LE(differ, order == RayOrder::kMixed ? 0u : 2u);
-  }
+  for (uint32_t i = 0; i < kRays; ++i) shadows->entry[i] = i;
+  sort_rays(*shadows, embree.grid(), *sorted);
+  const auto count_wrong = [&](const ShadowQueue& traced) {
+    uint32_t wrong = 0;
+    for (uint32_t i = 0; i < kRays; ++i)
+      wrong += expected[traced.entry[i]].occluded() != (traced.t_max[i] < 0);
+    return wrong;
+  };
+  const auto occluded = std::ranges::count_if(expected, &ShadowRay::occluded);
+  EXPECT_GT(occluded, kRays / 10);
+  EXPECT_LT(occluded, kRays * 9 / 10);
+  embree.occlusions(*shadows, RayPackets::kIncoherent);
+  EXPECT_EQ(count_wrong(*shadows), 0u);
+  embree.occlusions(*sorted, RayPackets::kCoherent);
+  EXPECT_LE(count_wrong(*sorted), 2u);
 }
 
 INSTANTIATE_TEST_SUITE_P(InstructionSets, Packets, testing::Values(Isa::kSse4, Isa::kAvx2, Isa::kAvx512),
@@ -138,16 +149,37 @@ TEST(RayOrder, NamesEveryRayOnceOctantByOctant) {
   fill(*rays, scene, random);
   rays->dx[5] = rays->oy[6] = std::numeric_limits<float>::quiet_NaN();
   const float r = scene.scene_radius;
-  std::vector<uint32_t> order(kRays);
-  sort_rays(*rays, {{-r, -r, -r}, {r, r, r}}, order.data());
-  const auto octant = [&](uint32_t i) {
-    return (rays->dx[i] < 0 ? 1 : 0) | (rays->dy[i] < 0 ? 2 : 0) | (rays->dz[i] < 0 ? 4 : 0);
-  };
-  for (uint32_t i = 1; i < kRays; ++i) ASSERT_LE(octant(order[i - 1]), octant(order[i]));
-  std::vector<uint32_t> all(kRays);
+  const RayGrid grid({-r, -r, -r}, {r, r, r});
+  const auto sorted = std::make_unique<RayQueue>();
+  sort_rays(*rays, grid, *sorted);
+  ASSERT_EQ(sorted->count, kRays);
+  std::vector<uint32_t> keys(kRays), all(kRays), paths(kRays);
+  fill_ray_keys(*sorted, grid, keys.data());
+  EXPECT_TRUE(std::ranges::is_sorted(keys));
+  EXPECT_LT(keys.back(), 8 * kRayCells * kRayCells * kRayCells);
+  for (uint32_t i = 0; i < kRays; ++i) {
+    const uint32_t p = paths[i] = sorted->path[i];
+    EXPECT_EQ(keys[i] / (kRayCells * kRayCells * kRayCells), (std::signbit(rays->dx[p]) ? 1u : 0u) |
+                                                                 (std::signbit(rays->dy[p]) ? 2u : 0u) |
+                                                                 (std::signbit(rays->dz[p]) ? 4u : 0u));
+    EXPECT_EQ(std::bit_cast<uint32_t>(sorted->oy[i]), std::bit_cast<uint32_t>(rays->oy[p]));
+    const bool tied = i > 0 && keys[i] == keys[i - 1];
+    EXPECT_TRUE(!tied || paths[i - 1] < paths[i]);  // stable
+  }
   std::iota(all.begin(), all.end(), 0u);
-  std::ranges::sort(order);
-  EXPECT_EQ(order, all);
+  std::ranges::sort(paths);
+  EXPECT_EQ(paths, all);
+}
+
+TEST(RayOrder, PlacesBeyondTheBoxAreAtItsBorder) {
+  const RayGrid grid({-1, 0, 5}, {1, 8, 5});  // without extent along z
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(ray_cell(-7, grid.low[0], grid.scale[0]), 0);
+  EXPECT_EQ(ray_cell(0.1f, grid.low[0], grid.scale[0]), 2);
+  EXPECT_EQ(ray_cell(infinity, grid.low[0], grid.scale[0]), 3);
+  EXPECT_EQ(ray_cell(3.9f, grid.low[1], grid.scale[1]), 1);
+  EXPECT_EQ(ray_cell(infinity, grid.low[2], grid.scale[2]), 0);
+  EXPECT_EQ(ray_cell(std::numeric_limits<float>::quiet_NaN(), grid.low[0], grid.scale[0]), 0);
 }
 
 }  // namespace

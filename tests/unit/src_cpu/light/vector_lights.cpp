@@ -1,0 +1,38 @@
+#include <stdexcept>
+
+#include "light_lanes.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/unit/src_cpu/light/vector_lights.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+// After foreach_target.h, as Highway asks for.
+#include "src_cpu/lanes/highway_lanes-inl.hpp"
+// After the lanes that it is to be compiled for.
+#include "light_lanes-inl.hpp"
+
+#if HWY_ONCE
+namespace kiloband::test {
+
+// Each table is made where it is asked for: the code that makes it is code of its instruction set.
+const std::vector<SceneFunction>& scene_functions_of(cpu::Isa isa) {
+  switch (isa) {
+    case cpu::Isa::kAvx512: {
+      static const std::vector<SceneFunction> functions = cpu::N_AVX3::scene_functions();
+      return functions;
+    }
+    case cpu::Isa::kAvx2: {
+      static const std::vector<SceneFunction> functions = cpu::N_AVX2::scene_functions();
+      return functions;
+    }
+    case cpu::Isa::kSse4: {
+      static const std::vector<SceneFunction> functions = cpu::N_SSE4::scene_functions();
+      return functions;
+    }
+    default:
+      throw std::logic_error("scene_functions_of: the instruction set is not resolved");
+  }
+}
+
+}  // namespace kiloband::test
+#endif
