@@ -63,7 +63,7 @@ std::vector<std::string> EvaluationShape::defines(uint32_t derived) const {
       "KB_DERIVED=" + std::to_string(derived),
       "KB_PIXELS=" + std::to_string(method == Method::kDpeptBatch ? units_per_group : 1),
       std::string("KB_PER_PATH=") + (shared_wavelengths ? "0" : "1")};
-  if (film_transposed) d.push_back("KB_FILM_TRANSPOSED=1");
+  if (film_transposed) d.emplace_back("KB_FILM_TRANSPOSED=1");
   return d;
 }
 

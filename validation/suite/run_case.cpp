@@ -122,7 +122,7 @@ class CaseRun {
           paired ? compare_paired(a.image, b.image, options) : compare_independent(a.image, b.image, options);
     }
     const bool black = std::ranges::all_of(result.comparison.image_a, [](double mean) { return mean == 0; });
-    if (black) result.comparison.notes.push_back("black in every channel: nothing was compared");
+    if (black) result.comparison.notes.emplace_back("black in every channel: nothing was compared");
     result.passed = result.comparison.passed && result.invalid_samples == 0 && !black;
     if (number == 0) result.first_p = result.comparison.decisive().p;
     return true;

@@ -274,7 +274,7 @@ std::string without_power_units(std::string_view text) {
   std::string plain = units_in_ascii(text);
   std::vector<Run> runs = find_runs(plain);
   for (auto run = runs.rbegin(); run != runs.rend(); ++run)
-    if (is_power(*run)) plain.replace(run->begin, run->end - run->begin, " ");
+    if (is_power(*run)) plain.replace(run->begin, run->end - run->begin, 1, ' ');
   return plain;
 }
 

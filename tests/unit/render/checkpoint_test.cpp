@@ -71,8 +71,13 @@ class Checkpoint : public testing::Test {
 };
 
 template <class T>
-std::string with(std::string bytes, std::size_t at, const T& value) {
+void put(std::string& bytes, std::size_t at, const T& value) {
   std::memcpy(&bytes.at(at), &value, sizeof value);
+}
+
+template <class T>
+std::string with(std::string bytes, std::size_t at, const T& value) {
+  put(bytes, at, value);
   return bytes;
 }
 
@@ -84,7 +89,7 @@ std::string resealed(std::string bytes) {
   };
   add(0, kHeader);
   add(kHeader, kTable - 8);
-  bytes = with(bytes, kTable - 8, hash.value());
+  put(bytes, kTable - 8, hash.value());
   add(kTable - 8, kTable);
   add(kTable, kFirst);
   for (const auto& [begin, closed] : {std::pair{kFirst, false}, std::pair{kSecond, true}}) {
@@ -93,7 +98,8 @@ std::string resealed(std::string bytes) {
     if (closed) add(begin + 12, begin + 28);
   }
   add(kEnd, kEnd + 8);
-  return with(bytes, kEnd + 8, hash.value());
+  put(bytes, kEnd + 8, hash.value());
+  return bytes;
 }
 
 TEST_F(Checkpoint, KeepsSumsAndCountsBitByBit) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -65,12 +66,14 @@ std::set<std::string> patched_sources() {
   return files;
 }
 
-/// How this build compiles a file of the project, by its path.
+/// How this build compiles a file of the project, by its path; without precompiled headers, which are of this tree.
 std::map<std::string, std::string> compile_commands() {
+  static const std::regex kPrecompiled("-Winvalid-pch|-include [^ ]*cmake_pch[^ ]*");
   std::ifstream file(fs::path(KILOBAND_BINARY_DIR) / "compile_commands.json");
   std::map<std::string, std::string> commands;
   for (const nlohmann::json& entry : nlohmann::json::parse(file))
-    commands.emplace(entry.at("file").get<std::string>(), entry.at("command").get<std::string>());
+    commands.emplace(entry.at("file").get<std::string>(),
+                     std::regex_replace(entry.at("command").get<std::string>(), kPrecompiled, ""));
   return commands;
 }
 
