@@ -218,14 +218,22 @@ OutputFiles checked_files(const RenderOptions& options) {
   return files;
 }
 
-int render(const RenderOptions& options) {
+/// The options, and what the scene asks for besides: auxiliary images unless --aov names some, variances where there can be any.
+RenderOptions with_requests(RenderOptions options, const RequestedImages& requested) {
+  if (options.aux.empty()) options.aux = requested.auxiliary;
+  if (requested.variance && options.replicates.value_or(kReplicates) >= 2) options.variance = true;
+  return options;
+}
+
+int render(const RenderOptions& given) {
   std::signal(SIGPIPE, SIG_IGN);  // who reads our messages may go away before the render ends
   const auto start = std::chrono::steady_clock::now();
-  const DiagnosticSink sink = print_diagnostics(options.quiet);
-  check_scene_file(options.scene.scene);
-  const OutputFiles files = checked_files(options);
-  check_replicates(options);
-  LoadedScene loaded = load_scene(options.scene, sink);
+  const DiagnosticSink sink = print_diagnostics(given.quiet);
+  check_scene_file(given.scene.scene);
+  const OutputFiles files = checked_files(given);
+  check_replicates(given);
+  LoadedScene loaded = load_scene(given.scene, sink);
+  const RenderOptions options = with_requests(given, loaded.description.requested);
   const SessionSettings wanted = session_settings(options, files, loaded.description, sink);
   report_replicates(options, wanted, sink);
   const SamplingSettings sampling =

@@ -82,6 +82,28 @@ TEST(Outputs, AuxiliaryImagesDescribeTheBox) {
   }
 }
 
+/// Integrators of the scene that add images do what the options do; the command line overrides.
+TEST(Outputs, WhatTheScenesIntegratorsAskFor) {
+  const TemporaryFolder folder;
+  folder.write(
+      "asks.xml",
+      complete_scene(R"(<integrator type="aov"><string name="aovs" value="d:depth,n:sh_normal"/>)"
+                     R"(<integrator type="moment"><integrator type="path"/></integrator></integrator>)"));
+  const auto render = [&](Names more) {
+    more.insert(more.end(), {"-o", "a.hdr", "--spp", "32", "--bands", "400:700:2"});
+    EXPECT_EQ(run_program(folder, quiet_render("asks.xml", more)).code, 0);
+    return read_cube(folder / "a.hdr");
+  };
+  const Cube asked = render({});
+  EXPECT_TRUE(asked.info.variance);
+  EXPECT_EQ(asked.info.aux, (Names{"depth", "normal.X", "normal.Y", "normal.Z"}));
+  const Cube other = render({"--aov", "object"});
+  EXPECT_TRUE(other.info.variance);
+  EXPECT_EQ(other.info.aux, Names{"object"});
+  EXPECT_EQ(other.mean, asked.mean);
+  EXPECT_FALSE(render({"--replicates", "1"}).info.variance);  // there is none
+}
+
 TEST(Outputs, PreviewIsAPngOfTheImagesSize) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_program(folder, small_box({"-o", "box.hdr", "--preview", "box.PNG"})).code, 0);

@@ -288,6 +288,12 @@ struct Integrator {
   bool hide_emitters = false;
 };
 
+/// What the scene's integrators add to the image.
+struct RequestedImages {
+  bool variance = false;               // of the mean
+  std::vector<std::string> auxiliary;  // depth, normal, object: as --aov names them
+};
+
 struct SceneDescription {
   std::filesystem::path file;
   std::vector<Shape> shapes;
@@ -299,6 +305,7 @@ struct SceneDescription {
   std::shared_ptr<const Medium> atmosphere;  // outside all shapes; null: none
   Sensor sensor;
   Integrator integrator;
+  RequestedImages requested;
 };
 
 }  // namespace kiloband

@@ -1,5 +1,6 @@
 // <bsdf type=...>
 #include <algorithm>
+#include <numeric>
 
 #include "scene/read/context.hpp"
 #include "scene/read/ior.hpp"
@@ -45,26 +46,22 @@ Model read_diffuse(ReadContext& context, const ObjectReader& object) {
   return bsdf;
 }
 
-/// The index of a conductor: eta and k, a built-in metal or a file, or the perfect mirror.
+/// The index of a conductor: eta and k, Mitsuba's name, a built-in metal or a file, or the perfect mirror.
 void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf& bsdf) {
   const bool explicit_index = object.has("eta") || object.has("k");
   bsdf.eta = read_spectrum(context, object, "eta", SpectrumUse::kQuantity, bsdf.eta);
   bsdf.k = read_spectrum(context, object, "k", SpectrumUse::kQuantity, bsdf.k);
   check_metal_index(bsdf.eta, object.label() + ": eta", object.value_place("eta"));
   check_metal_index(bsdf.k, object.label() + ": k", object.value_place("k"));
-  const std::string material = object.get_string("material", "none");
   if (object.has("material") && explicit_index)
     object.fail_at("material", "'material' together with 'eta' or 'k'");
-  if (material != "none") {
-    object.fail_at("material",
-                   "material '" + material +
-                       "': only 'none' is supported; give 'metal' with a built-in metal or a file, or 'eta' "
-                       "and 'k'");
+  auto constants = read_conductor_name(context, object);
+  if (object.has("metal")) {
+    if (explicit_index || object.has("material"))
+      object.fail_at("metal", "'metal' together with 'material', 'eta' or 'k'");
+    constants = read_material(context, object, "metal", MaterialFamily::kMetal);
   }
-  const auto constants = read_material(context, object, "metal", MaterialFamily::kMetal);
   if (!constants) return;
-  if (explicit_index || object.has("material"))
-    object.fail_at("metal", "'metal' together with 'material', 'eta' or 'k'");
   bsdf.eta = constants->n;
   bsdf.k = *constants->k;
 }
@@ -180,6 +177,46 @@ Model read_blend(ReadContext& context, const ObjectReader& object) {
   return bsdf;
 }
 
+/// Parts of which each is as likely as its weight says, as blends one inside the other.
+Model nested_blends(const SourcePosition& position, const std::vector<std::shared_ptr<const Bsdf>>& parts,
+                    const std::vector<double>& weights) {
+  std::shared_ptr<const Bsdf> rest = parts.back();
+  double weight_of_rest = weights.back();
+  for (std::size_t i = parts.size() - 1; i-- > 0;) {
+    const double both = weights[i] + weight_of_rest;
+    const double share = both > 0 ? weight_of_rest / both : 0;
+    rest = std::make_shared<Bsdf>(Bsdf{{}, position, BlendBsdf{Spectrum::constant(share), parts[i], rest}});
+    weight_of_rest = both;
+  }
+  return rest->model;
+}
+
+/// Of files of Mitsuba 0.x: any number of bsdfs with a weight each. Weights of a sum above 1 are divided by it, what a sum below
+/// leaves to 1 is absorbed.
+Model read_mixture(ReadContext& context, const ObjectReader& object) {
+  std::vector<double> weights = parse_numbers(object.require_string("weights"), object.value_place("weights"),
+                                              object.label() + ": weights: ");
+  const std::vector<Node*> nested = object.nested("bsdf");
+  if (!object.is_whole()) weights.resize(nested.size(), 1);
+  if (nested.empty() || weights.size() != nested.size())
+    object.fail_at("weights", std::to_string(weights.size()) + " weights for " +
+                                  std::to_string(nested.size()) + " nested bsdfs");
+  for (const double weight : weights) object.check(weight >= 0, "weights", weight, "must be >= 0");
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  object.check(sum > 0, "weights", sum, "must have a sum > 0");
+  std::vector<std::shared_ptr<const Bsdf>> parts;
+  for (Node* node : nested) {
+    parts.push_back(read_bsdf(context, *node));
+    if (contains<NullBsdf>(*parts.back())) object.fail_here("a nested bsdf is null");
+  }
+  const SourcePosition position = object.node().place.position();
+  if (sum < 1) {
+    parts.push_back(std::make_shared<Bsdf>(Bsdf{{}, position, DiffuseBsdf{Spectrum::constant(0)}}));
+    weights.push_back(1 - sum);
+  }
+  return nested_blends(position, parts, weights);
+}
+
 Model read_conductor_smooth(ReadContext& c, const ObjectReader& o) {
   return read_conductor(c, o, false);
 }
@@ -225,6 +262,7 @@ constexpr BsdfType kTypes[] = {
     {"twosided", read_two_sided},
     {"mask", read_mask},
     {"blendbsdf", read_blend},
+    {"mixturebsdf", read_mixture},
     {"null", read_null},
 };
 

@@ -115,8 +115,14 @@ Sensor read_sensor(ReadContext& context, Node& node);
 Film read_film(ReadContext& context, Node& node);
 /// What a sensor without <film> has.
 Film default_film(const ReadContext& context);
-/// An integrator and how many of our samples one of the scene's samples stands for (`direct` splits each).
-std::pair<Integrator, uint64_t> read_integrator(ReadContext& context, Node& node);
+struct ReadIntegrator {
+  Integrator integrator;
+  uint64_t splitting =
+      1;  // how many of our samples one of the scene's samples stands for (`direct` splits each)
+  RequestedImages requested;
+};
+
+ReadIntegrator read_integrator(ReadContext& context, Node& node);
 /// The samples per pixel of a <sampler>.
 uint64_t read_sampler(ReadContext& context, Node& node);
 

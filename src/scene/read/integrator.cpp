@@ -49,39 +49,120 @@ Integrator read_path(const ObjectReader& object) {
   return result;
 }
 
-/// Mitsuba's integrator around another, which adds an image of second moments.
-/// Its first image is that of the nested one.
-std::pair<Integrator, uint64_t> read_moment(ReadContext& context, const ObjectReader& object) {
+/// The one integrator in another that adds images to it. Its own image is that of the nested one.
+ReadIntegrator read_nested(ReadContext& context, const ObjectReader& object) {
   Node* nested = object.nested_one("integrator");
   if (!nested) object.fail_here("needs a nested integrator");
   object.get_bool("hide_emitters", false);  // without effect in Mitsuba: the nested one has its own
   object.finish();
-  note(
-      context.sink, object.node().type_place.position(),
-      object.label() +
-          ": read as the integrator in it: second moments are not written, --variance writes the variance of "
-          "the mean");
   return read_integrator(context, *nested);
 }
 
+/// Adds an image of second moments in Mitsuba; the variance of the mean says the same.
+ReadIntegrator read_moment(ReadContext& context, const ObjectReader& object) {
+  ReadIntegrator result = read_nested(context, object);
+  result.requested.variance = true;
+  note(context.sink, object.node().type_place.position(),
+       object.label() + ": in place of second moments the variance of the mean is written (--variance)");
+  return result;
+}
+
+struct AovType {
+  std::string_view name;   // Mitsuba's
+  std::string_view image;  // ours; empty: there is none
+};
+
+constexpr AovType kAovTypes[] = {{"depth", "depth"},   {"sh_normal", "normal"}, {"shape_index", "object"},
+                                 {"albedo", {}},       {"position", {}},        {"uv", {}},
+                                 {"geo_normal", {}},   {"dp_du", {}},           {"dp_dv", {}},
+                                 {"duv_dx", {}},       {"duv_dy", {}},          {"prim_index", {}},
+                                 {"boundary_test", {}}};
+
+/// "name:type" of an aov integrator.
+/// throws InputError  it is something else
+const AovType& aov_type(const ObjectReader& object, std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const std::string_view type = colon == text.npos ? std::string_view{} : text.substr(colon + 1);
+  std::vector<std::string_view> names;
+  for (const AovType& known : kAovTypes) {
+    if (known.name == type) return known;
+    names.push_back(known.name);
+  }
+  object.fail_at("aovs", "aovs: '" + std::string(text) + "' is not NAME:TYPE with a known type" +
+                             suggestion(type, names));
+}
+
+/// Auxiliary images beside the image.
+ReadIntegrator read_aov(ReadContext& context, const ObjectReader& object) {
+  const std::string aovs = object.require_string("aovs");
+  std::vector<std::string> images;
+  std::string others;
+  for (const std::string_view text : split_tokens(aovs)) {
+    const AovType& type = aov_type(object, text);
+    const std::string image(type.image);
+    if (image.empty())
+      others += (others.empty() ? "" : ", ") + std::string(type.name);
+    else if (std::ranges::find(images, image) == images.end())
+      images.push_back(image);
+  }
+  if (!others.empty())
+    note(context.sink, object.value_place("aovs").position(),
+         object.label() + ": no images of " + others + ": there are depth, sh_normal, shape_index");
+  ReadIntegrator result = read_nested(context, object);
+  result.requested.auxiliary.insert(result.requested.auxiliary.begin(), images.begin(), images.end());
+  return result;
+}
+
+struct IntegratorType {
+  std::string_view name;
+  ReadIntegrator (*read)(ReadContext&, const ObjectReader&);
+};
+
+ReadIntegrator read_plain(ReadContext&, const ObjectReader& object) {
+  ReadIntegrator result{read_path(object), 1, {}};
+  result.integrator.hide_emitters = object.get_bool("hide_emitters", false);
+  object.finish();
+  return result;
+}
+
+ReadIntegrator read_direct(ReadContext&, const ObjectReader& object) {
+  ReadIntegrator result;
+  result.integrator.max_depth = 2;
+  result.splitting = direct_splitting(object);
+  result.integrator.hide_emitters = object.get_bool("hide_emitters", false);
+  object.finish();
+  return result;
+}
+
+constexpr IntegratorType kTypes[] = {{"path", read_plain},    {"direct", read_direct},
+                                     {"volpath", read_plain}, {"volpathmis", read_plain},
+                                     {"moment", read_moment}, {"aov", read_aov}};
+
+/// Integrators of Mitsuba whose image is not that of a path tracer, and what to do instead.
+constexpr std::pair<std::string_view, std::string_view> kRefused[] = {
+    {"ptracer", "paths begin at the camera here; 'path' gives its image"},
+    {"stokes", "light has no polarisation here; 'path' gives the first component without it"},
+    {"depth", "--aov depth gives its image"},
+    {"prb", "nothing is differentiated; 'path' has the same image"},
+    {"prbvolpath", "nothing is differentiated; 'volpath' has the same image"},
+    {"prb_basic", "nothing is differentiated; 'path' has the same image"},
+    {"direct_projective", "nothing is differentiated; 'direct' has the same image"},
+    {"prb_projective", "nothing is differentiated; 'path' has the same image"}};
+
 }  // namespace
 
-std::pair<Integrator, uint64_t> read_integrator(ReadContext& context, Node& node) {
+ReadIntegrator read_integrator(ReadContext& context, Node& node) {
   const ObjectReader object(node);
-  if (node.type == "moment") return read_moment(context, object);
-  Integrator integrator;
-  uint64_t splitting = 1;
-  if (node.type == "direct") {
-    integrator.max_depth = 2;
-    splitting = direct_splitting(object);
-  } else if (node.type == "path" || node.type == "volpath" || node.type == "volpathmis") {
-    integrator = read_path(object);
-  } else {
-    object.refuse_type({"path", "direct", "volpath", "volpathmis", "moment"});
+  std::vector<std::string_view> names;
+  for (const IntegratorType& type : kTypes) {
+    if (type.name == node.type) return type.read(context, object);
+    names.push_back(type.name);
   }
-  integrator.hide_emitters = object.get_bool("hide_emitters", false);
-  object.finish();
-  return {integrator, splitting};
+  for (const auto& [name, instead] : kRefused) {
+    if (name == node.type)
+      fail(node.type_place, "integrator type '" + node.type + "' is not supported: " + std::string(instead));
+  }
+  object.refuse_type(names);
 }
 
 uint64_t read_sampler(ReadContext& context, Node& node) {

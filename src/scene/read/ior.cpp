@@ -93,6 +93,12 @@ void check_index(const OpticalConstants& constants, MaterialFamily family, const
   if (metal && constants.k) check_range(*constants.k, 0, kMaxMetalIndex, label + " extinction", place);
 }
 
+void extrapolate_if_asked(const ObjectReader& object, OpticalConstants& constants) {
+  if (!object.get_bool("extrapolate", false)) return;
+  constants.n = constants.n.extrapolated();
+  if (constants.k) constants.k = constants.k->extrapolated();
+}
+
 }  // namespace
 
 void check_metal_index(const Spectrum& spectrum, const std::string& label, const Place& place) {
@@ -131,10 +137,26 @@ std::optional<OpticalConstants> read_material(ReadContext& context, const Object
     constants = find_built_in(value, family);
     if (!constants) refuse_name(object, name, value, family);
   }
-  if (object.get_bool("extrapolate", false)) {
-    constants->n = constants->n.extrapolated();
-    if (constants->k) constants->k = constants->k->extrapolated();
+  extrapolate_if_asked(object, *constants);
+  return constants;
+}
+
+std::optional<OpticalConstants> read_conductor_name(ReadContext& context, const ObjectReader& object) {
+  const std::string material = object.get_string("material", "none");
+  if (material == "none") return std::nullopt;
+  constexpr std::string_view kOfPalik =
+      "_palik";  // of Palik's handbook, where Mitsuba has data of two sources
+  std::string metal = material;
+  if (metal.ends_with(kOfPalik)) metal.resize(metal.size() - kOfPalik.size());
+  auto constants = find_built_in(metal, MaterialFamily::kMetal);
+  if (!constants) {
+    object.fail_at("material", "material: no data of '" + material + "' are built in" +
+                                   names_near(metal, MaterialFamily::kMetal) +
+                                   "; 'metal' takes a file of n and k");
   }
+  note(context.sink, object.value_place("material").position(),
+       object.label() + ": material '" + material + "': n and k are kiloband's own data of this metal");
+  extrapolate_if_asked(object, *constants);
   return constants;
 }
 

@@ -22,6 +22,11 @@ enum class MaterialFamily { kMetal, kDielectric };
 std::optional<OpticalConstants> read_material(ReadContext& context, const ObjectReader& object,
                                               std::string_view name, MaterialFamily family);
 
+/// n and k by Mitsuba's name of a conductor, the parameter `material`, from the built-in metals, with a note, since Mitsuba's data
+/// are others; `extrapolate` as above. nullopt if it is absent or "none", the perfect mirror.
+/// throws InputError  none of the built-in metals
+std::optional<OpticalConstants> read_conductor_name(ReadContext& context, const ObjectReader& object);
+
 /// throws InputError at `place`  n or k of a conductor is above kMaxMetalIndex
 void check_metal_index(const Spectrum& spectrum, const std::string& label, const Place& place);
 

@@ -38,8 +38,9 @@ class SceneReader {
     check_parts();
     scene.finish();
     check_whole(scene);
-    scene_.integrator = integrator_;
-    scene_.sensor.sample_count *= splitting_;
+    scene_.integrator = integrator_.integrator;
+    scene_.requested = integrator_.requested;
+    scene_.sensor.sample_count *= integrator_.splitting;
     if (scene_.sensor.sample_count > kMaxSamples) {
       scene.fail_here("more than " + std::to_string(kMaxSamples) + " samples per pixel");
     }
@@ -77,7 +78,7 @@ class SceneReader {
       scene_.sensor = read_sensor(context_, node);
     } else if (tag == "integrator") {
       if (integrators_ > 1) fail(child.place, scene.label() + ": a second integrator");
-      std::tie(integrator_, splitting_) = read_integrator(context_, node);
+      integrator_ = read_integrator(context_, node);
     } else if (tag == "medium") {
       add_medium(child, node);
     } else if (tag == "phase" || tag == "volume") {
@@ -165,8 +166,7 @@ class SceneReader {
   ReadContext context_;
   ReadErrors errors_;
   SceneDescription scene_;
-  Integrator integrator_;
-  uint64_t splitting_ = 1;
+  ReadIntegrator integrator_;
   int sensors_ = 0, integrators_ = 0, environments_ = 0;
 };
 

@@ -173,10 +173,36 @@ std::vector<BrokenScene> table() {
            R"xml(<bsdf type="roughdielectric"><float name="int_ior" value="1.5"/><float name="ext_ior" value="1.5"/></bsdf>)xml"),
        "scene.xml:2:59: error: roughdielectric bsdf: int_ior and ext_ior are equal: there is no rough "
        "interface"},
-      {"built-in metal",
-       complete_scene(R"xml(<bsdf type="conductor"><string name="material" value="Au"/></bsdf>)xml"),
-       "scene.xml:2:55: error: conductor bsdf: material 'Au': only 'none' is supported; give 'metal' with a "
-       "built-in metal or a file, or 'eta' and 'k'"},
+      {"Mitsuba's metal without data here",
+       complete_scene(R"xml(<bsdf type="conductor"><string name="material" value="MgO"/></bsdf>)xml"),
+       "scene.xml:2:55: error: conductor bsdf: material: no data of 'MgO' are built in; there are Ag, Al, Au, "
+       "Be, Cr, Cu, Ni, Pd, Pt, Ti, W; 'metal' takes a file of n and k"},
+      {"Mitsuba's metal and an index",
+       complete_scene(
+           R"xml(<bsdf type="conductor"><string name="material" value="Au"/><float name="eta" value="1"/></bsdf>)xml"),
+       "scene.xml:2:55: error: conductor bsdf: 'material' together with 'eta' or 'k'"},
+      {"mixture without weights",
+       complete_scene(R"xml(<bsdf type="mixturebsdf"><bsdf type="diffuse"/></bsdf>)xml"),
+       "scene.xml:2:2: error: mixturebsdf bsdf: parameter 'weights' is missing"},
+      {"mixture with too many weights",
+       complete_scene(
+           R"xml(<bsdf type="mixturebsdf"><string name="weights" value="0.5, 0.5"/><bsdf type="diffuse"/></bsdf>)xml"),
+       "scene.xml:2:56: error: mixturebsdf bsdf: 2 weights for 1 nested bsdfs"},
+      {"mixture of nothing",
+       complete_scene(R"xml(<bsdf type="mixturebsdf"><string name="weights" value=""/></bsdf>)xml"),
+       "scene.xml:2:56: error: mixturebsdf bsdf: 0 weights for 0 nested bsdfs"},
+      {"mixture with a negative weight",
+       complete_scene(
+           R"xml(<bsdf type="mixturebsdf"><string name="weights" value="1.5, -0.5"/><bsdf type="diffuse"/><bsdf type="plastic"/></bsdf>)xml"),
+       "scene.xml:2:56: error: mixturebsdf bsdf: weights -0.5: must be >= 0"},
+      {"mixture without any weight",
+       complete_scene(
+           R"xml(<bsdf type="mixturebsdf"><string name="weights" value="0"/><bsdf type="diffuse"/></bsdf>)xml"),
+       "scene.xml:2:56: error: mixturebsdf bsdf: weights 0: must have a sum > 0"},
+      {"mixture with null",
+       complete_scene(
+           R"xml(<bsdf type="mixturebsdf"><string name="weights" value="1"/><bsdf type="null"/></bsdf>)xml"),
+       "scene.xml:2:2: error: mixturebsdf bsdf: a nested bsdf is null"},
       {"unknown metal",
        complete_scene(R"xml(<bsdf type="conductor"><string name="metal" value="mithril"/></bsdf>)xml"),
        "scene.xml:2:52: error: conductor bsdf: metal: 'mithril' is neither a built-in metal nor a file; "

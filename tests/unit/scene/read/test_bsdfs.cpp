@@ -1,6 +1,7 @@
 // Every bsdf: defaults and parameters.
 #include <gtest/gtest.h>
 
+#include "spectral/materials/materials.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {
@@ -78,6 +79,61 @@ TEST(SceneBsdf, BlendsKeepTheOrder) {
   EXPECT_EQ(value(blend.weight), 0.3);
   EXPECT_TRUE(std::holds_alternative<PlasticBsdf>(blend.first->model));
   EXPECT_TRUE(std::holds_alternative<DiffuseBsdf>(blend.second->model));
+}
+
+std::string mixture(const std::string& weights, const std::string& bsdfs) {
+  return R"(<bsdf type="mixturebsdf"><string name="weights" value=")" + weights + "\"/>" + bsdfs + "</bsdf>";
+}
+
+const std::string kThree = R"(<bsdf type="plastic"/><bsdf type="conductor"/><bsdf type="diffuse"/>)";
+
+TEST(SceneBsdf, MixturesAreBlendsInsideEachOther) {
+  // Plastic 0.2, conductor 0.3, diffuse 0.5: of the second blend the diffuse one has 0.5 / 0.8.
+  for (const char* weights : {"0.2, 0.3, 0.5", "0.4 0.6 1"}) {
+    const auto outer = model_of<BlendBsdf>(mixture(weights, kThree));
+    EXPECT_NEAR(value(outer.weight), 0.8, 1e-15);
+    EXPECT_TRUE(std::holds_alternative<PlasticBsdf>(outer.first->model));
+    const auto inner = std::get<BlendBsdf>(outer.second->model);
+    EXPECT_NEAR(value(inner.weight), 0.625, 1e-15);
+    EXPECT_TRUE(std::holds_alternative<ConductorBsdf>(inner.first->model));
+    EXPECT_EQ(value(std::get<DiffuseBsdf>(inner.second->model).reflectance), 0.5);
+  }
+}
+
+TEST(SceneBsdf, WhatAMixtureLeavesIsAbsorbed) {
+  const auto outer = model_of<BlendBsdf>(mixture("0.25", R"(<bsdf type="plastic"/>)"));
+  EXPECT_EQ(value(outer.weight), 0.75);
+  EXPECT_TRUE(std::holds_alternative<PlasticBsdf>(outer.first->model));
+  EXPECT_EQ(value(std::get<DiffuseBsdf>(outer.second->model).reflectance), 0);
+}
+
+TEST(SceneBsdf, MixturesOfOneAndWeightsOfZero) {
+  EXPECT_EQ(value(model_of<DiffuseBsdf>(mixture("1", R"(<bsdf type="diffuse"/>)")).reflectance), 0.5);
+  const auto outer = model_of<BlendBsdf>(mixture("1, 0, 0", kThree));
+  EXPECT_EQ(value(outer.weight), 0);
+  EXPECT_TRUE(std::holds_alternative<PlasticBsdf>(outer.first->model));
+  EXPECT_EQ(value(std::get<BlendBsdf>(outer.second->model).weight), 0);
+}
+
+TEST(SceneBsdf, MitsubasNamesOfConductors) {
+  for (const std::string name : {"Au", "W", "Ni_palik"}) {
+    Messages messages;
+    const auto description =
+        read(scene(R"(<shape type="sphere"><bsdf type="roughconductor"><string name="material" value=")" +
+                   name + R"("/></bsdf></shape>)" + kSensor + kLight),
+             "/nonexistent", {}, messages.lines());
+    const auto& metal = std::get<ConductorBsdf>(description.shapes.at(0).bsdf->model);
+    const auto own = find_metal(name.substr(0, 2) == "Ni" ? "Ni" : name);
+    EXPECT_EQ(metal.eta(550), own->n(550)) << name;
+    EXPECT_EQ(metal.k(550), (*own->k)(550)) << name;
+    ASSERT_EQ(messages.texts.size(), 1u);
+    EXPECT_EQ(messages.texts[0], "scene.xml:2:81: note: roughconductor bsdf: material '" + name +
+                                     "': n and k are kiloband's own data of this metal");
+  }
+  const std::string beyond = R"(<bsdf type="conductor"><string name="material" value="Pd"/>)";
+  EXPECT_EQ(model_of<ConductorBsdf>(beyond + "</bsdf>").k(15000), 0);
+  EXPECT_GT(model_of<ConductorBsdf>(beyond + R"(<boolean name="extrapolate" value="true"/></bsdf>)").k(15000),
+            1);
 }
 
 TEST(SceneBsdf, OpticalConstantsFromFiles) {
