@@ -1,9 +1,10 @@
-// kiloband info SCENE.xml: what the scene contains; kiloband info --materials: the built-in materials.
+// kiloband info SCENE.xml: what the scene contains; --materials: the built-in materials; --check FOLDER: which scenes load.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <memory>
 
+#include "app/check_scenes.hpp"
 #include "app/commands.hpp"
 #include "app/console/standard_output.hpp"
 #include "app/options/render_options.hpp"
@@ -168,12 +169,24 @@ int info(const SceneOptions& options) {
 Command add_info(CLI::App& program) {
   auto options = std::make_shared<SceneOptions>();
   auto materials = std::make_shared<bool>(false);
+  auto folder = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand("info", "Show what a scene contains and needs");
   options->add_to(*command);
   command->get_option("SCENE")->required(false);
   command->add_flag("--materials", *materials, "list the built-in materials instead")
       ->excludes(command->get_option("SCENE"));
-  return [options, materials] { return *materials ? print_materials() : info(*options); };
+  command
+      ->add_option(
+          "--check", *folder,
+          "say which scenes below a folder load, and what stops the others; exit code 1 if one does not")
+      ->type_name("FOLDER")
+      ->excludes(command->get_option("SCENE"))
+      ->excludes(command->get_option("--materials"));
+  return [options, materials, folder] {
+    if (*materials) return print_materials();
+    if (!folder->empty()) return int{check_scenes(*folder, *options) ? kDone : kFailed};
+    return info(*options);
+  };
 }
 
 }  // namespace kiloband

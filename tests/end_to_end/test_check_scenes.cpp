@@ -1,0 +1,62 @@
+// kiloband info --check FOLDER.
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/support/program.hpp"
+
+namespace kiloband::test {
+namespace {
+
+TEST(CheckScenes, SaysWhatStopsTheOthers) {
+  const TemporaryFolder folder;
+  folder.write("a/good.xml", complete_scene(""));
+  folder.write("a/b/worse.xml", complete_scene(R"(<bsdf type="hair"/><bsdf type="difuse"/>)"));
+  folder.write("hair.xml",
+               "<?xml version=\"1.0\"?>\n<!-- <mesh> -->\n" + complete_scene(R"(<bsdf type="hair"/>)"));
+  folder.write("other.xml", "<mesh/>");  // no scene
+  folder.write("empty.xml", "");
+  folder.write("notes.txt", "<scene/>");
+  const Outcome outcome = run_program(folder, {"info", "--check", "."});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out,
+            "stopped a/b/worse.xml\n"
+            "  ./a/b/worse.xml:2:13: error: bsdf type 'hair' is not supported\n"
+            "  ./a/b/worse.xml:2:32: error: bsdf type 'difuse' is not supported; did you mean 'diffuse'?\n"
+            "loads   a/good.xml\n"
+            "stopped hair.xml\n"
+            "  ./hair.xml:4:13: error: bsdf type 'hair' is not supported\n"
+            "1 of 3 scenes load\n"
+            "    2 stopped by: bsdf type 'hair' is not supported\n"
+            "    1 stopped by: bsdf type 'difuse' is not supported\n");
+}
+
+/// What only shows when a scene is made ready for rendering stops it too, and the options are those of the render.
+TEST(CheckScenes, ScenesAreCompiledWithTheOptionsGiven) {
+  const TemporaryFolder folder;
+  folder.write(
+      "palladium.xml",
+      complete_scene(
+          R"(<shape type="sphere"><bsdf type="conductor"><string name="metal" value="Pd"/></bsdf></shape>)"));
+  const Outcome visible = run_program(folder, {"info", "--check", "."});
+  EXPECT_EQ(visible.code, 0) << visible.out;
+  EXPECT_EQ(visible.out, "loads   palladium.xml\n1 of 1 scenes load\n");
+  const Outcome infrared = run_program(folder, {"info", "--check", ".", "--bands", "13000:14000:2"});
+  EXPECT_EQ(infrared.code, 1);
+  expect_text(infrared.out, "stopped palladium.xml\n");
+  expect_text(infrared.out, "0 of 1 scenes load\n");
+}
+
+TEST(CheckScenes, FoldersWithoutScenes) {
+  const TemporaryFolder folder;
+  folder.write("other.xml", "<mesh/>");
+  const Outcome none = run_program(folder, {"info", "--check", "."});
+  EXPECT_EQ(none.code, 2);
+  expect_text(none.err, ".: no scene file (*.xml with <scene>) below this folder");
+  const Outcome file = run_program(folder, {"info", "--check", "other.xml"});
+  EXPECT_EQ(file.code, 2);
+  expect_text(file.err, "other.xml: is not a folder");
+  EXPECT_EQ(run_program(folder, {"info", "--check", ".", "--materials"}).code, 2);
+}
+
+}  // namespace
+}  // namespace kiloband::test
