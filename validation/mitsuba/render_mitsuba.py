@@ -45,15 +45,26 @@ def _film(size, bands):
     return film
 
 
-def adapted(scene_file, size, bands):
-    """The scene's XML with another film and absolute file names."""
+def _with_includes(scene_file, folder):
+    """The scene's XML with what it includes in its place, and absolute file names: all are in relation to the first scene."""
     root = ElementTree.parse(scene_file).getroot()
-    folder = pathlib.Path(scene_file).resolve().parent
     for element in root.iter():
         if element.tag == "spectrum" and "filename" in element.attrib:
             element.set("filename", str(folder / element.get("filename")))
         if element.tag == "string" and element.get("name") == "filename":
             element.set("value", str(folder / element.get("value")))
+    for place, element in reversed(list(enumerate(root))):
+        if element.tag == "include":
+            root.remove(element)
+            for inner in reversed(list(_with_includes(folder / element.get("filename"), folder))):
+                root.insert(place, inner)
+    return root
+
+
+def adapted(scene_file, size, bands):
+    """The scene's XML with another film and absolute file names."""
+    root = _with_includes(scene_file, pathlib.Path(scene_file).resolve().parent)
+    for element in root.iter():
         for film in element.findall("film"):
             place = list(element).index(film)
             element.remove(film)
