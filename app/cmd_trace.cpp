@@ -121,6 +121,8 @@ void print_path(const FlatScene& scene, const TracedPath& path) {
   }
   if (path.invalid) answer("invalid: a weight is not finite, or the path is endless; it leaves the mean\n");
   if (path.entries.empty() && !path.invalid) answer("no vertex contributes\n");
+  if (!path.entries.empty() && (path.entries.front().head & KB_VERTEX_NEGATIVE))
+    answer("camera     weight -1: the reconstruction filter is negative there\n");
   for (std::size_t i = 0; i < path.entries.size();) {
     print_vertex(scene, path.entries[i]);
     i += 1 + kb_vertex_extensions(path.entries[i].head);

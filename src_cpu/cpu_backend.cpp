@@ -195,6 +195,7 @@ std::vector<double> CpuBackend::film_scale() const {
   std::vector<double> scale = scene_.channel_scale;
   for (std::size_t d = 0; d < derived_.names.size(); ++d)
     scale.push_back(workers_.front()->evaluator().derived_scale(d));
+  for (double& s : scale) s *= scene_.filter_scale;
   return scale;
 }
 

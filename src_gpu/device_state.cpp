@@ -42,6 +42,7 @@ HostScene::HostScene(std::shared_ptr<const FlatScene> flat, const DerivedChannel
 std::vector<double> HostScene::film_scale() const {
   std::vector<double> scale = scene.channel_scale;
   scale.insert(scale.end(), spectra.derived_scale.begin(), spectra.derived_scale.end());
+  for (double& s : scale) s *= scene.filter_scale;
   return scale;
 }
 

@@ -89,6 +89,7 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   add_gas(hash, scene);
   hash.add_value(scene.origin);
   hash.add_value(scene.camera);
+  hash.add_all(scene.filter_cells);
   for (const uint32_t value :
        {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height}) {
     hash.add_value(value);

@@ -40,6 +40,7 @@
   X(scene, IN, KbMedium, media) SEP                                                                              \
   X(scene, IN, KbFloat2, plume_nodes) SEP     /* temperature, scale */                                           \
   X(scene, IN, kb_u32, interiors) SEP         /* by shape: the medium inside, or KB_NONE; empty without gas */   \
+  X(scene, IN, float, filter_cells) SEP       /* tabulated filter: film/signed_filter.hpp */ \
   X(scene, IN, KbFloat2, filter_table) SEP    /* gaussian filter: nodes (value, slope per piece), 1025 of them */ \
   X(scene, IN, float, channel_bins) SEP       /* [spectrum][KB_CHANNEL_BINS]; only with dispersion */            \
   X(scene, IN, KbThermal, thermals)           /* tables and field_offset: into tables */

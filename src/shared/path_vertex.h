@@ -27,6 +27,8 @@
                             light sample (w0 = nee0) or a scattering event (w0 = scatter0), not both, and no emission:
                             what these would need holds the directions
 
+   KB_VERTEX_NEGATIVE, of the first vertex of a path only: tau_0 = -1, where the reconstruction filter is negative.
+
    KB_VERTEX_DEGRADE: after B is applied only channel kb_as_u32(scatter1) goes on, tau of the others becomes 0
    (its kind is SCALED; scatter0 includes 1 / probability of the channel).
 
@@ -70,7 +72,8 @@ enum KbVertexKind {
 #define KB_VERTEX_TEX_NEE 0x400u
 #define KB_VERTEX_TEX_MASK 0x780u
 #define KB_VERTEX_DEFER 0x800u
-#define KB_VERTEX_MATERIAL_SHIFT 12
+#define KB_VERTEX_NEGATIVE 0x1000u
+#define KB_VERTEX_MATERIAL_SHIFT 13
 
 typedef struct {
   kb_u32 head; /* kind | flags | material << KB_VERTEX_MATERIAL_SHIFT */

@@ -109,6 +109,7 @@ KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 #define KB_PATH_PREVIOUS_DELTA 0x08000000u /* the ray was not sampled from a density */
 #define KB_PATH_FINISHED 0x10000000u       /* the slot has no more jobs */
 #define KB_PATH_HEROES 0x40000000u         /* its hero weights are set */
+#define KB_PATH_NEGATIVE 0x80000000u       /* the next vertex has KB_VERTEX_NEGATIVE */
 #define KB_PATH_FRESH 0x20000000u          /* what was appended last belongs to the path's first bounce */
 
 /* With dispersion, beside the path's state: what each bin of channels still carries (channel_choice.clh), and the

@@ -210,6 +210,7 @@ KB_STATIC_ASSERT(sizeof(KbMedium) == 128, medium_size);
 #define KB_FILTER_BOX 0u
 #define KB_FILTER_TENT 1u
 #define KB_FILTER_GAUSSIAN 2u
+#define KB_FILTER_TABULATED 3u /* may be negative: film/signed_filter.hpp */
 
 /* local +Z views, +Y is up, +X is the image's LEFT. Film position s in [0,1]^2 of the full (uncropped) film, s_y down. */
 typedef struct {

@@ -245,6 +245,7 @@ double channel_value(const Point& at, const PathBuffer& paths, const SavedPath& 
   State state;
   for (uint32_t i = path.first; i < path.first + path.count; ++i) {
     const KbPathVertex& vertex = paths.entries[i];
+    if (vertex.head & KB_VERTEX_NEGATIVE) state.tau = -state.tau;
     if ((vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_MEDIUM) {
       apply_medium(at, vertex, &vertex + 1, state);
       i += kb_vertex_extensions(vertex.head);

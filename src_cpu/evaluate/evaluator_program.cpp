@@ -149,6 +149,7 @@ void ProgramBuilder::fetch_texels(std::span<const KbPathVertex> entries) const {
 
 PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSpectra& spectra) {
   reserve(entries.size());
+  if (!entries.empty() && (entries.front().head & KB_VERTEX_NEGATIVE)) writer_.scatter(-1);
   for (std::size_t i = 0; (i = add_plain(entries, i, spectra)) < entries.size();) {
     const KbPathVertex& vertex = entries[i];
     const std::size_t next = i + 1 + kb_vertex_extensions(vertex.head);

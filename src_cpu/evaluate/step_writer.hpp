@@ -1,6 +1,7 @@
 // The steps of a path (StepKind), written while its vertices are read. Small enough to stay in registers.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "src_cpu/evaluate/evaluator_kernels.hpp"
@@ -44,7 +45,8 @@ class StepWriter {
   void scatter(float weight) {
     constexpr float kFar = 0x1p40f;
     scale_ *= weight;
-    if (scale_ < kFar && scale_ > 1 / kFar) return;
+    const float size = std::fabs(scale_);
+    if (size < kFar && size > 1 / kFar) return;
     push(StepKind::kScale, scale_, nullptr);
     scale_ = 1;
   }

@@ -12,6 +12,7 @@
 #include "film/filter_table.hpp"
 #include "src_cpu/lanes/lane_access-inl.hpp"
 #include "src_cpu/lanes/lane_sampler-inl.hpp"
+#include "src_cpu/light/area-inl.hpp"
 #include "src_cpu/path/camera.hpp"
 
 KB_BEFORE_LANES;
@@ -21,6 +22,13 @@ namespace kiloband::cpu::KB_LANES {
 struct CameraRays {
   V3 origin, direction;
   F t_min, t_max;
+  F sign;  // of the reconstruction filter: 1 or -1
+};
+
+/// A distance along an axis from the pixel's centre, and the filter's sign there.
+struct FilterSample {
+  F offset;
+  F sign;
 };
 
 /// gaussian_distance() of film/filter_table.hpp.
@@ -41,10 +49,21 @@ inline F exact_gaussian_distance(F w, float ratio) {
   return x;
 }
 
+/// film/signed_filter.hpp. u < 1/2 lies on one side, at the distribution's 1 - 2 u, the others on the other.
+KB_INLINE FilterSample sample_tabulated_filter(float radius, const float* cells, F u) {
+  const M left = u < F(0.5f);
+  // Below 1, which no cell begins at.
+  const F p = min(abs(F(1) - F(2) * u), F(KB_ONE_MINUS_EPSILON));
+  const U cell = find_interval(cells, U(0u), U(kFilterPieces), p);
+  const F low = gather(cells, cell), high = gather(cells + 1, cell);
+  const F within = min(max((p - low) / (high - low), F(0)), F(1));
+  const F distance = (to_floats(cell) + within) * F(radius / kFilterPieces);
+  return {select(left, -distance, distance), gather(cells + kFilterPieces + 1, cell)};
+}
+
 /// Offset from the pixel's centre along one axis, in pixels.
-KB_INLINE F sample_filter(const KbCamera& camera, F u) {
-  if (camera.filter != KB_FILTER_TENT && camera.filter != KB_FILTER_GAUSSIAN)
-    return u - F(0.5f);  // box: the pixel itself
+KB_INLINE F sample_positive_filter(const KbCamera& camera, F u) {
+  if (camera.filter == KB_FILTER_BOX) return u - F(0.5f);  // the pixel itself
   const M left = u < F(0.5f);
   const F w = select(left, F(2) * u, F(2) * (F(1) - u));  // probability to be farther away
   F distance;
@@ -57,6 +76,11 @@ KB_INLINE F sample_filter(const KbCamera& camera, F u) {
         F(camera.filter_stddev) * (table ? gaussian_distance(table, w) : exact_gaussian_distance(w, ratio));
   }
   return select(left, -distance, distance);
+}
+
+KB_INLINE FilterSample sample_filter(const KbCamera& camera, const float* cells, F u) {
+  if (camera.filter == KB_FILTER_TABULATED) return sample_tabulated_filter(camera.filter_radius, cells, u);
+  return {sample_positive_filter(camera, u), F(1)};
 }
 
 // ---- projections -------------------------------------------------------------------------------------
@@ -77,7 +101,7 @@ KB_INLINE CameraRays orthographic_rays(const KbCamera& camera, V2 plane) {
   const F scale = length(axis);
   const F t_min = F(camera.near_clip) * scale;
   return {transform_point(camera.to_world, {plane.x, plane.y, F(0)}), axis / scale, t_min,
-          t_min + F(camera.far_clip - camera.near_clip)};
+          t_min + F(camera.far_clip - camera.near_clip), F(1)};
 }
 
 /// Pinhole (lens = 0) or thin lens: all rays of a film position meet on the plane z = focus_distance.
@@ -88,7 +112,7 @@ KB_INLINE CameraRays perspective_rays(const KbCamera& camera, V2 plane, V2 lens)
   const F per_depth = length(local) / local.z;  // distance along the ray per unit of depth
   return {transform_point(camera.to_world, {lens.x, lens.y, F(0)}),
           normalize(transform_vector(camera.to_world, local)), F(camera.near_clip) * per_depth,
-          F(camera.far_clip) * per_depth};
+          F(camera.far_clip) * per_depth, F(1)};
 }
 
 /// offset: from the pixel's centre, in pixels
@@ -102,14 +126,18 @@ KB_INLINE CameraRays rays_through(const KbCamera& camera, U x, U y, V2 offset, V
 }
 
 /// sample_camera_ray(). u: film position, lens
-KB_INLINE CameraRays sample_camera_rays(const KbCamera& camera, U x, U y, const F4& u) {
-  const V2 offset{sample_filter(camera, u.x), sample_filter(camera, u.y)};
+KB_INLINE CameraRays sample_camera_rays(const KbCamera& camera, const float* filter_cells, U x, U y,
+                                        const F4& u) {
+  const FilterSample across = sample_filter(camera, filter_cells, u.x),
+                     down = sample_filter(camera, filter_cells, u.y);
   V2 lens{F(0), F(0)};
   if (camera.type == KB_CAMERA_THINLENS) {
     const V2 disk = concentric_disk(u.z, u.w);
     lens = {F(camera.aperture_radius) * disk.x, F(camera.aperture_radius) * disk.y};
   }
-  return rays_through(camera, x, y, offset, lens);
+  CameraRays rays = rays_through(camera, x, y, {across.offset, down.offset}, lens);
+  rays.sign = across.sign * down.sign;
+  return rays;
 }
 
 }  // namespace kiloband::cpu::KB_LANES

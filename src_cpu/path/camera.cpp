@@ -14,7 +14,7 @@ namespace {
 constexpr float kUsualRatio = 4;  // Mitsuba's radius / stddev
 
 CameraRay ray_of(const one_lane::CameraRays& ray) {
-  return {to_glm(ray.origin), to_glm(ray.direction), ray.t_min.v, ray.t_max.v};
+  return {to_glm(ray.origin), to_glm(ray.direction), ray.t_min.v, ray.t_max.v, ray.sign.v};
 }
 
 }  // namespace
@@ -24,8 +24,9 @@ const KbFloat2* gaussian_table(float ratio) {
   return std::fabs(ratio - kUsualRatio) < 1e-6f ? table.data() : nullptr;
 }
 
-CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u) {
-  return ray_of(one_lane::sample_camera_rays(camera, x, y, {u.x, u.y, u.z, u.w}));
+CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u,
+                            const float* filter_cells) {
+  return ray_of(one_lane::sample_camera_rays(camera, filter_cells, x, y, {u.x, u.y, u.z, u.w}));
 }
 
 CameraRay centre_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y) {

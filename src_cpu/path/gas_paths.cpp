@@ -122,7 +122,7 @@ void GasPaths::cross(PathState& path, MediumStack& media, uint32_t shape, bool o
   if (outwards)
     media.leave(medium);
   else if (!media.enter(medium))
-    path.invalid = 1;
+    path.flags |= kInvalidPath;
 }
 
 /// The media on the side of the surface that `direction` goes to, of a path that arrived there.
@@ -162,7 +162,7 @@ void GasPaths::pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay
   ray = TraceRay(leave_surface(hit, direction), direction, 0, gas.far);
   gas.begin = begin_at(hit, ray.origin(), direction);
   if (++gas.crossings >= KB_MAX_VERTICES) {
-    path.invalid = 1;
+    path.flags |= kInvalidPath;
     return;  // as if it left the scene
   }
   if (wave.recording) {
@@ -268,7 +268,7 @@ bool GasPaths::walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, 
     if (infinite ? !arrives && medium != scene_.atmosphere : true)
       add_column(path, columns, medium, ray, at.begin);
     if (arrives) return true;
-    if (crossings >= KB_MAX_VERTICES) return path.invalid = 1, false;
+    if (crossings >= KB_MAX_VERTICES) return path.flags |= kInvalidPath, false;
     const SurfaceHit hit = surface_of(scene_, ray);
     cross(path, at.media, hit.shape, glm::dot(hit.geometric_normal, direction) >= 0);
     const glm::vec3 from = leave_surface(hit, direction);
@@ -287,7 +287,7 @@ void GasPaths::add_column(PathState& path, Columns& columns, uint32_t medium, co
   uint32_t i = 0;
   while (i < columns.count && columns.medium[i] != medium) ++i;
   if (i == KB_SHADOW_MEDIA) {
-    path.invalid = 1;
+    path.flags |= kInvalidPath;
     return;
   }
   if (i == columns.count) {

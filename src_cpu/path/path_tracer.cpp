@@ -86,7 +86,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
   for (; wave_.rays().count > 0; ++bounce.number) {
     if (bounce.number >= KB_MAX_VERTICES) {
       const RayQueue& rays = wave_.rays();
-      for (uint32_t i = 0; i < rays.count; ++i) wave_.paths[rays.path[i]].invalid = 1;
+      for (uint32_t i = 0; i < rays.count; ++i) wave_.paths[rays.path[i]].flags |= kInvalidPath;
       break;
     }
     trace_closest(bounce.number, in_part);
@@ -151,7 +151,7 @@ void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) const {
   const std::vector<WaveEntry>& entries = wave_.entries;
   for (const PathState& path : wave_.paths) {
     if (path.pixel == KB_NONE) continue;
-    if (path.invalid) {
+    if (path.flags & kInvalidPath) {
       invalid.push_back(path.pixel);
       continue;
     }
@@ -166,6 +166,7 @@ void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) const {
       if (!(vertex.head & KB_VERTEX_NEE))
         vertex.head &= ~KB_VERTEX_TEX_NEE;  // its sample comes last: drop it
       if (s == last_lit) vertex.head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
+      if (s == path.first_entry && (path.flags & kNegativePath)) vertex.head |= KB_VERTEX_NEGATIVE;
       out.entries.push_back(vertex);
       for (uint32_t i = 0; i < kb_vertex_extensions(vertex.head); ++i)
         out.entries.push_back(entries[s + 1 + i].vertex);

@@ -58,9 +58,10 @@ KB_INLINE void start_lanes(const Bounce& bounce, const WaveBlock& block, const P
   const SamplerKeys keys = sampler_keys(bounce.settings.seed, y * U(camera.film_width) + x, bounce.id.sample,
                                         bounce.id.replicate, bounce.id.index);
   const F4 u = sampler_block(bounce.sampler(), bounce.settings.seed, keys, U(KB_BLOCK_CAMERA));
-  const CameraRays ray = sample_camera_rays(camera, x, y, u);
+  const CameraRays ray = sample_camera_rays(camera, bounce.scene.filter_cells.data(), x, y, u);
   store_rays(ray, path, wave.rays(), first);
   const V3Array origin(ray.origin);
+  const uint32_t negative = bits_of(ray.sign < F(0));
   const WordArray pixel(pixel_numbers(block, column, row)), film_pixel(keys.pixel), key0(keys.key0),
       key1(keys.key1);
   each_lane(first_lanes(wave.rays().count - first), [&](uint32_t i) KB_LAMBDA {
@@ -70,6 +71,7 @@ KB_INLINE void start_lanes(const Bounce& bounce, const WaveBlock& block, const P
     state.previous_point[1] = origin.y[i];
     state.previous_point[2] = origin.z[i];
     state.pixel = pixel[i];
+    state.flags = negative >> i & 1 ? kNegativePath : 0;
     state.key.pixel = film_pixel[i];
     state.key.key0 = key0[i];
     state.key.key1 = key1[i];

@@ -116,7 +116,7 @@ inline void append(Wave& wave, U path, const Vertex& v, M m) {
   each_lane(m, [&](uint32_t i) KB_LAMBDA {
     PathState& state = wave.paths[paths[i]];
     state.magnitude = magnitudes[i];
-    if (!(fits >> i & 1)) state.invalid = 1;
+    if (!(fits >> i & 1)) state.flags |= kInvalidPath;
     const auto index = static_cast<uint32_t>(wave.entries.size());
     (state.last_entry == KB_NONE ? state.first_entry : wave.entries[state.last_entry].next) = index;
     state.last_entry = index;

@@ -20,6 +20,9 @@ struct SampleId {
   uint32_t index = 0;
 };
 
+inline constexpr uint32_t kInvalidPath = 1;   // a weight is not finite, or the path is endless
+inline constexpr uint32_t kNegativePath = 2;  // KB_VERTEX_NEGATIVE of its first vertex
+
 /// What is known of a path between bounces. Lanes gather its members.
 struct PathState {
   float previous_point[3];  // m
@@ -27,9 +30,9 @@ struct PathState {
   float bound;              // upper bound of the throughput over all channels, without radiance scaling
   float magnitude;          // product of the scatter weights: where this overflows the sample is invalid
   uint32_t previous_delta;  // the BSDF sample was one of a delta lobe, or the camera's
-  uint32_t invalid;
-  uint32_t pixel;                    // in the block
-  uint32_t channel;                  // after degradation, else KB_NONE
+  uint32_t flags;           // kInvalidPath, kNegativePath
+  uint32_t pixel;           // in the block
+  uint32_t channel;         // after degradation, else KB_NONE
   uint32_t first_entry, last_entry;  // linked list in the wave's entries
   KbSamplerKey key;                  // of the path's random numbers
 };

@@ -70,6 +70,7 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .media = up("media", scene.media),
           .plume_nodes = up("plumes", scene.plume_nodes),
           .interiors = up("interiors", scene.interiors),
+          .filter_cells = up("filter cells", scene.filter_cells),
           .filter_table = up("filter table", filter_nodes(scene.camera)),
           .channel_bins = up("reflectances by channel bins", scene.channel_bins),
           .thermals = up("thermal emission", scene.thermals)};

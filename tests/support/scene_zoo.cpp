@@ -283,6 +283,8 @@ std::vector<ZooScene> make_scenes() {
        scene(-1, perspective(small_film("gaussian")) + floor(diffuse("0.95")) + back(diffuse("0.95")) +
                      left(diffuse("0.9")) + right(diffuse("0.95")) + ceiling(diffuse("0.95")) + boxes() +
                      sky("0.7"))},
+      {"mitchell", scene(6, thinlens(small_film("mitchell")) + pictures() + ceiling_lamp())},
+      {"lanczos", scene(8, perspective(small_film("lanczos")) + lit_room + gases() + sky("0.5")), kCurved},
       {"crop_window",
        scene(6, perspective(small_film("gaussian", crop_window())) + lit_room + metals() + glasses()),
        kCurved},

@@ -46,6 +46,8 @@ constexpr PlantedFault kFaults[] = {
     // ---- camera
     {KB_PLANTED_FILTER_OFFSET, "filter-offset", kBoth, "film positions are half a pixel to the right", "edges", "diffuse_room",
      kMeans},
+    {KB_PLANTED_FILTER_SIGN, "filter-sign", kBoth, "paths have no sign where the reconstruction filter is negative",
+     "mitchell, catmullrom or lanczos filter", "mitchell", kMeans},
     // ---- paths
     {KB_PLANTED_DEPTH_SHORT, "depth-short", kBoth, "the last bounce is missing", "max_depth", "diffuse_room", kMeans},
     {KB_PLANTED_ROULETTE, "roulette", kBoth, "survivors of Russian roulette are not weighted up", "rr_depth below max_depth",

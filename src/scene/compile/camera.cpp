@@ -1,17 +1,47 @@
 #include <cmath>
 
+#include "film/signed_filter.hpp"
 #include "scene/compile/flattener.hpp"
 
 namespace kiloband {
+
+void Flattener::set_filter() {
+  const Film& film = in_.sensor.film;
+  KbCamera& camera = out_.camera;
+  camera.filter_radius = static_cast<float>(film.filter_radius);
+  camera.filter_stddev = static_cast<float>(film.filter_stddev);
+  switch (film.filter) {
+    case FilterType::kBox:
+      camera.filter = KB_FILTER_BOX;
+      return;
+    case FilterType::kTent:
+      camera.filter = KB_FILTER_TENT;
+      return;
+    case FilterType::kGaussian:
+      camera.filter = KB_FILTER_GAUSSIAN;
+      return;
+    case FilterType::kMitchell:
+    case FilterType::kLanczos:
+      break;
+  }
+  const bool cubic = film.filter == FilterType::kMitchell;
+  SignedFilter filter = make_signed_filter(
+      [&](double x) {
+        return cubic ? mitchell(x, film.filter_b, film.filter_c) : lanczos(x, film.filter_radius);
+      },
+      film.filter_radius);
+  camera.filter = KB_FILTER_TABULATED;
+  out_.filter_cells = std::move(filter.cells);
+  out_.filter_scale = filter.scale;
+  out_.features.signed_filter = filter.negative;
+}
 
 void Flattener::set_camera() {
   const Sensor& sensor = in_.sensor;
   KbCamera& camera = out_.camera;
   camera.film_width = sensor.film.width;
   camera.film_height = sensor.film.height;
-  camera.filter = static_cast<uint32_t>(sensor.film.filter);
-  camera.filter_radius = static_cast<float>(sensor.film.filter_radius);
-  camera.filter_stddev = static_cast<float>(sensor.film.filter_stddev);
+  set_filter();
   camera.principal_x = static_cast<float>(sensor.principal_point_x);
   camera.principal_y = static_cast<float>(sensor.principal_point_y);
   camera.near_clip = static_cast<float>(sensor.near_clip);

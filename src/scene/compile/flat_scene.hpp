@@ -99,7 +99,9 @@ struct FlatScene {
   float scene_radius = 0;  // bounding sphere of the geometry, m
 
   KbCamera camera{};
-  Film film;  // crop window; channels as in `channels`
+  std::vector<float> filter_cells;  // SignedFilter::cells of KB_FILTER_TABULATED, else empty
+  double filter_scale = 1;          // SignedFilter::scale: the film multiplies by it
+  Film film;                        // crop window; channels as in `channels`
   Integrator integrator;
   SceneFeatures features;
 };

@@ -134,6 +134,7 @@ class Flattener {
 
   // camera.cpp
   void set_camera();
+  void set_filter();
 
   // channel_bins.cpp
   void set_channel_bins();

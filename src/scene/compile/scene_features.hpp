@@ -32,7 +32,8 @@ namespace kiloband {
   X(COMPENSATION, compensation, "energy compensation")         /* of rough surfaces */                \
   X(TEMPERATURE_FIELD, temperature_field, "temperature field") /* temperatures depend on the place */ \
   X(GAS, gas, "gas")                                           /* media or null boundaries */         \
-  X(PLUME, plume, "plume")                                     /* media that vary in space */
+  X(PLUME, plume, "plume")                                     /* media that vary in space */         \
+  X(SIGNED_FILTER, signed_filter, "signed filter")             /* of reconstruction, with negative lobes */
 
 /// What is false costs nothing.
 struct SceneFeatures {

@@ -243,7 +243,7 @@ struct Shape {
 };
 
 // ---- sensor, film, integrator ----
-enum class FilterType { kBox, kTent, kGaussian };
+enum class FilterType { kBox, kTent, kGaussian, kMitchell, kLanczos };
 
 struct Film {
   uint32_t width = 768;
@@ -251,8 +251,9 @@ struct Film {
   uint32_t crop_x = 0, crop_y = 0;           // offset of the crop window, pixels
   uint32_t crop_width = 0, crop_height = 0;  // size of the rendered image; the reader fills in the default
   FilterType filter = FilterType::kBox;
-  double filter_radius = 0.5;  // pixels
-  double filter_stddev = 0.5;  // gaussian
+  double filter_radius = 0.5;                     // pixels
+  double filter_stddev = 0.5;                     // gaussian
+  double filter_b = 1.0 / 3, filter_c = 1.0 / 3;  // mitchell
   /// bandfilm's channels, or a specfilm's constant responses as channels; empty: the program's default.
   ChannelList channels;
   /// specfilm responses that are not constant inside their range (or not 1): named, summed from sub-channels.

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int64_t kMaxSide = 65535;       // pixels
 constexpr double kMinFilter = 1e-3;       // pixels: finer than positions in a film of 65535
+constexpr double kMostCubic = 10;         // coefficients of filters: others are mostly noise
 constexpr double kSubChannelNm = 5;       // widest sub-channel of a response that is not constant
 constexpr std::size_t kMaxBands = 65536;  // spectra of a specfilm
 
@@ -57,6 +58,22 @@ void set_default_filter(Film& film) {
   film.filter_radius = 4 * film.filter_stddev;
 }
 
+/// mitchell: B, C; catmullrom is the one with 0 and 1/2.
+void read_cubic(const ObjectReader& object, Film& film) {
+  film.filter = FilterType::kMitchell;
+  film.filter_radius = 2;
+  film.filter_b = 0;
+  film.filter_c = 0.5;
+  if (object.type() == "catmullrom") return;
+  film.filter_b = object.get_float("B", 1.0 / 3);
+  film.filter_c = object.get_float("C", 1.0 / 3);
+  const auto check = [&](std::string_view name, double value) {
+    object.check(std::fabs(value) <= kMostCubic, name, value, "must be from -10 to 10");
+  };
+  check("B", film.filter_b);
+  check("C", film.filter_c);
+}
+
 /// box: no parameters; tent: radius 1; gaussian: stddev 0.5, cut at 4 standard deviations. Default: gaussian.
 void read_filter(const ObjectReader& film_object, Film& film) {
   set_default_filter(film);
@@ -76,8 +93,15 @@ void read_filter(const ObjectReader& film_object, Film& film) {
     object.check(film.filter_stddev >= kMinFilter && film.filter_stddev <= 25, "stddev", film.filter_stddev,
                  "must be from 0.001 to 25 pixels");
     film.filter_radius = 4 * film.filter_stddev;
+  } else if (node->type == "mitchell" || node->type == "catmullrom") {
+    read_cubic(object, film);
+  } else if (node->type == "lanczos") {
+    film.filter = FilterType::kLanczos;
+    film.filter_radius = object.get_float("lobes", 3);
+    object.check(film.filter_radius >= 1 && film.filter_radius <= 16, "lobes", film.filter_radius,
+                 "must be from 1 to 16");
   } else {
-    object.refuse_type({"box", "tent", "gaussian"});
+    object.refuse_type({"box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"});
   }
   object.finish();
 }

@@ -86,7 +86,9 @@ std::vector<double> path_values(const FlatScene& scene, const TracedPath& path, 
 }
 
 bool values_agree(const std::vector<double>& a, const std::vector<double>& b, double least) {
-  const double largest = std::max({*std::ranges::max_element(a), *std::ranges::max_element(b), least});
+  double largest = least;
+  for (const std::vector<double>* values : {&a, &b})
+    for (const double v : *values) largest = std::max(largest, std::abs(v));
   for (std::size_t k = 0; k < a.size(); ++k) {
     if (!(std::abs(a[k] - b[k]) <= kRelative * largest)) return false;
   }

@@ -35,7 +35,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
       "src/scene/xml"}},
     {"src/scene/optics", {"src/base", "src/shared", "src/spectral"}},
     {"src/scene/compile",
-     {"src/base", "src/shared", "src/spectral", "src/scene/description", "src/scene/read",
+     {"src/base", "src/shared", "src/spectral", "src/film", "src/scene/description", "src/scene/read",
       "src/scene/optics"}},
     {"src/post", {"src/base", "src/spectral", "src/files", "src/pictures", "src/cube", "src/film"}},
     {"src/render",

@@ -1,6 +1,7 @@
 // Camera rays on the device against src_cpu/path/camera.cpp, which places film positions in double.
 #include "src_cpu/path/camera.hpp"
 
+#include "film/signed_filter.hpp"
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
@@ -18,10 +19,12 @@ __kernel void camera(ARGS) {
   const CameraRay r = in->u[2] ? centre_camera_ray(&scene, in->u[0], in->u[1])
                                : sample_camera_ray(&scene, in->u[0], in->u[1], u);
   PUT3(0, r.origin); PUT3(3, r.direction); out->f[6] = r.t_min; out->f[7] = r.t_max;
+  out->f[8] = r.sign;
 }
 __kernel void filter_offset(ARGS) {
   ITEM
-  out->f[0] = sample_filter(&scene, in->f[0]);
+  float sign = 1.0f;
+  out->f[0] = sample_filter(&scene, in->f[0], &sign);
 }
 )";
 
@@ -36,7 +39,10 @@ KbCamera make_camera(uint32_t type, uint32_t filter, uint32_t width, uint32_t he
   camera.film_width = width;
   camera.film_height = height;
   camera.filter = filter;
-  camera.filter_radius = filter == KB_FILTER_GAUSSIAN ? 2 : filter == KB_FILTER_TENT ? 1.3f : 0.5f;
+  camera.filter_radius = filter == KB_FILTER_TABULATED  ? 3
+                         : filter == KB_FILTER_GAUSSIAN ? 2
+                         : filter == KB_FILTER_TENT     ? 1.3f
+                                                        : 0.5f;
   camera.filter_stddev = 0.5f;
   camera.tan_half_fov_x = static_cast<float>(std::tan(fov_x / 2));
   camera.principal_x = 0.07f;
@@ -67,22 +73,25 @@ std::vector<ItemIn> random_pixels(const KbCamera& camera, std::size_t count) {
 void expect_rays(const KbCamera& camera, double tolerance) {
   FlatScene scene;
   scene.camera = camera;
+  scene.filter_cells = make_signed_filter([](double x) { return lanczos(x, 3); }, 3).cells;
   const std::vector<ItemIn> in = random_pixels(camera, 5000);
   const std::vector<ItemOut> out = run_items(probe(), "camera", scene, in);
   for (std::size_t i = 0; i < in.size(); ++i) {
     const KbFloat4 u{in[i].f[0], in[i].f[1], in[i].f[2], in[i].f[3]};
-    const CameraRay expected = in[i].u[2] ? centre_camera_ray(camera, in[i].u[0], in[i].u[1])
-                                          : sample_camera_ray(camera, in[i].u[0], in[i].u[1], u);
+    const CameraRay expected =
+        in[i].u[2] ? centre_camera_ray(camera, in[i].u[0], in[i].u[1])
+                   : sample_camera_ray(camera, in[i].u[0], in[i].u[1], u, scene.filter_cells.data());
     ASSERT_LT(difference(get3(out[i], 0), expected.origin), 1e-6) << i;
     ASSERT_LT(difference(get3(out[i], 3), expected.direction), tolerance) << i;
     ASSERT_LT(relative(out[i].f[6], expected.t_min), 1e-6) << i;
     ASSERT_LT(relative(out[i].f[7], expected.t_max), 1e-6) << i;
+    ASSERT_EQ(out[i].f[8], expected.weight) << i;
   }
 }
 
 TEST(GpuCamera, EveryTypeAndFilter) {
   for (const uint32_t type : {KB_CAMERA_PERSPECTIVE, KB_CAMERA_THINLENS, KB_CAMERA_ORTHOGRAPHIC}) {
-    for (const uint32_t filter : {KB_FILTER_BOX, KB_FILTER_TENT, KB_FILTER_GAUSSIAN}) {
+    for (const uint32_t filter : {KB_FILTER_BOX, KB_FILTER_TENT, KB_FILTER_GAUSSIAN, KB_FILTER_TABULATED}) {
       expect_rays(make_camera(type, filter, 301, 200, 0.8), 3e-7);
       expect_rays(make_camera(type, filter, 1, 1, 2.5), 3e-7);
     }

@@ -47,8 +47,8 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:126: error: hdrfilm film: crop_width 100: must be from 1 to 68"},
       {"unknown filter",
        scene(
-           R"xml(<sensor type="perspective"><film type="hdrfilm"><rfilter type="lanczos"/></film></sensor>)xml"),
-       "scene.xml:2:64: error: rfilter type 'lanczos' is not supported"},
+           R"xml(<sensor type="perspective"><film type="hdrfilm"><rfilter type="sinc"/></film></sensor>)xml"),
+       "scene.xml:2:64: error: rfilter type 'sinc' is not supported"},
       {"unknown pixel format",
        scene(
            R"xml(<sensor type="perspective"><film type="hdrfilm"><string name="pixel_format" value="cmyk"/></film></sensor>)xml"),

@@ -114,6 +114,27 @@ TEST(SceneFilm, Filters) {
   EXPECT_EQ(gaussian.filter_radius, 3);
 }
 
+TEST(SceneFilm, FiltersWithNegativeLobes) {
+  const auto filter = [](const std::string& type, const std::string& inside = "") {
+    return film_of(R"(<film type="hdrfilm"><rfilter type=")" + type + "\">" + inside + "</rfilter></film>");
+  };
+  const Film mitchell = filter("mitchell");
+  EXPECT_EQ(mitchell.filter, FilterType::kMitchell);
+  EXPECT_EQ(mitchell.filter_radius, 2);
+  EXPECT_EQ(mitchell.filter_b, 1.0 / 3);
+  EXPECT_EQ(mitchell.filter_c, 1.0 / 3);
+  const Film other = filter("mitchell", R"(<float name="B" value="0.2"/><float name="C" value="0.5"/>)");
+  EXPECT_EQ(other.filter_b, 0.2);
+  EXPECT_EQ(other.filter_c, 0.5);
+  const Film spline = filter("catmullrom");
+  EXPECT_EQ(spline.filter, FilterType::kMitchell);
+  EXPECT_EQ(spline.filter_b, 0);
+  EXPECT_EQ(spline.filter_c, 0.5);
+  EXPECT_EQ(filter("lanczos").filter, FilterType::kLanczos);
+  EXPECT_EQ(filter("lanczos").filter_radius, 3);
+  EXPECT_EQ(filter("lanczos", R"(<integer name="lobes" value="2"/>)").filter_radius, 2);
+}
+
 TEST(SceneFilm, BandfilmChannels) {
   const Film range = film_of(R"(<film type="bandfilm"><string name="bands" value="8000:12000:4"/></film>)");
   ASSERT_EQ(range.channels.size(), 4u);

@@ -100,6 +100,12 @@ TEST(ValueLimits, HaveTheirMessages) {
       {scene("<sensor type='perspective'><film type='hdrfilm'><rfilter type='gaussian'>" +
              number("stddev", "1e-300") + "</rfilter></film></sensor>"),
        "gaussian rfilter: stddev 1e-300: must be from 0.001 to 25 pixels"},
+      {scene("<sensor type='perspective'><film type='hdrfilm'><rfilter type='mitchell'>" + number("C", "11") +
+             "</rfilter></film></sensor>"),
+       "mitchell rfilter: C 11: must be from -10 to 10"},
+      {scene("<sensor type='perspective'><film type='hdrfilm'><rfilter type='lanczos'>" +
+             number("lobes", "0.5") + "</rfilter></film></sensor>"),
+       "lanczos rfilter: lobes 0.5: must be from 1 to 16"},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(rule_of(text, folder), message) << text;
 }

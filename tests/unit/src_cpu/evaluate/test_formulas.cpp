@@ -63,6 +63,22 @@ TEST_P(Formulas, VerticesByHand) {
   EXPECT_NEAR(channel(scene, paths, GetParam(), 1), 20 * expected, 2e-5);
 }
 
+/// The sign of the reconstruction filter, in front of a plain vertex and of others.
+TEST_P(Formulas, NegativePaths) {
+  const FlatScene scene = constant_scene({{500, 510, {}}});
+  for (const uint32_t kind : {KB_KIND_SCALED, KB_KIND_TWO_TERM}) {
+    KbPathVertex first = vertex_of(kind | KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER);
+    first.emit_weight = 0.5f;
+    first.nee0 = first.scatter0 = 0.5f;
+    KbPathVertex second = vertex_of(KB_KIND_SCALED | KB_VERTEX_EMIT);
+    second.emit_weight = 1;
+    const double positive = channel(scene, one_path({first, second}), GetParam(), 0);
+    EXPECT_GT(positive, 0);
+    first.head |= KB_VERTEX_NEGATIVE;
+    EXPECT_EQ(channel(scene, one_path({first, second}), GetParam(), 0), -positive);
+  }
+}
+
 /// Light of two emission rows by turns, from light samples and from emitters that paths hit, and weights that would
 /// leave the range of floats if they were multiplied apart from the reflectances.
 TEST_P(Formulas, LightsByTurnsAndFarWeights) {

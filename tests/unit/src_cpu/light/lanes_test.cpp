@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "film/signed_filter.hpp"
 #include "light_lanes.hpp"
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
@@ -210,8 +211,9 @@ TEST(CameraLanes, EveryProjectionAndFilter) {
   camera.tan_half_fov_x = 0.4f, camera.principal_x = 0.1f, camera.principal_y = -0.3f;
   camera.near_clip = 0.1f, camera.far_clip = 50, camera.aperture_radius = 0.3f, camera.focus_distance = 4;
   set_matrix(camera.to_world, placed({1, 2, 3}, 0.9, {-1, 1, 1}));
+  scene.filter_cells = make_signed_filter([](double x) { return lanczos(x, 3); }, 3).cells;
   for (const uint32_t type : {KB_CAMERA_PERSPECTIVE, KB_CAMERA_THINLENS, KB_CAMERA_ORTHOGRAPHIC}) {
-    for (const uint32_t filter : {KB_FILTER_BOX, KB_FILTER_TENT, KB_FILTER_GAUSSIAN}) {
+    for (const uint32_t filter : {KB_FILTER_BOX, KB_FILTER_TENT, KB_FILTER_GAUSSIAN, KB_FILTER_TABULATED}) {
       for (const float radius : {2.0f, 1.3f}) {  // 4 standard deviations, and as no file has it
         SCOPED_TRACE(std::to_string(type) + " " + std::to_string(filter));
         camera.type = type, camera.filter = filter, camera.filter_radius = radius,

@@ -49,8 +49,8 @@ KB_SCENE_FUNCTION(escape, {
   put_lookup(1, seen.radiance);
 })
 KB_SCENE_FUNCTION(camera, {
-  const CameraRays ray =
-      sample_camera_rays(scene.camera, to_words(a(0)), to_words(a(1)), {a(2), a(3), a(4), a(5)});
+  const CameraRays ray = sample_camera_rays(scene.camera, scene.filter_cells.data(), to_words(a(0)),
+                                            to_words(a(1)), {a(2), a(3), a(4), a(5)});
   put(0, ray.origin.x);
   put(1, ray.origin.y);
   put(2, ray.origin.z);
@@ -59,6 +59,7 @@ KB_SCENE_FUNCTION(camera, {
   put(5, ray.direction.z);
   put(6, ray.t_min);
   put(7, ray.t_max);
+  put(8, ray.sign);
 })
 KB_SCENE_FUNCTION(texture, {
   const U ref = as_words(a(0));
@@ -70,7 +71,7 @@ KB_SCENE_FUNCTION(texture, {
 inline std::vector<test::SceneFunction> scene_functions() {
   return {{"lights", 7, 13, lights_of_arrays},
           {"escape", 3, 5, escape_of_arrays},
-          {"camera", 6, 8, camera_of_arrays},
+          {"camera", 6, 9, camera_of_arrays},
           {"texture", 3, 5, texture_of_arrays}};
 }
 

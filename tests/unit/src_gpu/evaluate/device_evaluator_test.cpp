@@ -96,6 +96,36 @@ TEST_P(DeviceEvaluation, RandomPathsAgreeWithTheOracle) {
   }
 }
 
+/// Where the reconstruction filter is negative: the same numbers with the other sign, bit by bit.
+TEST_P(DeviceEvaluation, NegativePaths) {
+  EvaluatorProgram program(GetParam());
+  std::mt19937 random(18);
+  Workload w({100, Layout::kRegular}, straight_responses(), GetParam().per_path, random);
+  DeviceEvaluator device(program, w.scene, w.tables, w.round.pixels);
+  const auto means_of_methods = [&] {
+    std::vector<float> means;
+    const auto take = [&] {
+      const std::vector<float> more = device.means();
+      means.insert(means.end(), more.begin(), more.end());
+      device.clear();
+    };
+    device.load(w.paths, w.round);
+    device.batch(3, 5);
+    take();
+    device.path(4);
+    take();
+    device.pt(w.paths, w.round.pixels / 2, 2);
+    take();
+    return means;
+  };
+  const std::vector<float> positive = means_of_methods();
+  for (const SavedPath& path : w.paths.paths) w.paths.entries[path.first].head |= KB_VERTEX_NEGATIVE;
+  std::vector<float> negative = means_of_methods();
+  EXPECT_GT(*std::ranges::max_element(positive), 0);
+  for (float& mean : negative) mean = -mean;
+  EXPECT_EQ(negative, positive);
+}
+
 std::vector<EvaluatorBuild> builds() {
   return {{16, 1, false, 2},
           {16, 4, true, 2, false, 5},
