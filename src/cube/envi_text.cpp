@@ -9,7 +9,7 @@
 namespace kiloband {
 namespace {
 
-constexpr std::string_view kListSpecial = ",{}";
+constexpr std::string_view kEnviListSpecial = ",{}";
 
 /// "key = {a, b, ...}" in lines of eight, since some readers limit the length of a line.
 void add_list(std::string& text, std::string_view key, std::size_t size,
@@ -70,14 +70,14 @@ void add_bands(std::string& text, const CubeInfo& info) {
   add(text, "wavelength units", "Nanometers");
   list("wavelength", [&](std::size_t k) { return format_number(channel(k).centre_nm()); });
   list("fwhm", [&](std::size_t k) { return format_number(channel(k).width_nm()); });
-  list("band names", [&](std::size_t k) { return encode_text(names[k], kListSpecial); });
+  list("band names", [&](std::size_t k) { return encode_text(names[k], kEnviListSpecial); });
   add_default_bands(text, bands);
   list(kEnviMinKey, [&](std::size_t k) { return format_number(channel(k).min_nm); });
   list(kEnviMaxKey, [&](std::size_t k) { return format_number(channel(k).max_nm); });
   if (std::any_of(bands.begin(), bands.end(), [](const Band& b) { return b.derived; }))
     list(kEnviDerivedKey, [&](std::size_t k) { return std::string(bands[k].derived ? "1" : "0"); });
   if (std::any_of(bands.begin(), bands.end(), [](const Band& b) { return !b.channel.name.empty(); }))
-    list(kEnviNamesKey, [&](std::size_t k) { return encode_text(channel(k).name, kListSpecial); });
+    list(kEnviNamesKey, [&](std::size_t k) { return encode_text(channel(k).name, kEnviListSpecial); });
 }
 
 /// Entries whose names are taken (or begin with the prefix themselves) get the prefix.
@@ -106,7 +106,7 @@ std::string envi_header_text(const CubeInfo& info, EnviContent content) {
   if (content == EnviContent::kVariance) add(text, "data ignore value", "nan");
   if (aux)
     add_list(text, "band names", info.aux.size(),
-             [&](std::size_t k) { return encode_text(info.aux[k], kListSpecial); });
+             [&](std::size_t k) { return encode_text(info.aux[k], kEnviListSpecial); });
   else
     add_bands(text, info);
   add(text, kEnviLayoutKey, "1");

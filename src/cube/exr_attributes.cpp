@@ -15,16 +15,16 @@
 namespace kiloband {
 namespace {
 
-constexpr std::string_view kListSpecial = " ;";
+constexpr std::string_view kExrListSpecial = " ;";
 
 /// "channel min max [own name];" per band in scene order, bounds in nm.
 std::string bands_text(const ExrLayout& layout) {
   std::string text;
   for (std::size_t k = 0; k < layout.means.size(); ++k) {
     const Channel& c = layout.info.bands[k].channel;
-    text += encode_text(layout.means[k], kListSpecial) + std::string(" ") + format_number(c.min_nm) + " " +
+    text += encode_text(layout.means[k], kExrListSpecial) + std::string(" ") + format_number(c.min_nm) + " " +
             format_number(c.max_nm);
-    if (!c.name.empty()) text.append(" ").append(encode_text(c.name, kListSpecial));
+    if (!c.name.empty()) text.append(" ").append(encode_text(c.name, kExrListSpecial));
     text += ';';
   }
   return text;
@@ -33,7 +33,7 @@ std::string bands_text(const ExrLayout& layout) {
 /// "plane;" per auxiliary plane in order; channels alone would come back sorted by name.
 std::string aux_text(const CubeInfo& info) {
   std::string text;
-  for (const std::string& name : info.aux) text += encode_text(name, kListSpecial) + ";";
+  for (const std::string& name : info.aux) text += encode_text(name, kExrListSpecial) + ";";
   return text;
 }
 

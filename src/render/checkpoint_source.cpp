@@ -12,7 +12,7 @@
 
 namespace kiloband {
 
-constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kReadBytes = std::size_t{1} << 20;
 
 std::string irregular_kind(unsigned mode) {
   if (S_ISREG(mode)) return {};
@@ -52,7 +52,7 @@ bool CheckpointSource::read(std::span<char> to) {
 }
 
 bool CheckpointSource::fill() {
-  buffer_.resize(kBufferBytes);
+  buffer_.resize(kReadBytes);
   ssize_t got = 0;
   do got = ::read(descriptor_, buffer_.data(), buffer_.size());
   while (got < 0 && errno == EINTR);

@@ -15,12 +15,10 @@
 namespace kiloband {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 // Aerosol of the model's rural type (Bird and Riordan 1984, section 3).
 constexpr double kAngstromExponent = 1.14;
 constexpr double kAlbedo400 = 0.945;  // single scattering, at 400 nm
 constexpr double kAlbedoSlope = 0.095;
-constexpr double kAsymmetry = 0.65;
 constexpr double kDiffuseMass = 1.8;  // air mass of diffuse light
 // The sun beyond its table: Planck's law at its effective temperature, scaled to meet the table at 4 um.
 constexpr double kSunTemperatureK = 5772;
@@ -93,7 +91,7 @@ double ozone_mass(double elevation_deg) {
 /// The part of scattered light that goes forward, at the cosine of the sun's zenith angle
 /// (equations 3-11 to 3-15).
 double forward_part(double cosine) {
-  const double a = std::log(1 - kAsymmetry);
+  const double a = std::log(1 - kAerosolAsymmetry);
   const double af = a * (1.459 + a * (0.1595 + a * 0.4129)), bf = a * (0.0783 + a * (-0.3824 - a * 0.5874));
   return 1 - 0.5 * std::exp((af + bf * cosine) * cosine);
 }

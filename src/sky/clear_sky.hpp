@@ -2,10 +2,15 @@
 // docs/sky_model.md has the formulas and their sources.
 #pragma once
 
+#include <numbers>
+
 #include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 
 namespace kiloband {
+
+inline constexpr double kDegree = std::numbers::pi / 180;  // rad
+inline constexpr double kAerosolAsymmetry = 0.65;          // mean cosine of its scattering
 
 struct SkyParameters {
   double sun_elevation_deg = 45;  // -90 to 90; below 0 nothing is scattered: there is no twilight

@@ -13,8 +13,6 @@ namespace kiloband {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
-constexpr double kAsymmetry = 0.65;  // of the aerosol
 constexpr int kSunPoints = 1000;
 constexpr int kRowSteps = 400;
 
@@ -23,7 +21,7 @@ double rayleigh_phase(double cosine) {
   return 3 / (16 * kPi) * (1 + cosine * cosine);
 }
 double aerosol_phase(double cosine) {
-  constexpr double g = kAsymmetry;
+  constexpr double g = kAerosolAsymmetry;
   return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 

@@ -18,10 +18,10 @@ constexpr double kSecond_nm_k = kPlanckSecond_nm_k;
 constexpr double kLargestExponent = 745.2;
 
 // Gauss-Legendre rule with 16 points on [-1, 1], positive half (Abramowitz & Stegun, table 25.4).
-constexpr std::array<double, 8> kNodes = {0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863,
-                                          0.6178762444026437484, 0.7554044083550030339, 0.8656312023878317439,
-                                          0.9445750230732325761, 0.9894009349916499326};
-constexpr std::array<double, 8> kWeights = {
+constexpr std::array<double, 8> kGaussNodes = {
+    0.0950125098376374402, 0.2816035507792589132, 0.4580167776572273863, 0.6178762444026437484,
+    0.7554044083550030339, 0.8656312023878317439, 0.9445750230732325761, 0.9894009349916499326};
+constexpr std::array<double, 8> kGaussWeights = {
     0.1894506104550684963, 0.1826034150449235888, 0.1691565193950025382, 0.1495959888165767320,
     0.1246289712555338720, 0.0951585116824927848, 0.0622535239386478929, 0.0271524594117540949};
 
@@ -29,10 +29,10 @@ constexpr std::array<double, 8> kWeights = {
 double integrate_panel(double log_min, double log_max, double temperature_k) {
   const double centre = 0.5 * (log_min + log_max), half = 0.5 * (log_max - log_min);
   double sum = 0;
-  for (std::size_t i = 0; i < kNodes.size(); ++i)
-    for (const double t : {centre - half * kNodes[i], centre + half * kNodes[i]}) {
+  for (std::size_t i = 0; i < kGaussNodes.size(); ++i)
+    for (const double t : {centre - half * kGaussNodes[i], centre + half * kGaussNodes[i]}) {
       const double lambda_nm = std::exp(t);
-      sum += kWeights[i] * lambda_nm * planck_radiance(lambda_nm, temperature_k);
+      sum += kGaussWeights[i] * lambda_nm * planck_radiance(lambda_nm, temperature_k);
     }
   return half * sum;
 }
@@ -41,9 +41,10 @@ double integrate_panel(double log_min, double log_max, double temperature_k) {
 double integrate_narrow(double min_nm, double max_nm, double temperature_k) {
   const double centre_nm = 0.5 * (min_nm + max_nm), half_nm = 0.5 * (max_nm - min_nm);
   double sum = 0;
-  for (std::size_t i = 0; i < kNodes.size(); ++i)
-    for (const double lambda_nm : {centre_nm - half_nm * kNodes[i], centre_nm + half_nm * kNodes[i]})
-      sum += kWeights[i] * planck_radiance(lambda_nm, temperature_k);
+  for (std::size_t i = 0; i < kGaussNodes.size(); ++i)
+    for (const double lambda_nm :
+         {centre_nm - half_nm * kGaussNodes[i], centre_nm + half_nm * kGaussNodes[i]})
+      sum += kGaussWeights[i] * planck_radiance(lambda_nm, temperature_k);
   return half_nm * sum;
 }
 

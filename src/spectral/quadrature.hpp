@@ -6,6 +6,9 @@
 
 namespace kiloband {
 
+/// Relative, of integrals of spectra, whose interface promises 1e-9.
+inline constexpr double kSpectrumTolerance = 1e-10;
+
 /// Integral of f from breaks.front() to breaks.back(). f is smooth between neighbouring breaks and is never
 /// evaluated AT a break, so that it may jump there.
 /// breaks              ascending, at least 2

@@ -9,8 +9,6 @@
 namespace kiloband {
 namespace {
 
-constexpr double kTolerance = 1e-10;  // of the adaptive quadrature; the interface promises 1e-9
-
 ValueBounds multiply(const ValueBounds& a, const ValueBounds& b) {
   const auto [min, max] = std::minmax({a.min * b.min, a.min * b.max, a.max * b.min, a.max * b.max});
   return {min, max};
@@ -80,7 +78,8 @@ ValueBounds ProductNode::bounds(double min_nm, double max_nm) const {
 }
 
 double ProductNode::integral(double min_nm, double max_nm) const {
-  return integrate([this](double lambda_nm) { return value(lambda_nm); }, breaks(min_nm, max_nm), kTolerance);
+  return integrate([this](double lambda_nm) { return value(lambda_nm); }, breaks(min_nm, max_nm),
+                   kSpectrumTolerance);
 }
 
 void ProductNode::append_breaks(double min_nm, double max_nm, std::vector<double>& out) const {

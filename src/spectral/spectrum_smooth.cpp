@@ -10,7 +10,6 @@
 namespace kiloband {
 namespace {
 
-constexpr double kTolerance = 1e-10;  // of the adaptive quadrature; the interface promises 1e-9
 /// Wien's displacement constant, nm K (CODATA 2018).
 constexpr double kWien_nm_k = 2.897771955e6;
 
@@ -49,7 +48,8 @@ ValueBounds SigmoidNode::enclosure(double min_nm, double max_nm) const {
 
 double SigmoidNode::integral(double min_nm, double max_nm) const {
   if (is_constant()) return value(min_nm) * (max_nm - min_nm);
-  return integrate([this](double lambda_nm) { return value(lambda_nm); }, breaks(min_nm, max_nm), kTolerance);
+  return integrate([this](double lambda_nm) { return value(lambda_nm); }, breaks(min_nm, max_nm),
+                   kSpectrumTolerance);
 }
 
 // Kinks at the ends of 360-830 nm, the vertex, the roots (steepest slope), and where the shoulders of a steep

@@ -6,7 +6,7 @@
 namespace kiloband::opencl {
 namespace {
 
-constexpr uint64_t kLocalSize = 64;
+constexpr uint64_t kPoolLocalSize = 64;
 /// Iterations between two looks at the pool from the host: each look waits for the device.
 constexpr uint32_t kIterationsPerLook = 8;
 
@@ -67,7 +67,7 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
 
 void PathPool::launch(PathKernel& kernel) {
   kernel.set(queue(count_));
-  kernel->launch(count_, kLocalSize);
+  kernel->launch(count_, kPoolLocalSize);
 }
 
 void PathPool::iterate(const AfterBounce& after_bounce) {

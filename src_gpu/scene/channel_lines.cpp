@@ -5,19 +5,19 @@
 namespace kiloband::opencl {
 namespace {
 
-std::size_t padded(std::size_t n) {
+std::size_t padded_floats(std::size_t n) {
   return (n + 15) / 16 * 16;
 }
 
 /// Floats before the knots of a gas's row: where each channel's begin.
 std::size_t line_heads(const ChannelKnots& lines) {
-  return padded(lines.first.size());
+  return padded_floats(lines.first.size());
 }
 
 }  // namespace
 
 std::size_t line_floats(const ChannelKnots& lines) {
-  return line_heads(lines) + padded(2 * lines.mu.size());
+  return line_heads(lines) + padded_floats(2 * lines.mu.size());
 }
 
 void fill_lines(const ChannelKnots& lines, float* nodes) {

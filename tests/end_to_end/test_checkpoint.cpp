@@ -11,7 +11,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-Names box(const Names& more) {
+Names checkpointed_box(const Names& more) {
   Names arguments{"--size", "64x64", "--bands", "400:700:3", "-o", "a.hdr", "--checkpoint", "c"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return quiet_render(cornell_box(), arguments);
@@ -19,14 +19,14 @@ Names box(const Names& more) {
 
 TEST(Checkpoint, OneThatExistsNeedsResume) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run_program(folder, box({"--spp", "4"})).code, 0);
+  ASSERT_EQ(run_program(folder, checkpointed_box({"--spp", "4"})).code, 0);
   const std::string before = folder.read("c");
-  const Outcome again = run_program(folder, box({"--spp", "4"}));
+  const Outcome again = run_program(folder, checkpointed_box({"--spp", "4"}));
   EXPECT_EQ(again.code, 2);
   EXPECT_EQ(again.err,
             "kiloband: --checkpoint c: exists: --resume goes on from it; remove it to render anew\n");
   EXPECT_EQ(folder.read("c"), before);
-  EXPECT_EQ(run_program(folder, box({"--spp", "8", "--resume"})).code, 0);
+  EXPECT_EQ(run_program(folder, checkpointed_box({"--spp", "8", "--resume"})).code, 0);
 }
 
 TEST(Checkpoint, WhatIsNoRegularFileIsRefusedAtOnce) {
@@ -56,8 +56,9 @@ TEST(Checkpoint, WhatIsNoRegularFileIsRefusedAtOnce) {
 TEST(Checkpoint, OneThatDoesNotFitTheDiskIsAWarning) {
   if (kThreadSanitizer) GTEST_SKIP() << "ThreadSanitizer maps a file that such a limit cuts";
   const TemporaryFolder folder;
-  const Outcome outcome = run_program(folder, box({"--spp", "64", "--checkpoint-interval", "0.01s"}),
-                                      {.file_size_limit = 60'000});
+  const Outcome outcome =
+      run_program(folder, checkpointed_box({"--spp", "64", "--checkpoint-interval", "0.01s"}),
+                  {.file_size_limit = 60'000});
   EXPECT_EQ(outcome.code, 0);
   const std::string reason = "warning: checkpoint: cannot write 'c': File too large: ";
   EXPECT_EQ(outcome.err, reason + "the render goes on, the next attempt follows in 0.01 s\n" + reason +
@@ -69,10 +70,10 @@ TEST(Checkpoint, OneThatDoesNotFitTheDiskIsAWarning) {
 TEST(Checkpoint, TheOldOneStaysWhereANewOneDoesNotFit) {
   if (kThreadSanitizer) GTEST_SKIP() << "ThreadSanitizer maps a file that such a limit cuts";
   const TemporaryFolder folder;
-  ASSERT_EQ(run_program(folder, box({"--spp", "4"})).code, 0);
+  ASSERT_EQ(run_program(folder, checkpointed_box({"--spp", "4"})).code, 0);
   const std::string before = folder.read("c");
-  const Outcome outcome =
-      run_program(folder, box({"--spp", "8", "--resume"}), {.file_size_limit = before.size() - 1});
+  const Outcome outcome = run_program(folder, checkpointed_box({"--spp", "8", "--resume"}),
+                                      {.file_size_limit = before.size() - 1});
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err,
             "warning: checkpoint: cannot write 'c': File too large: what it holds is older than the image\n");

@@ -14,7 +14,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 /// 64 x 64 pixels in 20 channels: 328 kB.
-Names box(const Names& more) {
+Names twenty_bands(const Names& more) {
   Names arguments{"--size", "64x64", "--bands", "400:700:20", "--spp", "1"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return quiet_render(cornell_box(), arguments);
@@ -33,19 +33,20 @@ void expect_failure(const TemporaryFolder& folder, const Names& arguments, const
 TEST(MachineFailure, MissingFolder) {
   const TemporaryFolder folder;
   const std::string reason = ": No such file or directory";
-  expect_failure(folder, box({"-o", "none/a.exr"}), "cannot write 'none/a.exr'" + reason);
-  expect_failure(folder, box({"-o", "a.exr", "-o", "none/a.hdr"}), "cannot write 'none/a.img'" + reason);
+  expect_failure(folder, twenty_bands({"-o", "none/a.exr"}), "cannot write 'none/a.exr'" + reason);
+  expect_failure(folder, twenty_bands({"-o", "a.exr", "-o", "none/a.hdr"}),
+                 "cannot write 'none/a.img'" + reason);
   // Before the render: not even the cube is written.
-  expect_failure(folder, box({"-o", "a.exr", "--preview", "none/a.png"}),
+  expect_failure(folder, twenty_bands({"-o", "a.exr", "--preview", "none/a.png"}),
                  "cannot write 'none/a.png'" + reason);
-  expect_failure(folder, box({"-o", "a.exr", "--stats", "none/a.json"}),
+  expect_failure(folder, twenty_bands({"-o", "a.exr", "--stats", "none/a.json"}),
                  "cannot write 'none/a.json'" + reason);
 }
 
 TEST(MachineFailure, OutputIsAFolder) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "a.exr");
-  expect_failure(folder, box({"-o", "a.exr"}), "cannot write 'a.exr': Is a directory");
+  expect_failure(folder, twenty_bands({"-o", "a.exr"}), "cannot write 'a.exr': Is a directory");
 }
 
 TEST(MachineFailure, ReadOnlyFolder) {
@@ -87,7 +88,7 @@ TEST(MachineFailure, NoThreads) {
   const uint64_t least = least_process_limit(folder);
   if (least == 0) return;
   const auto render = [&](const std::string& threads, uint64_t limit) {
-    return run_program(folder, box({"-o", "a.exr", "--backend", "cpu", "--threads", threads}),
+    return run_program(folder, twenty_bands({"-o", "a.exr", "--backend", "cpu", "--threads", threads}),
                        {.process_limit = limit});
   };
   // 3 of OpenMP beside the first, and as many of TBB, at least one per processor.
@@ -118,14 +119,14 @@ TEST(MachineFailure, NoSpace) {
   folder.write("a.hdr", "old");
   folder.write("a.img", "old");
   const Treatment treatment{.file_size_limit = 100'000};
-  expect_failure(folder, box({"-o", "a.exr"}), "cannot write 'a.exr': File too large", treatment);
-  expect_failure(folder, box({"-o", "a.hdr"}), "cannot write 'a.img': File too large", treatment);
+  expect_failure(folder, twenty_bands({"-o", "a.exr"}), "cannot write 'a.exr': File too large", treatment);
+  expect_failure(folder, twenty_bands({"-o", "a.hdr"}), "cannot write 'a.img': File too large", treatment);
   for (const char* name : {"a.exr", "a.hdr", "a.img"}) EXPECT_EQ(folder.read(name), "old") << name;
 }
 
 TEST(MachineFailure, NoSpaceForAConversion) {
   const TemporaryFolder folder;
-  ASSERT_EQ(run_program(folder, box({"-o", "a.exr"})).code, 0);
+  ASSERT_EQ(run_program(folder, twenty_bands({"-o", "a.exr"})).code, 0);
   const Treatment treatment{.file_size_limit = 100'000};
   expect_failure(folder, {"convert", "a.exr", "b.hdr"}, "cannot write 'b.img': File too large", treatment);
   expect_failure(folder, {"convert", "a.exr", "b.exr"}, "cannot write 'b.exr': File too large", treatment);

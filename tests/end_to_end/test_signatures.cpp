@@ -14,7 +14,7 @@ namespace kiloband::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSky = 0.1;  // W m^-2 sr^-1 nm^-1
+constexpr double kSkyRadiance = 0.1;  // W m^-2 sr^-1 nm^-1
 
 /// Radiance of the bodies at a wavelength: 2 at 400 nm, 5 at 700 nm. Channels are 100 nm wide.
 double body_integral(double centre_nm) {
@@ -119,7 +119,7 @@ TEST(Signatures, DiskBeforeAParallelCamera) {
   const auto rows = read_table(folder, "t.csv");
   ASSERT_EQ(rows.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) {
-    const double integral = body_integral(450 + 100.0 * static_cast<double>(k)), sky = 100 * kSky;
+    const double integral = body_integral(450 + 100.0 * static_cast<double>(k)), sky = 100 * kSkyRadiance;
     expect_within_error(rows[k], "contrast_intensity", kPi * (integral - sky));
     const double around = number(rows[k], "area_m2") - kPi;  // sky inside the mask
     expect_within_error(rows[k], "intensity", kPi * integral + around * sky);
@@ -145,7 +145,7 @@ TEST(Signatures, SphereBeforeATelescope) {
   const double area = kPi * (1 + 0.25e-4);
   for (std::size_t k = 0; k < 3; ++k) {
     const double integral = body_integral(450 + 100.0 * static_cast<double>(k));
-    expect_within_error(rows[k], "contrast_intensity", area * (integral - 100 * kSky));
+    expect_within_error(rows[k], "contrast_intensity", area * (integral - 100 * kSkyRadiance));
   }
   run(folder, figures);
   EXPECT_NEAR(number(read_table(folder, "t.csv")[0], "distance_m"), 100 - 2.0 / 3, 0.02);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -9,8 +10,6 @@
 
 namespace kiloband {
 namespace {
-
-constexpr double kPi = 3.141592653589793238463;
 
 void check(uint32_t width, uint32_t height, std::span<const float> texel_weights) {
   if (width == 0 || height == 0 || width > 65536 || height > 65536) {
@@ -31,7 +30,7 @@ struct RowIntegrals {
   double upper, lower;
 
   RowIntegrals(uint32_t row, uint32_t rows) {
-    const double a = kPi * row / rows, b = kPi * (row + 1) / rows;
+    const double a = std::numbers::pi * row / rows, b = std::numbers::pi * (row + 1) / rows;
     const double both = 2 * std::sin(0.5 * (a + b)) * std::sin(0.5 * (b - a));
     const double mean_cos = 2 * std::cos(0.5 * (a + b)) * std::sin(0.5 * (b - a)) / (b - a);
     lower = std::clamp(mean_cos - std::cos(b), 0.0, both);

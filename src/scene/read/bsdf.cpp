@@ -10,7 +10,7 @@
 namespace kiloband {
 namespace {
 
-using Model = decltype(Bsdf::model);
+using BsdfModel = decltype(Bsdf::model);
 
 void check_alpha(const ObjectReader& object, std::string_view name, double alpha) {
   object.check(alpha > 0, name, alpha, "must be > 0");
@@ -40,7 +40,7 @@ Texture reflectance(ReadContext& context, const ObjectReader& object, std::strin
   return read_texture(context, object, name, SpectrumUse::kReflectance, fallback);
 }
 
-Model read_diffuse(ReadContext& context, const ObjectReader& object) {
+BsdfModel read_diffuse(ReadContext& context, const ObjectReader& object) {
   DiffuseBsdf bsdf;
   bsdf.reflectance = reflectance(context, object, "reflectance", bsdf.reflectance);
   return bsdf;
@@ -66,7 +66,7 @@ void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf&
   bsdf.k = *constants->k;
 }
 
-Model read_conductor(ReadContext& context, const ObjectReader& object, bool rough) {
+BsdfModel read_conductor(ReadContext& context, const ObjectReader& object, bool rough) {
   ConductorBsdf bsdf;
   read_metal(context, object, bsdf);
   bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
@@ -101,7 +101,7 @@ DielectricBsdf read_dielectric(ReadContext& context, const ObjectReader& object,
   return bsdf;
 }
 
-Model read_plastic(ReadContext& context, const ObjectReader& object, bool rough) {
+BsdfModel read_plastic(ReadContext& context, const ObjectReader& object, bool rough) {
   PlasticBsdf bsdf;
   bsdf.diffuse_reflectance = reflectance(context, object, "diffuse_reflectance", bsdf.diffuse_reflectance);
   bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
@@ -124,7 +124,7 @@ bool transmits(const Bsdf& bsdf) {
   return contains<DielectricBsdf>(bsdf) || contains<MaskBsdf>(bsdf) || contains<NullBsdf>(bsdf);
 }
 
-Model read_two_sided(ReadContext& context, const ObjectReader& object) {
+BsdfModel read_two_sided(ReadContext& context, const ObjectReader& object) {
   const std::vector<Node*> nested = object.nested("bsdf");
   if (nested.empty() || nested.size() > 2) {
     object.fail_here("needs 1 or 2 nested bsdfs, found " + std::to_string(nested.size()));
@@ -151,7 +151,7 @@ Texture read_share(ReadContext& context, const ObjectReader& object, const std::
   return share;
 }
 
-Model read_mask(ReadContext& context, const ObjectReader& object) {
+BsdfModel read_mask(ReadContext& context, const ObjectReader& object) {
   MaskBsdf bsdf;
   bsdf.opacity = read_share(context, object, "opacity", bsdf.opacity);
   Node* nested = object.nested_one("bsdf");
@@ -162,7 +162,7 @@ Model read_mask(ReadContext& context, const ObjectReader& object) {
   return bsdf;
 }
 
-Model read_blend(ReadContext& context, const ObjectReader& object) {
+BsdfModel read_blend(ReadContext& context, const ObjectReader& object) {
   BlendBsdf bsdf;
   if (!object.has("weight")) object.fail_here("needs a weight");
   bsdf.weight = read_share(context, object, "weight", bsdf.weight);
@@ -178,8 +178,8 @@ Model read_blend(ReadContext& context, const ObjectReader& object) {
 }
 
 /// Parts of which each is as likely as its weight says, as blends one inside the other.
-Model nested_blends(const SourcePosition& position, const std::vector<std::shared_ptr<const Bsdf>>& parts,
-                    const std::vector<double>& weights) {
+BsdfModel nested_blends(const SourcePosition& position, const std::vector<std::shared_ptr<const Bsdf>>& parts,
+                        const std::vector<double>& weights) {
   std::shared_ptr<const Bsdf> rest = parts.back();
   double weight_of_rest = weights.back();
   for (std::size_t i = parts.size() - 1; i-- > 0;) {
@@ -193,7 +193,7 @@ Model nested_blends(const SourcePosition& position, const std::vector<std::share
 
 /// Of files of Mitsuba 0.x: any number of bsdfs with a weight each. Weights of a sum above 1 are divided by it, what a sum below
 /// leaves to 1 is absorbed.
-Model read_mixture(ReadContext& context, const ObjectReader& object) {
+BsdfModel read_mixture(ReadContext& context, const ObjectReader& object) {
   std::vector<double> weights = parse_numbers(object.require_string("weights"), object.value_place("weights"),
                                               object.label() + ": weights: ");
   const std::vector<Node*> nested = object.nested("bsdf");
@@ -217,40 +217,40 @@ Model read_mixture(ReadContext& context, const ObjectReader& object) {
   return nested_blends(position, parts, weights);
 }
 
-Model read_conductor_smooth(ReadContext& c, const ObjectReader& o) {
+BsdfModel read_conductor_smooth(ReadContext& c, const ObjectReader& o) {
   return read_conductor(c, o, false);
 }
-Model read_conductor_rough(ReadContext& c, const ObjectReader& o) {
+BsdfModel read_conductor_rough(ReadContext& c, const ObjectReader& o) {
   return read_conductor(c, o, true);
 }
-Model read_dielectric_smooth(ReadContext& c, const ObjectReader& o) {
+BsdfModel read_dielectric_smooth(ReadContext& c, const ObjectReader& o) {
   return read_dielectric(c, o, false);
 }
-Model read_dielectric_rough(ReadContext& c, const ObjectReader& o) {
+BsdfModel read_dielectric_rough(ReadContext& c, const ObjectReader& o) {
   return read_dielectric(c, o, true);
 }
-Model read_dielectric_thin(ReadContext& c, const ObjectReader& o) {
+BsdfModel read_dielectric_thin(ReadContext& c, const ObjectReader& o) {
   DielectricBsdf bsdf = read_dielectric(c, o, false);
   bsdf.thin = true;
   return bsdf;
 }
-Model read_plastic_smooth(ReadContext& c, const ObjectReader& o) {
+BsdfModel read_plastic_smooth(ReadContext& c, const ObjectReader& o) {
   return read_plastic(c, o, false);
 }
-Model read_plastic_rough(ReadContext& c, const ObjectReader& o) {
+BsdfModel read_plastic_rough(ReadContext& c, const ObjectReader& o) {
   return read_plastic(c, o, true);
 }
 
-Model read_null(ReadContext&, const ObjectReader&) {
+BsdfModel read_null(ReadContext&, const ObjectReader&) {
   return NullBsdf{};
 }
 
 struct BsdfType {
   std::string_view name;
-  Model (*read)(ReadContext&, const ObjectReader&);
+  BsdfModel (*read)(ReadContext&, const ObjectReader&);
 };
 
-constexpr BsdfType kTypes[] = {
+constexpr BsdfType kBsdfTypes[] = {
     {"diffuse", read_diffuse},
     {"conductor", read_conductor_smooth},
     {"roughconductor", read_conductor_rough},
@@ -272,11 +272,11 @@ std::shared_ptr<const Bsdf> read_bsdf(ReadContext& context, Node& node) {
   const auto known = context.bsdfs.find(&node);
   if (known != context.bsdfs.end()) return known->second;
   const ObjectReader object(node);
-  const auto type = std::find_if(std::begin(kTypes), std::end(kTypes),
+  const auto type = std::find_if(std::begin(kBsdfTypes), std::end(kBsdfTypes),
                                  [&](const BsdfType& t) { return t.name == node.type; });
-  if (type == std::end(kTypes)) {
+  if (type == std::end(kBsdfTypes)) {
     std::vector<std::string_view> names;
-    for (const BsdfType& t : kTypes) names.push_back(t.name);
+    for (const BsdfType& t : kBsdfTypes) names.push_back(t.name);
     object.refuse_type(names);
   }
   auto bsdf = std::make_shared<Bsdf>(Bsdf{node.id, node.place.position(), type->read(context, object)});

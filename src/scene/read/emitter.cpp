@@ -10,7 +10,7 @@
 namespace kiloband {
 namespace {
 
-using Model = decltype(Emitter::model);
+using EmitterModel = decltype(Emitter::model);
 
 /// Mitsuba's default for an absent radiance or intensity of 1.
 Spectrum default_emission() {
@@ -34,7 +34,7 @@ Transform rotation_and_position(const ObjectReader& object) {
   return to_world;
 }
 
-Model read_constant(ReadContext& context, const ObjectReader& object) {
+EmitterModel read_constant(ReadContext& context, const ObjectReader& object) {
   return ConstantEmitter{emission(context, object, "radiance", SpectrumUse::kEmission)};
 }
 
@@ -45,7 +45,7 @@ void check_map_size(const ObjectReader& object, const std::filesystem::path& fil
                                  "' has " + std::to_string(width) + " x " + std::to_string(height));
 }
 
-Model read_envmap(ReadContext& context, const ObjectReader& object) {
+EmitterModel read_envmap(ReadContext& context, const ObjectReader& object) {
   EnvmapEmitter envmap;
   envmap.file = context.file(object, "filename");
   envmap.scale = object.get_float("scale", 1);
@@ -60,7 +60,7 @@ Model read_envmap(ReadContext& context, const ObjectReader& object) {
   return envmap;
 }
 
-Model read_spectral_envmap(ReadContext& context, const ObjectReader& object) {
+EmitterModel read_spectral_envmap(ReadContext& context, const ObjectReader& object) {
   SpectralEnvmapEmitter envmap;
   const std::filesystem::path file = context.file(object, "filename");
   envmap.scale = object.get_float("scale", 1);
@@ -74,7 +74,7 @@ Model read_spectral_envmap(ReadContext& context, const ObjectReader& object) {
   return envmap;
 }
 
-Model read_point(ReadContext& context, const ObjectReader& object) {
+EmitterModel read_point(ReadContext& context, const ObjectReader& object) {
   PointEmitter point;
   point.intensity = emission(context, object, "intensity", SpectrumUse::kIntensity);
   if (object.has("position") && object.has("to_world")) {
@@ -85,7 +85,7 @@ Model read_point(ReadContext& context, const ObjectReader& object) {
   return point;
 }
 
-Model read_spot(ReadContext& context, const ObjectReader& object) {
+EmitterModel read_spot(ReadContext& context, const ObjectReader& object) {
   SpotEmitter spot;
   spot.intensity = emission(context, object, "intensity", SpectrumUse::kIntensity);
   const double cutoff = object.get_float("cutoff_angle", 20);
@@ -99,7 +99,7 @@ Model read_spot(ReadContext& context, const ObjectReader& object) {
   return spot;
 }
 
-Model read_directional(ReadContext& context, const ObjectReader& object) {
+EmitterModel read_directional(ReadContext& context, const ObjectReader& object) {
   DirectionalEmitter directional;
   directional.irradiance = emission(context, object, "irradiance", SpectrumUse::kIrradiance);
   if (object.has("direction") && object.has("to_world")) {
@@ -115,10 +115,10 @@ Model read_directional(ReadContext& context, const ObjectReader& object) {
 
 struct EmitterType {
   std::string_view name;
-  Model (*read)(ReadContext&, const ObjectReader&);
+  EmitterModel (*read)(ReadContext&, const ObjectReader&);
 };
 
-constexpr EmitterType kTypes[] = {
+constexpr EmitterType kEmitterTypes[] = {
     {"constant", read_constant}, {"envmap", read_envmap}, {"spectral_envmap", read_spectral_envmap},
     {"point", read_point},       {"spot", read_spot},     {"directional", read_directional}};
 
@@ -142,7 +142,7 @@ void accept_sampling_weight(const ReadContext& context, const ObjectReader& obje
 
 AreaEmitter read_area_emitter(ReadContext& context, Node& node) {
   const ObjectReader object(node);
-  for (const EmitterType& type : kTypes) {
+  for (const EmitterType& type : kEmitterTypes) {
     if (node.type == type.name)
       fail(node.type_place, object.label() + ": only area and thermal emitters can be part of a shape");
   }
@@ -156,7 +156,7 @@ AreaEmitter read_area_emitter(ReadContext& context, Node& node) {
 
 Emitter read_emitter(ReadContext& context, Node& node) {
   const ObjectReader object(node);
-  for (const EmitterType& type : kTypes) {
+  for (const EmitterType& type : kEmitterTypes) {
     if (node.type != type.name) continue;
     accept_sampling_weight(context, object);
     Emitter emitter{node.id, node.place.position(), type.read(context, object)};

@@ -134,9 +134,9 @@ ReadIntegrator read_direct(ReadContext&, const ObjectReader& object) {
   return result;
 }
 
-constexpr IntegratorType kTypes[] = {{"path", read_plain},    {"direct", read_direct},
-                                     {"volpath", read_plain}, {"volpathmis", read_plain},
-                                     {"moment", read_moment}, {"aov", read_aov}};
+constexpr IntegratorType kIntegratorTypes[] = {{"path", read_plain},    {"direct", read_direct},
+                                               {"volpath", read_plain}, {"volpathmis", read_plain},
+                                               {"moment", read_moment}, {"aov", read_aov}};
 
 /// Integrators of Mitsuba whose image is not that of a path tracer, and what to do instead.
 constexpr std::pair<std::string_view, std::string_view> kRefused[] = {
@@ -154,7 +154,7 @@ constexpr std::pair<std::string_view, std::string_view> kRefused[] = {
 ReadIntegrator read_integrator(ReadContext& context, Node& node) {
   const ObjectReader object(node);
   std::vector<std::string_view> names;
-  for (const IntegratorType& type : kTypes) {
+  for (const IntegratorType& type : kIntegratorTypes) {
     if (type.name == node.type) return type.read(context, object);
     names.push_back(type.name);
   }

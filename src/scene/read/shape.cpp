@@ -129,15 +129,15 @@ struct ShapeType {
   Geometry (*read)(ReadContext&, const ObjectReader&, Shape&);
 };
 
-constexpr ShapeType kTypes[] = {{"obj", read_obj_shape},       {"ply", read_ply_shape},
-                                {"stl", read_stl_shape},       {"serialized", read_serialized_shape},
-                                {"rectangle", read_rectangle}, {"cube", read_cube},
-                                {"disk", read_disk},           {"sphere", read_sphere},
-                                {"cylinder", read_cylinder}};
+constexpr ShapeType kShapeTypes[] = {{"obj", read_obj_shape},       {"ply", read_ply_shape},
+                                     {"stl", read_stl_shape},       {"serialized", read_serialized_shape},
+                                     {"rectangle", read_rectangle}, {"cube", read_cube},
+                                     {"disk", read_disk},           {"sphere", read_sphere},
+                                     {"cylinder", read_cylinder}};
 
 const ShapeType& find_type(const ObjectReader& object) {
   std::vector<std::string_view> names;
-  for (const ShapeType& type : kTypes) {
+  for (const ShapeType& type : kShapeTypes) {
     if (object.type() == type.name) return type;
     names.push_back(type.name);
   }

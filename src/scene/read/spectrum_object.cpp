@@ -135,17 +135,18 @@ struct SpectrumType {
   Spectrum (*read)(ReadContext&, const ObjectReader&, SpectrumUse);  // null: d65, which may give a texture
 };
 
-constexpr SpectrumType kTypes[] = {{"regular", false, read_regular}, {"irregular", false, read_irregular},
-                                   {"uniform", false, read_uniform}, {"blackbody", true, read_blackbody},
-                                   {"planck", true, read_planck},    {"d65", true, nullptr},
-                                   {"srgb", false, read_srgb},       {"file", false, read_file}};
+constexpr SpectrumType kSpectrumTypes[] = {
+    {"regular", false, read_regular}, {"irregular", false, read_irregular},
+    {"uniform", false, read_uniform}, {"blackbody", true, read_blackbody},
+    {"planck", true, read_planck},    {"d65", true, nullptr},
+    {"srgb", false, read_srgb},       {"file", false, read_file}};
 
 }  // namespace
 
 std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, SpectrumUse use) {
   const ObjectReader object(node);
   std::vector<std::string_view> known = {"bitmap", "checkerboard", "spectral_bitmap"};
-  for (const SpectrumType& type : kTypes) {
+  for (const SpectrumType& type : kSpectrumTypes) {
     known.push_back(type.name);
     if (object.type() != type.name) continue;
     if (type.emission_only && use == SpectrumUse::kReflectance)

@@ -12,11 +12,11 @@ namespace kiloband::stats {
 namespace {
 
 constexpr uint32_t kWantedReplicates = 32;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 TestVerdict of_units(const std::string& name, const ScaleResult& result) {
   TestVerdict verdict{name, result.p};
-  verdict.detectable = {kNone, kNone, kNone, 0};
+  verdict.detectable = {kUnknown, kUnknown, kUnknown, 0};
   if (result.worst.p <= 1) verdict.worst = result.worst;
   return verdict;
 }
@@ -54,7 +54,7 @@ void add_variances(Comparison& c, Untested& untested) {
       continue;
     }
     TestVerdict pooled{name, (*result)->p};
-    pooled.detectable = {kNone, kNone, kNone, 0};
+    pooled.detectable = {kUnknown, kUnknown, kUnknown, 0};
     c.tests.push_back(pooled);
   }
 }
@@ -63,7 +63,7 @@ void add_uniformity(Comparison& c, std::optional<UniformityResult>& result, Scal
   if (result && result->units < kUniformityUnits) result.reset();
   if (!result) return;
   TestVerdict verdict{std::string("uniform/") + name_of(scale), result->p};
-  verdict.detectable = {kNone, kNone, kNone, 0};
+  verdict.detectable = {kUnknown, kUnknown, kUnknown, 0};
   c.tests.push_back(verdict);
 }
 
@@ -188,7 +188,7 @@ void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
   }
   add_detectable(c);
   if (c.non_finite > 0) {
-    c.tests.push_back({"finite", 0, level, false, {kNone, kNone, kNone, 0}, std::nullopt});
+    c.tests.push_back({"finite", 0, level, false, {kUnknown, kUnknown, kUnknown, 0}, std::nullopt});
     c.notes.push_back(non_finite_note(c));
   }
   c.passed = std::ranges::all_of(c.tests, &TestVerdict::passed);

@@ -2,7 +2,6 @@
 // and rough glass and mirrors of roughness 1e-4.
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 #include "validation/suite/hard_cases/groups.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
@@ -13,7 +12,6 @@ namespace {
 
 using namespace scene_text;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kIndex = 1.5;
 
 std::string glass(double inside, double outside, const std::string& type = "dielectric",

@@ -7,7 +7,6 @@
 // Outside shines an environment of kOutside: a ray that leaves,
 // or a shadow ray that passes a wall, shows at once.
 #include <cmath>
-#include <numbers>
 
 #include "validation/suite/hard_cases/groups.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
@@ -18,9 +17,8 @@ namespace {
 
 using namespace scene_text;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kKelvin = 300, kReflectance = 0.5;
-constexpr int kDepth = 10, kNoRoulette = 100000;
+constexpr int kDepth = 10;
 constexpr double kOutside = 1e3;  // W m^-2 sr^-1 nm^-1; Planck's law at 300 K and 10 um is 1e-2
 /// Ten vertices of about ten roundings of 6e-8 each, and Planck's law as float.
 constexpr double kFurnaceLimit = 5e-6;

@@ -7,7 +7,6 @@
 // at the level 1e-4.
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "base/temporary_folder.hpp"
 #include "validation/suite/hard_cases/groups.hpp"
@@ -19,7 +18,6 @@ namespace {
 
 using namespace scene_text;
 
-constexpr double kPi = std::numbers::pi;
 const std::string kWall = bsdf("twosided", diffuse(0.97));
 
 /// A closed mesh around `centre`: a sphere of `rings` x 2 `rings` quadrilaterals, scaled differently along

@@ -11,7 +11,6 @@ namespace {
 
 using namespace scene_text;
 
-constexpr int kNoRoulette = 1000000;
 const std::string kView = perspective(lookat("0.3, -0.2, 0.4", "-0.5, 0.1, -0.9"), 60, film(8), 1e-3);
 
 std::string box(const std::string& content) {

@@ -9,7 +9,6 @@
 // error of a few 6e-8 where R is of order 1, and of 6e-8 / R otherwise.
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 #include "validation/suite/hard_cases/groups.hpp"
 #include "validation/suite/hard_cases/trial.hpp"
@@ -19,8 +18,6 @@ namespace kiloband::validation {
 namespace {
 
 using namespace scene_text;
-
-constexpr double kPi = std::numbers::pi;
 
 double reflectance(double cosine, std::complex<double> index) {
   const std::complex<double> c = std::sqrt(1.0 - (1 - cosine * cosine) / (index * index));

@@ -2,7 +2,6 @@
 // a million times brighter.
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 #include "base/temporary_folder.hpp"
 #include "validation/suite/hard_cases/groups.hpp"
@@ -14,7 +13,6 @@ namespace {
 
 using namespace scene_text;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kDecades[] = {1e-20, 1e-10, 1, 1e10, 1e15};
 const char* const kBands = "400-410, 500-510, 600-610, 700-710, 800-810";
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "validation/suite/hard_cases/hard_cases.hpp"
 
 namespace kiloband::validation {
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr int kNoRoulette = 1000000;  // rr_depth beyond all paths
 
 struct TrialSettings {
   std::string bands = "10000-10000.001";
