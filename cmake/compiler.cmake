@@ -33,12 +33,21 @@ set(KILOBAND_STANDARD_HEADERS <algorithm> <array> <chrono> <cmath> <cstdint> <cs
                               <memory> <numeric> <optional> <random> <set> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector>)
 kiloband_precompiled(kiloband_headers HEADERS ${KILOBAND_STANDARD_HEADERS})
 
+# kiloband_unity(name): with KILOBAND_UNITY, files are compiled eight at a time (names of anonymous namespaces must differ then).
+# Files with options of their own, and those that are compiled once per instruction set, stay alone.
+function(kiloband_unity name)
+  if(KILOBAND_UNITY)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
 # kiloband_library(name SOURCES ... DEPENDS ...): a static library with the project's flags.
 function(kiloband_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC kiloband_flags ${ARG_DEPENDS})
   target_precompile_headers(${name} REUSE_FROM kiloband_headers)
+  kiloband_unity(${name})
 endfunction()
 
 # kiloband_hot(name): a library whose loops are worth -O3. Everything else has -O2, which compiles a third faster.

@@ -11,7 +11,7 @@ scripts/format.sh --check
 bench=ON
 werror=OFF
 case "$preset" in asan | tsan) bench=OFF ;; release) werror=ON ;; esac
-cmake --preset "$preset" -DKILOBAND_TESTS=ON -DKILOBAND_BENCH="$bench" -DKILOBAND_WERROR="$werror"
+cmake --preset "$preset" -DKILOBAND_TESTS=ON -DKILOBAND_BENCH="$bench" -DKILOBAND_WERROR="$werror" -DKILOBAND_UNITY=ON
 cmake --build --preset "$preset"
 if [ "$preset" = release ]; then scripts/tidy.sh; fi
 ctest --preset "$preset" --parallel "$(nproc)"

@@ -66,21 +66,36 @@ std::set<std::string> patched_sources() {
   return files;
 }
 
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// The files that a file of KILOBAND_UNITY includes; of others, itself.
+std::vector<std::string> files_of(const std::string& source) {
+  if (source.find("/Unity/unity_") == std::string::npos) return {source};
+  static const std::regex kInclude("#include \"(.*)\"");
+  std::vector<std::string> files;
+  std::ifstream file(source);
+  std::smatch match;
+  for (std::string line; std::getline(file, line);)
+    if (std::regex_match(line, match, kInclude)) files.push_back(match[1]);
+  return files;
+}
+
 /// How this build compiles a file of the project, by its path; without precompiled headers, which are of this tree.
 std::map<std::string, std::string> compile_commands() {
   static const std::regex kPrecompiled("-Winvalid-pch|-include [^ ]*cmake_pch[^ ]*");
   std::ifstream file(fs::path(KILOBAND_BINARY_DIR) / "compile_commands.json");
   std::map<std::string, std::string> commands;
-  for (const nlohmann::json& entry : nlohmann::json::parse(file))
-    commands.emplace(entry.at("file").get<std::string>(),
-                     std::regex_replace(entry.at("command").get<std::string>(), kPrecompiled, ""));
+  for (const nlohmann::json& entry : nlohmann::json::parse(file)) {
+    const std::string source = entry.at("file").get<std::string>();
+    const std::string command = std::regex_replace(entry.at("command").get<std::string>(), kPrecompiled, "");
+    for (const std::string& single : files_of(source))
+      commands.emplace(single, replaced(command, source, single));
+  }
   return commands;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
 }
 
 TEST_F(PatchedCode, SourcesCompile) {
