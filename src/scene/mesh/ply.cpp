@@ -11,6 +11,13 @@ struct Slot {
   size_t stride = 0;
 };
 
+/// Triangle strips, as the scans of Stanford's repository have them.
+constexpr std::string_view kStrips = "tristrips";
+
+std::string_view index_list(const PlyElement& element) {
+  return element.find("vertex_indices") >= 0 ? "vertex_indices" : "vertex_index";
+}
+
 /// Reads the elements in the file's order. Source is PlyTextSource or PlyBinarySource.
 template <typename Source>
 class BodyReader {
@@ -24,7 +31,7 @@ class BodyReader {
       if (element.properties.empty() || element.count == 0) continue;
       if (element.name == "vertex") {
         read_vertices(vertex_slots());
-      } else if (element.name == "face") {
+      } else if (element.name == "face" || element.name == kStrips) {
         read_faces();
       } else {
         for (row_ = 0; row_ < element.count; ++row_) skip_row();
@@ -39,7 +46,9 @@ class BodyReader {
   void read_vertices(const std::vector<Slot>& slots);
   void read_faces();
   void read_polygon();
+  void read_strips();
   uint32_t read_index();
+  uint32_t checked_index(double index) const;
   void skip_row();
   void skip_property();
   double read(PlyType type);
@@ -112,16 +121,17 @@ void BodyReader<Source>::read_vertices(const std::vector<Slot>& slots) {
 
 template <typename Source>
 void BodyReader<Source>::read_faces() {
-  const bool plural = element_->find("vertex_indices") >= 0;
-  const std::string list = plural ? "vertex_indices" : "vertex_index";
-  mesh_.triangles.reserve(element_->count);
+  const std::string_view list = index_list(*element_);
+  mesh_.triangles.reserve(mesh_.triangles.size() + element_->count);
   for (row_ = 0; row_ < element_->count; ++row_) {
     for (const PlyProperty& property : element_->properties) {
       property_ = &property;
-      if (property.name == list) {
-        read_polygon();
-      } else {
+      if (property.name != list) {
         skip_property();
+      } else if (element_->name == kStrips) {
+        read_strips();
+      } else {
+        read_polygon();
       }
     }
   }
@@ -140,9 +150,37 @@ void BodyReader<Source>::read_polygon() {
   }
 }
 
+/// A triangle for every three indices in a row, by turns in this order and with the first two exchanged, so that all have the
+/// same side in front; -1 begins a new strip. Where two of the three are equal a strip only turns.
+template <typename Source>
+void BodyReader<Source>::read_strips() {
+  const uint64_t count = read_list_count();
+  uint64_t length = 0;  // of this strip so far
+  uint32_t first = 0, second = 0;
+  for (uint64_t i = 0; i < count; ++i) {
+    const double index = read(property_->type);
+    if (index == -1) {
+      length = 0;
+      continue;
+    }
+    const uint32_t third = checked_index(index);
+    if (length >= 2 && first != second && second != third && first != third) {
+      const bool exchanged = length % 2 == 1;
+      mesh_.triangles.push_back({exchanged ? second : first, exchanged ? first : second, third});
+    }
+    first = second;
+    second = third;
+    ++length;
+  }
+}
+
 template <typename Source>
 uint32_t BodyReader<Source>::read_index() {
-  const double index = read(property_->type);
+  return checked_index(read(property_->type));
+}
+
+template <typename Source>
+uint32_t BodyReader<Source>::checked_index(double index) const {
   const auto count = static_cast<double>(header_.find("vertex")->count);
   if (!(index >= 0 && index < count)) {
     fail("index " + std::to_string(static_cast<int64_t>(index)) + ": must be below " +
@@ -179,12 +217,25 @@ uint64_t BodyReader<Source>::read_list_count() {
   return static_cast<uint64_t>(count);
 }
 
+void check_indices(const PlyElement& element, const MeshFile& file) {
+  const int list = element.find(std::string(index_list(element)));
+  if (list < 0)
+    file.fail_line(element.line, "header: element " + quote_text(element.name) +
+                                     " has no property 'vertex_indices' or 'vertex_index'");
+  const PlyProperty& indices = element.properties[list];
+  if (!indices.is_list || !is_integer(indices.type)) {
+    file.fail_line(element.line,
+                   "header: property " + quote_text(indices.name) + " must be a list of integers");
+  }
+}
+
 /// What the body needs from the header before anything is allocated.
 void check_elements(const PlyHeader& header, const MeshFile& file) {
   const PlyElement* vertex = header.find("vertex");
   const PlyElement* face = header.find("face");
+  const PlyElement* strips = header.find(std::string(kStrips));
   if (!vertex) file.fail("header: no element 'vertex'");
-  if (!face) file.fail("header: no element 'face'");
+  if (!face && !strips) file.fail("header: no element 'face'");
   for (const char* name : {"x", "y", "z"}) {
     const int i = vertex->find(name);
     if (i < 0) file.fail_line(vertex->line, "header: element 'vertex' has no property " + quote_text(name));
@@ -192,20 +243,13 @@ void check_elements(const PlyHeader& header, const MeshFile& file) {
       file.fail_line(vertex->line, "header: property " + quote_text(name) + " must not be a list");
   }
   if (vertex->count > UINT32_MAX) file.fail_line(vertex->line, "header: more than 4294967295 vertices");
-  int list = face->find("vertex_indices");
-  if (list < 0) list = face->find("vertex_index");
-  if (list < 0)
-    file.fail_line(face->line, "header: element 'face' has no property 'vertex_indices' or 'vertex_index'");
-  const PlyProperty& indices = face->properties[list];
-  if (!indices.is_list || !is_integer(indices.type)) {
-    file.fail_line(face->line,
-                   "header: property " + quote_text(indices.name) + " must be a list of integers");
-  }
+  for (const PlyElement* element : {face, strips})
+    if (element) check_indices(*element, file);
 }
 
 void note_skipped(const PlyHeader& header, const MeshFile& file, const DiagnosticSink& sink) {
   for (const PlyElement& element : header.elements) {
-    if (element.name == "vertex" || element.name == "face") continue;
+    if (element.name == "vertex" || element.name == "face" || element.name == kStrips) continue;
     note(sink, {file.name, static_cast<int>(element.line)},
          "element " + quote_text(element.name) + " is skipped");
   }
@@ -227,7 +271,7 @@ Mesh read_ply(const std::filesystem::path& path, const MeshOptions& options, con
   if (options.flip_tex_coords) {
     for (Vec2f& uv : mesh.uvs) uv[1] = 1.0f - uv[1];
   }
-  finish_mesh(mesh, file, options.face_normals, sink);
+  finish_mesh(mesh, file, options, sink);
   return mesh;
 }
 

@@ -139,6 +139,21 @@ TEST_F(Ply, NormalsAreNormalisedOrDropped) {
   EXPECT_TRUE(read(text, options).vertex_attributes.empty());
 }
 
+TEST_F(Ply, ReadsTriangleStrips) {
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+  const std::string square = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  // Two strips; in the first one 1 1 turns it without a triangle.
+  const Mesh mesh = read(vertex_header("ascii") + strips + square + "9 0 1 3 2 -1 1 2 2 3\n");
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 3}, {3, 1, 2}}));
+  for (const Vec3f& n : mesh.normals) EXPECT_EQ(n, (Vec3f{0, 0, 1}));
+  EXPECT_TRUE(messages.texts.empty());
+  const Mesh again = read(vertex_header("ascii") + strips + square + "9 -1 -1 0 1 2 -1 0 2 3\n");
+  EXPECT_EQ(again.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  const std::string both = "element face 1\nproperty list uchar int vertex_indices\n" + strips;
+  EXPECT_EQ(read(vertex_header("ascii") + both + square + "3 0 1 2 3 0 2 3\n").triangles,
+            (Triangles{{0, 1, 2}, {0, 2, 3}}));
+}
+
 TEST_F(Ply, SkipsOtherElementsWhereverTheyStand) {
   const std::string header =
       "ply\ncomment made by hand\nformat binary_little_endian 1.0\nobj_info x\nelement camera 2\nproperty "
