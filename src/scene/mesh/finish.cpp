@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/mesh/creases.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -30,9 +32,10 @@ void check_areas(const Mesh& mesh, const MeshFile& file, const DiagnosticSink& s
 
 }  // namespace
 
-void finish_mesh(Mesh& mesh, const MeshFile& file, bool face_normals, const DiagnosticSink& sink) {
+void finish_mesh(Mesh& mesh, const MeshFile& file, const MeshOptions& options, const DiagnosticSink& sink) {
   check_areas(mesh, file, sink);
-  if (face_normals) {
+  if (options.max_smooth_angle && !options.face_normals) split_at_creases(mesh, *options.max_smooth_angle);
+  if (options.face_normals) {
     mesh.normals.clear();
   } else if (mesh.normals.empty()) {
     compute_vertex_normals(mesh);

@@ -10,9 +10,9 @@ namespace kiloband {
 /// returns how many were replaced
 size_t repair_vertex_normals(Mesh& mesh);
 
-/// Checks the triangles' areas, then drops, computes or repairs vertex normals as mesh.hpp states. Indices
+/// Checks the triangles' areas, splits vertices at creases where the options say so, then drops, computes or repairs vertex normals as mesh.hpp states. Indices
 /// must be in range.
 /// throws InputError  no triangle, or none with an area
-void finish_mesh(Mesh& mesh, const MeshFile& file, bool face_normals, const DiagnosticSink& sink);
+void finish_mesh(Mesh& mesh, const MeshFile& file, const MeshOptions& options, const DiagnosticSink& sink);
 
 }  // namespace kiloband

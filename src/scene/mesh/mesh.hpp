@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct MeshOptions {
   bool face_normals = false;     // drop vertex normals: shading uses the geometric normal
   bool flip_tex_coords = false;  // v = 1 - v (the reader passes each format's default)
   int shape_index = 0;           // serialized only
+  /// rad. Vertex normals of the file are dropped, and computed ones are smooth where neighbours' normals are at most this
+  /// far apart (creases.hpp). Not for STL; nothing where face_normals is set.
+  std::optional<double> max_smooth_angle;
 };
 
 // All readers check everything against the file's size before they allocate, accept only finite numbers and
@@ -57,8 +61,8 @@ Mesh read_obj(const std::filesystem::path& file, const MeshOptions& options, con
 
 /// PLY 1.0: ascii, binary_little_endian, binary_big_endian, every scalar type by its old and new name.
 /// Element vertex: x y z, nx ny nz, texture coordinates u v or texture_u texture_v or s t, the rest goes to
-/// vertex_attributes (lists are skipped). Element face: list vertex_indices or vertex_index. Other elements
-/// are skipped with a note.
+/// vertex_attributes (lists are skipped). Element face: list vertex_indices or vertex_index. Element tristrips: the same list
+/// of triangle strips one after another, -1 between them. Other elements are skipped with a note.
 Mesh read_ply(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
 
 /// STL, ascii or binary. Vertices are not welded: every triangle has three of its own. No vertex normals, no

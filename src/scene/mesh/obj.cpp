@@ -63,7 +63,7 @@ Mesh ObjReader::read() {
     read_line(take_line(rest));
   }
   Mesh mesh = assemble();
-  finish_mesh(mesh, file_, options_.face_normals, sink_);
+  finish_mesh(mesh, file_, options_, sink_);
   return mesh;
 }
 

@@ -194,7 +194,9 @@ Mesh read_serialized(const std::filesystem::path& path, const MeshOptions& optio
   if (options.flip_tex_coords) {
     for (Vec2f& uv : mesh.uvs) uv[1] = 1.0f - uv[1];
   }
-  finish_mesh(mesh, file, options.face_normals || reader.face_normals(), sink);
+  MeshOptions flagged = options;
+  flagged.face_normals |= reader.face_normals();
+  finish_mesh(mesh, file, flagged, sink);
   return mesh;
 }
 

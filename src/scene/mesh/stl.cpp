@@ -157,7 +157,9 @@ Mesh read_stl(const std::filesystem::path& path, const MeshOptions&, const Diagn
   const MeshFile file = load_mesh_file(path);
   if (!is_binary(file) && !starts_with_solid(file)) fail_size(file);
   Mesh mesh = is_binary(file) ? read_binary(file) : TextReader(file).read();
-  finish_mesh(mesh, file, true, sink);
+  MeshOptions facets;
+  facets.face_normals = true;
+  finish_mesh(mesh, file, facets, sink);
   return mesh;
 }
 

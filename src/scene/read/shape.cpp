@@ -89,6 +89,7 @@ Geometry read_mesh(ReadContext& context, const ObjectReader& object, MeshReader 
   const std::filesystem::path file = context.file(object, "filename");
   const std::string key = object.type() + (options.face_normals ? " f" : " s") +
                           (options.flip_tex_coords ? "f " : "n ") + std::to_string(options.shape_index) +
+                          " " + (options.max_smooth_angle ? format_number(*options.max_smooth_angle) : "-") +
                           " " + file.string();
   auto& mesh = context.meshes[key];
   if (!mesh) {
@@ -102,6 +103,11 @@ MeshOptions mesh_options(const ObjectReader& object, bool flip_by_default) {
   MeshOptions options;
   options.face_normals = object.get_bool("face_normals", false);
   options.flip_tex_coords = object.get_bool("flip_tex_coords", flip_by_default);
+  if (!object.has("max_smooth_angle")) return options;
+  const double degrees = object.get_float("max_smooth_angle", 180);
+  object.check(degrees >= 0 && degrees <= 180, "max_smooth_angle", degrees, "must be from 0 to 180 degrees");
+  if (options.face_normals) object.fail_at("max_smooth_angle", "max_smooth_angle together with face_normals");
+  options.max_smooth_angle = glm::radians(degrees);
   return options;
 }
 

@@ -100,6 +100,11 @@ TEST(ValueLimits, HaveTheirMessages) {
       {scene("<sensor type='perspective'><film type='hdrfilm'><rfilter type='gaussian'>" +
              number("stddev", "1e-300") + "</rfilter></film></sensor>"),
        "gaussian rfilter: stddev 1e-300: must be from 0.001 to 25 pixels"},
+      {complete_scene("<shape type='obj'>" + number("max_smooth_angle", "181") + "</shape>"),
+       "obj shape: max_smooth_angle 181: must be from 0 to 180 degrees"},
+      {complete_scene("<shape type='ply'><boolean name='face_normals' value='true'/>" +
+                      number("max_smooth_angle", "30") + "</shape>"),
+       "ply shape: max_smooth_angle together with face_normals"},
       {scene("<sensor type='perspective'><film type='hdrfilm'><rfilter type='mitchell'>" + number("C", "11") +
              "</rfilter></film></sensor>"),
        "mitchell rfilter: C 11: must be from -10 to 10"},
