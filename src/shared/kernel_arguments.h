@@ -19,6 +19,7 @@
 #define KB_SCENE_ARGUMENTS(X, SEP)                                                                               \
   X(scene, IN, KbSceneConstants, constants) SEP                                                                  \
   X(scene, IN, KbMaterial, materials) SEP                                                                        \
+  X(scene, IN, KbBump, bumps) SEP             /* by material */                                                  \
   X(scene, IN, float, tables) SEP             /* of materials, thermal emission: KbMaterial::table, KbThermal::table */ \
   X(scene, IN, KbSurface, surfaces) SEP                                                                          \
   X(scene, IN, KbShape, shapes) SEP                                                                              \

@@ -58,6 +58,18 @@ typedef struct {
 } KbMaterial;
 KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 
+#define KB_BUMP_FLIP \
+  1u /* a normal that turns away from where the path comes from is turned about the surface's */
+#define KB_BUMP_SHADOW 2u  /* light that arrives at a flat angle is shadowed by what is not in the geometry */
+#define KB_BUMP_OUTSIDE 4u /* around a two-sided bsdf: a bump seen from behind is a dent */
+
+/* What turns the shading normal of a material; src_cpu/geometry/bump.hpp derives it. */
+typedef struct {
+  kb_u32 texture; /* KB_TEXTURE_NORMALS, or heights in m; KB_NONE: nothing */
+  kb_u32 flags;   /* KB_BUMP_* */
+} KbBump;
+KB_STATIC_ASSERT(sizeof(KbBump) == 8, bump_size);
+
 #define KB_SURFACE_TRANSMISSIVE 1u /* one material, both sides, not flipped */
 #define KB_SURFACE_TWO_SIDED 2u    /* back != KB_NONE: the frame is flipped for directions from below */
 #define KB_SURFACE_THERMAL 4u      /* emits by Kirchhoff's law: front_thermal, back_thermal */
@@ -95,6 +107,7 @@ KB_STATIC_ASSERT(sizeof(KbSurface) == 48, surface_size);
 #define KB_TEXTURE_ENVMAP 2u /* columns repeat, rows clamp, rows align-corners */
 #define KB_TEXTURE_BANDS 4u
 #define KB_TEXTURE_WEIGHTS 8u
+#define KB_TEXTURE_NORMALS 32u /* texels are normals: (x, y, z, 1) */
 #define KB_TEXTURE_SPECTRAL (KB_TEXTURE_BANDS | KB_TEXTURE_WEIGHTS)
 #define KB_VALUE_UNIT 16u /* floats: spectral texels of a texture begin at a multiple of it */
 

@@ -181,7 +181,8 @@ void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSe
   const HeroDensity density = hero_density(at.material, heroes, at.wi, wo);
   const float opacity = s.opacity.v;
   const float mis = light.delta.v ? 1 : power_heuristic(light.pdf, F(density.pdf * opacity)).v;
-  const float weight = mis * opacity * light.factor.v / light.pdf.v * pair.weight;
+  const float share = scene_.features.bump ? bump_share(s, light.direction).v : 1;
+  const float weight = mis * opacity * light.factor.v / light.pdf.v * pair.weight * share;
   if (!(weight > 0)) return;
   Vertex v = empty_vertex();
   v.head = U(KB_VERTEX_NEE | (light.radiance.textured.v ? KB_VERTEX_TEX_NEE : 0u));
@@ -201,7 +202,9 @@ bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSe
   const glm::vec3 wo = sample_heroes(at.material, heroes, at.wi, {h.x, h.y}, s.u.x.v, {s.u.y.v, s.u.z.v});
   const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
   const HeroDensity density = hero_density(at.material, heroes, at.wi, wo);
-  if (!(density.pdf > 0) || !(pair.weight > 0)) return false;
+  const V3 direction = s.frame.to_world(to_lane(wo));
+  const float share = scene_.features.bump ? bump_share(s, direction).v : 1;
+  if (!(density.pdf > 0) || !(pair.weight > 0) || !(share > 0)) return false;
   // Channels between the heroes may carry a little more, or all where no hero has anything: never below
   // delta, so that roulette does not stop them all.
   F bound = path.bound * (std::max(density.bound / density.pdf, KB_NO_HERO) *
@@ -213,7 +216,7 @@ bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSe
               F(0),
               F(0),
               F(0),
-              F(pair.weight / density.pdf),
+              F(pair.weight / density.pdf * share),
               F(0),
               F(density.value / pair.weight),
               s.vertex.a,
@@ -222,7 +225,7 @@ bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSe
               s.vertex.light};
   if (!roulette(s, bound, {true}).v) return false;
   append_pair(s, at, pair, wo, s.vertex);
-  continue_paths(s, s.frame.to_world(to_lane(wo)), bound, F(density.pdf * s.opacity.v), {false}, {true});
+  continue_paths(s, direction, bound, F(density.pdf * s.opacity.v), {false}, {true});
   return true;
 }
 

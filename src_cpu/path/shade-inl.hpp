@@ -79,6 +79,32 @@ inline U choose_surfaces(Shading& s, U surface, M hit) {
   return chosen;
 }
 
+/// Normals that bump and normal maps turn.
+inline V3 bump_normals(Shading& s, M seen, M turned) {
+  const FlatScene& scene = s.scene();
+  const RayQueue& rays = s.wave.rays();
+  const WordArray side(s.side), shape(s.hit.shape);
+  const V3Array unbumped(s.hit.shading_normal), along(s.direction);
+  const FloatArray u(s.hit.uv.x), v(s.hit.uv.y);
+  V3Array normal(s.hit.shading_normal);
+  FloatArray alpha2{F(kNotBumped)};
+  const uint32_t behind = bits_of(turned);
+  each_lane(seen, [&](uint32_t i) KB_LAMBDA {
+    if (scene.bumps[side[i]].texture == KB_NONE) return;
+    const BumpPoint at{shape[i],
+                       rays.primitive[s.first + i],
+                       {u[i], v[i]},
+                       {unbumped.x[i], unbumped.y[i], unbumped.z[i]},
+                       {-along.x[i], -along.y[i], -along.z[i]},
+                       (behind >> i & 1) != 0};
+    const BumpedNormal bumped = bumped_normal(scene, scene.bumps[side[i]], at);
+    normal.x[i] = bumped.normal.x, normal.y[i] = bumped.normal.y, normal.z[i] = bumped.normal.z;
+    alpha2[i] = bumped.alpha2;
+  });
+  s.alpha2 = alpha2;
+  return normal;
+}
+
 /// The material that is seen, its spectra, the frame and the direction to where the path comes from. Returns the
 /// lanes that have a material which scatters.
 KB_INLINE M find_material(Shading& s, U surface, M hit) {
@@ -98,16 +124,18 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   s.vertex.b = resolve(scene, ref_b, s.hit.uv, seen & (ref_b != U(KB_NONE)));
   s.material.bound_a = bound_at(scene, ref_a, s.vertex.a, s.material.bound_a, seen & (ref_a != U(KB_NONE)));
   s.material.bound_b = bound_at(scene, ref_b, s.vertex.b, s.material.bound_b, seen & (ref_b != U(KB_NONE)));
-  s.frame = make_frame(s.hit.shading_normal);
+  const V3 normal = scene.features.bump ? bump_normals(s, seen, turned) : s.hit.shading_normal;
+  s.frame = make_frame(normal);
   const M anisotropic = seen & (s.material.alpha_u != s.material.alpha_v);
   if (any(anisotropic)) {
-    const Frame along = make_frame(s.hit.shading_normal, s.hit.tangent);
+    const Frame along = make_frame(normal, s.hit.tangent);
     s.frame.x = select(anisotropic, along.x, s.frame.x);
     s.frame.y = select(anisotropic, along.y, s.frame.y);
   }
   const F sign = select(turned, F(-1), F(1));  // the frame seen from behind stays right-handed
   s.frame.y = s.frame.y * sign;
   s.frame.z = s.frame.z * sign;
+  if (scene.features.bump) s.unbumped = s.hit.shading_normal * sign;
   s.wi = s.frame.to_local(-s.direction);
   return seen & ((s.material.bound_a != F(0)) | (s.material.bound_b != F(0)));
 }
@@ -132,7 +160,8 @@ KB_INLINE M add_light(Shading& s, M scatters) {
   const BsdfValue value = eval_bsdf(s.material, s.wi, s.frame.to_local(light.direction), lit);
   lit = lit & ((value.w0 >= F(KB_LEAST_BSDF_VALUE)) | (value.w1 >= F(KB_LEAST_BSDF_VALUE)));
   const F mis = select(light.delta, F(1), power_heuristic(light.pdf, value.pdf * s.opacity));
-  const F weight = mis * s.opacity * light.factor / light.pdf;
+  F weight = mis * s.opacity * light.factor / light.pdf;
+  if (scene.features.bump) weight = weight * bump_share(s, light.direction);
   lit = lit & (weight != F(0));
   // A rough dielectric reflects with S_a and transmits with S_b: as two terms, one vertex carries both.
   const M boundary = lit & (s.material.type == U(KB_MATERIAL_ROUGH_DIELECTRIC));
@@ -153,6 +182,15 @@ KB_INLINE M add_light(Shading& s, M scatters) {
   return lit;
 }
 
+/// What a bump map leaves of a sample.
+KB_INLINE void bump_sample(const Shading& s, BsdfSample& sample) {
+  const F share = bump_share(s, s.frame.to_world(sample.wo));
+  const M two = (sample.kind == U(KB_KIND_TWO_TERM)) | (sample.kind == U(KB_KIND_NONLINEAR));
+  sample.w0 = sample.w0 * share;
+  sample.w1 = select(two, sample.w1 * share, sample.w1);
+  sample.bound = sample.bound * share;
+}
+
 /// Scattering, roulette, the next ray. A mask's transparent part: the ray goes on as if nothing were there. Shadow rays
 /// stop at masks, so what lies behind is found by this ray alone and gets weight 1.
 KB_INLINE void scatter(Shading& s, M hit, M scatters, M lit) {
@@ -163,6 +201,7 @@ KB_INLINE void scatter(Shading& s, M hit, M scatters, M lit) {
 #endif
   const M conductor = sampled & (sample.kind == U(KB_KIND_CONDUCTOR));
   if (any(conductor)) sample.bound = sample.bound * conductor_bound(s.material, sample.w1, conductor);
+  if (s.scene().features.bump) bump_sample(s, sample);
   M alive = sampled & (sample.pdf > F(0)) & (sample.bound > F(0));
   const M two =
       alive & (s.material.type == U(KB_MATERIAL_ROUGH_DIELECTRIC)) & (s.vertex.kind() == U(KB_KIND_TWO_TERM));

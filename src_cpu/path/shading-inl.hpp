@@ -9,6 +9,7 @@
 #endif
 
 #include "src_cpu/bsdf/bsdf-inl.hpp"
+#include "src_cpu/geometry/bump.hpp"
 #include "src_cpu/light/light-inl.hpp"
 #include "src_cpu/path/vertex-inl.hpp"
 
@@ -42,6 +43,9 @@ struct Shading {
   Material material;
   Frame frame;
   V3 wi;
+  // Only in scenes with bump maps:
+  V3 unbumped;  // the normal without, on the frame's side
+  F alpha2;     // BumpedNormal::alpha2
 
   /// What is not set here is left as it is: the compiler would fill 2 KiB with zeros.
   /// Queue: RayQueue or EscapeQueue; lanes `from` .. of it
@@ -80,6 +84,15 @@ struct Shading {
     return {state_float(at), state_float(at + 4), state_float(at + 8)};
   }
 };
+
+/// What of light from or into `direction` a bump map leaves (src_cpu/geometry/bump.hpp); 1 without one.
+KB_INLINE F bump_share(const Shading& s, V3 direction) {
+  const F c = dot(direction, s.unbumped), bumped = dot(direction, s.frame.z), c2 = c * c;
+  const M same = ((c > F(0)) & (bumped > F(0))) | ((c < F(0)) & (bumped < F(0)));
+  const F masked = F(2) * abs(c) / (abs(c) + sqrt(c2 + s.alpha2 * max(F(1) - c2, F(0))));
+  const F share = select(same, select(s.alpha2 > F(0), masked, F(1)), F(0));
+  return select(s.alpha2 < F(0), F(1), share);
+}
 
 /// Queues the shadow rays of light samples; the vertices that they belong to are noted by note_shadow_rays().
 KB_INLINE void queue_shadow_rays(Shading& s, const Light& light, M lit) {

@@ -49,6 +49,7 @@ template <template <class> class Buffer, class Upload>
 SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload& up) {
   return {.constants = up("scene constants", std::vector{scene_constants(scene)}),
           .materials = up("materials", scene.materials),
+          .bumps = up("bump maps", scene.bumps),
           .tables = up("tables", scene.tables),
           .surfaces = up("surfaces", scene.surfaces),
           .shapes = up("shapes", scene.shapes),

@@ -188,6 +188,40 @@ Text blends() {
                               bsdf("mask", real("opacity", "0.5") + red)));
 }
 
+/// Bump and normal maps on all shapes and in all that nests, strong enough to turn normals away from the camera.
+Text bumps() {
+  const auto map = [](const Text& wrap, const Text& to_uv, const Text& file = "grey.pgm") {
+    return texture("bitmap", "map", text("filename", file) + text("wrap_mode", wrap) + yes("raw"), to_uv);
+  };
+  const auto bump = [](const Text& height, const Text& contents) {
+    return bsdf("bumpmap", real("scale", height) + contents);
+  };
+  const Text plain = number("boolean", "flip_invalid_normals", "false") +
+                     number("boolean", "use_shadowing_function", "false");
+  const Text paint = bsdf("roughplastic", roughness("ggx", "0.2")), mirrored = map("mirror", scale("2.7"));
+  const Text coat = bump("0.1", mirrored + paint);
+  return floor(bump("0.3", map("repeat", scale("2") + turn("z", "25")) + diffuse("0.6"))) +
+         back(bsdf("normalmap", map("repeat", scale("3"), "colours.ppm") + diffuse("450:0.8, 650:0.4"))) +
+         ball("-0.6 0.4 -0.2", "0.3",
+              bump("0.2", mirrored + metal("roughconductor", roughness("ggx", "0.1", "0.4")))) +
+         ball("0 0.4 -0.2", "0.3", bump("-0.05", mirrored + bsdf("dielectric"))) +
+         ball("0.6 0.4 -0.2", "0.3",
+              bump("0.1",
+                   map("clamp", scale("1.5")) + dispersive("roughdielectric", roughness("ggx", "0.2")))) +
+         rectangle(scale("0.3") + turn("y", "150") + translate("-0.6 -0.4 0.2"),
+                   bsdf("twosided", coat + diffuse("0.5"))) +
+         rectangle(scale("0.25") + turn("y", "150") + translate("0 -0.2 0.3"),
+                   bump("0.1", mirrored + bsdf("twosided", paint))) +
+         shape("disk", scale("0.3") + turn("y", "-30") + translate("0.6 -0.2 0.3"),
+               bump("0.2", plain + mirrored +
+                               bsdf("blendbsdf", real("weight", "0.5") + paint + metal("conductor")))) +
+         shape("cylinder", step("scale", "x='0.1' y='0.1' z='0.5'") + translate("0.2 -0.7 0"),
+               bsdf("normalmap", plain + map("mirror", scale("2"), "colours.ppm") +
+                                     bsdf("mask", real("opacity", "0.7") + bsdf("plastic")))) +
+         mesh("gem.obj", scale("0.3") + translate("-0.1 -0.7 0.4"),
+              bump("0.05", map("repeat", scale("1")) + metal("conductor")));
+}
+
 /// Walls of mirrors, a mirroring ball between them.
 Text mirrors() {
   const Text mirror = bsdf("conductor", spectrum("specular_reflectance", "450:0.95, 650:0.9"));
@@ -272,6 +306,10 @@ std::vector<ZooScene> make_scenes() {
        kCurved},
       {"panes", scene(10, perspective(small_film("gaussian")) + lit_room + panes()), kCurved},
       {"blends", scene(8, perspective(small_film("gaussian")) + lit_room + blends() + sky("0.3")), kCurved},
+      {"bumps",
+       scene(8, perspective(small_film("gaussian")) + left(diffuse("0.5")) + right(diffuse("0.5")) +
+                    ceiling(diffuse("0.5")) + bumps() + ceiling_lamp() + sky("0.3")),
+       kCurved},
       {"named_materials", scene(8, perspective(small_film("gaussian")) + lit_room + named_materials()),
        kCurved},
       {"gases", scene(8, thinlens(small_film("tent")) + lit_room + gases() + delta_lights() + sky("0.5")),

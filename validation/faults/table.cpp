@@ -54,6 +54,7 @@ constexpr PlantedFault kFaults[] = {
      "unlimited_depth", kMeans},
     {KB_PLANTED_TWO_SIDED, "two-sided", kBoth, "the normal is not turned behind two-sided surfaces: they are black there",
      "twosided", "sheets", kMeans},
+    {KB_PLANTED_BUMP_SLOPE, "bump-slope", kBoth, "the slope of bump maps along v has the wrong sign", "bumpmap", "bumps", kMeans},
     // ---- lights
     {KB_PLANTED_LIGHT_PDF, "light-pdf", kBoth, "the density of light samples is 0.5 % too large", "light samples", "diffuse_room",
      kMeans},

@@ -71,6 +71,7 @@ struct FlatScene {
   std::vector<KbCheckerboard> checkerboards;
 
   std::vector<KbMaterial> materials;
+  std::vector<KbBump> bumps;  // by material
   std::vector<KbSurface> surfaces;
   std::vector<KbThermal> thermals;
   std::vector<float> tables;  // what KbMaterial::table, KbThermal::table and field_offset refer to

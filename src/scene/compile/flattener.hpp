@@ -21,8 +21,9 @@ class Flattener {
   // textures.cpp
   uint32_t reference(const Texture& texture, const SpectrumSource& use);
   /// What a bitmap's values stand for; one image used in two ways is flattened twice.
-  enum class BitmapUse { kReflectance, kEmission, kOpacity };
-  uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use);
+  enum class BitmapUse { kReflectance, kEmission, kOpacity, kHeight, kNormals };
+  /// height: that a value of 1 stands for (kHeight)
+  uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use, float height = 1);
   float texel_bound(const KbFloat4& texel) const;
   // spectral.cpp
   uint32_t spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
@@ -44,6 +45,7 @@ class Flattener {
 
   // materials.cpp
   uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated, const std::string& outer_id);
+  KbBump bump(const BumpedBsdf& bumped);
   KbMaterial make(const DiffuseBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
@@ -157,7 +159,7 @@ class Flattener {
   std::map<uint32_t, uint32_t> complement_texels_;  // first texel of the complement, by bitmap
   std::map<const void*, uint32_t> image_heats_;
   std::vector<uint32_t> heat_of_shape_;
-  std::map<std::pair<const void*, BitmapUse>, uint32_t> bitmaps_;
+  std::map<std::tuple<const void*, BitmapUse, float>, uint32_t> bitmaps_;
   std::map<std::pair<const void*, bool>, uint32_t> spectral_bitmaps_;  // by texture and whether it emits
   uint32_t d65_row_ = KB_NONE;
   /// A sum of spectra.

@@ -138,12 +138,24 @@ KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name,
   return record;
 }
 
+KbBump Flattener::bump(const BumpedBsdf& bumped) {
+  out_.features.bump = true;
+  const BitmapUse use = bumped.normals ? BitmapUse::kNormals : BitmapUse::kHeight;
+  KbBump record{bitmap(bumped.texture, use, static_cast<float>(bumped.scale)), 0};
+  if (bumped.flip) record.flags |= KB_BUMP_FLIP;
+  if (bumped.shadow) record.flags |= KB_BUMP_SHADOW;
+  if (bumped.around_two_sided) record.flags |= KB_BUMP_OUTSIDE;
+  return record;
+}
+
 /// Its name: its own id, or that of the bsdf that it is nested in, or a number.
 uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated,
                              const std::string& outer_id) {
   const auto known = materials_.find({bsdf.get(), compensated});
   if (known != materials_.end()) return known->second;
   const std::string name = describe(*bsdf);
+  const auto* bumped = std::get_if<BumpedBsdf>(&bsdf->model);
+  const std::shared_ptr<const Bsdf>& scattering = bumped ? bumped->nested : bsdf;
   KbMaterial record = std::visit(
       [&](const auto& model) -> KbMaterial {
         using Model = std::decay_t<decltype(model)>;
@@ -151,14 +163,18 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
                       std::is_same_v<Model, BlendBsdf> || std::is_same_v<Model, NullBsdf>) {
           throw InputError(bsdf->position,
                            name + ": a twosided, mask, blend or null bsdf cannot be nested here");
+        } else if constexpr (std::is_same_v<Model, BumpedBsdf>) {
+          throw InputError(bsdf->position, name + ": a bumpmap or normalmap cannot be nested in another");
         } else {
           return make(model, name, bsdf->position);
         }
       },
-      bsdf->model);
-  set_tables(record, compensated ? compensate(record, *bsdf) : std::vector<float>());
+      scattering->model);
+  set_tables(record, compensated ? compensate(record, *scattering) : std::vector<float>());
   out_.materials.push_back(record);
-  const std::string& id = bsdf->id.empty() ? outer_id : bsdf->id;
+  out_.bumps.push_back(bumped ? bump(*bumped) : KbBump{KB_NONE, 0});
+  const std::string& own_id = bsdf->id.empty() ? scattering->id : bsdf->id;
+  const std::string& id = own_id.empty() ? outer_id : own_id;
   out_.material_names.push_back(id.empty() ? fmt::format("material {}", out_.materials.size() - 1) : id);
   const auto index = static_cast<uint32_t>(out_.materials.size() - 1);
   if (index >= 1u << (32 - KB_VERTEX_MATERIAL_SHIFT))

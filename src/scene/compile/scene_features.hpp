@@ -19,6 +19,7 @@ namespace kiloband {
   X(TWO_SIDED, two_sided, "twosided")                                                                 \
   X(MASK, mask, "mask")                                                                               \
   X(BLEND, blend, "blend")                                                                            \
+  X(BUMP, bump, "bump or normal map")                                                                 \
   X(DISPERSION, dispersion, "dispersion")                                                             \
   X(BITMAP, bitmap, "bitmap")                                                                         \
   X(CHECKERBOARD, checkerboard, "checkerboard")                                                       \

@@ -9,6 +9,7 @@ namespace {
 using BsdfPointer = std::shared_ptr<const Bsdf>;
 
 bool is_rough(const Bsdf& bsdf) {
+  if (const auto* bumped = std::get_if<BumpedBsdf>(&bsdf.model)) return is_rough(*bumped->nested);
   if (const auto* conductor = std::get_if<ConductorBsdf>(&bsdf.model))
     return conductor->roughness.has_value();
   if (const auto* dielectric = std::get_if<DielectricBsdf>(&bsdf.model))

@@ -32,6 +32,12 @@ float value_of(const Image& image, std::size_t texel) {
   return (image.pixels[3 * texel] + image.pixels[3 * texel + 1] + image.pixels[3 * texel + 2]) / 3;
 }
 
+/// Rec. 709 with D65's white, as Mitsuba's.
+float luminance_of(const float* rgb) {
+  if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) return rgb[0];
+  return 0.212671f * rgb[0] + 0.715160f * rgb[1] + 0.072169f * rgb[2];
+}
+
 }  // namespace
 
 void store_uv_transform(const glm::dmat3& to_uv, float (&out)[6]) {
@@ -69,10 +75,10 @@ uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use)
          checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
 }
 
-uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use) {
+uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use, float height) {
   const bool emission = use == BitmapUse::kEmission;
   const auto [place, is_new] =
-      bitmaps_.try_emplace({texture.get(), use}, static_cast<uint32_t>(out_.textures.size()));
+      bitmaps_.try_emplace({texture.get(), use, height}, static_cast<uint32_t>(out_.textures.size()));
   if (!is_new) return place->second;
   out_.features.bitmap = true;
   const Image& image = *texture->image;
@@ -85,6 +91,7 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
                                          texture->id.empty() ? texture->file.string() : texture->id);
   record.wrap = static_cast<uint32_t>(texture->wrap);
   record.flags = texture->nearest ? KB_TEXTURE_NEAREST : 0;
+  if (use == BitmapUse::kNormals) record.flags |= KB_TEXTURE_NORMALS;
   record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
   store_uv_transform(texture->to_uv, record.to_uv);
 
@@ -97,7 +104,12 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
     const float value = value_of(image, texel);
     const float grey[3] = {value, value, value};
     const float* rgb = image.channels == 1 ? grey : &image.pixels[3 * texel];
-    out_.texels.push_back(flat ? flat_texel(value) : upsampled_texel(kTable, rgb, emission));
+    if (use == BitmapUse::kHeight)
+      out_.texels.push_back(flat_texel(height * luminance_of(rgb)));
+    else if (use == BitmapUse::kNormals)
+      out_.texels.push_back({2 * rgb[0] - 1, 2 * rgb[1] - 1, 2 * rgb[2] - 1, 1});
+    else
+      out_.texels.push_back(flat ? flat_texel(value) : upsampled_texel(kTable, rgb, emission));
     sum += value;
     out_.texel_bounds.push_back(texel_bound(out_.texels.back()));
     largest = std::max(largest, double{out_.texel_bounds.back()});

@@ -62,6 +62,8 @@ void Flattener::require_emission_data(const Texture& texture, const SpectrumSour
 /// throws InputError for materials whose emission cannot be had
 void Flattener::check_thermal(const Bsdf& bsdf, const KbMaterial& material) const {
   const std::string name = describe(bsdf);
+  if (std::holds_alternative<BumpedBsdf>(bsdf.model))
+    throw InputError(bsdf.position, name + ": a shape that emits thermally cannot have a bump or normal map");
   const auto require = [&](const Texture& texture, const char* parameter) {
     require_emission_data(texture, {name + ": " + parameter, bsdf.position});
   };

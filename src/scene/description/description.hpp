@@ -124,11 +124,23 @@ struct BlendBsdf {
   std::shared_ptr<const Bsdf> first, second;
 };
 
+/// The nested bsdf in a shading frame that a texture turns: by the slope of heights, or to normals that it has. nested:
+/// scatters by itself (no twosided, mask or blend: these are moved outwards).
+struct BumpedBsdf {
+  std::shared_ptr<const BitmapTexture> texture;
+  bool normals = false;  // 2 rgb - 1, in the shading frame; else heights
+  double scale = 1;      // of heights: m
+  bool flip = true;      // invalid normals
+  bool shadow = true;    // Estevez, Lecocq, Fajardo 2019
+  bool around_two_sided = false;
+  std::shared_ptr<const Bsdf> nested;
+};
+
 struct Bsdf {
   std::string id;  // for messages; empty if unnamed
   SourcePosition position;
   std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf, BlendBsdf,
-               NullBsdf>
+               BumpedBsdf, NullBsdf>
       model;
 };
 

@@ -1,5 +1,6 @@
 // <bsdf type=...>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "scene/read/context.hpp"
@@ -115,6 +116,8 @@ BsdfModel read_plastic(ReadContext& context, const ObjectReader& object, bool ro
 /// Is the model, or one that is blended in it, of this kind?
 template <class Kind>
 bool contains(const Bsdf& bsdf) {
+  const auto* bumped = std::get_if<BumpedBsdf>(&bsdf.model);
+  if (bumped && !std::is_same_v<Kind, BumpedBsdf>) return contains<Kind>(*bumped->nested);
   const auto* blend = std::get_if<BlendBsdf>(&bsdf.model);
   return blend ? contains<Kind>(*blend->first) || contains<Kind>(*blend->second)
                : std::holds_alternative<Kind>(bsdf.model);
@@ -245,6 +248,72 @@ BsdfModel read_null(ReadContext&, const ObjectReader&) {
   return NullBsdf{};
 }
 
+/// `bump` around a bsdf, moved inwards to what scatters: the same for twosided bsdfs, masks and blends.
+std::shared_ptr<const Bsdf> bumped(const BumpedBsdf& bump, const std::shared_ptr<const Bsdf>& inner) {
+  if (!inner || std::holds_alternative<NullBsdf>(inner->model)) return inner;
+  BsdfModel model = inner->model;
+  if (auto* sides = std::get_if<TwoSidedBsdf>(&model)) {
+    BumpedBsdf around = bump;
+    around.around_two_sided = true;
+    sides->front = bumped(around, sides->front);
+    sides->back = bumped(around, sides->back);
+  } else if (auto* mask = std::get_if<MaskBsdf>(&model)) {
+    mask->nested = bumped(bump, mask->nested);
+  } else if (auto* blend = std::get_if<BlendBsdf>(&model)) {
+    blend->first = bumped(bump, blend->first);
+    blend->second = bumped(bump, blend->second);
+  } else {
+    BumpedBsdf leaf = bump;
+    leaf.nested = inner;
+    model = std::move(leaf);
+  }
+  return std::make_shared<Bsdf>(Bsdf{inner->id, inner->position, std::move(model)});
+}
+
+bool contains_bump(const Bsdf& bsdf) {
+  if (const auto* sides = std::get_if<TwoSidedBsdf>(&bsdf.model))
+    return contains_bump(*sides->front) || (sides->back && contains_bump(*sides->back));
+  if (const auto* mask = std::get_if<MaskBsdf>(&bsdf.model)) return contains_bump(*mask->nested);
+  if (const auto* blend = std::get_if<BlendBsdf>(&bsdf.model))
+    return contains_bump(*blend->first) || contains_bump(*blend->second);
+  return std::holds_alternative<BumpedBsdf>(bsdf.model);
+}
+
+/// The bitmap of a bumpmap or normalmap, which may have any name.
+std::shared_ptr<const BitmapTexture> read_bump_texture(ReadContext& context, const ObjectReader& object) {
+  Node* node = object.nested_one("texture");
+  if (!node) object.fail_here("needs a nested texture");
+  if (node->type != "bitmap") object.fail_here("the nested texture is no bitmap");
+  const Texture texture = read_texture_object(context, *node);
+  return std::get<std::shared_ptr<const BitmapTexture>>(texture);
+}
+
+BsdfModel read_bumped(ReadContext& context, const ObjectReader& object, bool normals) {
+  BumpedBsdf bump;
+  bump.normals = normals;
+  bump.texture = read_bump_texture(context, object);
+  if (!normals) {
+    bump.scale = object.get_float("scale", 1);
+    object.check(std::abs(bump.scale) <= kMaxBumpScale, "scale", bump.scale, "must be from -1e+06 to 1e+06");
+  } else if (bump.texture->image->channels == 1) {
+    object.fail_here("'" + bump.texture->file.filename().string() + "' has 1 channel, normals have 3");
+  }
+  bump.flip = object.get_bool("flip_invalid_normals", true);
+  bump.shadow = object.get_bool("use_shadowing_function", true);
+  Node* nested = object.nested_one("bsdf");
+  if (!nested) object.fail_here("needs a nested bsdf");
+  const auto inner = read_bsdf(context, *nested);
+  if (contains_bump(*inner)) object.fail_here("there is a bumpmap or normalmap in the nested bsdf");
+  return bumped(bump, inner)->model;
+}
+
+BsdfModel read_bump_map(ReadContext& c, const ObjectReader& o) {
+  return read_bumped(c, o, false);
+}
+BsdfModel read_normal_map(ReadContext& c, const ObjectReader& o) {
+  return read_bumped(c, o, true);
+}
+
 struct BsdfType {
   std::string_view name;
   BsdfModel (*read)(ReadContext&, const ObjectReader&);
@@ -263,6 +332,8 @@ constexpr BsdfType kBsdfTypes[] = {
     {"mask", read_mask},
     {"blendbsdf", read_blend},
     {"mixturebsdf", read_mixture},
+    {"bumpmap", read_bump_map},
+    {"normalmap", read_normal_map},
     {"null", read_null},
 };
 

@@ -28,6 +28,8 @@ inline constexpr double kMaxAbsorption = 1e15;
 inline constexpr double kMaxAbsorptionScale = 1e30;
 /// Width of a lobe: slopes are of the order of alpha.
 inline constexpr double kMaxAlpha = 100, kMinAlpha = 1e-6;
+/// Heights of bump maps, m.
+inline constexpr double kMaxBumpScale = 1e6;
 /// Lengths in m: places and sizes, see check_places().
 inline constexpr double kMaxLength = 1e9;
 
