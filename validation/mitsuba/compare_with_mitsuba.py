@@ -50,6 +50,7 @@ SCENES = [
     ("plastics", HERE / "scenes/plastics.xml", 192, 768, "smooth and rough plastics"),
     ("panes_and_blends", HERE / "scenes/panes_and_blends.xml", 192, 768, "thin dielectrics, blends of every kind"),
     ("lamps", HERE / "scenes/lamps.xml", 192, 1536, "seven kinds of lamp, mask, two sides, orthographic camera"),
+    ("bumps", HERE / "scenes/bumps.xml", 192, 768, "bump and normal maps on all shapes, from behind"),
     ("lens_and_textures", HERE / "scenes/lens_and_textures.xml", 192, 768, "thin lens, textures, black body"),
 ]
 
