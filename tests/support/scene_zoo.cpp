@@ -201,10 +201,10 @@ Text bumps() {
   const Text paint = bsdf("roughplastic", roughness("ggx", "0.2")), mirrored = map("mirror", scale("2.7"));
   const Text coat = bump("0.1", mirrored + paint);
   return floor(bump("0.3", map("repeat", scale("2") + turn("z", "25")) + diffuse("0.6"))) +
-         back(bsdf("normalmap", map("repeat", scale("3"), "colours.ppm") + diffuse("450:0.8, 650:0.4"))) +
+         back(bsdf("normalmap", map("repeat", scale("3"), "tilts.pfm") + diffuse("450:0.8, 650:0.4"))) +
          ball("-0.6 0.4 -0.2", "0.3",
-              bump("0.2", mirrored + metal("roughconductor", roughness("ggx", "0.1", "0.4")))) +
-         ball("0 0.4 -0.2", "0.3", bump("-0.05", mirrored + bsdf("dielectric"))) +
+              bump("0.2", mirrored + metal("roughconductor", roughness("ggx", "0.25", "0.4")))) +
+         ball("0 0.4 -0.2", "0.3", bump("-0.02", mirrored + bsdf("dielectric"))) +
          ball("0.6 0.4 -0.2", "0.3",
               bump("0.1",
                    map("clamp", scale("1.5")) + dispersive("roughdielectric", roughness("ggx", "0.2")))) +
@@ -219,7 +219,7 @@ Text bumps() {
                bsdf("normalmap", plain + map("mirror", scale("2"), "colours.ppm") +
                                      bsdf("mask", real("opacity", "0.7") + bsdf("plastic")))) +
          mesh("gem.obj", scale("0.3") + translate("-0.1 -0.7 0.4"),
-              bump("0.05", map("repeat", scale("1")) + metal("conductor")));
+              bump("0.02", map("repeat", scale("1")) + bsdf("plastic")));
 }
 
 /// Walls of mirrors, a mirroring ball between them.
@@ -307,7 +307,7 @@ std::vector<ZooScene> make_scenes() {
       {"panes", scene(10, perspective(small_film("gaussian")) + lit_room + panes()), kCurved},
       {"blends", scene(8, perspective(small_film("gaussian")) + lit_room + blends() + sky("0.3")), kCurved},
       {"bumps",
-       scene(8, perspective(small_film("gaussian")) + left(diffuse("0.5")) + right(diffuse("0.5")) +
+       scene(5, perspective(small_film("gaussian")) + left(diffuse("0.5")) + right(diffuse("0.5")) +
                     ceiling(diffuse("0.5")) + bumps() + ceiling_lamp() + sky("0.3")),
        kCurved},
       {"named_materials", scene(8, perspective(small_film("gaussian")) + lit_room + named_materials()),

@@ -89,6 +89,9 @@ ZooFolder::ZooFolder() {
   write("sky.pfm", sky());
   write_spectral_images(path());
   write("kelvin.pfm", pfm_image(3, 2, 1, {2300, 0, 2500, 2100, 2400, 2000}));
+  write("tilts.pfm", pfm_image(3, 2, 3,
+                               {0.8f, 0.5f, 0.9f, 0.4f, 0.7f, 0.95f, 0.5f, 0.2f, 0.9f,  //
+                                0.3f, 0.3f, 0.9f, 0.5f, 0.5f, 1, 0.65f, 0.75f, 0.9f}));
   write("hot.ply", kHotPly);
   write("gem.obj", kGem);
   write("prism.obj", kPrism);
