@@ -1,25 +1,14 @@
 #include "src_cpu/geometry/embree_scene.hpp"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <limits>
-#include <tuple>
 #include <type_traits>
 
 #include "base/error.hpp"
-#include "scene/compile/shape_bounds.hpp"
-#include "src_cpu/geometry/shape_geometry.hpp"
+#include "src_cpu/geometry/embree_build.hpp"
 
 namespace kiloband::cpu {
 namespace {
@@ -72,52 +61,6 @@ void intersect16(const int* valid, RTCScene scene, Query& query, RTCRayHit16& ra
 #endif
 }
 
-void analytic_bounds(const RTCBoundsFunctionArguments* args) {
-  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
-  std::tie(args->bounds_o->lower_x, args->bounds_o->upper_x) = analytic_interval(shape, 0);
-  std::tie(args->bounds_o->lower_y, args->bounds_o->upper_y) = analytic_interval(shape, 1);
-  std::tie(args->bounds_o->lower_z, args->bounds_o->upper_z) = analytic_interval(shape, 2);
-}
-
-bool hit_shape(const KbShape& shape, RTCRayN* rays, unsigned count, unsigned lane, double& t) {
-  const glm::dvec3 origin(RTCRayN_org_x(rays, count, lane), RTCRayN_org_y(rays, count, lane),
-                          RTCRayN_org_z(rays, count, lane));
-  const glm::dvec3 direction(RTCRayN_dir_x(rays, count, lane), RTCRayN_dir_y(rays, count, lane),
-                             RTCRayN_dir_z(rays, count, lane));
-  return intersect_analytic(shape, origin, direction, RTCRayN_tnear(rays, count, lane),
-                            RTCRayN_tfar(rays, count, lane), t);
-}
-
-void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
-  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
-  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
-  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
-  for (unsigned lane = 0; lane < args->N; ++lane) {
-    double t = 0;
-    if (args->valid[lane] != -1 || !hit_shape(shape, rays, args->N, lane, t)) continue;
-    RTCRayN_tfar(rays, args->N, lane) = static_cast<float>(t);
-    RTCHitN_geomID(hits, args->N, lane) = args->geomID;
-    RTCHitN_primID(hits, args->N, lane) = 0;
-    RTCHitN_instID(hits, args->N, lane, 0) = RTC_INVALID_GEOMETRY_ID;
-    RTCHitN_u(hits, args->N, lane) = 0;
-    RTCHitN_v(hits, args->N, lane) = 0;
-  }
-}
-
-void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
-  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
-  for (unsigned lane = 0; lane < args->N; ++lane) {
-    double t = 0;
-    if (args->valid[lane] != -1 || !hit_shape(shape, args->ray, args->N, lane, t)) continue;
-    RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
-  }
-}
-
-[[noreturn]] void fail(RTCDevice device, const char* what) {
-  const RTCError code = rtcGetDeviceError(device);
-  throw DeviceError(fmt::format("Embree: {} failed (error {})", what, static_cast<int>(code)));
-}
-
 }  // namespace
 
 struct EmbreeScene::Impl {
@@ -130,8 +73,6 @@ struct EmbreeScene::Impl {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
   }
-  void add_mesh(const KbShape& shape, unsigned id);
-  void add_analytic(const KbShape& shape, unsigned id);
   /// Large meshes do not fit the caches: asks for the hit triangle's indices while the next ray is traced.
   void prefetch_triangle(const TraceRay& ray) const {
     if (ray.shape == KB_NONE) return;
@@ -142,49 +83,13 @@ struct EmbreeScene::Impl {
   }
 };
 
-void EmbreeScene::Impl::add_mesh(const KbShape& shape, unsigned id) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  if (!geometry) fail(device, "rtcNewGeometry");
-  // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare
-  // vertex at their end.
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat->positions.data(),
-                             0, sizeof(KbFloat3), flat->positions.size());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat->triangles.data(),
-                             std::size_t{shape.first_triangle} * 3 * sizeof(uint32_t), 3 * sizeof(uint32_t),
-                             shape.triangle_count);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
-  rtcReleaseGeometry(geometry);
-}
-
-void EmbreeScene::Impl::add_analytic(const KbShape& shape, unsigned id) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-  if (!geometry) fail(device, "rtcNewGeometry");
-  rtcSetGeometryUserPrimitiveCount(geometry, 1);
-  rtcSetGeometryUserData(geometry, const_cast<KbShape*>(&shape));
-  rtcSetGeometryBoundsFunction(geometry, analytic_bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, analytic_intersect);
-  rtcSetGeometryOccludedFunction(geometry, analytic_occluded);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
-  rtcReleaseGeometry(geometry);
-}
-
 EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int threads)
     : impl_(std::make_unique<Impl>()) {
   impl_->flat = &scene;
   const std::string config = fmt::format("isa={},threads={}", isa, threads);
   impl_->device = rtcNewDevice(config.c_str());
   if (!impl_->device) throw DeviceError("Embree: cannot create a device with " + config);
-  impl_->scene = rtcNewScene(impl_->device);
-  if (!impl_->scene) fail(impl_->device, "rtcNewScene");
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
-  for (unsigned id = 0; id < scene.shapes.size(); ++id) {
-    const KbShape& shape = scene.shapes[id];
-    shape.type == KB_SHAPE_MESH ? impl_->add_mesh(shape, id) : impl_->add_analytic(shape, id);
-  }
-  rtcCommitScene(impl_->scene);
+  impl_->scene = build_embree_scene(impl_->device, scene);
   RTCBounds bounds;
   rtcGetSceneBounds(impl_->scene, &bounds);
   impl_->grid = RayGrid({bounds.lower_x, bounds.lower_y, bounds.lower_z},

@@ -1,0 +1,114 @@
+#include "src_cpu/geometry/embree_build.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <tuple>
+
+#include "base/error.hpp"
+#include "scene/compile/shape_bounds.hpp"
+#include "src_cpu/geometry/shape_geometry.hpp"
+
+namespace kiloband::cpu {
+namespace {
+
+void analytic_bounds(const RTCBoundsFunctionArguments* args) {
+  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  std::tie(args->bounds_o->lower_x, args->bounds_o->upper_x) = analytic_interval(shape, 0);
+  std::tie(args->bounds_o->lower_y, args->bounds_o->upper_y) = analytic_interval(shape, 1);
+  std::tie(args->bounds_o->lower_z, args->bounds_o->upper_z) = analytic_interval(shape, 2);
+}
+
+bool hit_shape(const KbShape& shape, RTCRayN* rays, unsigned count, unsigned lane, double& t) {
+  const glm::dvec3 origin(RTCRayN_org_x(rays, count, lane), RTCRayN_org_y(rays, count, lane),
+                          RTCRayN_org_z(rays, count, lane));
+  const glm::dvec3 direction(RTCRayN_dir_x(rays, count, lane), RTCRayN_dir_y(rays, count, lane),
+                             RTCRayN_dir_z(rays, count, lane));
+  return intersect_analytic(shape, origin, direction, RTCRayN_tnear(rays, count, lane),
+                            RTCRayN_tfar(rays, count, lane), t);
+}
+
+void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
+  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    double t = 0;
+    if (args->valid[lane] != -1 || !hit_shape(shape, rays, args->N, lane, t)) continue;
+    RTCRayN_tfar(rays, args->N, lane) = static_cast<float>(t);
+    RTCHitN_geomID(hits, args->N, lane) = args->geomID;
+    RTCHitN_primID(hits, args->N, lane) = 0;
+    RTCHitN_instID(hits, args->N, lane, 0) = RTC_INVALID_GEOMETRY_ID;
+    RTCHitN_u(hits, args->N, lane) = 0;
+    RTCHitN_v(hits, args->N, lane) = 0;
+  }
+}
+
+void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
+  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    double t = 0;
+    if (args->valid[lane] != -1 || !hit_shape(shape, args->ray, args->N, lane, t)) continue;
+    RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
+  }
+}
+
+[[noreturn]] void fail(RTCDevice device, const char* what) {
+  const RTCError code = rtcGetDeviceError(device);
+  throw DeviceError(fmt::format("Embree: {} failed (error {})", what, static_cast<int>(code)));
+}
+
+struct SceneBuilder {
+  RTCDevice device;
+  RTCScene scene;
+  const FlatScene& flat;
+
+  void add_mesh(const KbShape& shape, unsigned id) const;
+  void add_analytic(const KbShape& shape, unsigned id) const;
+};
+
+void SceneBuilder::add_mesh(const KbShape& shape, unsigned id) const {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  if (!geometry) fail(device, "rtcNewGeometry");
+  // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare
+  // vertex at their end.
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat.positions.data(),
+                             0, sizeof(KbFloat3), flat.positions.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat.triangles.data(),
+                             std::size_t{shape.first_triangle} * 3 * sizeof(uint32_t), 3 * sizeof(uint32_t),
+                             shape.triangle_count);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+void SceneBuilder::add_analytic(const KbShape& shape, unsigned id) const {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  if (!geometry) fail(device, "rtcNewGeometry");
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryUserData(geometry, const_cast<KbShape*>(&shape));
+  rtcSetGeometryBoundsFunction(geometry, analytic_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, analytic_intersect);
+  rtcSetGeometryOccludedFunction(geometry, analytic_occluded);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+}  // namespace
+
+RTCScene build_embree_scene(RTCDevice device, const FlatScene& flat) {
+  const RTCScene scene = rtcNewScene(device);
+  if (!scene) fail(device, "rtcNewScene");
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  const SceneBuilder builder{device, scene, flat};
+  for (unsigned id = 0; id < flat.shapes.size(); ++id) {
+    const KbShape& shape = flat.shapes[id];
+    shape.type == KB_SHAPE_MESH ? builder.add_mesh(shape, id) : builder.add_analytic(shape, id);
+  }
+  rtcCommitScene(scene);
+  return scene;
+}
+
+}  // namespace kiloband::cpu

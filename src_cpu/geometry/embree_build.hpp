@@ -1,0 +1,18 @@
+// The scene as Embree's geometries.
+#pragma once
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "scene/compile/flat_scene.hpp"
+
+namespace kiloband::cpu {
+
+/// Geometry ids are indices of shapes. The scene's arrays must outlive what is returned, which the caller releases.
+/// throws DeviceError naming Embree's error
+RTCScene build_embree_scene(RTCDevice device, const FlatScene& flat);
+
+}  // namespace kiloband::cpu
