@@ -62,6 +62,8 @@ void print_media(const FlatScene& scene) {
 void print_contents(const FlatScene& scene) {
   answer("shapes       {} ({} triangles, {} vertices)\n", scene.shapes.size(), scene.triangles.size() / 3,
          scene.positions.size() - 1);
+  if (!scene.instances.empty())
+    answer("instances    {} of {} groups\n", scene.instances.size(), scene.groups.size());
   answer("bsdfs        {}\n", scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     answer("  {:<16} {}\n", name_of_material(scene.materials[m].type), scene.material_names[m]);

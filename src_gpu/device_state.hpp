@@ -57,6 +57,7 @@ class DeviceState {
   uint32_t chunk_entries() const { return opencl::chunk_entries(method, host_.scene.features); }
   uint32_t derived_channels() const { return host_.spectra.layout.derived; }
   bool has_gas() const { return host_.scene.features.gas; }
+  bool has_instances() const { return host_.scene.features.instances; }
 
   void clear_film(uint64_t pixels);
   /// As Evaluation's of these names.

@@ -65,6 +65,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels, bool open) const {
   r.dispersion = device_.has_dispersion();
   r.chunk_entries = device_.chunk_entries();
   r.gas = device_.has_gas();
+  r.instances = device_.has_instances();
   return r;
 }
 

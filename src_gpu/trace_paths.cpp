@@ -16,18 +16,22 @@ class HitObserver {
   void operator()(const PoolQueue& queue) const {
     const std::vector<KbPathState> states = pool_.buffers().states.download();
     const std::vector<KbHit> hits = pool_.buffers().hits.download();
+    const std::vector<uint32_t> instances = pool_.buffers().hit_instances.download();
     std::vector<uint32_t> slots(queue.count);
     queue.slots.buffer().download(std::span<uint32_t>(slots));
     for (const uint32_t slot : slots) {
-      if (states[slot].flags & KB_PATH_LIVE) traced_.at(states[slot].job).hits.push_back(to_hit(hits[slot]));
+      if (states[slot].flags & KB_PATH_LIVE)
+        traced_.at(states[slot].job)
+            .hits.push_back(to_hit(hits[slot], instances.empty() ? KB_NONE : instances[slot]));
     }
   }
 
  private:
-  TracedHit to_hit(const KbHit& hit) const {
+  TracedHit to_hit(const KbHit& hit, uint32_t instance) const {
     if (hit.primitive == KB_NONE) return {};
     const KbPrimitive& primitive = bvh_.primitives.at(hit.primitive);
-    return {primitive.shape, primitive.primitive, hit.t, hit.u, hit.v};
+    return {instance == KB_NONE ? primitive.shape : instance + primitive.shape, primitive.primitive, hit.t,
+            hit.u, hit.v};
   }
 
   const PathPool& pool_;

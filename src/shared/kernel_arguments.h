@@ -68,6 +68,7 @@
   X(pool, OUT, KbPathState, states) SEP       /* by slot, as what follows */                                     \
   X(pool, OUT, KbRay, rays) SEP                                                                                  \
   X(pool, OUT, KbHit, hits) SEP                                                                                  \
+  X(pool, OUT, kb_u32, hit_instances) SEP     /* first shape of the instance, or KB_NONE; empty without instances */ \
   X(pool, OUT, KbShadowRay, shadows) SEP                                                                         \
   X(pool, OUT, KbDispersionState, dispersion) SEP  /* only with KB_HAS_DISPERSION */                             \
   X(pool, OUT, KbGasState, gas) SEP           /* empty in scenes without gas */                                  \

@@ -42,17 +42,20 @@ typedef struct {
   kb_u32 atmosphere;                    /* medium outside all interiors, or KB_NONE */
   kb_u16 camera_media[KB_MEDIUM_DEPTH]; /* where rays begin: as KbGasState::inside */
   kb_u32 gas;                           /* 1: the scene has media or null boundaries */
-  kb_u32 reserved[2];
+  kb_u32 instances;                     /* 1: the scene has instances */
+  kb_u32 reserved;
 } KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
 
 /* ---- ray tracing -------------------------------------------------------------------------------------- */
-/* A primitive of the acceleration structure: a triangle of a mesh (corners), or a whole analytic shape. */
+/* A primitive of the acceleration structure: a triangle of a mesh (corners), a whole analytic shape, or an instance of
+   a group of meshes, which has a tree of its own. */
+#define KB_PRIMITIVE_INSTANCE 4u
 typedef struct {
-  float corner[9]; /* mesh: three world positions; else not used */
-  kb_u32 shape;
-  kb_u32 primitive; /* triangle within the shape; 0 for analytic shapes */
-  kb_u32 analytic;  /* KbShapeType of the shape: 0 is a mesh's triangle */
+  float corner[9];  /* mesh: three positions, in the world or in the group's coordinates; else not used */
+  kb_u32 shape;     /* in groups: number within the group; instance: its first shape */
+  kb_u32 primitive; /* triangle within the shape; 0 for analytic shapes; instance: root of the group's tree */
+  kb_u32 analytic;  /* KbShapeType of the shape: 0 is a mesh's triangle; or KB_PRIMITIVE_INSTANCE */
 } KbPrimitive;
 KB_STATIC_ASSERT(sizeof(KbPrimitive) == 48, primitive_size);
 

@@ -140,13 +140,14 @@ enum KbShapeType { KB_SHAPE_MESH = 0, KB_SHAPE_SPHERE = 1, KB_SHAPE_DISK = 2, KB
 #define KB_SHAPE_LIT_BOTH_SIDES 8u /* as a light: both sides are sampled */
 #define KB_SHAPE_NULL 16u          /* its surface is KB_SURFACE_NULL */
 #define KB_SHAPE_MIRRORED 32u      /* mesh: clockwise seen from its front (before KB_SHAPE_FLIP_NORMALS) */
+#define KB_SHAPE_INSTANCED 64u     /* mesh: its vertices are not in the world; to_world puts them there */
 
 /* Whether the normal that the order of a triangle's corners gives points to its back. */
 KB_FN bool kb_winding_is_turned(kb_u32 shape_flags) {
   return ((shape_flags & KB_SHAPE_FLIP_NORMALS) != 0u) != ((shape_flags & KB_SHAPE_MIRRORED) != 0u);
 }
 
-/* Rectangles and cubes are meshes. For sphere, disk and cylinder, to_world maps the canonical shape (unit sphere;
+/* Rectangles and cubes are meshes. Of meshes the matrices matter where KB_SHAPE_INSTANCED. For sphere, disk and cylinder, to_world maps the canonical shape (unit sphere;
    unit disk in z = 0; unit-radius cylinder along z in [0, 1]) to the world. */
 typedef struct {
   kb_u32 type;           /* KbShapeType */

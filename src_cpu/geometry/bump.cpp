@@ -23,7 +23,11 @@ glm::vec2 vector(const KbFloat2& v) {
 SurfaceTangents mesh_tangents(const FlatScene& scene, const KbShape& shape, uint32_t primitive) {
   const uint32_t* index = &scene.triangles[3 * (std::size_t{shape.first_triangle} + primitive)];
   const glm::vec3 p0 = vector(scene.positions[index[0]]);
-  const glm::vec3 e1 = vector(scene.positions[index[1]]) - p0, e2 = vector(scene.positions[index[2]]) - p0;
+  glm::vec3 e1 = vector(scene.positions[index[1]]) - p0, e2 = vector(scene.positions[index[2]]) - p0;
+  if (shape.flags & KB_SHAPE_INSTANCED) {
+    e1 = transform_vector(shape.to_world, e1);
+    e2 = transform_vector(shape.to_world, e2);
+  }
   if (!(shape.flags & KB_SHAPE_HAS_UVS)) return {e1, e2};
   const glm::vec2 uv0 = vector(scene.uvs[index[0]]);
   const glm::vec2 d1 = vector(scene.uvs[index[1]]) - uv0, d2 = vector(scene.uvs[index[2]]) - uv0;

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <tuple>
+#include <vector>
 
 #include "base/error.hpp"
 #include "scene/compile/shape_bounds.hpp"
@@ -65,6 +66,7 @@ struct SceneBuilder {
 
   void add_mesh(const KbShape& shape, unsigned id) const;
   void add_analytic(const KbShape& shape, unsigned id) const;
+  void add_instance(RTCScene group, const KbShape& shape, unsigned id) const;
 };
 
 void SceneBuilder::add_mesh(const KbShape& shape, unsigned id) const {
@@ -72,8 +74,8 @@ void SceneBuilder::add_mesh(const KbShape& shape, unsigned id) const {
   if (!geometry) fail(device, "rtcNewGeometry");
   // Embree reads the vertex buffer with 16-byte loads: the scene's arrays carry one spare
   // vertex at their end.
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat.positions.data(),
-                             0, sizeof(KbFloat3), flat.positions.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, flat.positions.data(), 0,
+                             sizeof(KbFloat3), flat.positions.size());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat.triangles.data(),
                              std::size_t{shape.first_triangle} * 3 * sizeof(uint32_t), 3 * sizeof(uint32_t),
                              shape.triangle_count);
@@ -95,20 +97,56 @@ void SceneBuilder::add_analytic(const KbShape& shape, unsigned id) const {
   rtcReleaseGeometry(geometry);
 }
 
-}  // namespace
+/// shape: the first of the instance, whose id is the instance's: no shape of the scene's own has it
+void SceneBuilder::add_instance(RTCScene group, const KbShape& shape, unsigned id) const {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  if (!geometry) fail(device, "rtcNewGeometry");
+  rtcSetGeometryInstancedScene(geometry, group);
+  rtcSetGeometryTimeStepCount(geometry, 1);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, shape.to_world);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
 
-RTCScene build_embree_scene(RTCDevice device, const FlatScene& flat) {
+RTCScene new_scene(RTCDevice device) {
   const RTCScene scene = rtcNewScene(device);
   if (!scene) fail(device, "rtcNewScene");
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-  const SceneBuilder builder{device, scene, flat};
+  return scene;
+}
+
+/// The meshes of a group, numbered from 0.
+RTCScene build_group(RTCDevice device, const FlatScene& flat, const MeshGroup& group) {
+  const SceneBuilder builder{device, new_scene(device), flat};
+  for (unsigned i = 0; i < group.shape_count; ++i) builder.add_mesh(flat.shapes[group.first_shape + i], i);
+  rtcCommitScene(builder.scene);
+  return builder.scene;
+}
+
+void add_instances(const SceneBuilder& builder) {
+  std::vector<RTCScene> groups;
+  for (const MeshGroup& group : builder.flat.groups)
+    groups.push_back(build_group(builder.device, builder.flat, group));
+  for (const MeshInstance& instance : builder.flat.instances)
+    builder.add_instance(groups[instance.group], builder.flat.shapes[instance.first_shape],
+                         instance.first_shape);
+  for (const RTCScene group : groups) rtcReleaseScene(group);  // instances keep them
+}
+
+}  // namespace
+
+RTCScene build_embree_scene(RTCDevice device, const FlatScene& flat) {
+  const SceneBuilder builder{device, new_scene(device), flat};
   for (unsigned id = 0; id < flat.shapes.size(); ++id) {
     const KbShape& shape = flat.shapes[id];
+    if (shape.flags & KB_SHAPE_INSTANCED) continue;
     shape.type == KB_SHAPE_MESH ? builder.add_mesh(shape, id) : builder.add_analytic(shape, id);
   }
-  rtcCommitScene(scene);
-  return scene;
+  add_instances(builder);
+  rtcCommitScene(builder.scene);
+  return builder.scene;
 }
 
 }  // namespace kiloband::cpu

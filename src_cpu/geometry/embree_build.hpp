@@ -11,7 +11,8 @@
 
 namespace kiloband::cpu {
 
-/// Geometry ids are indices of shapes. The scene's arrays must outlive what is returned, which the caller releases.
+/// Geometry ids are indices of shapes; instances have that of their first shape, and the meshes in them count from 0, so
+/// that both ids add up to the shape. The scene's arrays must outlive what is returned, which the caller releases.
 /// throws DeviceError naming Embree's error
 RTCScene build_embree_scene(RTCDevice device, const FlatScene& flat);
 

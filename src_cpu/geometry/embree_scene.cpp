@@ -73,6 +73,13 @@ struct EmbreeScene::Impl {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
   }
+  /// Not with instances: Embree 3.13.5 (avx512) does not come back from rtcOccluded16 with the coherent flag in scenes
+  /// that have user geometry and instances (the zoo's "instances").
+  bool coherent_packets() const { return !flat->features.instances; }
+  /// Embree's ids of an instance and of a mesh in it, as the shape's.
+  static void find_shape(TraceRay& ray) {
+    if (ray.instance != KB_NONE) ray.shape += ray.instance;
+  }
   /// Large meshes do not fit the caches: asks for the hit triangle's indices while the next ray is traced.
   void prefetch_triangle(const TraceRay& ray) const {
     if (ray.shape == KB_NONE) return;
@@ -136,16 +143,18 @@ void store_packet(const RTCRayHit16& packet, std::span<TraceRay> rays) {
     ray.v = packet.hit.v[lane];
     ray.primitive = packet.hit.primID[lane];
     ray.shape = packet.hit.geomID[lane];
+    ray.instance = packet.hit.instID[0][lane];
   }
 }
 
 }  // namespace
 
 void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
-  if (!coherent) {
+  if (!coherent || !impl_->coherent_packets()) {
     Query query(kIncoherent);
     for (TraceRay& ray : rays) {
       intersect1(impl_->scene, query, reinterpret_cast<RTCRayHit&>(ray));
+      Impl::find_shape(ray);
       impl_->prefetch_triangle(ray);
     }
     return;
@@ -160,7 +169,10 @@ void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
     std::fill_n(packet.hit.instID[0], kPacketSize, RTC_INVALID_GEOMETRY_ID);
     intersect16(valid, impl_->scene, query, packet);
     store_packet(packet, some);
-    for (const TraceRay& ray : some) impl_->prefetch_triangle(ray);
+    for (TraceRay& ray : some) {
+      Impl::find_shape(ray);
+      impl_->prefetch_triangle(ray);
+    }
   }
 }
 
@@ -237,17 +249,20 @@ void load_rays(const Queue& rays, uint32_t first, RayPacket<N>& packet, int (&va
 }
 
 template <int N>
-void store_hits(const HitPacket<N>& packet, uint32_t first, RayQueue& rays) {
+void store_hits(const HitPacket<N>& packet, bool instances, uint32_t first, RayQueue& rays) {
   const auto copy = [&](const auto(&from)[N], auto* to) { std::memcpy(to + first, from, sizeof from); };
   copy(packet.ray.tfar, rays.t_max);
   copy(packet.hit.u, rays.u);
   copy(packet.hit.v, rays.v);
   copy(packet.hit.primID, rays.primitive);
   copy(packet.hit.geomID, rays.shape);
+  if (!instances) return;
+  for (uint32_t i = 0; i < N; ++i)
+    if (packet.hit.instID[0][i] != KB_NONE) rays.shape[first + i] += packet.hit.instID[0][i];
 }
 
 template <int N>
-void trace_packets(RTCScene scene, Query query, RayQueue& rays) {
+void trace_packets(RTCScene scene, Query query, bool instances, RayQueue& rays) {
   alignas(64) HitPacket<N> packet;
   alignas(64) int valid[N];
   fill_last_packet(rays, N);
@@ -258,14 +273,14 @@ void trace_packets(RTCScene scene, Query query, RayQueue& rays) {
     std::fill_n(packet.hit.geomID, N, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], N, RTC_INVALID_GEOMETRY_ID);
     intersect(valid, scene, query, packet);
-    store_hits<N>(packet, first, rays);
+    store_hits<N>(packet, instances, first, rays);
   }
 }
 
 }  // namespace
 
 bool EmbreeScene::sorting_pays() const {
-  return impl_->flat->triangles.size() / 3 < kMostTrianglesSorted;
+  return impl_->coherent_packets() && impl_->flat->triangles.size() / 3 < kMostTrianglesSorted;
 }
 
 const RayGrid& EmbreeScene::grid() const {
@@ -273,14 +288,15 @@ const RayGrid& EmbreeScene::grid() const {
 }
 
 void EmbreeScene::closest_hits(RayQueue& rays, RayPackets packets) const {
-  if (packets == RayPackets::kCoherent)
-    trace_packets<16>(impl_->scene, Query(kCoherent), rays);
+  const bool instances = impl_->flat->features.instances;
+  if (packets == RayPackets::kCoherent && impl_->coherent_packets())
+    trace_packets<16>(impl_->scene, Query(kCoherent), instances, rays);
   else
-    trace_packets<8>(impl_->scene, Query(kIncoherent), rays);
+    trace_packets<8>(impl_->scene, Query(kIncoherent), instances, rays);
 }
 
 void EmbreeScene::occlusions(ShadowQueue& rays, RayPackets packets) const {
-  Query query(packets == RayPackets::kCoherent ? kCoherent : kIncoherent);
+  Query query(packets == RayPackets::kCoherent && impl_->coherent_packets() ? kCoherent : kIncoherent);
   alignas(64) RTCRay16 packet;
   alignas(64) int valid[16];
   fill_last_packet(rays, 16);

@@ -22,10 +22,11 @@ struct alignas(16) TraceRay {
   float dx, dy, dz, time = 0;
   float t_max;  // in: far end; out: the hit's distance
   uint32_t mask = ~0u, id = 0, flags = 0;
-  float ng_x, ng_y, ng_z;                        // not used
-  float u, v;                                    // barycentric coordinates of a mesh hit
-  uint32_t primitive;                            // triangle within the shape
-  uint32_t shape = KB_NONE, instance = KB_NONE;  // KB_NONE: a miss
+  float ng_x, ng_y, ng_z;       // not used
+  float u, v;                   // barycentric coordinates of a mesh hit
+  uint32_t primitive;           // triangle within the shape
+  uint32_t shape = KB_NONE;     // KB_NONE: a miss
+  uint32_t instance = KB_NONE;  // first shape of the instance that was hit, or KB_NONE
 
   TraceRay(glm::vec3 origin, glm::vec3 direction, float near_t, float far_t)
       : ox(origin.x),
@@ -76,7 +77,7 @@ class EmbreeScene {
   void closest_hits(RayQueue& rays, RayPackets packets) const;
   void occlusions(ShadowQueue& rays, RayPackets packets) const;
   /// Whether secondary and shadow rays of this scene are best sorted and then coherent: by the number of its
-  /// triangles, never by time.
+  /// triangles, never by time. With instances never.
   bool sorting_pays() const;
   const RayGrid& grid() const;
 

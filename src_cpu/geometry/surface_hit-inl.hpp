@@ -68,16 +68,52 @@ KB_INLINE V3 triangle_normal(const Triangle& t, U shape_flags, M active) {
   return normal;
 }
 
+/// Both matrices of the instances that some lanes have hit.
+struct Placement {
+  M lanes;
+  F to_world[12], to_object[12];
+};
+KB_INLINE Placement gather_placement(const FlatScene& scene, U shape, M lanes) {
+  static_assert(offsetof(KbShape, to_world) == 32 && offsetof(KbShape, to_object) == 80);
+  const Addresses records(scene.shapes.data(), select(lanes, shape, U(0u)));
+  Placement placement;
+  placement.lanes = lanes;
+  for (std::size_t row = 0; row < 3; ++row) {
+    U words[4];
+    records.load(32 + 16 * row, words);
+    for (std::size_t i = 0; i < 4; ++i) placement.to_world[4 * row + i] = as_floats(words[i]);
+    records.load(80 + 16 * row, words);
+    for (std::size_t i = 0; i < 4; ++i) placement.to_object[4 * row + i] = as_floats(words[i]);
+  }
+  return placement;
+}
+KB_INLINE V3 transformed_point(const F (&m)[12], V3 p) {
+  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+}
+/// By the transposed linear part: normals, by the inverse of what maps points.
+KB_INLINE V3 transformed_normal(const F (&m)[12], V3 n) {
+  return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z,
+          m[2] * n.x + m[6] * n.y + m[10] * n.z};
+}
+/// By the absolute values of the linear part.
+KB_INLINE V3 transformed_size(const F (&m)[12], V3 v) {
+  return {abs(m[0]) * v.x + abs(m[1]) * v.y + abs(m[2]) * v.z,
+          abs(m[4]) * v.x + abs(m[5]) * v.y + abs(m[6]) * v.z,
+          abs(m[8]) * v.x + abs(m[9]) * v.y + abs(m[10]) * v.z};
+}
+
 /// Hit::shading_normal at a point of a triangle: weights of its corners; lanes without vertex normals get the
-/// geometric one.
+/// geometric one. placement: of instances, or null
 KB_INLINE V3 triangle_shading_normal(const FlatScene& scene, U shape_flags, const U (&index)[3], V3 weights,
-                                     V3 geometric_normal, M active) {
+                                     V3 geometric_normal, M active, const Placement* placement = nullptr) {
   const M has_normals = active & has_bits(shape_flags, KB_SHAPE_HAS_NORMALS);
   if (!any(has_normals)) return geometric_normal;
   const auto normal = [&](int k) KB_LAMBDA {
     return gather_vector(scene.normals.data(), select(has_normals, index[k], U(0u)));
   };
-  const V3 n = normal(0) * weights.x + normal(1) * weights.y + normal(2) * weights.z;
+  V3 n = normal(0) * weights.x + normal(1) * weights.y + normal(2) * weights.z;
+  if (placement) n = select(placement->lanes, transformed_normal(placement->to_object, n), n);
   const F n2 = dot(n, n);
   const F turn = select(has_bits(shape_flags, KB_SHAPE_FLIP_NORMALS), F(-1), F(1));
   return select(has_normals & (n2 > F(0)), n * (turn / sqrt(n2)), geometric_normal);
@@ -148,20 +184,47 @@ KB_INLINE HitTriangle gather_hit_triangle(const FlatScene& scene, U shape_flags,
   return hit;
 }
 
+/// Instances: from their own coordinates into the world. Rays were brought to them by to_object: what that and back
+/// again may be wrong by counts for offsets as the coordinates themselves do (ray_offset-inl.hpp), which is
+/// |to_world| |to_object| times the largest of them and of the instance's place.
+KB_INLINE void place_triangle(const Placement& placement, U shape_flags, HitTriangle& on) {
+  const M lanes = placement.lanes;
+  const auto place = [&](V3 p)
+                         KB_LAMBDA { return select(lanes, transformed_point(placement.to_world, p), p); };
+  on.t = triangle_of(place(on.t.p0), place(on.t.p1), place(on.t.p2));
+  on.normal = select(lanes, triangle_normal(on.t, shape_flags, lanes), on.normal);
+  const V3 corners = largest_coordinates(on.t);
+  const V3 reach = {max(corners.x, abs(placement.to_world[3])), max(corners.y, abs(placement.to_world[7])),
+                    max(corners.z, abs(placement.to_world[11]))};
+  const V3 there_and_back =
+      transformed_size(placement.to_world, transformed_size(placement.to_object, reach));
+  on.offset = select(lanes, surface_offset(there_and_back, on.normal), on.offset);
+}
+
 /// triangle  of those of the scene
 KB_INLINE void make_mesh_hit(const Surfaces& surfaces, U triangle, F u, F v, M active, Hit& hit) {
   const FlatScene& scene = surfaces.scene;
   const U safe = select(active, triangle, U(0u));
-  const HitTriangle on = surfaces.records ? gather_record(surfaces.records, safe)
-                                          : gather_hit_triangle(scene, hit.shape_flags, safe, active);
+  HitTriangle on = surfaces.records ? gather_record(surfaces.records, safe)
+                                    : gather_hit_triangle(scene, hit.shape_flags, safe, active);
+  Placement placement;
+  const Placement* placed = nullptr;
+  if (scene.features.instances) {
+    const M lanes = active & has_bits(hit.shape_flags, KB_SHAPE_INSTANCED);
+    if (any(lanes)) {
+      placement = gather_placement(scene, hit.shape, lanes);
+      place_triangle(placement, hit.shape_flags, on);
+      placed = &placement;
+    }
+  }
   const Triangle& t = on.t;
   const V3 weights{F(1) - u - v, u, v};
   hit.point = t.p0 * weights.x + t.p1 * weights.y + t.p2 * weights.z;
   hit.geometric_normal = on.normal;
   hit.offset = on.offset;
   hit.departure = off_the_edges(t, hit.point, weights, hit.offset, active);
-  hit.shading_normal =
-      triangle_shading_normal(scene, hit.shape_flags, on.vertices, weights, hit.geometric_normal, active);
+  hit.shading_normal = triangle_shading_normal(scene, hit.shape_flags, on.vertices, weights,
+                                               hit.geometric_normal, active, placed);
   hit.uv = {u, v};
   hit.tangent = {F(0), F(0), F(0)};
   const M has_uvs = active & has_bits(hit.shape_flags, KB_SHAPE_HAS_UVS);

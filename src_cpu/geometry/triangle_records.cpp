@@ -33,9 +33,12 @@ std::vector<TriangleRecord> make_triangle_records(const FlatScene& scene, std::s
   const std::size_t count = scene.triangles.size() / 3;
   if (count > most) return {};
   std::vector<TriangleRecord> records(count);
+  std::size_t done = 0;  // triangles of shapes stand in their order
   for (const KbShape& shape : scene.shapes) {
     if (shape.type != KB_SHAPE_MESH) continue;
     const std::size_t first = shape.first_triangle, end = first + shape.triangle_count;
+    if (first < done) continue;  // of an instance, where the group's first instance was met already
+    done = end;
     for (std::size_t i = first; i < end; ++i) records[i] = make_record(scene, shape, &scene.triangles[3 * i]);
   }
   return records;

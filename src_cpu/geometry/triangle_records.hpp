@@ -9,7 +9,8 @@
 
 namespace kiloband::cpu {
 
-/// A triangle, in the world, m. The normals are those of its shape (flips and mirrors included).
+/// A triangle, in the world, m. The normals are those of its shape (flips and mirrors included). Of an instanced mesh the
+/// corners are in its own coordinates, and normal and offset are not used.
 struct alignas(64) TriangleRecord {
   float corners[3][3];
   uint32_t vertices[3];  // indices of the corners: for vertex normals and texture coordinates

@@ -89,11 +89,11 @@ struct Release {
 template <class T>
 using Handle = std::unique_ptr<std::remove_pointer_t<T>, Release>;
 
-std::vector<RTCBuildPrimitive> build_input(const std::vector<KbPrimitive>& primitives,
-                                           const FlatScene& scene) {
+std::vector<RTCBuildPrimitive> build_input(const std::vector<KbPrimitive>& primitives, const FlatScene& scene,
+                                           const std::vector<Box>& groups) {
   std::vector<RTCBuildPrimitive> input(primitives.size());  // 32-byte aligned, as the type is
   for (std::size_t i = 0; i < input.size(); ++i) {
-    const Box box = primitive_box(primitives[i], scene);
+    const Box box = primitive_box(primitives[i], scene, groups);
     input[i] = {box.low[0],  box.low[1],  box.low[2],  0,
                 box.high[0], box.high[1], box.high[2], static_cast<unsigned>(i)};
   }
@@ -161,7 +161,7 @@ KbBvhNode empty_node() {
 class Flattener {
  public:
   Flattener(const std::vector<KbPrimitive>& source, Bvh& bvh) : source_(source), bvh_(bvh) {
-    bvh.primitives.reserve(source.size());
+    bvh.primitives.reserve(bvh.primitives.size() + source.size());
   }
 
   void add_root(const BuildNode& root, const Box& box) {
@@ -169,10 +169,11 @@ class Flattener {
       add_inner(static_cast<const BuildInner&>(root), 1);
       return;
     }
+    const std::size_t at = bvh_.nodes.size();
     bvh_.nodes.push_back(empty_node());
-    bvh_.depth = 1;
-    set_box(bvh_.nodes[0], 0, box);
-    add_child(0, 0, root, 1);
+    bvh_.depth = std::max(bvh_.depth, 1u);
+    set_box(bvh_.nodes[at], 0, box);
+    add_child(at, 0, root, 1);
   }
 
  private:
@@ -209,33 +210,72 @@ void check_threads(int threads) {
   require_threads(std::max(2u, all) - 1, "Embree", "use fewer processors (taskset)");
 }
 
-Bvh build_from(const std::vector<KbPrimitive>& primitives, const FlatScene& scene, int threads) {
-  check_threads(threads);
-  const Handle<RTCDevice> device(rtcNewDevice(fmt::format("threads={}", threads).c_str()));
-  if (!device) fail(nullptr);
-  const Handle<RTCBVH> tree(rtcNewBVH(device.get()));
-  if (!tree) fail(device.get());
-  std::vector<RTCBuildPrimitive> input = build_input(primitives, scene);
-  const BuildNode* root = build_tree(tree.get(), input);
-  if (!root) fail(device.get());
-  Bvh bvh;
-  Flattener(primitives, bvh).add_root(*root, box_of(input));
-  return bvh;
+/// Appends trees to a Bvh.
+class Builder {
+ public:
+  Builder(const FlatScene& scene, int threads, const std::vector<Box>& groups)
+      : scene_(scene), groups_(groups), threads_(threads) {}
+
+  /// Returns the root's number.
+  uint32_t add(const std::vector<KbPrimitive>& primitives) {
+    if (bvh_.primitives.size() + primitives.size() > KB_BVH_MAX_PRIMITIVES)
+      throw DeviceError(fmt::format("acceleration structure: {} primitives: at most {} fit its indices",
+                                    bvh_.primitives.size() + primitives.size(), KB_BVH_MAX_PRIMITIVES));
+    const auto root = static_cast<uint32_t>(bvh_.nodes.size());
+    if (primitives.empty()) {
+      bvh_.nodes.push_back(empty_node());
+      bvh_.depth = std::max(bvh_.depth, 1u);
+      return root;
+    }
+    const Handle<RTCBVH> tree(rtcNewBVH(device()));
+    if (!tree) fail(device());
+    std::vector<RTCBuildPrimitive> input = build_input(primitives, scene_, groups_);
+    const BuildNode* top = build_tree(tree.get(), input);
+    if (!top) fail(device());
+    Flattener(primitives, bvh_).add_root(*top, box_of(input));
+    return root;
+  }
+
+  Bvh finish(const std::vector<uint32_t>& roots) {
+    for (KbPrimitive& primitive : bvh_.primitives)
+      if (primitive.analytic == KB_PRIMITIVE_INSTANCE) primitive.primitive = roots[primitive.primitive];
+    return std::move(bvh_);
+  }
+
+ private:
+  RTCDevice device() {
+    if (device_) return device_.get();
+    check_threads(threads_);
+    device_.reset(rtcNewDevice(fmt::format("threads={}", threads_).c_str()));
+    if (!device_) fail(nullptr);
+    return device_.get();
+  }
+
+  const FlatScene& scene_;
+  const std::vector<Box>& groups_;
+  int threads_;
+  Handle<RTCDevice> device_;
+  Bvh bvh_;
+};
+
+Box box_of(const std::vector<KbPrimitive>& primitives, const FlatScene& scene) {
+  return box_of(build_input(primitives, scene, {}));
 }
 
 }  // namespace
 
 Bvh build_bvh(const FlatScene& scene, int threads) {
-  const std::vector<KbPrimitive> primitives = collect_primitives(scene);
-  if (primitives.size() > KB_BVH_MAX_PRIMITIVES) {
-    throw DeviceError(fmt::format("acceleration structure: {} primitives: at most {} fit its indices",
-                                  primitives.size(), KB_BVH_MAX_PRIMITIVES));
+  std::vector<std::vector<KbPrimitive>> groups;
+  std::vector<Box> boxes;
+  for (const MeshGroup& group : scene.groups) {
+    groups.push_back(collect_group(scene, group));
+    boxes.push_back(box_of(groups.back(), scene));
   }
-  if (!primitives.empty()) return build_from(primitives, scene, threads);
-  Bvh bvh;
-  bvh.nodes.push_back(empty_node());
-  bvh.depth = 1;
-  return bvh;
+  Builder builder(scene, threads, boxes);
+  builder.add(collect_primitives(scene, boxes));
+  std::vector<uint32_t> roots;
+  for (const std::vector<KbPrimitive>& group : groups) roots.push_back(builder.add(group));
+  return builder.finish(roots);
 }
 
 }  // namespace kiloband::opencl

@@ -9,14 +9,14 @@
 
 namespace kiloband::opencl {
 
-/// A bounding volume hierarchy over triangles and analytic shapes. Node 0 is the root, and always an inner
-/// node; nodes stand depth first, primitives in the order of their leaves.
+/// A bounding volume hierarchy over triangles, analytic shapes and instances. Node 0 is the root, and always an inner
+/// node; nodes stand depth first, primitives in the order of their leaves. The trees of groups of meshes follow.
 struct Bvh {
   std::vector<KbBvhNode> nodes;
   std::vector<KbPrimitive> primitives;  // without those that no ray can hit
-  uint32_t depth = 0;                   // inner nodes on the longest way from the root to a leaf
+  uint32_t depth = 0;                   // inner nodes on the longest way from a root to a leaf
 
-  /// Entries that a traversal's stack needs at most: KB_BVH_STACK of the kernels. At each inner node it goes
+  /// Entries that the stack of a tree's traversal needs at most: KB_BVH_STACK of the kernels. At each inner node it goes
   /// on with one child and keeps the others.
   uint32_t stack_entries() const { return depth * (KB_BVH_WIDTH - 1); }
 };

@@ -9,6 +9,7 @@ uint64_t bytes_per_path(Method method, uint64_t channels, uint64_t vertices, uin
   one.chunk_entries = chunk_entries(method, features);
   one.slots = 1;
   one.gas = features.gas;
+  one.instances = features.instances;
   if (method == Method::kPt) {
     one.arena_chunks = 1;
     const uint64_t padded = (channels + 15) / 16 * 16;

@@ -22,7 +22,7 @@ uint64_t path_pool_bytes(const PoolSize& size) {
   const uint64_t per_slot = sizeof(KbPathState) + sizeof(KbRay) + sizeof(KbHit) + sizeof(KbShadowRay) +
                             sizeof(KbTally) + 2 * sizeof(uint32_t) +
                             (size.dispersion ? sizeof(KbDispersionState) : 0) +
-                            (size.gas ? sizeof(KbGasState) : 0);
+                            (size.gas ? sizeof(KbGasState) : 0) + (size.instances ? sizeof(uint32_t) : 0);
   const uint64_t per_chunk = size.chunk_entries * sizeof(KbPathVertex) + sizeof(uint32_t);
   return size.slots * per_slot + size.arena_chunks * per_chunk + uint64_t{size.jobs} * sizeof(KbSavedPath) +
          uint64_t{size.pixels} * sizeof(KbRoundPixel) + uint64_t{size.tables} * sizeof(float);
@@ -40,6 +40,8 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
           .states = memory.allocate<KbPathState>("path states", size.slots),
           .rays = memory.allocate<KbRay>("rays", size.slots),
           .hits = memory.allocate<KbHit>("hits", size.slots),
+          .hit_instances =
+              memory.allocate<uint32_t>("instances that are hit", size.instances ? size.slots : 0),
           .shadows = memory.allocate<KbShadowRay>("shadow rays", size.slots),
           .dispersion =
               memory.allocate<KbDispersionState>("dispersion states", size.dispersion ? size.slots : 0),

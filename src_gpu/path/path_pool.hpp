@@ -22,6 +22,7 @@ struct PoolSize {
   uint32_t chunk_entries = KB_CHUNK_ENTRIES;  // vertices of a chunk
   bool dispersion = false;                    // the scene has boundaries whose index depends on wavelength
   bool gas = false;                           // the scene has gas
+  bool instances = false;                     // the scene has instances
 };
 
 uint64_t path_pool_bytes(const PoolSize& size);

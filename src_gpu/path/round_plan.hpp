@@ -36,6 +36,7 @@ struct PlanRequest {
   bool dispersion = false;     // PoolSize::dispersion
   uint32_t chunk_entries = KB_CHUNK_ENTRIES;
   bool gas = false;  // the scene has gas
+  bool instances = false;
 };
 
 struct RoundPlan {

@@ -38,6 +38,7 @@ inline KbSceneConstants scene_constants(const FlatScene& scene) {
   c.atmosphere = scene.atmosphere;
   std::ranges::copy(scene.camera_media, c.camera_media);
   c.gas = scene.features.gas ? 1 : 0;
+  c.instances = scene.features.instances ? 1 : 0;
   if (scene.camera.filter == KB_FILTER_GAUSSIAN)
     c.filter_ratio = scene.camera.filter_radius / scene.camera.filter_stddev;
   return c;

@@ -56,8 +56,8 @@ __kernel void closest(__global const KbBvhNode* restrict nodes, __global const K
                       __global KbHit* restrict hits, __global kb_u32* restrict faults) {
   const KbRay ray = rays[get_global_id(0)];
   kb_u32 fault = 0;
-  hits[get_global_id(0)] = closest_hit(nodes, primitives, shapes, vload3(0, ray.origin), vload3(0, ray.direction),
-                                       ray.t_min, ray.t_max, &fault);
+  hits[get_global_id(0)] = stored_hit(closest_hit(nodes, primitives, shapes, vload3(0, ray.origin), vload3(0, ray.direction),
+                                       ray.t_min, ray.t_max, &fault));
   if (fault) atomic_or(faults, fault);
 }
 __kernel void occluded(__global const KbBvhNode* restrict nodes, __global const KbPrimitive* restrict primitives,
@@ -110,8 +110,9 @@ class Contest {
   Contest(const FlatScene& scene, int threads)
       : embree_(scene, best_isa(), threads),
         bvh_(opencl::build_bvh(scene)),
-        probe_(kKernels, fmt::format("-DKB_BVH_STACK={} -DKB_SPECIALISED=1 {}", bvh_.stack_entries(),
-                                     scene.features.analytic_shapes ? "-DKB_HAS_ANALYTIC_SHAPES=1" : "")),
+        probe_(kKernels, fmt::format("-DKB_BVH_STACK={} -DKB_SPECIALISED=1{}{}", bvh_.stack_entries(),
+                                     scene.features.analytic_shapes ? " -DKB_HAS_ANALYTIC_SHAPES=1" : "",
+                                     scene.features.instances ? " -DKB_HAS_INSTANCES=1" : "")),
         nodes_(probe_.upload(bvh_.nodes)),
         primitives_(probe_.upload(bvh_.primitives)),
         shapes_(probe_.upload(scene.shapes)),

@@ -42,12 +42,23 @@ void cross_triangle(const Ray& ray, const glm::dvec3& p0, const glm::dvec3& e1, 
   out.push_back({t, determinant < 0});  // the normal e1 x e2 points along the ray
 }
 
+glm::dvec3 instanced_point(const KbShape& shape, const glm::dvec3& p) {
+  const float* m = shape.to_world;
+  glm::dvec3 world;
+  for (int row = 0; row < 3; ++row)
+    world[row] = m[4 * row] * p.x + m[4 * row + 1] * p.y + m[4 * row + 2] * p.z + m[4 * row + 3];
+  return world;
+}
+
 void cross_mesh(const FlatScene& scene, const KbShape& shape, const Ray& ray, std::vector<Crossing>& out) {
+  const auto corner = [&](uint32_t index) {
+    const glm::dvec3 p = to_glm(scene.positions[index]);
+    return shape.flags & KB_SHAPE_INSTANCED ? instanced_point(shape, p) : p;
+  };
   for (uint32_t i = 0; i < shape.triangle_count; ++i) {
     const uint32_t* index = &scene.triangles[3 * (std::size_t{shape.first_triangle} + i)];
-    const glm::dvec3 p0 = to_glm(scene.positions[index[0]]);
-    cross_triangle(ray, p0, to_glm(scene.positions[index[1]]) - p0, to_glm(scene.positions[index[2]]) - p0,
-                   out);
+    const glm::dvec3 p0 = corner(index[0]);
+    cross_triangle(ray, p0, corner(index[1]) - p0, corner(index[2]) - p0, out);
   }
 }
 

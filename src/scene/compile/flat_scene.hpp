@@ -50,6 +50,17 @@ struct BandSet {
 /// The numbers of spectral texels, [y][x][value]; shared with the image that they were read from.
 using SpectralTexels = std::shared_ptr<const std::vector<float>>;
 
+/// Meshes that are stored once and stand in the scene where instances put them.
+struct MeshGroup {
+  uint32_t
+      first_shape;  // its shapes in the first instance: KB_SHAPE_INSTANCED, their triangles are the group's
+  uint32_t shape_count;
+};
+struct MeshInstance {
+  uint32_t group;
+  uint32_t first_shape;  // as many as the group has; all with the instance's matrices
+};
+
 /// The flattened scene. Positions and normals carry one spare vertex at the end, triangles a spare index: triples are
 /// read with 16-byte loads.
 struct FlatScene {
@@ -76,8 +87,10 @@ struct FlatScene {
   std::vector<KbThermal> thermals;
   std::vector<float> tables;  // what KbMaterial::table, KbThermal::table and field_offset refer to
   std::vector<KbShape> shapes;
+  std::vector<MeshGroup> groups;
+  std::vector<MeshInstance> instances;  // in ascending order of their shapes
   std::vector<std::string> shape_names, material_names;
-  std::vector<KbFloat3> positions;  // world, m
+  std::vector<KbFloat3> positions;  // m: world, or of instanced meshes their own
   std::vector<KbFloat3> normals;    // world, unit; zero where a shape has none; empty if no shape has
   std::vector<KbFloat2> uvs;        // empty if no shape has
   std::vector<uint32_t> triangles;  // 3 absolute vertex indices each

@@ -31,6 +31,7 @@ FlatScene Flattener::run() {
   check_places();
   set_origin();
   add_shapes();
+  add_instances();
   compute_bounds();
   add_emitters();
   select_emitters();

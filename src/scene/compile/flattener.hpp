@@ -5,6 +5,7 @@
 #include <memory>
 #include <tuple>
 
+#include "scene/compile/extent.hpp"
 #include "scene/compile/flat_scene.hpp"
 #include "scene/compile/spectrum_table_builder.hpp"
 #include "scene/optics/coating.hpp"
@@ -104,15 +105,36 @@ class Flattener {
 
   // place.cpp
   /// throws InputError  places and sizes that single precision cannot take
-  void check_places() const;
+  void check_places();
   void set_origin();
   Transform placed(const Transform& to_world) const;
 
   // shapes.cpp
   void add_shapes();
-  void add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh);
+  KbShape begin_shape(const Shape& shape, uint32_t heat);
+  static void set_transforms(KbShape& record, const Transform& to_world);
+  void add_record(const KbShape& record, const Shape& shape, uint32_t heat, const std::string& instance);
+  void add_analytic(const Shape& shape, const Transform& to_world, const std::string& instance);
+  void add_mesh(KbShape& record, const Shape& shape, const Transform& to_world);
   void add_areas(KbShape& record, const Shape& shape);
   void compute_bounds();
+
+  // instances.cpp
+  struct FlatMesh {
+    const Shape* shape;
+    KbShape record;  // without transforms
+    uint32_t heat;
+  };
+  /// A group whose meshes are stored.
+  struct FlatGroup {
+    uint32_t index = KB_NONE;  // of FlatScene::groups
+    glm::dvec3 middle{0};      // of the group's coordinates: where those of its meshes begin
+    std::vector<FlatMesh> meshes;
+  };
+  void add_instances();
+  const FlatGroup& flat_group(const ShapeGroup& group);
+  /// to_world: of the scene, m
+  void add_instance(const Instance& instance, const Transform& to_world);
 
   // media.cpp
   void add_media();
@@ -159,6 +181,11 @@ class Flattener {
   std::map<uint32_t, uint32_t> complement_texels_;  // first texel of the complement, by bitmap
   std::map<const void*, uint32_t> image_heats_;
   std::vector<uint32_t> heat_of_shape_;
+  std::vector<const Shape*> sources_;  // by shape record
+  std::size_t plain_positions_ = 0;    // those that follow are of groups, in coordinates of their own
+  GroupExtents group_extents_;
+  std::map<const ShapeGroup*, FlatGroup> flat_groups_;
+  std::map<const Shape*, uint32_t> interiors_;  // that are not a medium's: of shapes that instances repeat
   std::map<std::tuple<const void*, BitmapUse, float>, uint32_t> bitmaps_;
   std::map<std::pair<const void*, bool>, uint32_t> spectral_bitmaps_;  // by texture and whether it emits
   uint32_t d65_row_ = KB_NONE;

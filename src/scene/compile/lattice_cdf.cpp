@@ -10,7 +10,7 @@
 namespace kiloband {
 namespace {
 
-constexpr uint32_t kSteps = 1u << 24;  // floats are exact up to here
+constexpr uint32_t kLatticeSteps = 1u << 24;  // floats are exact up to here
 
 double checked_sum(std::span<const double> weights) {
   if (weights.size() > kMaxLatticeItems) throw std::logic_error("lattice_cdf: more items than steps allow");
@@ -39,15 +39,15 @@ std::vector<float> lattice_cdf(std::span<const double> weights) {
   double sum = 0;
   for (std::size_t i = 0; i < count && total > 0; ++i) {
     sum += weights[i];
-    const auto rounded = static_cast<uint32_t>(std::lround(std::min(sum / total, 1.0) * kSteps));
+    const auto rounded = static_cast<uint32_t>(std::lround(std::min(sum / total, 1.0) * kLatticeSteps));
     steps[i + 1] = std::max(rounded, steps[i] + (weights[i] > 0 ? 1 : 0));
   }
   // ... and down from the end, where that went beyond 1.
-  if (count > 0) steps[count] = kSteps;
+  if (count > 0) steps[count] = kLatticeSteps;
   for (std::size_t i = count; i-- > 1;)
     steps[i] = std::min(steps[i], steps[i + 1] - (weights[i] > 0 ? 1 : 0));
   std::vector<float> cdf(count + 1);
-  for (std::size_t i = 0; i <= count; ++i) cdf[i] = static_cast<float>(steps[i]) / kSteps;
+  for (std::size_t i = 0; i <= count; ++i) cdf[i] = static_cast<float>(steps[i]) / kLatticeSteps;
   return cdf;
 }
 

@@ -129,7 +129,7 @@ void Flattener::refracting_materials(const KbSurface& surface, std::vector<uint3
 
 /// What is inside a shape: its medium; nothing, where light enters a body without one.
 uint32_t Flattener::interior(uint32_t shape_index) {
-  const Shape& shape = in_.shapes[shape_index];
+  const Shape& shape = *sources_[shape_index];
   std::vector<uint32_t> boundaries;
   refracting_materials(out_.surfaces[out_.shapes[shape_index].surface], boundaries);
   if (boundaries.size() > 1 && shape.interior) {
@@ -140,8 +140,11 @@ uint32_t Flattener::interior(uint32_t shape_index) {
   }
   if (shape.interior) return medium(shape.interior, boundaries.empty() ? KB_NONE : boundaries.front());
   if (boundaries.empty()) return KB_NONE;
-  return add_medium(empty_medium(KB_MEDIUM_EMPTY), "inside of " + out_.shape_names[shape_index],
-                    shape.position);
+  const auto [inside, is_new] = interiors_.try_emplace(&shape);
+  if (is_new)
+    inside->second = add_medium(empty_medium(KB_MEDIUM_EMPTY), "inside of " + out_.shape_names[shape_index],
+                                shape.position);
+  return inside->second;
 }
 
 /// A scene has gas if it has a medium or a null boundary; otherwise nothing of all this exists.

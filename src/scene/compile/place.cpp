@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
 #include <optional>
 
 #include "scene/compile/flattener.hpp"
@@ -23,31 +22,6 @@ constexpr double kFar = 32;
 /// 2^-19 of its coordinates, 2 cm at this distance.
 constexpr double kFarApart = 1e4;            // m
 constexpr double kOffset = 1.0 / (1 << 18);  // of a coordinate: off one surface and onto the next
-
-struct Box {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-
-  void add(const glm::dvec3& p) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  bool is_empty() const { return !(low.x <= high.x); }
-  double largest_side() const {
-    const glm::dvec3 side = high - low;
-    return std::max({side.x, side.y, side.z});
-  }
-};
-
-/// World-space box of a shape's points, or of a box around a canonical analytic shape.
-void extend(const Shape& shape, Box& box) {
-  const auto add = [&](const glm::dvec3& p) { box.add(glm::dvec3(shape.to_world * glm::dvec4(p, 1))); };
-  if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry)) {
-    for (const Vec3f& p : mesh->mesh->positions) add({p[0], p[1], p[2]});
-    return;
-  }
-  for (int corner = 0; corner < 8; ++corner)
-    add({corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1});
-}
 
 /// An object with a name, at its place in the file.
 struct Part {
@@ -102,21 +76,29 @@ void check_field(const std::shared_ptr<const Medium>& medium) {
 
 }  // namespace
 
-void Flattener::check_places() const {
-  Box all;
+void Flattener::check_places() {
+  Extent all;
   const auto add = [&](const glm::dvec3& p, const Part& part) {
     check_reach(p, part);
     all.add(p);
   };
   for (const Shape& shape : in_.shapes) {
     const Part part{shape.position, named("shape", shape.id)};
-    Box box;
+    Extent box;
     extend(shape, box);
     if (box.is_empty()) continue;
     add(box.low, part);
     add(box.high, part);
     if (!std::holds_alternative<MeshShape>(shape.geometry)) check_frame(shape.to_world, part);
     check_field(shape.interior);
+  }
+  for (const Instance& instance : in_.instances) {
+    const Part part{instance.position, named("instance", instance.id)};
+    check_frame(instance.to_world, part);
+    Extent box;
+    box.add_placed(group_extents_.of(*instance.group), instance.to_world);
+    add(box.low, part);
+    add(box.high, part);
   }
   check_field(in_.atmosphere);
   for (const Emitter& emitter : in_.emitters)
@@ -134,8 +116,10 @@ void Flattener::check_places() const {
 }
 
 void Flattener::set_origin() {
-  Box box;
+  Extent box;
   for (const Shape& shape : in_.shapes) extend(shape, box);
+  for (const Instance& instance : in_.instances)
+    box.add_placed(group_extents_.of(*instance.group), instance.to_world);
   if (box.is_empty()) return;
   const glm::dvec3 centre = 0.5 * (box.low + box.high);
   if (!(glm::length(centre) > kFar * 0.5 * glm::length(box.high - box.low))) return;

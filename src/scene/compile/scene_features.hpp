@@ -29,6 +29,7 @@ namespace kiloband {
   X(ENVMAP_LIGHT, envmap_light, "environment map")                                                    \
   X(DELTA_LIGHT, delta_light, "delta light")                                                          \
   X(ANALYTIC_SHAPES, analytic_shapes, "analytic shapes")                                              \
+  X(INSTANCES, instances, "instances")                                                                \
   X(THERMAL, thermal, "thermal emission")                      /* surfaces emit by Kirchhoff's law */ \
   X(COMPENSATION, compensation, "energy compensation")         /* of rough surfaces */                \
   X(TEMPERATURE_FIELD, temperature_field, "temperature field") /* temperatures depend on the place */ \

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "scene/compile/flattener.hpp"
 #include "scene/compile/lattice_cdf.hpp"
@@ -63,35 +64,67 @@ void extend_bounds(const KbShape& shape, glm::dvec3& low, glm::dvec3& high) {
 
 void Flattener::add_shapes() {
   for (const Shape& shape : in_.shapes) {
-    KbShape record{};
-    heat_of_shape_.push_back(heat_of(shape));
-    record.surface = surface(shape.bsdf, heat_of_shape_.back());
-    record.emitter = record.first_cdf = KB_NONE;
-    record.flags = shape.flip_normals ? KB_SHAPE_FLIP_NORMALS : 0;
-    if (out_.surfaces[record.surface].flags & KB_SURFACE_NULL) record.flags |= KB_SHAPE_NULL;
-    const Transform to_world = placed(shape.to_world);
-    store_transform(to_world, record.to_world);
-    store_transform(glm::inverse(to_world), record.to_object);
-    if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry)) {
-      record.type = KB_SHAPE_MESH;
-      add_mesh(record, shape, *mesh->mesh);
+    if (std::holds_alternative<MeshShape>(shape.geometry)) {
+      const uint32_t heat = heat_of(shape);
+      KbShape record = begin_shape(shape, heat);
+      const Transform to_world = placed(shape.to_world);
+      set_transforms(record, to_world);
+      add_mesh(record, shape, to_world);
+      add_record(record, shape, heat, {});
     } else {
-      record.type = std::holds_alternative<SphereShape>(shape.geometry) ? KB_SHAPE_SPHERE
-                    : std::holds_alternative<DiskShape>(shape.geometry) ? KB_SHAPE_DISK
-                                                                        : KB_SHAPE_CYLINDER;
-      record.area = static_cast<float>(analytic_area(record.type, shape.to_world));
-      // A mirrored sphere shows its inside, as in Mitsuba, where disks and cylinders do not turn over.
-      if (record.type == KB_SHAPE_SPHERE && mirrors(shape.to_world)) record.flags ^= KB_SHAPE_FLIP_NORMALS;
-      out_.features.analytic_shapes = true;
+      add_analytic(shape, placed(shape.to_world), {});
     }
-    out_.shapes.push_back(record);
-    out_.shape_names.push_back(shape.id.empty() ? fmt::format("shape {}", out_.shapes.size() - 1) : shape.id);
     if (shape.emitter) add_area_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
     if (shape.thermal) add_thermal_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
   }
+  plain_positions_ = out_.positions.size();
 }
 
-void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) {
+/// What does not depend on the geometry.
+KbShape Flattener::begin_shape(const Shape& shape, uint32_t heat) {
+  KbShape record{};
+  record.surface = surface(shape.bsdf, heat);
+  record.emitter = record.first_cdf = KB_NONE;
+  record.flags = shape.flip_normals ? KB_SHAPE_FLIP_NORMALS : 0;
+  if (out_.surfaces[record.surface].flags & KB_SURFACE_NULL) record.flags |= KB_SHAPE_NULL;
+  return record;
+}
+
+void Flattener::set_transforms(KbShape& record, const Transform& to_world) {
+  store_transform(to_world, record.to_world);
+  store_transform(glm::inverse(to_world), record.to_object);
+}
+
+/// instance: its id, or empty
+void Flattener::add_record(const KbShape& record, const Shape& shape, uint32_t heat,
+                           const std::string& instance) {
+  const std::string name =
+      shape.id.empty() || instance.empty() ? instance + shape.id : instance + "/" + shape.id;
+  out_.shape_names.push_back(name.empty() ? fmt::format("shape {}", out_.shapes.size()) : name);
+  out_.shapes.push_back(record);
+  sources_.push_back(&shape);
+  heat_of_shape_.push_back(heat);
+}
+
+/// to_world: of the scene; the shape's own says whether it is mirrored
+void Flattener::add_analytic(const Shape& shape, const Transform& to_world, const std::string& instance) {
+  const uint32_t heat = heat_of(shape);
+  KbShape record = begin_shape(shape, heat);
+  set_transforms(record, to_world);
+  record.type = std::holds_alternative<SphereShape>(shape.geometry) ? KB_SHAPE_SPHERE
+                : std::holds_alternative<DiskShape>(shape.geometry) ? KB_SHAPE_DISK
+                                                                    : KB_SHAPE_CYLINDER;
+  record.area = static_cast<float>(analytic_area(record.type, to_world));
+  // A mirrored sphere shows its inside, as in Mitsuba, where disks and cylinders do not turn over.
+  if (record.type == KB_SHAPE_SPHERE && mirrors(shape.to_world)) record.flags ^= KB_SHAPE_FLIP_NORMALS;
+  out_.features.analytic_shapes = true;
+  add_record(record, shape, heat, instance);
+}
+
+/// to_world: to the coordinates of FlatScene::positions
+void Flattener::add_mesh(KbShape& record, const Shape& shape, const Transform& to_world) {
+  const Mesh& mesh = *std::get<MeshShape>(shape.geometry).mesh;
+  record.type = KB_SHAPE_MESH;
   const std::size_t first = out_.positions.size();
   if (first + mesh.positions.size() > 0xffffffffu ||
       out_.triangles.size() / 3 + mesh.triangles.size() > 0x7fffffffu) {
@@ -99,14 +132,13 @@ void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) 
   }
   record.first_triangle = static_cast<uint32_t>(out_.triangles.size() / 3);
   record.triangle_count = static_cast<uint32_t>(mesh.triangles.size());
-  const Transform placed_in_world = placed(shape.to_world);
   for (const Vec3f& p : mesh.positions) {
-    out_.positions.push_back(to_record(glm::dvec3(placed_in_world * glm::dvec4(p[0], p[1], p[2], 1))));
+    out_.positions.push_back(to_record(glm::dvec3(to_world * glm::dvec4(p[0], p[1], p[2], 1))));
   }
   if (!mesh.normals.empty()) {
     record.flags |= KB_SHAPE_HAS_NORMALS;
     out_.normals.resize(first, KbFloat3{0, 0, 0});
-    const std::vector<KbFloat3> normals = placed_normals(mesh, shape.to_world);
+    const std::vector<KbFloat3> normals = placed_normals(mesh, to_world);
     out_.normals.insert(out_.normals.end(), normals.begin(), normals.end());
   }
   if (!mesh.uvs.empty()) {
@@ -115,7 +147,7 @@ void Flattener::add_mesh(KbShape& record, const Shape& shape, const Mesh& mesh) 
     for (const Vec2f& uv : mesh.uvs) out_.uvs.push_back({uv[0], uv[1]});
   }
   // A mirroring transform turns the winding; corners keep their order, which barycentric uv follow.
-  if (mesh.front_by_normals && mirrors(shape.to_world)) record.flags |= KB_SHAPE_MIRRORED;
+  if (mesh.front_by_normals && mirrors(to_world)) record.flags |= KB_SHAPE_MIRRORED;
   for (const auto& triangle : mesh.triangles)
     for (const uint32_t corner : triangle) out_.triangles.push_back(static_cast<uint32_t>(first) + corner);
   if (!out_.normals.empty()) out_.normals.resize(out_.positions.size(), KbFloat3{0, 0, 0});
@@ -148,13 +180,18 @@ void Flattener::add_areas(KbShape& record, const Shape& shape) {
 void Flattener::compute_bounds() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   glm::dvec3 low(kInfinity), high(-kInfinity);
-  for (const KbFloat3& p : out_.positions) {
+  for (const KbFloat3& p : std::span(out_.positions).first(plain_positions_)) {
     low = glm::min(low, to_glm(p));
     high = glm::max(high, to_glm(p));
   }
   for (const KbShape& shape : out_.shapes) {
     if (shape.type != KB_SHAPE_MESH) extend_bounds(shape, low, high);
   }
+  Extent instances;
+  for (const Instance& instance : in_.instances)
+    instances.add_placed(group_extents_.of(*instance.group), placed(instance.to_world));
+  low = glm::min(low, instances.low);
+  high = glm::max(high, instances.high);
   if (!(low.x <= high.x)) return;  // no geometry: radius 0
   out_.scene_radius = static_cast<float>(0.5 * glm::length(high - low));
 }

@@ -254,6 +254,24 @@ struct Shape {
   std::variant<MeshShape, SphereShape, DiskShape, CylinderShape> geometry;
 };
 
+struct ShapeGroup;
+
+/// A group of shapes, put into the scene (or into another group) once more.
+struct Instance {
+  std::string id;
+  SourcePosition position;
+  Transform to_world{1.0};
+  std::shared_ptr<const ShapeGroup> group;  // never null
+};
+
+/// Shapes that are in the scene only where instances put them. None of them emits on its own or bounds a medium.
+struct ShapeGroup {
+  std::string id;
+  SourcePosition position;
+  std::vector<Shape> shapes;
+  std::vector<Instance> instances;  // of other groups
+};
+
 // ---- sensor, film, integrator ----
 enum class FilterType { kBox, kTent, kGaussian, kMitchell, kLanczos };
 
@@ -310,6 +328,7 @@ struct RequestedImages {
 struct SceneDescription {
   std::filesystem::path file;
   std::vector<Shape> shapes;
+  std::vector<Instance> instances;
   std::vector<Emitter> emitters;
   /// What every shape without an emitter of its own has, and what is seen where there is nothing
   /// and no environment.

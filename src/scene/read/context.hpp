@@ -24,6 +24,7 @@ struct ReadContext {
   /// By file and whether its values are weights.
   std::map<std::pair<std::filesystem::path, bool>, std::shared_ptr<const SpectralImage>> spectral_images;
   std::map<const Node*, std::shared_ptr<const Medium>> media;
+  std::map<const Node*, std::shared_ptr<const ShapeGroup>> groups;  // null: being read
   /// Spectra and textures that passed the checks of their use (SpectrumUse): what many objects
   /// refer to is read once.
   std::map<std::pair<const Node*, int>, Texture> checked = {};
@@ -101,6 +102,12 @@ std::shared_ptr<const Medium> read_medium(ReadContext& context, Node& node);
 /// throws InputError  a medium that is not named "interior"
 std::shared_ptr<const Medium> read_interior(ReadContext& context, const ObjectReader& shape);
 Shape read_shape(ReadContext& context, Node& node);
+/// A <shape type="shapegroup">; the same node is read once.
+/// throws InputError  it has no shapes, shapes that emit or bound a medium, or contains itself
+std::shared_ptr<const ShapeGroup> read_shape_group(ReadContext& context, Node& node);
+/// A <shape type="instance">.
+/// throws InputError  not one group, or a transform that its spheres, disks or cylinders cannot have
+Instance read_instance(ReadContext& context, Node& node);
 AreaEmitter read_area_emitter(ReadContext& context, Node& node);
 ThermalEmitter read_thermal_emitter(ReadContext& context, Node& node);
 /// <emitter type="thermal"> directly under the scene.

@@ -25,7 +25,7 @@ class SceneReader {
   SceneReader(SceneTree& tree, const ReadOptions& options)
       : tree_(tree),
         sink_(without_repetitions(options.sink)),
-        context_{tree, sink_, options.film_size, {}, {}, {}, {}, {}},
+        context_{tree, sink_, options.film_size, {}, {}, {}, {}, {}, {}, {}},
         errors_(*tree.root) {}
 
   SceneDescription run() {
@@ -66,7 +66,7 @@ class SceneReader {
   void read_object(const ObjectReader& scene, const Node& child, Node& node) {
     const std::string& tag = node.tag;
     if (tag == "shape") {
-      scene_.shapes.push_back(read_shape(context_, node));
+      add_shape(node);
     } else if (tag == "emitter") {
       add_emitter(node);
     } else if (tag == "bsdf") {
@@ -84,6 +84,15 @@ class SceneReader {
     } else if (tag == "phase" || tag == "volume") {
       fail(child.place, "<" + tag + "> is not supported: gases do not scatter");
     }
+  }
+
+  void add_shape(Node& node) {
+    if (node.type == "shapegroup")
+      read_shape_group(context_, node);
+    else if (node.type == "instance")
+      scene_.instances.push_back(read_instance(context_, node));
+    else
+      scene_.shapes.push_back(read_shape(context_, node));
   }
 
   /// Named "atmosphere" it fills the space outside all shapes; else it is there to be referred to.
@@ -147,7 +156,8 @@ class SceneReader {
 
   void check_whole(const ObjectReader& scene) const {
     if (sensors_ == 0) scene.fail_here("has no sensor");
-    if (scene_.shapes.empty() && environments_ == 0 && !scene_.ambient_temperature_k)
+    if (scene_.shapes.empty() && scene_.instances.empty() && environments_ == 0 &&
+        !scene_.ambient_temperature_k)
       scene.fail_here("has neither a shape nor an environment");
     bool lit = !scene_.emitters.empty() || scene_.ambient_temperature_k;
     for (const Shape& shape : scene_.shapes)

@@ -14,8 +14,7 @@ const char* const kSource = R"(
 #include "geometry/surface.clh"
 __kernel void hit(ARGS, __global const KbPrimitive* restrict primitives) {
   ITEM
-  KbHit h;
-  h.t = in->f[6]; h.u = in->f[7]; h.v = in->f[8]; h.primitive = in->u[0];
+  const Hit h = make_hit(in->f[6], in->f[7], in->f[8], in->u[0]);
   const SurfaceHit s = make_surface_hit(&scene, &primitives[h.primitive], h, VEC3(0), VEC3(3));
   PUT3(0, s.point); PUT3(3, s.geometric_normal); PUT3(6, s.shading_normal); PUT3(9, s.tangent);
   out->f[12] = s.uv.x; out->f[13] = s.uv.y; out->u[0] = s.shape;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "scene/compile/flattener.hpp"
+
 namespace kiloband::test {
 namespace {
 
@@ -14,8 +16,8 @@ __kernel void closest(__global const KbBvhNode* nodes, __global const KbPrimitiv
                       __global kb_u32* faults) {
   const KbRay ray = rays[get_global_id(0)];
   kb_u32 fault = 0;
-  hits[get_global_id(0)] = closest_hit(nodes, primitives, shapes, vload3(0, ray.origin), vload3(0, ray.direction),
-                                       ray.t_min, ray.t_max, &fault);
+  hits[get_global_id(0)] = stored_hit(closest_hit(nodes, primitives, shapes, vload3(0, ray.origin), vload3(0, ray.direction),
+                                       ray.t_min, ray.t_max, &fault));
   if (fault) atomic_or(faults, fault);
 }
 __kernel void occluded(__global const KbBvhNode* nodes, __global const KbPrimitive* primitives,
@@ -33,7 +35,8 @@ std::string defines(const FlatScene& scene, uint32_t stack) {
   const bool analytic =
       std::ranges::any_of(scene.shapes, [](const KbShape& s) { return s.type != KB_SHAPE_MESH; });
   return "-DKB_SPECIALISED=1 -DKB_BVH_STACK=" + std::to_string(stack) +
-         (analytic ? " -DKB_HAS_ANALYTIC_SHAPES=1" : "");
+         (analytic ? " -DKB_HAS_ANALYTIC_SHAPES=1" : "") +
+         (scene.instances.empty() ? "" : " -DKB_HAS_INSTANCES=1");
 }
 
 /// The quad a b c d, seen in this order.
@@ -157,6 +160,22 @@ void add_analytic(FlatScene& scene, uint32_t type, const glm::mat3& axes, glm::v
     shape.to_world[4 * row + 3] = origin[row];
   }
   scene.shapes.push_back(shape);
+}
+
+void make_group(FlatScene& scene, const std::vector<glm::dmat4>& to_world) {
+  const std::vector<KbShape> members = scene.shapes;
+  scene.shapes.clear();
+  scene.groups = {{0, static_cast<uint32_t>(members.size())}};
+  scene.features.instances = true;
+  for (const glm::dmat4& transform : to_world) {
+    scene.instances.push_back({0, static_cast<uint32_t>(scene.shapes.size())});
+    for (KbShape shape : members) {
+      shape.flags |= KB_SHAPE_INSTANCED;
+      store_transform(transform, shape.to_world);
+      store_transform(glm::inverse(transform), shape.to_object);
+      scene.shapes.push_back(shape);
+    }
+  }
 }
 
 KbRay make_ray(glm::vec3 origin, glm::vec3 direction, float t_min, float t_max) {

@@ -32,6 +32,8 @@ Mesh grid_cube(glm::vec3 centre, float half, uint32_t n);
 /// A scene of geometry alone.
 FlatScene empty_scene();
 void add_mesh(FlatScene& scene, const Mesh& mesh);
+/// The scene's shapes become a group, which stands where the transforms (row-major 3x4) say.
+void make_group(FlatScene& scene, const std::vector<glm::dmat4>& to_world);
 /// axes  columns of the linear part
 void add_analytic(FlatScene& scene, uint32_t type, const glm::mat3& axes, glm::vec3 origin);
 

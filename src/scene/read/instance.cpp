@@ -1,0 +1,75 @@
+// <shape type="shapegroup"> and <shape type="instance">
+#include <algorithm>
+
+#include "scene/read/context.hpp"
+
+namespace kiloband {
+namespace {
+
+/// What instances cannot repeat: lights are listed one by one, media follow the shapes that bound them.
+void check_member(const ObjectReader& group, const Node& node, const Shape& shape) {
+  const auto refuse = [&](const std::string& what) {
+    fail(node.place, group.label() + ": a shape of a group cannot " + what +
+                         ": write it into the scene, outside the group");
+  };
+  if (shape.emitter || shape.thermal) refuse("emit");
+  if (shape.interior) refuse("have an interior medium");
+  if (std::holds_alternative<NullBsdf>(shape.bsdf->model)) refuse("have a null bsdf");
+}
+
+bool has_analytic_shapes(const ShapeGroup& group) {
+  return std::ranges::any_of(group.shapes,
+                             [](const Shape& s) { return !std::holds_alternative<MeshShape>(s.geometry); }) ||
+         std::ranges::any_of(group.instances,
+                             [](const Instance& i) { return has_analytic_shapes(*i.group); });
+}
+
+}  // namespace
+
+std::shared_ptr<const ShapeGroup> read_shape_group(ReadContext& context, Node& node) {
+  const ObjectReader object(node);
+  const auto [known, is_new] = context.groups.try_emplace(&node);
+  if (!is_new && !known->second) object.fail_here("contains an instance of itself");
+  if (!is_new) return known->second;
+  const auto forget = [&] { context.groups.erase(&node); };
+  try {
+    auto group = std::make_shared<ShapeGroup>();
+    group->id = node.id;
+    group->position = node.place.position();
+    for (Node* member : object.nested("shape")) {
+      if (member->type == "shapegroup")
+        fail(member->place, object.label() + ": a group in a group: write an instance of it");
+      if (member->type == "instance") {
+        group->instances.push_back(read_instance(context, *member));
+      } else {
+        group->shapes.push_back(read_shape(context, *member));
+        check_member(object, *member, group->shapes.back());
+      }
+    }
+    if (group->shapes.empty() && group->instances.empty()) object.fail_here("has no shapes");
+    object.finish();
+    return context.groups[&node] = group;
+  } catch (...) {
+    forget();
+    throw;
+  }
+}
+
+Instance read_instance(ReadContext& context, Node& node) {
+  const ObjectReader object(node);
+  Instance instance;
+  instance.id = node.id;
+  instance.position = node.place.position();
+  instance.to_world = object.get_transform("to_world");
+  Node* group = object.nested_one("shape");
+  if (!group || group->type != "shapegroup")
+    object.fail_here("needs one shape of type 'shapegroup', or a reference to one");
+  instance.group = read_shape_group(context, *group);
+  if (has_analytic_shapes(*instance.group) && !is_similarity(glm::dmat3(instance.to_world)))
+    object.fail_at("to_world",
+                   "to_world must not stretch or shear a group with spheres, disks or cylinders: use meshes");
+  object.finish();
+  return instance;
+}
+
+}  // namespace kiloband
