@@ -222,6 +222,34 @@ Text bumps() {
               bump("0.02", map("repeat", scale("1")) + bsdf("plastic")));
 }
 
+Text instance(const Text& group, const Text& steps) {
+  return shape("instance", steps, "<ref id='" + group + "'/>");
+}
+
+/// Groups in groups, mirrored, stretched and flattened: smooth and flat meshes, glass, bumps, pictures, analytic shapes.
+Text instances() {
+  const Text group = "<shape type='shapegroup' id='";
+  const Text coat =
+      bsdf("bumpmap", real("scale", "0.02") + bitmap("map", "colours.ppm", "repeat", "bilinear", scale("1")) +
+                          bsdf("plastic"));
+  return group + "stones'>" + mesh("gem.obj", scale("0.25") + translate("0 0.1 0"), bsdf("dielectric")) +
+         shape("cube", scale("0.12") + turn("y", "30") + translate("0.35 0 0"), coat) +
+         rectangle(scale("0.2") + turn("x", "-50") + translate("-0.3 0 0.1"),
+                   bsdf("twosided", metal("roughconductor", roughness("ggx", "0.2", "0.5")))) +
+         "</shape>" + group + "pair'>" + instance("stones", translate("0 0.2 0")) +
+         instance("stones",
+                  step("scale", "x='-0.8' y='0.5' z='0.8'") + turn("z", "20") + translate("0 -0.2 0.1")) +
+         "</shape>" + group + "balls'>" + ball("0 0 0", "0.15", metal("conductor")) +
+         rectangle(scale("0.15") + translate("0.3 0 0"), yes("flip_normals") + diffuse("450:0.8, 650:0.3")) +
+         "</shape>" + instance("pair", translate("-0.4 0 0")) +
+         instance("pair", turn("y", "100") + turn("x", "15") + translate("0.45 -0.1 -0.2")) +
+         instance("stones",
+                  step("scale", "x='1' y='0.05' z='1'") + turn("z", "-30") + translate("0.3 0.6 0.2")) +
+         instance("balls", turn("y", "180") + translate("0.2 -0.7 0.4")) +
+         instance("balls",
+                  step("scale", "x='-1.2' y='1.2' z='1.2'") + turn("z", "40") + translate("-0.5 0.6 0.2"));
+}
+
 /// Walls of mirrors, a mirroring ball between them.
 Text mirrors() {
   const Text mirror = bsdf("conductor", spectrum("specular_reflectance", "450:0.95, 650:0.9"));
@@ -309,6 +337,12 @@ std::vector<ZooScene> make_scenes() {
       {"bumps",
        scene(5, perspective(small_film("gaussian")) + left(diffuse("0.5")) + right(diffuse("0.5")) +
                     ceiling(diffuse("0.5")) + bumps() + ceiling_lamp() + sky("0.3")),
+       kCurved},
+      {"instances", scene(6, perspective(small_film("gaussian")) + lit_room + instances() + sky("0.3")),
+       kCurved},
+      {"instances_in_gas",
+       scene(5, perspective(small_film("box")) + lit_room + instances() +
+                    gas("atmosphere", "450:0.1, 650:0.4") + delta_lights()),
        kCurved},
       {"named_materials", scene(8, perspective(small_film("gaussian")) + lit_room + named_materials()),
        kCurved},
