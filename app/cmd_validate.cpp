@@ -167,10 +167,9 @@ void make_report(const ValidateOptions& options) {
 
 /// The independent renderer is optional, unless a name asks for it.
 std::optional<MitsubaDriver> mitsuba_of(const ValidateOptions& options) {
-  const fs::path script = fs::absolute(options.scenes) / "validation/mitsuba/compare_with_mitsuba.py";
-  auto driver = find_mitsuba({.script = script}, options.names, effort_of(options));
+  auto driver = find_mitsuba({.root = options.scenes}, options.names, effort_of(options));
   if (!driver && wants_mitsuba(options.names, effort_of(options)))
-    tell("note: Mitsuba 3 is not there (pip install mitsuba scipy): no case mitsuba/...\n");
+    tell("note: Mitsuba 3 is not there (pip install mitsuba): no case mitsuba/...\n");
   return driver;
 }
 

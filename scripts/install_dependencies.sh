@@ -12,7 +12,7 @@ build=(g++ cmake ninja-build pkg-config git ca-certificates
 # libclang-rt-dev: libFuzzer and the sanitizers of clang; libomp-dev: OpenMP that ThreadSanitizer can follow (GCC's looks like
 # data races to it); llvm: names of functions in their reports; patch: plants faults (scripts/plant_faults.sh).
 tests=(libgtest-dev libbenchmark-dev clang clang-format clang-tidy libclang-rt-dev libomp-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib
-  python3-scipy patch)
+  patch)
 
 packages=("${build[@]}")
 case "${1:-test}" in

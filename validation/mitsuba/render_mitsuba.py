@@ -2,10 +2,11 @@
 """Renders a scene file with Mitsuba 3 into the channels of kiloband, by independent replicates.
 
 Usage: render_mitsuba.py SCENE.xml --bands 400:700:8 -o OUT.hdr [--size WxH] [--spp N] [--replicates R] [--seed S]
+       render_mitsuba.py --probe     prints the versions as JSON; `kiloband validate` asks so whether Mitsuba is there
 
 Writes OUT.r00.hdr ... (ENVI, 32-bit floats, integrals over the channels: W m^-2 sr^-1), as `kiloband render
 --keep-replicates` does, so that `kiloband compare OURS.hdr OUT.r00.hdr,OUT.r01.hdr,... --no-variances` can compare them.
-Needs numpy and Mitsuba 3 (`pip install mitsuba`) in a spectral variant.
+Needs numpy and Mitsuba 3 (`pip install mitsuba`) in a spectral variant. Exit code 2 where it could not be done.
 
 How the scene is changed: the film becomes a `specfilm` with one response per channel, 1 inside and 0 outside, and a box
 filter. A pixel of specfilm is the integral of radiance times response over the wavelength, which is our channel integral:
@@ -14,11 +15,16 @@ here, everything else of the scene is taken as it stands.
 """
 
 import argparse
+import json
 import pathlib
+import platform
 import sys
+import traceback
 import xml.etree.ElementTree as ElementTree
 
 import numpy
+
+sys.dont_write_bytecode = True  # nothing is left in the source folder
 
 
 def parse_bands(text):
@@ -112,31 +118,56 @@ def write_cube(header, image, bands):
     )
 
 
-def main():
+def parse():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("scene")
-    parser.add_argument("--bands", required=True)
-    parser.add_argument("-o", dest="output", required=True, type=pathlib.Path)
+    parser.add_argument("scene", nargs="?")
+    parser.add_argument("--bands")
+    parser.add_argument("-o", dest="output", type=pathlib.Path)
     parser.add_argument("--size", default="32x32")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--replicates", type=int, default=32)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--variant", default="scalar_spectral")
+    parser.add_argument("--probe", action="store_true", help="print the versions of Mitsuba and what it needs, as JSON")
     options = parser.parse_args()
-    bands = parse_bands(options.bands)
-    size = [int(edge) for edge in options.size.split("x")]
+    if not options.probe and not (options.scene and options.bands and options.output):
+        parser.error("SCENE.xml, --bands and -o are needed")
+    return options
+
+
+def exit_code(action):
+    """What `action` returns; 2 where it cannot be done."""
     try:
-        mitsuba = find_mitsuba(options.variant)
+        return action()
     except Impossible as error:
-        sys.exit(f"render_mitsuba.py: {error}")
-    images = render(mitsuba, options.scene, size, bands, options.spp, options.replicates, options.seed)
-    for r, image in enumerate(images):
-        write_cube(options.output.with_suffix(f".r{r:02d}.hdr"), image, bands)
+        print(f"{pathlib.Path(sys.argv[0]).name}: {error}", file=sys.stderr)
+    except Exception:
+        traceback.print_exc()
+    return 2
+
+
+def print_means(images, bands):
     means = images.mean(axis=(1, 2))
-    print(f"Mitsuba {mitsuba.__version__} ({options.variant}), {options.replicates} x {options.spp} samples per pixel")
     for (low, high), mean, error in zip(bands, means.mean(axis=0), means.std(axis=0, ddof=1) / len(means) ** 0.5):
         print(f"{low:g}-{high:g} nm: {mean:.6g} +- {error:.2g}")
 
 
+def main():
+    options = parse()
+    mitsuba = find_mitsuba(options.variant)
+    if options.probe:
+        versions = {"mitsuba": mitsuba.__version__, "variant": options.variant}
+        print(json.dumps(versions | {"python": platform.python_version(), "numpy": numpy.__version__}))
+        return 0
+    bands = parse_bands(options.bands)
+    size = [int(edge) for edge in options.size.split("x")]
+    images = render(mitsuba, options.scene, size, bands, options.spp, options.replicates, options.seed)
+    for r, image in enumerate(images):
+        write_cube(options.output.with_suffix(f".r{r:02d}.hdr"), image, bands)
+    print(f"Mitsuba {mitsuba.__version__} ({options.variant}), {options.replicates} x {options.spp} samples per pixel")
+    print_means(images, bands)
+    return 0
+
+
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_code(main))

@@ -3,9 +3,8 @@
 
 Usage: report.py DIR    (needs numpy and matplotlib: apt-get install python3-matplotlib)
 
-Reads DIR/results.json, the cubes that it names, and, where the suite had no case against Mitsuba, DIR/mitsuba.json if
-compare_with_mitsuba.py has written one. Sections and values that are missing are left out: a run that was interrupted has a report
-too.
+Reads DIR/results.json and the cubes that it names. Sections and values that are missing are left out: a run that was interrupted
+has a report too.
 """
 
 import json
@@ -40,14 +39,12 @@ def read_results(directory):
         results[section] = [entry for entry in results.get(section) or [] if isinstance(entry, dict)]
     for case in results["cases"]:
         case["pairings"] = [p for p in case.get("pairings") or [] if isinstance(p, dict)]
-    results["mitsuba"] = read_mitsuba(results.get("mitsuba"), directory / "mitsuba.json")
+    results["mitsuba"] = read_mitsuba(results.get("mitsuba"))
     return results
 
 
-def read_mitsuba(section, file):
-    """The section of results.json; where the suite made no such comparison, what compare_with_mitsuba.py wrote alone."""
-    record = section or (read_json(file) if file.exists() else {})
-    record = record if isinstance(record, dict) else {}
+def read_mitsuba(section):
+    record = section if isinstance(section, dict) else {}
     return record | {"scenes": [scene for scene in record.get("scenes") or [] if isinstance(scene, dict)]}
 
 

@@ -157,8 +157,9 @@ def mitsuba(results):
     ]
     parts = [
         f'<h2 id="mitsuba">Against Mitsuba 3</h2><p>Mitsuba {text(record.get("mitsuba"))} ({text(record.get("variant"))}{_versions(record)}): '
-        f"channel means of the image, Welch's test over replicates, Šidák over channels, and pixels and tiles by the tests of the suite; all scenes and backends together raise a false "
-        f"alarm with probability {number(record.get('rate'))}. {text(record.get('date'))}, {text(record.get('processor'))}.</p>"
+        f"means of pixels, tiles and the image by the tests of the suite; all scenes and backends together raise a false "
+        f"alarm with probability {number(record.get('rate'))}. {text(record.get('date') or results.get('date'))}, "
+        f"{text(record.get('processor') or results.get('processor'))}.</p>"
         + table(heads, [_mitsuba_row(s) for s in scenes], range(4, 11))
     ]
     for scene in scenes:

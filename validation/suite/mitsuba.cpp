@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <limits>
-#include <sstream>
+#include <chrono>
+#include <cmath>
 #include <string_view>
 
 #include "base/error.hpp"
@@ -18,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kSection = "mitsuba/";
-/// Factor of the sample counts of validation/mitsuba; a quick run has no such case.
+/// Factor of the sample counts of mitsuba_cases(); a quick run has no such case.
 constexpr ByEffort<double> kEffort{0, 0.25, 1};
 
 /// "mitsuba", "mitsuba/", "mitsuba/glass": nothing else can be meant.
@@ -26,90 +25,109 @@ bool means_mitsuba(const std::string& name) {
   return name.starts_with(kSection) || name == kSection.substr(0, kSection.size() - 1);
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) {
-    if (!line.empty()) lines.push_back(line);
+std::optional<MitsubaDriver> probe(const std::string& interpreter, const MitsubaSearch& search) {
+  const fs::path script = fs::absolute(search.root) / "validation/mitsuba/render_mitsuba.py";
+  const ChildEnd end = run_child({interpreter, script.string(), "--probe"}, {}, {});
+  const json versions = json::parse(end.out, nullptr, false);
+  if (end.code != 0 || !versions.is_object()) return std::nullopt;
+  return MitsubaDriver{interpreter, versions, script, mitsuba_cases(search.root)};
+}
+
+uint32_t scaled(uint32_t samples, Effort effort) {
+  return std::max(1u, static_cast<uint32_t>(std::lround(kEffort.at(effort) * samples)));
+}
+
+/// One run: Mitsuba's images of a scene, then ours on every backend.
+class Run {
+ public:
+  Run(const MitsubaDriver& driver, const MitsubaRun& run, const Watch& watch)
+      : driver_(driver), run_(run), watch_(watch) {
+    result_.record = driver.versions;
+    result_.record["rate"] = kMitsubaRate;
   }
-  return lines;
-}
 
-std::optional<MitsubaDriver> probe(const std::string& interpreter, const fs::path& script) {
-  const ChildEnd version = run_child({interpreter, script.string(), "--probe"}, {}, {});
-  if (version.code != 0 || lines_of(version.out).empty()) return std::nullopt;
-  const ChildEnd list = run_child({interpreter, script.string(), "--list"}, {}, {});
-  if (list.code != 0 || lines_of(list.out).empty()) return std::nullopt;
-  return MitsubaDriver{interpreter, lines_of(version.out).back(), script, lines_of(list.out)};
-}
-
-std::string failure_of(const MitsubaScene& scene) {
-  std::string text =
-      fmt::format("channel means: p {:.3g}, level {:.3g}, largest difference {:+.3g} %", scene.figure("/p"),
-                  scene.figure("/level"), 100 * scene.figure("/largest_difference"));
-  if (const auto pixels = scene.entry.find("pixels"); pixels != scene.entry.end() && pixels->is_object())
-    text += fmt::format("; {}: p {:.3g}", pixels->at("name").get<std::string>(), scene.figure("/pixels/p"));
-  return text;
-}
-
-/// throws json::exception  it is no such entry
-MitsubaScene scene_of(const json& entry) {
-  MitsubaScene scene{entry.at("name"), entry.at("backend"), entry.at("passed").get<bool>(), {}, entry};
-  if (!scene.passed) scene.failure = failure_of(scene);
-  return scene;
-}
-
-/// What the file says; `problem`: why it cannot be read to its end.
-MitsubaResult parsed(const std::string& text, std::string& problem) {
-  MitsubaResult result;
-  if (text.empty()) return result;
-  try {
-    result.record = json::parse(text);
-    const json scenes = result.record.at("scenes");
-    result.record.erase("scenes");
-    for (const json& entry : scenes) result.scenes.push_back(scene_of(entry));
-  } catch (const json::exception& error) {
-    problem = std::string("mitsuba.json cannot be read: ") + error.what();
+  MitsubaResult finish() {
+    for (const MitsubaCase& c : driver_.scenes) {
+      if (watch_.stopped()) break;
+      if (std::ranges::find(run_.scenes, c.name) == run_.scenes.end()) continue;
+      try {
+        compare(c);
+      } catch (const std::exception& error) {  // the rest of the run is worth having
+        fail_rest(c, error.what());
+      }
+    }
+    return std::move(result_);
   }
-  return result;
-}
 
-std::string contents(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
+ private:
+  /// A share for Mitsuba, which takes longest, and one for each backend.
+  void report(double scene_done) const {
+    if (!watch_.progress) return;
+    const double scenes = static_cast<double>(run_.scenes.size() * run_.backends.size());
+    watch_.progress((static_cast<double>(result_.scenes.size()) + scene_done) / scenes);
+  }
 
-std::string joined(const std::vector<std::string>& parts) {
-  return fmt::format("{}", fmt::join(parts, ","));
-}
+  void compare(const MitsubaCase& c) {
+    const fs::path stem = fs::absolute(run_.output) / "mitsuba" / c.name;
+    const uint32_t samples = scaled(c.theirs, run_.effort);
+    const auto start = std::chrono::steady_clock::now();
+    const ChildEnd end = run_child(command(c, stem, samples), watch_, {});
+    if (end.stopped) return;
+    if (end.code != 0) return fail_rest(c, "render_mitsuba.py: " + end.description());
+    const stats::ReplicateImage theirs = read_mitsuba_cubes(stem, samples);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const auto scene = load({c.file, {}, kMitsubaBands, kMitsubaSize, kMitsubaSize});
+    for (std::size_t i = 0; i < run_.backends.size(); ++i) {
+      // Backends get seeds of their own: what one sees is no repetition of another.
+      const Sampling sampling{run_.seed + i, kMitsubaReplicates, scaled(c.ours, run_.effort)};
+      const Rendering ours = render(scene, {.backend = run_.backends[i]}, sampling, {watch_.stop, {}});
+      if (ours.stopped) return;
+      result_.scenes.push_back(compare_with_mitsuba(c, run_.backends[i], ours, theirs, level()));
+      result_.scenes.back().entry["seconds_theirs"] = seconds.count();
+      report(0);
+    }
+  }
 
-std::vector<std::string> command_of(const MitsubaDriver& driver, const MitsubaRun& run) {
-  std::vector<std::string> command{driver.interpreter,
-                                   driver.script.string(),
-                                   fs::absolute(run.program).string(),
-                                   "-o",
-                                   fs::absolute(run.output).string(),
-                                   "--backends",
-                                   joined(run.backends),
-                                   "--seed",
-                                   fmt::format("{}", run.seed),
-                                   "--rate",
-                                   fmt::format("{}", kMitsubaRate),
-                                   "--effort",
-                                   fmt::format("{}", kEffort.at(run.effort)),
-                                   "--scenes"};
-  command.insert(command.end(), run.scenes.begin(), run.scenes.end());
-  return command;
-}
+  std::vector<std::string> command(const MitsubaCase& c, const fs::path& stem, uint32_t samples) const {
+    fs::create_directories(stem.parent_path());
+    return {driver_.interpreter,
+            driver_.script.string(),
+            c.file.string(),
+            "--bands",
+            kMitsubaBands,
+            "-o",
+            stem.string() + ".hdr",
+            "--size",
+            fmt::format("{0}x{0}", kMitsubaSize),
+            "--spp",
+            fmt::format("{}", samples),
+            "--replicates",
+            fmt::format("{}", kMitsubaReplicates),
+            "--seed",
+            fmt::format("{}", run_.seed + 1)};
+  }
+
+  /// Of one comparison; their sum is the rate of the run.
+  double level() const {
+    return kMitsubaRate / static_cast<double>(run_.scenes.size() * run_.backends.size());
+  }
+
+  /// The backends that the scene has not been compared on.
+  void fail_rest(const MitsubaCase& c, const std::string& why) {
+    const auto done =
+        static_cast<std::size_t>(std::ranges::count(result_.scenes, c.name, &MitsubaScene::name));
+    for (std::size_t i = done; i < run_.backends.size(); ++i)
+      result_.scenes.push_back({c.name, run_.backends[i], false, why, {}});
+    report(0);
+  }
+
+  const MitsubaDriver& driver_;
+  const MitsubaRun& run_;
+  const Watch& watch_;
+  MitsubaResult result_;
+};
 
 }  // namespace
-
-double MitsubaScene::figure(const char* pointer) const {
-  const json::json_pointer at(pointer);
-  return entry.contains(at) && entry[at].is_number() ? entry[at].get<double>()
-                                                     : std::numeric_limits<double>::quiet_NaN();
-}
 
 bool MitsubaResult::passed() const {
   return std::ranges::all_of(scenes, &MitsubaScene::passed);
@@ -129,10 +147,10 @@ std::optional<MitsubaDriver> find_mitsuba(const MitsubaSearch& search, const std
     throw InputError(*named + ": a quick run has no case against Mitsuba (leave out --quick)");
   if (!wants_mitsuba(names, effort)) return std::nullopt;
   for (const std::string& interpreter : search.interpreters) {
-    if (auto driver = probe(interpreter, search.script)) return driver;
+    if (auto driver = probe(interpreter, search)) return driver;
   }
   if (named != names.end())
-    throw InputError(*named + ": Mitsuba 3 is not there (pip install mitsuba scipy), looked for by " +
+    throw InputError(*named + ": Mitsuba 3 is not there (pip install mitsuba), looked for by " +
                      fmt::format("{}", fmt::join(search.interpreters, " and ")));
   return std::nullopt;
 }
@@ -147,46 +165,8 @@ std::vector<std::string> mitsuba_backends(const std::vector<std::string>& backen
   return chosen;
 }
 
-MitsubaResult read_mitsuba(const std::string& text, const MitsubaRun& run, const ChildEnd& end) {
-  std::string problem;
-  MitsubaResult found = parsed(text, problem);
-  const bool ended_well = end.code == 0 || end.code == 1;
-  if (!ended_well || problem.empty()) problem = "compare_with_mitsuba.py: " + end.description();
-  MitsubaResult result = found;
-  result.scenes.clear();
-  bool missing = false;
-  for (const std::string& name : run.scenes) {
-    for (const std::string& backend : run.backends) {
-      const auto at = std::ranges::find_if(
-          found.scenes, [&](const MitsubaScene& s) { return s.name == name && s.backend == backend; });
-      if (at != found.scenes.end()) {
-        result.scenes.push_back(*at);
-      } else if (!end.stopped) {
-        missing = true;
-        result.scenes.push_back({name, backend, false, problem, {}});
-      }
-    }
-  }
-  if (!ended_well && !missing && !end.stopped && !result.scenes.empty()) {  // it failed behind the last scene
-    result.scenes.back().passed = false;
-    result.scenes.back().failure = problem;
-  }
-  return result;
-}
-
-MitsubaResult run_mitsuba(const MitsubaDriver& driver, const MitsubaRun& run, const Watch& watch) try {
-  const fs::path file = run.output / "mitsuba.json";
-  fs::remove(file);  // of an earlier run
-  const double rows = static_cast<double>(run.scenes.size() * run.backends.size());
-  double done = 0;
-  const ChildEnd end = run_child(command_of(driver, run), watch, [&](const std::string&) {
-    if (watch.progress) watch.progress(++done / rows);
-  });
-  return read_mitsuba(contents(file), run, end);
-} catch (const std::exception& error) {  // the rest of the run is worth having
-  ChildEnd end;
-  end.err = error.what();
-  return read_mitsuba({}, run, end);
+MitsubaResult run_mitsuba(const MitsubaDriver& driver, const MitsubaRun& run, const Watch& watch) {
+  return Run(driver, run, watch).finish();
 }
 
 }  // namespace kiloband::validation

@@ -1,5 +1,5 @@
-// Mitsuba 3 as an independent renderer of the same scenes: validation/mitsuba/compare_with_mitsuba.py, run as
-// a child process and read back. It is optional and looked for when a run begins.
+// Mitsuba 3 as an independent renderer of the same scenes: a child process per scene (validation/mitsuba/render_mitsuba.py)
+// writes its images. It is optional and looked for when a run begins.
 #pragma once
 
 #include <filesystem>
@@ -10,42 +10,32 @@
 
 #include "validation/suite/child_process.hpp"
 #include "validation/suite/effort.hpp"
-#include "validation/suite/rendering.hpp"
+#include "validation/suite/mitsuba_comparison.hpp"
 
 namespace kiloband::validation {
 
 /// Where it is looked for.
 struct MitsubaSearch {
   std::vector<std::string> interpreters{"python3", "/usr/bin/python3"};
-  std::filesystem::path script;  // compare_with_mitsuba.py
+  std::filesystem::path root;  // kiloband's source folder
 };
 
-/// An interpreter in which the script finds numpy, SciPy and Mitsuba.
+/// An interpreter in which the script finds numpy and Mitsuba.
 struct MitsubaDriver {
-  std::string interpreter, version;
+  std::string interpreter;
+  nlohmann::json versions;  // "mitsuba", "variant", "python", "numpy"
   std::filesystem::path script;
-  std::vector<std::string> scenes;  // "cornell_box"
-};
-
-/// One scene on one backend.
-struct MitsubaScene {
-  std::string name, backend;
-  bool passed = false;
-  std::string failure;   // why it did not pass
-  nlohmann::json entry;  // all that mitsuba.json has of it; null: nothing
-
-  /// "/detectable/typical" of the entry; NaN where there is no such number.
-  double figure(const char* pointer) const;
+  std::vector<MitsubaCase> scenes;
 };
 
 struct MitsubaResult {
-  nlohmann::json record;  // what mitsuba.json says of all scenes: versions, rate, date
+  nlohmann::json record;  // of all scenes: versions and rate
   std::vector<MitsubaScene> scenes;
   bool passed() const;
 };
 
 struct MitsubaRun {
-  std::filesystem::path program, output;  // kiloband itself; the folder of the results
+  std::filesystem::path output;  // the folder of the results
   std::vector<std::string> scenes, backends;
   Effort effort = Effort::kStandard;
   uint64_t seed = 1;
@@ -63,11 +53,8 @@ std::optional<MitsubaDriver> find_mitsuba(const MitsubaSearch& search, const std
 /// methods give one image: tests/statistical/backends).
 std::vector<std::string> mitsuba_backends(const std::vector<std::string>& backends, Effort effort);
 
-/// Writes OUTPUT/mitsuba.json and OUTPUT/mitsuba. What the script could not do has failed, with the reason.
+/// Every scene on every backend, in this order; Mitsuba's cubes are left in OUTPUT/mitsuba. A scene that could not be
+/// done has failed, with the reason. What was not finished when the watch stopped it is left out.
 MitsubaResult run_mitsuba(const MitsubaDriver& driver, const MitsubaRun& run, const Watch& watch);
-
-/// text: mitsuba.json, empty if there is none. Every scene of the run on every backend, in this order; those
-/// that are missing have failed, for `end` says why, or are left out if it was stopped.
-MitsubaResult read_mitsuba(const std::string& text, const MitsubaRun& run, const ChildEnd& end);
 
 }  // namespace kiloband::validation

@@ -166,7 +166,6 @@ json to_json(const ConvergenceResult& c) {
   return out;
 }
 
-/// The whole of mitsuba.json, with the suite's verdicts.
 json to_json(const MitsubaResult& m) {
   json out = m.record.is_object() ? m.record : json::object();
   out["scenes"] = json::array();

@@ -96,25 +96,25 @@ class CaseRun {
 
   /// False: it was stopped, and the result says nothing.
   bool attempt(const Pairing& pairing, PairingResult& result) {
-    const int number = result.attempts++;
+    const int repetition = result.attempts++;
     const bool closed = pairing.kind == Pairing::Kind::kClosedForm,
                paired = pairing.kind == Pairing::Kind::kPaired;
-    result.samples = samples(number);
+    result.samples = samples(repetition);
     result.level =
-        stats::case_level(number == 0 ? settings_.rule.first : settings_.rule.again, settings_.family);
+        stats::case_level(repetition == 0 ? settings_.rule.first : settings_.rule.again, settings_.family);
     stats::ComparisonOptions options;
     options.alpha = result.level;
     options.variances = pairing.variances;
     options.fine_scales = !closed && has_fine_scales(pairing);
-    options.seed = seed_of(settings_.seed, case_.name, "comparison", number);
-    const Rendering& a = side(pairing.a, "first", number);
+    options.seed = seed_of(settings_.seed, case_.name, "comparison", repetition);
+    const Rendering& a = side(pairing.a, "first", repetition);
     if (a.stopped) return false;
     result.seconds_a = a.seconds;
     result.invalid_samples = a.invalid_samples;
     if (closed) {
       result.comparison = compare_truth(a.image, truth(), options);
     } else {
-      const Rendering& b = side(pairing.b, paired ? "first" : second_name(pairing), number);
+      const Rendering& b = side(pairing.b, paired ? "first" : second_name(pairing), repetition);
       if (b.stopped) return false;
       result.seconds_b = b.seconds;
       result.invalid_samples += b.invalid_samples;
@@ -124,7 +124,7 @@ class CaseRun {
     const bool black = std::ranges::all_of(result.comparison.image_a, [](double mean) { return mean == 0; });
     if (black) result.comparison.notes.emplace_back("black in every channel: nothing was compared");
     result.passed = result.comparison.passed && result.invalid_samples == 0 && !black;
-    if (number == 0) result.first_p = result.comparison.decisive().p;
+    if (repetition == 0) result.first_p = result.comparison.decisive().p;
     return true;
   }
 

@@ -20,7 +20,7 @@ struct Plan {
   std::vector<Case> cases;
   std::vector<std::pair<const HardCase*, std::string>> hard_cases;  // and backend
   std::vector<ConvergenceCase> convergence;
-  std::vector<std::string> mitsuba;  // scenes; one process renders them all
+  std::vector<std::string> mitsuba;  // scenes
 
   std::size_t parts() const {
     return cases.size() + hard_cases.size() + convergence.size() + (mitsuba.empty() ? 0 : 1);
@@ -62,8 +62,8 @@ Plan plan_of(const SuiteSettings& settings) {
     if (wanted(c.name, settings.names)) plan.convergence.push_back(std::move(c));
   }
   if (settings.mitsuba) {
-    for (const std::string& scene : settings.mitsuba->scenes)
-      if (wanted("mitsuba/" + scene, settings.names)) plan.mitsuba.push_back(scene);
+    for (const MitsubaCase& scene : settings.mitsuba->scenes)
+      if (wanted("mitsuba/" + scene.name, settings.names)) plan.mitsuba.push_back(scene.name);
   }
   check_names(settings.names, plan);
   return plan;
@@ -82,9 +82,8 @@ HardCaseResult run_hard_case(const HardCase& hard, const std::string& backend, c
 }
 
 MitsubaRun mitsuba_run(const Plan& plan, const SuiteSettings& settings) {
-  return {settings.program, settings.output,
-          plan.mitsuba,     mitsuba_backends(settings.backends, settings.effort),
-          settings.effort,  settings.seed};
+  return {settings.output, plan.mitsuba, mitsuba_backends(settings.backends, settings.effort),
+          settings.effort, settings.seed};
 }
 
 /// Progress of the run from that of its parts.

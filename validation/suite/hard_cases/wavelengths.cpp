@@ -11,7 +11,7 @@ namespace {
 
 using namespace scene_text;
 
-const std::string kView = orthographic(lookat("0, 0, 2", "0, 0, 0"), 1e-3, film(8), 1e-3);
+const std::string kPrismView = orthographic(lookat("0, 0, 2", "0, 0, 0"), 1e-3, film(8), 1e-3);
 
 struct Mode {
   WavelengthMode wavelengths;
@@ -32,7 +32,7 @@ std::vector<HardFigure> narrow_channels(const HardCaseContext& context) {
                                  .wavelengths = mode.wavelengths};
     const std::string within = "9999:0, 10000.001:0, 10000.002:1, 10001:1";
     const TrialImage seen = trial.render(
-        scene_text::scene(1, kView + emitter("constant", spectrum("radiance", within))), settings);
+        scene_text::scene(1, kPrismView + emitter("constant", spectrum("radiance", within))), settings);
     const std::string name = std::string(", ") + mode.name;
     trial.statistical("radiance rising within 1e-3 nm" + name, seen, 1, 0.5, 1e-5);
     trial.figure("the channel before it" + name, "W m^-2 sr^-1 nm^-1", seen.image_mean[0] / 1e-3, 0, 1e-5,
@@ -43,7 +43,8 @@ std::vector<HardFigure> narrow_channels(const HardCaseContext& context) {
         shape("rectangle", bsdf("conductor", spectrum("specular_reflectance",
                                                       "9999:0.2, 10000.001:0.2, 10000.002:0.8, 10001:0.8")));
     const TrialImage product = trial.render(
-        scene_text::scene(2, kView + ground + emitter("constant", spectrum("radiance", within))), settings);
+        scene_text::scene(2, kPrismView + ground + emitter("constant", spectrum("radiance", within))),
+        settings);
     trial.statistical("radiance times reflectance" + name, product, 1, 0.2 / 2 + 0.6 / 3, 1e-5);
   }
   return trial.finish();
@@ -67,12 +68,13 @@ std::vector<HardFigure> wide_channels(const HardCaseContext& context) {
                                  .wavelengths = mode.wavelengths};
     const std::string name = std::string(", ") + mode.name;
     const TrialImage seen = trial.render(
-        scene_text::scene(1, kView + emitter("constant", spectrum("radiance", "10000:0, 20000:1"))),
+        scene_text::scene(1, kPrismView + emitter("constant", spectrum("radiance", "10000:0, 20000:1"))),
         settings);
     trial.statistical("ramp over 1e4 nm" + name, seen, 0, 0.5, 1e-5);
     const std::string law =
         "<spectrum name=\"radiance\" type=\"planck\">" + real("temperature", 300) + "</spectrum>";
-    const TrialImage hot = trial.render(scene_text::scene(1, kView + emitter("constant", law)), settings);
+    const TrialImage hot =
+        trial.render(scene_text::scene(1, kPrismView + emitter("constant", law)), settings);
     trial.statistical("Planck's law over 1e4 nm" + name, hot, 0, planck, 1e-5);
   }
   return trial.finish();
