@@ -39,7 +39,7 @@ class Scene(unittest.TestCase):
     def test_scenes_have_box_filters(self):
         """Other filters treat the image's border differently in the two programs."""
         scenes = sorted((ROOT / "validation/mitsuba/scenes").glob("*.xml"))
-        self.assertEqual(len(scenes), 7)
+        self.assertEqual(len(scenes), 8)
         for scene in scenes:
             self.assertEqual([f.get("type") for f in ElementTree.parse(scene).iter("rfilter")], ["box"], scene)
 
