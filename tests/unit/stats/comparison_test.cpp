@@ -113,13 +113,39 @@ TEST(Comparison, AllZeroAgainstLightFails) {
   EXPECT_TRUE(compare_independent(b, b, {}).passed) << "two black images";
 }
 
+/// A channel without noise is equal or not; the image's others are tested all the same.
+TEST(Comparison, AChannelWithoutNoise) {
+  const auto changed = [](uint64_t seed, float first, float factor) {
+    ReplicateImage image = image_of(seed);
+    for (std::size_t i = 0; i < image.means.size(); ++i)
+      image.means[i] = i % 3 == 0 ? first : factor * image.means[i];
+    return image;
+  };
+  const Comparison same = compare_independent(changed(1, 0, 1), changed(2, 0, 1), {});
+  EXPECT_TRUE(same.passed);
+  const TestVerdict& image = test_named(same, "mean/image");
+  EXPECT_GT(image.p, 0);
+  EXPECT_LT(image.p, 1);
+  EXPECT_GT(image.detectable.typical, 0);
+  EXPECT_GE(image.detectable.largest, image.detectable.typical);
+  EXPECT_LT(image.detectable.largest, 0.1);
+  EXPECT_FALSE(
+      test_named(compare_independent(changed(1, 0, 1), changed(2, 0, 1.5), {}), "mean/image").passed);
+  EXPECT_EQ(test_named(compare_independent(changed(1, 0.001f, 1), changed(2, 0, 1), {}), "mean/image").p, 0);
+}
+
 TEST(Comparison, NotFiniteFails) {
-  ReplicateImage a = image_of(1);
-  a.means[77] = std::numeric_limits<float>::quiet_NaN();
-  const Comparison c = compare_independent(a, image_of(2), {});
-  EXPECT_FALSE(c.passed);
-  EXPECT_EQ(c.decisive().name, "finite");
-  EXPECT_EQ(c.notes.back(), "1 replicate means of pixels are not finite");
+  for (const float value :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    ReplicateImage a = image_of(1);
+    a.means[77] = value;
+    for (const Comparison& c :
+         {compare_independent(a, image_of(2), {}), compare_independent(image_of(2), a, {})}) {
+      EXPECT_FALSE(c.passed);
+      EXPECT_EQ(c.decisive().name, "finite");
+      EXPECT_EQ(c.notes.back(), "1 replicate means of pixels are not finite");
+    }
+  }
 }
 
 TEST(Comparison, ReplicatesWithoutSamplesAreLeftOut) {

@@ -22,7 +22,15 @@ TEST(Distributions, StudentOfTheTables) {
   EXPECT_EQ(student_p(0, 5), 1);
   EXPECT_EQ(student_p(kInfinite, 5), 0);
   EXPECT_NEAR(student_p(1, 1), 0.5, 1e-15) << "Cauchy";
+  EXPECT_NEAR(student_p(3, 2), 1 - 3 / std::sqrt(11.0), 1e-14) << "two degrees: 1 - t / sqrt(2 + t^2)";
   EXPECT_NEAR(student_p(6, kInfinite) / 1.973175e-9, 1, 1e-6);
+}
+
+TEST(Distributions, QuantilesInvert) {
+  for (const double p : {1e-9, 1e-3, 0.2}) {
+    for (const double dof : {3.0, 31.7, 62.0})
+      EXPECT_NEAR(student_p(student_upper(p / 2, dof), dof) / p, 1, 1e-8);
+  }
 }
 
 /// Kolmogorov's critical values (Smirnov 1948); both series meet.

@@ -50,6 +50,27 @@ INSTANTIATE_TEST_SUITE_P(Distributions, Rates,
                                          Case{"lognormal", 8, 0}, Case{"firefly", 8, 0}, Case{"rare", 8, 0}),
                          [](const auto& p) { return p.param.distribution; });
 
+/// Different estimators: B scatters twice as much as A. Means alone.
+TEST(RatesOfEstimators, NoMoreFalseAlarmsThanStated) {
+  constexpr int kMany = 400;
+  const test::BatchPool pool("normal", 8);
+  const test::SimulatedImage shape{8, 8, 32, 8};
+  test::SimulatedImage noisy = shape;
+  noisy.spread = [](uint32_t, uint32_t, std::size_t) { return 2.0; };
+  std::map<std::string, int> alarms;
+  for (uint64_t i = 0; i < kMany; ++i) {
+    const Comparison c = compare_independent(simulate(shape, pool, 2 * i), simulate(noisy, pool, 2 * i + 1),
+                                             {.alpha = 0.05, .seed = i, .variances = false});
+    for (const TestVerdict& test : c.tests) alarms[test.name] += test.p < 0.05;
+  }
+  EXPECT_EQ(alarms.size(), 3u) << "pixels, tiles, image";
+  for (const auto& [name, count] : alarms) {
+    const bool above = count > 0.05 * kMany;
+    EXPECT_TRUE(!above || binomial_p(count, kMany, 0.05) > 2e-5) << name << ": " << count;
+  }
+  EXPECT_GT(alarms["mean/image"], 0);
+}
+
 /// A known truth, light tails.
 TEST(RatesOfTruths, NoMoreFalseAlarmsThanStated) {
   const test::BatchPool pool("exponential", 64);
