@@ -1,6 +1,7 @@
 // kiloband sky OUT: a clear sky from 0.38 to 20 um as a spectral environment map.
 #include <fmt/core.h>
 
+#include <map>
 #include <memory>
 
 #include "app/commands.hpp"
@@ -8,6 +9,7 @@
 #include "app/console/output_files.hpp"
 #include "app/options/render_options.hpp"
 #include "cube/cube_io.hpp"
+#include "files/atomic_file.hpp"
 #include "sky/sky_map.hpp"
 
 namespace kiloband {
@@ -17,7 +19,7 @@ constexpr uint32_t kRowsAtOnce = 32;
 
 struct SkyOptions {
   std::string out, size = "512x257";
-  std::optional<std::string> bands, bands_file, preview;
+  std::optional<std::string> bands, bands_file, preview, sun;
   SkyParameters sky;
 };
 
@@ -81,6 +83,47 @@ void write_map(const SkyOptions& options, const SkyMap& map) {
   if (options.preview) save_preview(options, map, std::move(rgb));
 }
 
+/// The direct light at the middles of the map's bands, linear between them as the map is, up to its outer edges.
+std::string sun_spectrum(const SkyMap& map) {
+  std::map<double, double> knots;
+  const auto add = [&](double nm, std::size_t band) { knots.emplace(nm, map.direct_normal(band)); };
+  std::size_t first = 0, last = 0;
+  for (std::size_t b = 0; b < map.bands().size(); ++b) {
+    add(map.bands()[b].centre_nm(), b);
+    if (map.bands()[b].min_nm < map.bands()[first].min_nm) first = b;
+    if (map.bands()[b].max_nm > map.bands()[last].max_nm) last = b;
+  }
+  add(map.bands()[first].min_nm, first);
+  add(map.bands()[last].max_nm, last);
+  std::string text;
+  for (const auto& [nm, value] : knots)
+    text += fmt::format("{}{:.9g}:{:.7g}", text.empty() ? "" : ", ", nm, value);
+  return text;
+}
+
+/// A scene to be included: the map's sun as an emitter of its own.
+void write_sun(const SkyOptions& options, const SkyMap& map) {
+  const std::string scene = fmt::format(
+      R"(<?xml version="1.0" encoding="utf-8"?>
+<!-- The sun of {}, which is without it: include this file where the map is used.
+     A map that is turned by its to_world has its sun turned by the same steps at the end of this one. -->
+<scene version="3.0.0">
+  <emitter type="directional">
+    <float name="angular_radius" value="{}"/>
+    <transform name="to_world">
+      <rotate x="1" angle="{}"/>
+      <rotate y="1" angle="{}"/>
+    </transform>
+    <spectrum name="irradiance" value="{}"/>
+  </emitter>
+</scene>
+)",
+      std::filesystem::path(options.out).filename().string(), kSunRadiusDeg, options.sky.sun_elevation_deg,
+      -options.sky.sun_azimuth_deg, sun_spectrum(map));
+  write_file_atomically(*options.sun, scene);
+  tell("wrote {}\n", *options.sun);
+}
+
 /// Irradiances by the bands of the map, W m^-2.
 void report(const SkyMap& map) {
   double direct = 0, diffuse = 0, thermal = 0;
@@ -98,11 +141,16 @@ int sky(const SkyOptions& options) {
   OutputFiles files;
   files.cubes.emplace_back(options.out);
   files.preview = options.preview;
+  if (options.sun) files.others.push_back({"--sun", *options.sun});
   check_output_files(files);
+  if (options.sun && !(options.sky.sun_elevation_deg > 0))
+    throw InputError(fmt::format("--sun with --elevation {}: the sun is not above the horizon",
+                                 options.sky.sun_elevation_deg));
   const auto [width, height] = parse_size_option(options.size);
   const ClearSky model(options.sky);
-  const SkyMap map(model, bands_of(options), width, height);
+  const SkyMap map(model, bands_of(options), width, height, !options.sun);
   write_map(options, map);
+  if (options.sun) write_sun(options, map);
   report(map);
   return kDone;
 }
@@ -129,6 +177,7 @@ Command add_sky(CLI::App& program) {
   command->add_option("--size", o->size, "WIDTHxHEIGHT, an odd height")->capture_default_str();
   command->add_option("--bands", o->bands, "such as 380:780:40; the default reaches from 380 nm to 20 um");
   command->add_option("--bands-file", o->bands_file, "CSV of min,max in nm");
+  command->add_option("--sun", o->sun, "scene file for the sun, which is then not in the map");
   command->add_option("--preview", o->preview, "PNG picture");
   return [o] { return sky(*o); };
 }

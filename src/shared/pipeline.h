@@ -17,7 +17,7 @@
 #define KB_CHUNK_ENTRIES 4u
 #endif
 /* With the method pt a slot's chunk holds what a path appends between two updates: with dispersion up to three vertices and
-   three entries of samples, with gas the cells of plumes. */
+   three entries of samples, with gas the cells of plumes. With suns it has KB_MOST_SUNS entries more. */
 #define KB_PT_DISPERSION_CHUNK_ENTRIES 8u
 #define KB_PT_GAS_CHUNK_ENTRIES 48u
 
@@ -43,7 +43,7 @@ typedef struct {
   kb_u16 camera_media[KB_MEDIUM_DEPTH]; /* where rays begin: as KbGasState::inside */
   kb_u32 gas;                           /* 1: the scene has media or null boundaries */
   kb_u32 instances;                     /* 1: the scene has instances */
-  kb_u32 reserved;
+  kb_u32 first_sun;                     /* the emitters from here on are suns; emitter_count: none is */
 } KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
 

@@ -171,19 +171,23 @@ enum KbEmitterType {
   KB_EMITTER_POINT = 3,
   KB_EMITTER_SPOT = 4,
   KB_EMITTER_DIRECTIONAL = 5,
-  KB_EMITTER_THERMAL = 6 /* a shape with a temperature of its own; what it emits is its surface's */
+  KB_EMITTER_THERMAL = 6, /* a shape with a temperature of its own; what it emits is its surface's */
+  KB_EMITTER_SUN = 7 /* a directional light with an angular radius; suns are the last emitters of a scene */
 };
 
+/* Suns of a scene: a ray that escapes may meet all of them. */
+#define KB_MOST_SUNS 16u
+
 typedef struct {
-  kb_u32 type;        /* KbEmitterType */
-  kb_u32 ref;         /* radiance, intensity or irradiance: spectrum or bitmap reference (per nm) */
-  kb_u32 shape;       /* area: shape index */
-  float select_pdf;   /* probability that next-event estimation selects this emitter */
-  float cos_cutoff;   /* spot: no light beyond */
-  float cos_beam;     /* spot: full intensity inside */
-  float cutoff_angle; /* spot, rad */
-  float beam_width;   /* spot, rad */
-  float to_world[12]; /* point, spot: position in the last column; directional: local +Z = propagation */
+  kb_u32 type;         /* KbEmitterType */
+  kb_u32 ref;          /* radiance, intensity or irradiance: spectrum or bitmap reference (per nm) */
+  kb_u32 shape;        /* area: shape index */
+  float select_pdf;    /* probability that next-event estimation selects this emitter */
+  float one_minus_cos; /* sun: of its angular radius */
+  float scale;         /* sun: radiance over irradiance, 1/sr */
+  float cutoff_angle;  /* spot, rad: no light beyond */
+  float beam_width;    /* spot, rad: full intensity inside */
+  float to_world[12]; /* point, spot: position in the last column; directional, sun: local +Z = propagation */
   float to_object[12];
 } KbEmitter;
 KB_STATIC_ASSERT(sizeof(KbEmitter) == 128, emitter_size);

@@ -64,7 +64,7 @@ void SkyMap::check() const {
   }
 }
 
-SkyMap::SkyMap(const ClearSky& sky, ChannelList bands, uint32_t width, uint32_t height)
+SkyMap::SkyMap(const ClearSky& sky, ChannelList bands, uint32_t width, uint32_t height, bool with_sun)
     : sky_(sky),
       bands_(std::move(bands)),
       width_(width),
@@ -77,7 +77,7 @@ SkyMap::SkyMap(const ClearSky& sky, ChannelList bands, uint32_t width, uint32_t 
   }
   make_bands();
   scale_shapes();
-  spread_sun();
+  if (with_sun) spread_sun();
 }
 
 /// A texel's tent reaches from the row above to the row below: 1 on its own row, falling linearly in theta.

@@ -20,9 +20,9 @@ ChannelList default_sky_bands();
 /// scaled band by band.
 class SkyMap {
  public:
-  /// width >= 8; height >= 5 and odd, so that a row lies on the horizon.
+  /// width >= 8; height >= 5 and odd, so that a row lies on the horizon. with_sun: false leaves the sun's disk out.
   /// throws InputError  otherwise, and for bands beyond 300 nm to 100 um
-  SkyMap(const ClearSky& sky, ChannelList bands, uint32_t width, uint32_t height);
+  SkyMap(const ClearSky& sky, ChannelList bands, uint32_t width, uint32_t height, bool with_sun = true);
 
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }

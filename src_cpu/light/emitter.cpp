@@ -82,6 +82,11 @@ float environment_pdf(const FlatScene& scene, glm::vec3 direction) {
   return one_lane::environment_pdf(scene, one_lane::environment_coordinates(scene, to_lane(direction))).v;
 }
 
+float sun_pdf(const FlatScene& scene, uint32_t emitter, glm::vec3 direction) {
+  const KbEmitter& sun = scene.emitters[emitter];
+  return one_lane::meets_sun(sun, to_lane(direction)).v ? one_lane::sun_at(sun).pdf.v : 0;
+}
+
 EmittedRadiance environment_radiance(const FlatScene& scene, glm::vec3 direction) {
   return radiance_of(one_lane::environment_radiance(
       scene, one_lane::environment_coordinates(scene, to_lane(direction)), {true}));

@@ -30,7 +30,7 @@ struct LightSample {
   glm::vec3 direction{0};  // unit, from the shaded point towards the light
   /// Area and positional lights: the point on the light, moved off its surface towards its front.
   glm::vec3 target{0};
-  bool infinite = false;  // environment and directional lights: no target
+  bool infinite = false;  // environment and directional lights, suns: no target
   bool delta = false;     // cannot be hit by BSDF sampling
   /// Solid angle times selection probability [1/sr]; delta lights: selection probability; 0: no sample.
   float pdf = 0;
@@ -44,7 +44,7 @@ struct LightSample {
 /// Selects an emitter by FlatScene::emitter_cdf (u_select.x), a triangle of a mesh (u_select.y), a point or
 /// direction on it (u_position). Spheres are sampled over the cone that they subtend from outside, over their
 /// area from inside; other shapes over their area; environment maps by their texels; constant environments
-/// over the sphere. Points that a one-sided area light does not shine to give pdf 0.
+/// over the sphere; suns over their discs. Points that a one-sided area light does not shine to give pdf 0.
 LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position);
 
 /// The same of an area light or a thermal one that has been selected. Lanes (light-inl.hpp) sample meshes themselves.
@@ -63,6 +63,8 @@ float area_light_pdf(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 or
 /// Density with which sample_light() gives a direction that escapes to the environment;
 /// 0 without environment [1/sr].
 float environment_pdf(const FlatScene& scene, glm::vec3 direction);
+/// The same of a sun, by its index; 0 beside its disc. direction: a unit vector towards it
+float sun_pdf(const FlatScene& scene, uint32_t emitter, glm::vec3 direction);
 /// What the environment sends from `direction` (a unit vector towards it); scene.environment must exist.
 EmittedRadiance environment_radiance(const FlatScene& scene, glm::vec3 direction);
 

@@ -12,6 +12,7 @@
 #include "src_cpu/light/delta-inl.hpp"
 #include "src_cpu/light/emitter.hpp"
 #include "src_cpu/light/environment-inl.hpp"
+#include "src_cpu/light/sun-inl.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
@@ -68,6 +69,20 @@ KB_INLINE Light sample_environment(const FlatScene& scene, const F4& u, M active
           active,
           no_lanes(),
           environment_radiance(scene, uv, active)};
+}
+
+KB_INLINE Light sample_suns(const FlatScene& scene, U emitter, const F4& u, M active) {
+  const KbEmitter* emitters = scene.emitters.data();
+  const F density = sun_density(KB_GATHER_FLOAT(emitters, KbEmitter, one_minus_cos, emitter),
+                                KB_GATHER_FLOAT(emitters, KbEmitter, select_pdf, emitter));
+  const U ref = KB_GATHER_WORD(emitters, KbEmitter, ref, emitter);
+  return {sample_sun_direction(scene, emitter, u.z, u.w),
+          no_vector(),
+          select(active, density, F(0)),
+          KB_GATHER_FLOAT(emitters, KbEmitter, scale, emitter),
+          active,
+          no_lanes(),
+          resolve(scene, ref, {F(0), F(0)}, active)};
 }
 
 /// Points, spots and directional lights.
@@ -148,7 +163,9 @@ KB_INLINE Light sample_lights(const FlatScene& scene, V3 point, const F4& u, M a
   const M delta = active & ((type == U(KB_EMITTER_POINT)) | (type == U(KB_EMITTER_SPOT)) |
                             (type == U(KB_EMITTER_DIRECTIONAL)));
   if (any(delta)) light = select(delta, sample_delta_lights(scene, emitter, type, point, delta), light);
-  const M others = active & !mesh & !sky & !delta;
+  const M sun = active & (type == U(KB_EMITTER_SUN));
+  if (any(sun)) light = select(sun, sample_suns(scene, emitter, u, sun), light);
+  const M others = active & !mesh & !sky & !delta & !sun;
   if (any(others)) sample_shape_lights(scene, emitter, point, u, others, light);
   return light;
 }
@@ -176,15 +193,21 @@ KB_INLINE F area_light_pdf(const FlatScene& scene, const Hit& hit, U emitter, V3
   return result;
 }
 
-/// What rays find that leave the scene: the density of sample_lights() and the radiance of the environment, which there
-/// is.
+/// What rays find that leave the scene: the density of sample_lights() and the radiance, which is `scale` times a
+/// spectrum.
 struct Escape {
   F pdf;
   Resolved radiance;
+  F scale;
 };
+/// Of the environment, which there is.
 KB_INLINE Escape environment_at(const FlatScene& scene, V3 direction, M active) {
   const V2 uv = environment_coordinates(scene, direction);
-  return {environment_pdf(scene, uv), environment_radiance(scene, uv, active)};
+  return {environment_pdf(scene, uv), environment_radiance(scene, uv, active), F(1)};
+}
+/// Of a sun that they meet.
+KB_INLINE Escape sun_at(const KbEmitter& sun) {
+  return {sun_density(F(sun.one_minus_cos), F(sun.select_pdf)), resolved_row(U(sun.ref)), F(sun.scale)};
 }
 
 }  // namespace kiloband::cpu::KB_LANES

@@ -19,18 +19,25 @@
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
 
-/// Rays that left the scene see the environment.
-KB_INLINE void add_escaped(Shading& s) {
-  const FlatScene& scene = s.scene();
-  const M escaped = s.active;
-  if (scene.environment == KB_NONE || (s.bounce.number == 0 && scene.integrator.hide_emitters)) return;
-  const Escape seen = environment_at(scene, s.direction, escaped);
+KB_INLINE void append_escape(Shading& s, const Escape& seen, M escaped) {
   Vertex v = empty_vertex();
   v.set(escaped, KB_VERTEX_EMIT);
   v.set(escaped & seen.radiance.textured, KB_VERTEX_TEX_EMIT);
   v.emission = seen.radiance;
-  v.emit_weight = select(s.previous_delta(), F(1), power_heuristic(s.previous_pdf(), seen.pdf));
+  const F mis = select(s.previous_delta(), F(1), power_heuristic(s.previous_pdf(), seen.pdf));
+  v.emit_weight = mis * seen.scale;
   append(s.wave, s.path, v, escaped);
+}
+
+/// Rays that left the scene see the environment and, in front of it, the suns that they meet: a vertex each.
+KB_INLINE void add_escaped(Shading& s) {
+  const FlatScene& scene = s.scene();
+  if (s.bounce.number == 0 && scene.integrator.hide_emitters) return;
+  if (scene.environment != KB_NONE) append_escape(s, environment_at(scene, s.direction, s.active), s.active);
+  for (std::size_t i = scene.first_sun; i < scene.emitters.size(); ++i) {
+    const M met = s.active & meets_sun(scene.emitters[i], s.direction);
+    if (any(met)) append_escape(s, sun_at(scene.emitters[i]), met);
+  }
 }
 
 /// Emission of area lights that were hit.
@@ -307,7 +314,7 @@ inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
 inline void shade_wave(const Bounce& bounce, Wave& wave) {
   wave.shadow_rays.count = wave.next_rays().count = 0;
   part_rays(wave.rays(), wave.escaped);
-  if (bounce.scene.environment != KB_NONE || bounce.rare)
+  if (bounce.scene.environment != KB_NONE || bounce.scene.features.sun || bounce.rare)
     for (uint32_t first = 0; first < wave.escaped.count; first += kLanes) leave_scene(bounce, wave, first);
   const RayQueue& rays = wave.rays();
   for (uint32_t first = 0; first < rays.count; first += kLanes) {

@@ -106,8 +106,9 @@ std::optional<Method> find_method(std::string_view name) {
 
 uint32_t chunk_entries(Method method, const SceneFeatures& features) {
   if (method != Method::kPt) return KB_CHUNK_ENTRIES;
-  if (features.gas) return KB_PT_GAS_CHUNK_ENTRIES;
-  return features.dispersion ? KB_PT_DISPERSION_CHUNK_ENTRIES : KB_CHUNK_ENTRIES;
+  const uint32_t suns = features.sun ? KB_MOST_SUNS : 0;
+  if (features.gas) return KB_PT_GAS_CHUNK_ENTRIES + suns;
+  return (features.dispersion ? KB_PT_DISPERSION_CHUNK_ENTRIES : KB_CHUNK_ENTRIES) + suns;
 }
 
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {

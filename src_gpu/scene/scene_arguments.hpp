@@ -29,6 +29,7 @@ inline KbSceneConstants scene_constants(const FlatScene& scene) {
   c.channels = static_cast<uint32_t>(scene.channels.size());
   c.emitter_count = static_cast<uint32_t>(scene.emitters.size());
   c.environment = scene.environment;
+  c.first_sun = std::min(scene.first_sun, c.emitter_count);
   c.max_depth = scene.integrator.max_depth < 0 ? KB_NONE : static_cast<uint32_t>(scene.integrator.max_depth);
   c.rr_depth = static_cast<uint32_t>(scene.integrator.rr_depth);
   c.hide_emitters = scene.integrator.hide_emitters ? 1 : 0;

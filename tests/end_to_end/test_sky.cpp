@@ -24,14 +24,28 @@ const std::string kField =
 
 /// The field shows albedo / pi times the global irradiance, in sunlight and in the thermal infrared. 65 536
 /// samples: the standard error is 0.3 %, 2 % would be missed once in a billion runs.
-TEST(Sky, LightsAFieldAsTheModelSays) {
+class SkyTest : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Suns, SkyTest, ::testing::Bool(),
+                         [](const auto& apart) { return apart.param ? "SunApart" : "SunInTheMap"; });
+
+TEST_P(SkyTest, LightsAFieldAsTheModelSays) {
   const TemporaryFolder folder;
-  const Outcome sky = run_program(
-      folder, {"sky", "sky.exr", "--elevation", "35", "--azimuth", "120", "--size", "64x33", "--bands",
-               "500-510, 540-560, 560-580, 8000-9000, 9000-10000, 10000-11000", "--preview", "sky.png"});
+  std::vector<std::string> arguments = {
+      "sky",         "sky.exr",
+      "--elevation", "35",
+      "--azimuth",   "120",
+      "--size",      "64x33",
+      "--bands",     "500-510, 540-560, 560-580, 8000-9000, 9000-10000, 10000-11000",
+      "--preview",   "sky.png"};
+  if (GetParam()) arguments.insert(arguments.end(), {"--sun", "sun.xml"});
+  const Outcome sky = run_program(folder, arguments);
   ASSERT_EQ(sky.code, 0) << sky.err;
-  EXPECT_EQ(sky.err.substr(0, 34), "wrote sky.exr\nwrote sky.png\nin 6 b") << sky.err;
-  folder.write("field.xml", kField);
+  const std::string written = GetParam() ? "wrote sky.exr\nwrote sky.png\nwrote sun.xml\nin 6 b"
+                                         : "wrote sky.exr\nwrote sky.png\nin 6 b";
+  EXPECT_EQ(sky.err.substr(0, written.size()), written) << sky.err;
+  std::string field = kField;
+  if (GetParam()) field.insert(field.rfind("<emitter"), "<include filename='sun.xml'/>");
+  folder.write("field.xml", field);
   const Outcome outcome = run_program(folder, quiet_render("field.xml", {"--bands", "545-555, 9000-10000",
                                                                          "--spp", "64", "-o", "field.hdr"}));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -75,6 +89,9 @@ TEST(Sky, RefusesWrongOptions) {
       {
           {{"sky.png"}, "'sky.png': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)"},
           {{"a.exr", "--elevation", "100"}, "sun elevation 100: must be from -90 to 90 degrees"},
+          {{"a.exr", "--sun", "s.xml", "--elevation", "0"},
+           "--sun with --elevation 0: the sun is not above the horizon"},
+          {{"a.hdr", "--sun", "a.img"}, "--sun a.img: another output has this name"},
           {{"a.exr", "--size", "16x10"},
            "sky height 10: must be odd and from 5 to 65535, so that a row lies on the horizon"},
           {{"a.exr", "--size", "16"}, "--size 16: must be WIDTHxHEIGHT, for example 640x480"},

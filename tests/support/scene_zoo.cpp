@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "tests/support/scene_gas_text.hpp"
+#include "tests/support/scene_lamp_text.hpp"
 #include "tests/support/scene_room_text.hpp"
 #include "tests/support/scene_text.hpp"
 
@@ -115,16 +116,6 @@ Text spectral_pictures() {
          rectangle(scale("0.4") + turn("x", "60") + translate("-0.3 0.7 0.3"),
                    diffuse("0.1") + emitter("area", spectral_bitmap("radiance", text("filename", "glow.hdr"),
                                                                     "repeat", "bilinear", scale("1.5"))));
-}
-
-Text delta_lights() {
-  return emitter("point", "<point name='position' x='-0.5' y='0.6' z='0.3'/>" +
-                              spectrum("intensity", "450:0.4, 650:0.9")) +
-         emitter("spot", real("cutoff_angle", "35") + real("beam_width", "20") +
-                             spectrum("intensity", "450:3, 650:1") +
-                             to_world(lookat("0.6, 0.8, 0.8", "0.2, -0.6, -0.2"))) +
-         emitter("directional", "<vector name='direction' x='0.3' y='-1' z='-0.6'/>" +
-                                    spectrum("irradiance", "450:0.5, 650:0.8"));
 }
 
 Text analytic_shapes() {
@@ -321,6 +312,11 @@ std::vector<ZooScene> make_scenes() {
       {"constant_sky", scene(6, thinlens(small_film("tent")) + objects + sky("450:0.8, 650:1.2"))},
       {"envmap", scene(6, thinlens(small_film("gaussian")) + objects + kEnvmap)},
       {"delta_lights", scene(5, orthographic(small_film("box")) + room() + boxes() + delta_lights())},
+      {"suns",
+       scene(6, perspective(small_film("gaussian")) + floor(diffuse("0.5")) + suns() + sky("0.2") + metals() +
+                    ball("0 0.1 0.5", "0.25", bsdf("dielectric")) +
+                    ball("0.6 0.9 0", "0.2", bsdf("roughdielectric", roughness("ggx", "0.2")))),
+       kCurved},
       {"analytic_shapes", scene(8, orthographic(small_film("tent")) + lit_room + analytic_shapes()), kCurved},
       {"prism",
        scene(10,

@@ -79,6 +79,8 @@ constexpr PlantedFault kFaults[] = {
     {KB_PLANTED_MIS_SELECTION, "mis-selection", kBoth,
      "MIS weights of BSDF samples forget that lights are chosen: they do not sum to 1", "two area lights", "glowing_shapes",
      kMeans},
+    {KB_PLANTED_SUN_MISSED, "sun-missed", kBoth, "rays that escape do not meet suns, but MIS of light samples counts on it",
+     "directional light with an angular_radius", "suns", kMeans},
     // ---- scattering
     {KB_PLANTED_COSINE, "missing-cosine", kBoth, "diffuse reflection of light samples lacks the cosine", "diffuse", "diffuse_room",
      kMeans},

@@ -43,6 +43,19 @@ double spot_solid_angle(double beam, double cutoff) {
   return sum;
 }
 
+/// A disc of constant radiance L gives a plane that faces its middle E = pi L sin^2 r, the integral of L cos over the
+/// cone. Its solid angle is 2 pi (1 - cos r); 1 - cos r = 2 sin^2(r / 2) keeps the digits of small discs.
+void set_disc(KbEmitter& record, double radius) {
+  const double half = std::sin(0.5 * radius), whole = std::sin(radius);
+  record.one_minus_cos = static_cast<float>(2 * half * half);
+  record.scale = static_cast<float>(1 / (kPi * whole * whole));
+}
+
+bool is_sun(const Emitter& emitter) {
+  const auto* directional = std::get_if<DirectionalEmitter>(&emitter.model);
+  return directional && directional->angular_radius > 0;
+}
+
 }  // namespace
 
 void set_emitter_transforms(KbEmitter& record, const Transform& to_world) {
@@ -122,14 +135,13 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
     set_emitter_transforms(record, placed(spot->to_world));
     record.cutoff_angle = static_cast<float>(spot->cutoff_angle);
     record.beam_width = static_cast<float>(spot->beam_width);
-    record.cos_cutoff = static_cast<float>(std::cos(spot->cutoff_angle));
-    record.cos_beam = static_cast<float>(std::cos(spot->beam_width));
     powers_.push_back({spot->intensity, spot_solid_angle(spot->beam_width, spot->cutoff_angle)});
   } else {
     const auto& directional = std::get<DirectionalEmitter>(emitter.model);
-    record.type = KB_EMITTER_DIRECTIONAL;
+    record.type = directional.angular_radius > 0 ? KB_EMITTER_SUN : KB_EMITTER_DIRECTIONAL;
     record.ref = spectra_.row(directional.irradiance, use("irradiance"));
     set_emitter_transforms(record, frame_along(directional.direction));
+    if (directional.angular_radius > 0) set_disc(record, directional.angular_radius);
     powers_.push_back({directional.irradiance, disc});
   }
   return record;
@@ -147,6 +159,7 @@ void Flattener::add_ambient_environment() {
 
 void Flattener::add_emitters() {
   for (const Emitter& emitter : in_.emitters) {
+    if (is_sun(emitter)) continue;
     const KbEmitter record = make_emitter(emitter);
     const bool environment = record.type == KB_EMITTER_CONSTANT || record.type == KB_EMITTER_ENVMAP;
     if (environment) out_.environment = static_cast<uint32_t>(out_.emitters.size());
@@ -155,6 +168,23 @@ void Flattener::add_emitters() {
     out_.emitter_names.push_back(emitter.id);
   }
   add_ambient_environment();
+  add_suns();
+}
+
+/// Suns are the last emitters: rays that escape look at all of them.
+void Flattener::add_suns() {
+  const auto first = static_cast<uint32_t>(out_.emitters.size());
+  for (const Emitter& emitter : in_.emitters) {
+    if (!is_sun(emitter)) continue;
+    if (out_.emitters.size() - first == KB_MOST_SUNS)
+      throw InputError(emitter.position,
+                       fmt::format("{}: more than {} directional emitters with an angular_radius",
+                                   describe(emitter), KB_MOST_SUNS));
+    out_.first_sun = first;
+    out_.emitters.push_back(make_emitter(emitter));
+    out_.emitter_names.push_back(emitter.id);
+    out_.features.sun = true;
+  }
 }
 
 void Flattener::add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter,

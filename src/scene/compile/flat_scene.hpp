@@ -107,6 +107,7 @@ struct FlatScene {
   std::vector<std::string> emitter_names;  // an area light's is its shape's; empty: without id
   std::vector<float> emitter_cdf;          // emitters + 1 entries, 0 to 1, see lattice_cdf.hpp
   uint32_t environment = KB_NONE;          // emitter index of the constant or envmap emitter
+  uint32_t first_sun = KB_NONE;            // the emitters from here on are KB_EMITTER_SUN; KB_NONE: none is
   EnvmapSampling envmap;
   /// Where the coordinates of all of this begin, in the scene file's: 0 unless it is far.
   std::array<double, 3> origin{};

@@ -150,6 +150,7 @@ class Flattener {
   // emitters.cpp
   void add_emitters();
   void add_ambient_environment();
+  void add_suns();
   void add_area_emitter(uint32_t shape_index);
   void add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumSource& use);
   KbEmitter make_emitter(const Emitter& emitter);

@@ -28,6 +28,7 @@ namespace kiloband {
   X(CONSTANT_LIGHT, constant_light, "constant environment")                                           \
   X(ENVMAP_LIGHT, envmap_light, "environment map")                                                    \
   X(DELTA_LIGHT, delta_light, "delta light")                                                          \
+  X(SUN, sun, "sun") /* directional with an angular radius */                                         \
   X(ANALYTIC_SHAPES, analytic_shapes, "analytic shapes")                                              \
   X(INSTANCES, instances, "instances")                                                                \
   X(THERMAL, thermal, "thermal emission")                      /* surfaces emit by Kirchhoff's law */ \

@@ -220,6 +220,7 @@ struct SpotEmitter {
 struct DirectionalEmitter {
   Spectrum irradiance;            // W m^-2 nm^-1 on a plane perpendicular to direction
   glm::dvec3 direction{0, 0, 1};  // of propagation, unit, world
+  double angular_radius = 0;      // rad, of the disc that the light comes from; 0: a single direction
 };
 
 /// Emitters other than area lights.

@@ -110,6 +110,10 @@ EmitterModel read_directional(ReadContext& context, const ObjectReader& object) 
   const glm::dvec3 unit = unit_vector(direction);
   if (unit == glm::dvec3(0)) object.fail_at("direction", "direction: its length must be > 0");
   directional.direction = unit;
+  const double radius = object.get_float("angular_radius", 0);
+  object.check(radius == 0 || (radius >= kMinSunRadius && radius <= kMaxSunRadius), "angular_radius", radius,
+               "must be 0, or from 0.001 to 90 degrees");
+  directional.angular_radius = radius * std::numbers::pi / 180;
   return directional;
 }
 

@@ -30,6 +30,8 @@ inline constexpr double kMaxAbsorptionScale = 1e30;
 inline constexpr double kMaxAlpha = 100, kMinAlpha = 1e-6;
 /// Heights of bump maps, m.
 inline constexpr double kMaxBumpScale = 1e6;
+/// Angular radii of suns, degrees: directions of single precision resolve 0.4 % of the smallest.
+inline constexpr double kMinSunRadius = 1e-3, kMaxSunRadius = 90;
 /// Lengths in m: places and sizes, see check_places().
 inline constexpr double kMaxLength = 1e9;
 

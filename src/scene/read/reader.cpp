@@ -109,6 +109,8 @@ class SceneReader {
   void add_emitter(Node& node) {
     scene_.emitters.push_back(read_emitter(context_, node));
     const auto& model = scene_.emitters.back().model;
+    const auto* directional = std::get_if<DirectionalEmitter>(&model);
+    has_sun_ |= directional && directional->angular_radius > 0;
     if (!std::holds_alternative<ConstantEmitter>(model) && !std::holds_alternative<EnvmapEmitter>(model) &&
         !std::holds_alternative<SpectralEnvmapEmitter>(model))
       return;
@@ -156,7 +158,7 @@ class SceneReader {
 
   void check_whole(const ObjectReader& scene) const {
     if (sensors_ == 0) scene.fail_here("has no sensor");
-    if (scene_.shapes.empty() && scene_.instances.empty() && environments_ == 0 &&
+    if (scene_.shapes.empty() && scene_.instances.empty() && environments_ == 0 && !has_sun_ &&
         !scene_.ambient_temperature_k)
       scene.fail_here("has neither a shape nor an environment");
     bool lit = !scene_.emitters.empty() || scene_.ambient_temperature_k;
@@ -178,6 +180,7 @@ class SceneReader {
   SceneDescription scene_;
   ReadIntegrator integrator_;
   int sensors_ = 0, integrators_ = 0, environments_ = 0;
+  bool has_sun_ = false;
 };
 
 }  // namespace

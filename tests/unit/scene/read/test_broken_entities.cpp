@@ -327,6 +327,11 @@ std::vector<BrokenScene> table() {
       {"beam wider than the cutoff",
        complete_scene(R"xml(<emitter type="spot"><float name="beam_width" value="30"/></emitter>)xml"),
        "scene.xml:2:54: error: spot emitter: beam_width 30: must be from 0 to cutoff_angle"},
+      {"radius of a sun that floats cannot resolve",
+       complete_scene(
+           R"xml(<emitter type="directional"><float name="angular_radius" value="1e-4"/></emitter>)xml"),
+       "scene.xml:2:65: error: directional emitter: angular_radius 1e-04: must be 0, or from 0.001 to 90 "
+       "degrees"},
       {"direction of length 0",
        complete_scene(
            R"xml(<emitter type="directional"><vector name="direction" value="0 0 0"/></emitter>)xml"),

@@ -45,6 +45,17 @@ TEST(SceneEmitter, DirectionalIsNormalised) {
   EXPECT_NEAR(turned.direction.x, 1, 1e-12);
 }
 
+TEST(SceneEmitter, SunsHaveAnAngularRadius) {
+  const auto sun = emitter_of<DirectionalEmitter>(
+      R"(<emitter type="directional"><float name="angular_radius" value="0.2666"/></emitter>)");
+  EXPECT_NEAR(sun.angular_radius, 0.2666 * kDegree, 1e-15);
+  EXPECT_EQ(emitter_of<DirectionalEmitter>(R"(<emitter type="directional"/>)").angular_radius, 0);
+  // It is seen: a scene may have nothing else.
+  EXPECT_TRUE(read(scene(R"(<emitter type="directional"><float name="angular_radius" value="5"/></emitter>)" +
+                         kSensor))
+                  .shapes.empty());
+}
+
 TEST(SceneEmitter, EnvironmentMapIsLoaded) {
   const TemporaryFolder folder;
   folder.write("sky.ppm", "P3\n2 2\n255\n0 0 0 255 255 255 255 0 0 0 0 255\n");

@@ -150,8 +150,6 @@ TEST(DeltaLights, SpotFallsOffLinearlyInTheAngle) {
     KbEmitter emitter = make_emitter(KB_EMITTER_SPOT);  // at the origin, along +Z
     emitter.cutoff_angle = static_cast<float>(cutoff);
     emitter.beam_width = static_cast<float>(0.75 * cutoff);
-    emitter.cos_cutoff = static_cast<float>(std::cos(cutoff));
-    emitter.cos_beam = static_cast<float>(std::cos(0.75 * cutoff));
     const FlatScene scene = scene_with(emitter);
     for (int i = 0; i <= 60; ++i) {
       const double angle = cutoff * (i + 0.5) / 50;

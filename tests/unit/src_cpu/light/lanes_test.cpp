@@ -99,7 +99,31 @@ TEST(LightLanes, ConstantEnvironment) {
   expect_bits_of_one_lane("escape", scene, directions(2));
 }
 
-/// Points, spots, directional lights, a sphere, a mesh and the sky, as they fall; points of light among those that are lit.
+/// A wide one and a narrow one; directions about the narrow one's edge among others.
+TEST(LightLanes, Suns) {
+  FlatScene scene = scene_with(make_sun(1, placed({0, 0, 0}, 1.1, glm::dvec3(1))));
+  scene.emitters.push_back(make_sun(4.65e-3, placed({0, 0, 0}, 0.3, glm::dvec3(1))));
+  scene.emitters[0].select_pdf = scene.emitters[1].select_pdf = 0.5f;
+  scene.emitter_cdf = {0, 0.5f, 1};
+  expect_bits_of_one_lane("lights", scene, light_inputs());
+  Arrays in = directions(3);
+  Uniform uniform(4);
+  const glm::dvec3 axis = -glm::dvec3(placed({0, 0, 0}, 0.3, glm::dvec3(1))[2]);
+  for (std::size_t i = 0; i < kCount; i += 2) {
+    const glm::dvec3 aside = glm::normalize(glm::cross(axis, random_direction(uniform)));
+    const glm::vec3 edge(std::cos(4.65e-3) * axis + std::sin(4.65e-3 + 2e-7 * (uniform() - 0.5)) * aside);
+    for (int k = 0; k < 3; ++k) in[k][i] = edge[k];
+  }
+  expect_bits_of_one_lane("suns", scene, in);
+  const Arrays seen = apply(scene_functions_of_one_lane(), "suns", scene, in);
+  for (const auto& pdf : seen) {
+    const auto met = static_cast<std::size_t>(std::ranges::count_if(pdf, [](float p) { return p > 0; }));
+    EXPECT_GT(met, kCount / 10);
+    EXPECT_LT(met, kCount - kCount / 10);
+  }
+}
+
+/// Points, spots, directional lights, a sphere, a mesh, the sky and a sun, as they fall; points of light among those that are lit.
 TEST(LightLanes, EveryKindInOneVector) {
   FlatScene scene = scene_with_mesh({{-1, -1, 2}, {1, -1, 2}, {1, 1, 2.5f}, {-1, 1, 2}}, {0, 1, 2, 0, 2, 3},
                                     KB_SHAPE_LIT_BOTH_SIDES);
@@ -107,8 +131,8 @@ TEST(LightLanes, EveryKindInOneVector) {
   scene.shapes[1].emitter = 1;
   scene.emitters.push_back(make_emitter(KB_EMITTER_AREA));
   scene.emitters[1].shape = 1;
-  const uint32_t types[] = {KB_EMITTER_POINT, KB_EMITTER_SPOT, KB_EMITTER_SPOT, KB_EMITTER_DIRECTIONAL,
-                            KB_EMITTER_CONSTANT};
+  const uint32_t types[] = {KB_EMITTER_POINT,       KB_EMITTER_SPOT,     KB_EMITTER_SPOT,
+                            KB_EMITTER_DIRECTIONAL, KB_EMITTER_CONSTANT, KB_EMITTER_SUN};
   for (const uint32_t type : types) {
     const auto number = static_cast<double>(scene.emitters.size());
     KbEmitter& emitter = scene.emitters.emplace_back(
@@ -116,6 +140,7 @@ TEST(LightLanes, EveryKindInOneVector) {
     emitter.ref = KB_REF_SPECTRUM | static_cast<uint32_t>(number);
     emitter.cutoff_angle = static_cast<float>(number / 2);
     emitter.beam_width = static_cast<float>(number / 4);
+    emitter.one_minus_cos = 0.01f, emitter.scale = 17;
   }
   scene.environment = 6;
   scene.emitter_cdf = {0};
@@ -128,9 +153,9 @@ TEST(LightLanes, EveryKindInOneVector) {
   expect_bits_of_one_lane("lights", scene, in);
   // All kinds were sampled: each has a reference of its own but for the two area lights.
   const std::vector<float> rows = apply(scene_functions_of_one_lane(), "lights", scene, in)[9];
-  std::vector<int> seen(7);
+  std::vector<int> seen(8);
   for (const float row : rows) ++seen.at(kb_as_u32(row));
-  for (const int row : {0, 2, 3, 4, 5, 6}) EXPECT_GT(seen[row], 100) << row;
+  for (const int row : {0, 2, 3, 4, 5, 6, 7}) EXPECT_GT(seen[row], 100) << row;
 }
 
 /// What a NaN finds is undefined, but lies in the tables: lanes without a ray look, too.

@@ -48,6 +48,12 @@ KB_SCENE_FUNCTION(escape, {
   put(0, seen.pdf);
   put_lookup(1, seen.radiance);
 })
+KB_SCENE_FUNCTION(suns, {
+  for (int k = 0; k < 2; ++k) {
+    const KbEmitter& sun = scene.emitters[scene.first_sun + static_cast<uint32_t>(k)];
+    put(k, select(meets_sun(sun, {a(0), a(1), a(2)}), sun_at(sun).pdf, F(0)));
+  }
+})
 KB_SCENE_FUNCTION(camera, {
   const CameraRays ray = sample_camera_rays(scene.camera, scene.filter_cells.data(), to_words(a(0)),
                                             to_words(a(1)), {a(2), a(3), a(4), a(5)});
@@ -71,6 +77,7 @@ KB_SCENE_FUNCTION(texture, {
 inline std::vector<test::SceneFunction> scene_functions() {
   return {{"lights", 7, 13, lights_of_arrays},
           {"escape", 3, 5, escape_of_arrays},
+          {"suns", 3, 2, suns_of_arrays},
           {"camera", 6, 9, camera_of_arrays},
           {"texture", 3, 5, texture_of_arrays}};
 }

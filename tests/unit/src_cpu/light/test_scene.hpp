@@ -65,7 +65,16 @@ inline FlatScene scene_with(const KbEmitter& emitter) {
   scene.emitters = {emitter};
   scene.emitter_cdf = {0, 1};
   if (emitter.type == KB_EMITTER_CONSTANT || emitter.type == KB_EMITTER_ENVMAP) scene.environment = 0;
+  if (emitter.type == KB_EMITTER_SUN) scene.first_sun = 0;
   return scene;
+}
+
+/// A sun towards -Z of to_world, of angular radius in rad.
+inline KbEmitter make_sun(double radius, const glm::dmat4& to_world) {
+  KbEmitter sun = make_emitter(KB_EMITTER_SUN, to_world);
+  sun.one_minus_cos = static_cast<float>(2 * std::pow(std::sin(radius / 2), 2.0));
+  sun.scale = static_cast<float>(1 / (3.141592653589793238463 * std::pow(std::sin(radius), 2.0)));
+  return sun;
 }
 
 /// Shape 0 is an area light of spectrum row 3.

@@ -1,0 +1,28 @@
+// Lamps that are no surfaces, for the scenes of the zoo.
+#pragma once
+
+#include "tests/support/scene_text.hpp"
+
+namespace kiloband::scene_text {
+
+inline Text delta_lights() {
+  return emitter("point", "<point name='position' x='-0.5' y='0.6' z='0.3'/>" +
+                              spectrum("intensity", "450:0.4, 650:0.9")) +
+         emitter("spot", real("cutoff_angle", "35") + real("beam_width", "20") +
+                             spectrum("intensity", "450:3, 650:1") +
+                             to_world(lookat("0.6, 0.8, 0.8", "0.2, -0.6, -0.2"))) +
+         emitter("directional", "<vector name='direction' x='0.3' y='-1' z='-0.6'/>" +
+                                    spectrum("irradiance", "450:0.5, 650:0.8"));
+}
+
+/// One of a moderate radius, two narrow ones of which one lies within it, seen by all kinds of surfaces.
+inline Text suns() {
+  const auto sun = [](const Text& direction, const Text& degrees, const Text& irradiance) {
+    return emitter("directional", "<vector name='direction' value='" + direction + "'/>" +
+                                      real("angular_radius", degrees) + spectrum("irradiance", irradiance));
+  };
+  return sun("0.3 -1 -0.6", "9", "450:0.5, 650:0.8") + sun("0.32 -1 -0.62", "0.8", "450:0.3, 650:0.1") +
+         sun("-0.6 -0.7 -0.2", "2.5", "450:0.1, 650:0.6");
+}
+
+}  // namespace kiloband::scene_text
