@@ -22,8 +22,8 @@ double mebibytes(double bytes) {
 }
 
 const char* name_of(uint32_t emitter_type) {
-  static constexpr const char* kNames[] = {"area", "constant",    "envmap",  "point",
-                                           "spot", "directional", "thermal", "sun"};
+  static constexpr const char* kNames[] = {"area",        "constant", "envmap", "point",    "spot",
+                                           "directional", "thermal",  "sun",    "projector"};
   return kNames[emitter_type];
 }
 

@@ -172,7 +172,8 @@ enum KbEmitterType {
   KB_EMITTER_SPOT = 4,
   KB_EMITTER_DIRECTIONAL = 5,
   KB_EMITTER_THERMAL = 6, /* a shape with a temperature of its own; what it emits is its surface's */
-  KB_EMITTER_SUN = 7 /* a directional light with an angular radius; suns are the last emitters of a scene */
+  KB_EMITTER_SUN = 7, /* a directional light with an angular radius; suns are the last emitters of a scene */
+  KB_EMITTER_PROJECTOR = 8
 };
 
 /* Suns of a scene: a ray that escapes may meet all of them. */
@@ -184,10 +185,11 @@ typedef struct {
   kb_u32 shape;        /* area: shape index */
   float select_pdf;    /* probability that next-event estimation selects this emitter */
   float one_minus_cos; /* sun: of its angular radius */
-  float scale;         /* sun: radiance over irradiance, 1/sr */
-  float cutoff_angle;  /* spot, rad: no light beyond */
-  float beam_width;    /* spot, rad: full intensity inside */
+  float scale; /* sun: radiance over irradiance, 1/sr; projector: irradiance on its image plane over ref */
+  float cutoff_angle; /* spot, rad: no light beyond */
+  float beam_width;   /* spot, rad: full intensity inside */
   float to_world[12]; /* point, spot: position in the last column; directional, sun: local +Z = propagation */
+  /* spot with a picture, projector: x and y scaled so that the picture's borders are at x, y = +-z */
   float to_object[12];
 } KbEmitter;
 KB_STATIC_ASSERT(sizeof(KbEmitter) == 128, emitter_size);

@@ -85,16 +85,18 @@ KB_INLINE Light sample_suns(const FlatScene& scene, U emitter, const F4& u, M ac
           resolve(scene, ref, {F(0), F(0)}, active)};
 }
 
-/// Points, spots and directional lights.
+/// Points, spots, projectors and directional lights.
 /// type  of the emitters
 KB_INLINE Light sample_delta_lights(const FlatScene& scene, U emitter, U type, V3 point, M active) {
   const M infinite = active & (type == U(KB_EMITTER_DIRECTIONAL)), near = active & !infinite;
-  DeltaSample sample{no_vector(), no_vector(), F(0)};
-  if (any(near)) sample = sample_position(scene, emitter, near & (type == U(KB_EMITTER_SPOT)), point);
+  DeltaSample sample{no_vector(), no_vector(), F(0), {F(0), F(0)}};
+  if (any(near))
+    sample = sample_position(scene, emitter, near & (type == U(KB_EMITTER_SPOT)),
+                             near & (type == U(KB_EMITTER_PROJECTOR)), point);
   if (any(infinite)) {
     const DeltaSample far = sample_directional(scene, emitter);
     sample = {select(infinite, far.direction, sample.direction), select(infinite, far.target, sample.target),
-              select(infinite, far.factor, sample.factor)};
+              select(infinite, far.factor, sample.factor), sample.uv};
   }
   const KbEmitter* emitters = scene.emitters.data();
   const M lit = active & (sample.factor > F(0));
@@ -105,7 +107,7 @@ KB_INLINE Light sample_delta_lights(const FlatScene& scene, U emitter, U type, V
           sample.factor,
           infinite,
           active,
-          resolve(scene, ref, {F(0), F(0)}, lit)};
+          resolve(scene, ref, sample.uv, lit)};
 }
 
 /// Area lights on shapes of other kinds.
@@ -161,7 +163,7 @@ KB_INLINE Light sample_lights(const FlatScene& scene, V3 point, const F4& u, M a
   if (any(mesh)) light = sample_mesh_light(scene, emitter, shape, point, u, mesh);
   if (any(sky)) light = select(sky, sample_environment(scene, u, sky), light);
   const M delta = active & ((type == U(KB_EMITTER_POINT)) | (type == U(KB_EMITTER_SPOT)) |
-                            (type == U(KB_EMITTER_DIRECTIONAL)));
+                            (type == U(KB_EMITTER_DIRECTIONAL)) | (type == U(KB_EMITTER_PROJECTOR)));
   if (any(delta)) light = select(delta, sample_delta_lights(scene, emitter, type, point, delta), light);
   const M sun = active & (type == U(KB_EMITTER_SUN));
   if (any(sun)) light = select(sun, sample_suns(scene, emitter, u, sun), light);

@@ -15,6 +15,29 @@ inline Text delta_lights() {
                                     spectrum("irradiance", "450:0.5, 650:0.8"));
 }
 
+/// Spots and projectors that throw pictures: colours, values, squares, bands, a spectrum; one partly on things beside and behind it.
+/// Without falloff, whose edge, where values are small differences of angles, delta_lights() has.
+inline Text projected_lights() {
+  const Text down = to_world(lookat("0.6, 0.8, 0.8", "0.2, -0.6, -0.2"));
+  const Text across = to_world(lookat("-0.8, 0.7, 0.9", "0.4, -0.5, -0.6"));
+  const auto spot = [&](const Text& place, const Text& picture) {
+    return emitter("spot", real("cutoff_angle", "40") + real("beam_width", "40") + place + picture);
+  };
+  const auto projector = [](const Text& place, const Text& fov, const Text& power, const Text& picture) {
+    return emitter("projector", real("fov", fov) + real("scale", power) + place + picture);
+  };
+  const Text intensity = spectrum("intensity", "450:3, 650:1");
+  return spot(down, intensity + bitmap("texture", "colours.ppm", "repeat", "bilinear", scale("1.7"))) +
+         spot(across, intensity + checkerboard("texture", scale("3") + turn("z", "20"))) +
+         spot(across,
+              spectral_bitmap("texture", text("filename", "glow.hdr"), "clamp", "nearest", scale("1"))) +
+         projector(down, "70", "0.7", bitmap("irradiance", "colours.ppm", "clamp", "bilinear", scale("1"))) +
+         projector(across, "25", "1.2", spectrum("irradiance", "450:0.5, 650:0.8")) +
+         projector(to_world(lookat("0, 0.2, 0.3", "0.9, -0.6, 0.2")), "90", "0.01",
+                   "<spectrum name='irradiance' type='d65'>" +
+                       bitmap("value", "grey.pgm", "repeat", "nearest", scale("2")) + "</spectrum>");
+}
+
 /// One of a moderate radius, two narrow ones of which one lies within it, seen by all kinds of surfaces.
 inline Text suns() {
   const auto sun = [](const Text& direction, const Text& degrees, const Text& irradiance) {

@@ -312,6 +312,7 @@ std::vector<ZooScene> make_scenes() {
       {"constant_sky", scene(6, thinlens(small_film("tent")) + objects + sky("450:0.8, 650:1.2"))},
       {"envmap", scene(6, thinlens(small_film("gaussian")) + objects + kEnvmap)},
       {"delta_lights", scene(5, orthographic(small_film("box")) + room() + boxes() + delta_lights())},
+      {"projected_lights", scene(5, perspective(small_film("box")) + room() + boxes() + projected_lights())},
       {"suns",
        scene(6, perspective(small_film("gaussian")) + floor(diffuse("0.5")) + suns() + sky("0.2") + metals() +
                     ball("0 0.1 0.5", "0.25", bsdf("dielectric")) +

@@ -45,7 +45,12 @@ std::string concerned_case(const faults::PlantedFault& fault) {
                                                               {"gases", "stress/hot_gas"},
                                                               {"glasses", "stress/lens_and_glass"},
                                                               {"lenses", "stress/lens_and_glass"},
-                                                              {"constant_sky", "stress/lens_and_glass"}};
+                                                              {"constant_sky", "stress/lens_and_glass"},
+                                                              {"mitchell", "stress/glade"},
+                                                              {"bumps", "stress/glade"},
+                                                              {"instances", "stress/glade"},
+                                                              {"suns", "stress/glade"},
+                                                              {"projected_lights", "stress/glade"}};
   const auto found = kCases.find(fault.zoo_scene);
   return found == kCases.end() ? "stress/metals_and_lamps" : found->second;
 }

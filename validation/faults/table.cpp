@@ -81,6 +81,8 @@ constexpr PlantedFault kFaults[] = {
      kMeans},
     {KB_PLANTED_SUN_MISSED, "sun-missed", kBoth, "rays that escape do not meet suns, but MIS of light samples counts on it",
      "directional light with an angular_radius", "suns", kMeans},
+    {KB_PLANTED_PICTURE_MIRRORED, "picture-mirrored", kBoth, "pictures of spots and projectors are mirrored from left to right",
+     "spot with a texture, projector", "projected_lights", kMeans},
     // ---- scattering
     {KB_PLANTED_COSINE, "missing-cosine", kBoth, "diffuse reflection of light samples lacks the cosine", "diffuse", "diffuse_room",
      kMeans},

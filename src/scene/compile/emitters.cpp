@@ -135,7 +135,13 @@ KbEmitter Flattener::make_emitter(const Emitter& emitter) {
     set_emitter_transforms(record, placed(spot->to_world));
     record.cutoff_angle = static_cast<float>(spot->cutoff_angle);
     record.beam_width = static_cast<float>(spot->beam_width);
-    powers_.push_back({spot->intensity, spot_solid_angle(spot->beam_width, spot->cutoff_angle)});
+    const double solid_angle = spot_solid_angle(spot->beam_width, spot->cutoff_angle);
+    if (spot->texture)
+      add_spot_picture(record, *spot, solid_angle, use("texture"));
+    else
+      powers_.push_back({spot->intensity, solid_angle});
+  } else if (const auto* projector = std::get_if<ProjectorEmitter>(&emitter.model)) {
+    add_projector(record, *projector, use("irradiance"));
   } else {
     const auto& directional = std::get<DirectionalEmitter>(emitter.model);
     record.type = directional.angular_radius > 0 ? KB_EMITTER_SUN : KB_EMITTER_DIRECTIONAL;
@@ -286,7 +292,9 @@ void Flattener::set_channel_scales() {
       if (!out_.spectra[row].is_emission) continue;
       const double scale = row == d65_row_ ? std::max(1.0, rgb_emission_peak_) : 1.0;
       const auto weight = emission_row_factors_.find(static_cast<uint32_t>(row));
-      const double largest = weight == emission_row_factors_.end() ? scale : weight->second;
+      const double largest = weight == emission_row_factors_.end() ? scale
+                             : row == d65_row_                     ? std::max(scale, weight->second)
+                                                                   : weight->second;
       peak = std::max(peak, largest * peak_in(out_.spectra[row], channel));
     }
     for (const Spectrum& spectrum : emission_peaks_)

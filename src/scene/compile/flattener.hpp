@@ -22,9 +22,10 @@ class Flattener {
   // textures.cpp
   uint32_t reference(const Texture& texture, const SpectrumSource& use);
   /// What a bitmap's values stand for; one image used in two ways is flattened twice.
-  enum class BitmapUse { kReflectance, kEmission, kOpacity, kHeight, kNormals };
+  enum class BitmapUse { kReflectance, kEmission, kPicture, kOpacity, kHeight, kNormals };
   /// height: that a value of 1 stands for (kHeight)
   uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use, float height = 1);
+  static KbFloat4 texel_of(const float* rgb, BitmapUse use, float height);
   float texel_bound(const KbFloat4& texel) const;
   // spectral.cpp
   uint32_t spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
@@ -153,6 +154,18 @@ class Flattener {
   void add_suns();
   void add_area_emitter(uint32_t shape_index);
   void add_environment_map(KbEmitter& record, const EnvmapEmitter& emitter, const SpectrumSource& use);
+  // projected_lights.cpp
+  void add_spot_picture(KbEmitter& record, const SpotEmitter& spot, double solid_angle,
+                        const SpectrumSource& use);
+  void add_projector(KbEmitter& record, const ProjectorEmitter& projector, const SpectrumSource& use);
+  /// A picture times a spectrum, and what it emits if its mean is over `factor`.
+  uint32_t picture(const Texture& texture, const Spectrum& light, double factor, const SpectrumSource& use);
+  uint32_t bitmap_picture(const std::shared_ptr<const BitmapTexture>& texture, const Spectrum& light,
+                          double factor, const SpectrumSource& use);
+  uint32_t checkerboard_picture(const CheckerboardTexture& texture, const Spectrum& light, double factor,
+                                const SpectrumSource& use);
+
+  // emitters.cpp
   KbEmitter make_emitter(const Emitter& emitter);
   void select_emitters();
   void set_channel_scales();

@@ -61,6 +61,8 @@ void check_frame(const Transform& to_world, const Part& part) {
 std::optional<glm::dvec3> place_of(const Emitter& emitter) {
   if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) return point->position;
   if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model)) return glm::dvec3(spot->to_world[3]);
+  if (const auto* projector = std::get_if<ProjectorEmitter>(&emitter.model))
+    return glm::dvec3(projector->to_world[3]);
   return std::nullopt;
 }
 

@@ -28,7 +28,8 @@ namespace kiloband {
   X(CONSTANT_LIGHT, constant_light, "constant environment")                                           \
   X(ENVMAP_LIGHT, envmap_light, "environment map")                                                    \
   X(DELTA_LIGHT, delta_light, "delta light")                                                          \
-  X(SUN, sun, "sun") /* directional with an angular radius */                                         \
+  X(SUN, sun, "sun")                                       /* directional with an angular radius */   \
+  X(PROJECTED_LIGHT, projected_light, "projected picture") /* of spots and projectors */              \
   X(ANALYTIC_SHAPES, analytic_shapes, "analytic shapes")                                              \
   X(INSTANCES, instances, "instances")                                                                \
   X(THERMAL, thermal, "thermal emission")                      /* surfaces emit by Kirchhoff's law */ \

@@ -27,6 +27,15 @@ KbFloat4 upsampled_texel(const SigmoidTable& table, const float* rgb, bool emiss
   return {c[0], c[1], c[2], scale};
 }
 
+/// As a reflectance; components above 1 as that much of the brightest one.
+KbFloat4 picture_texel(const SigmoidTable& table, const float* rgb) {
+  const float scale = std::max({1.0f, rgb[0], rgb[1], rgb[2]});
+  const float part[3] = {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale};
+  KbFloat4 texel = upsampled_texel(table, part, false);
+  texel.w *= scale;
+  return texel;
+}
+
 float value_of(const Image& image, std::size_t texel) {
   if (image.channels == 1) return image.pixels[texel];
   return (image.pixels[3 * texel] + image.pixels[3 * texel + 1] + image.pixels[3 * texel + 2]) / 3;
@@ -75,6 +84,15 @@ uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use)
          checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
 }
 
+/// A texel that is not flat.
+KbFloat4 Flattener::texel_of(const float* rgb, BitmapUse use, float height) {
+  static const SigmoidTable kTable;
+  if (use == BitmapUse::kHeight) return flat_texel(height * luminance_of(rgb));
+  if (use == BitmapUse::kNormals) return {2 * rgb[0] - 1, 2 * rgb[1] - 1, 2 * rgb[2] - 1, 1};
+  if (use == BitmapUse::kPicture) return picture_texel(kTable, rgb);
+  return upsampled_texel(kTable, rgb, use == BitmapUse::kEmission);
+}
+
 uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use, float height) {
   const bool emission = use == BitmapUse::kEmission;
   const auto [place, is_new] =
@@ -95,8 +113,9 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
   record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
   store_uv_transform(texture->to_uv, record.to_uv);
 
-  static const SigmoidTable kTable;
-  const bool flat = texture->raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emission);
+  const bool geometry = use == BitmapUse::kHeight || use == BitmapUse::kNormals;
+  const bool flat =
+      !geometry && (texture->raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emission));
   double sum = 0;
   double largest = 0;
   double peak = 0;
@@ -104,12 +123,7 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
     const float value = value_of(image, texel);
     const float grey[3] = {value, value, value};
     const float* rgb = image.channels == 1 ? grey : &image.pixels[3 * texel];
-    if (use == BitmapUse::kHeight)
-      out_.texels.push_back(flat_texel(height * luminance_of(rgb)));
-    else if (use == BitmapUse::kNormals)
-      out_.texels.push_back({2 * rgb[0] - 1, 2 * rgb[1] - 1, 2 * rgb[2] - 1, 1});
-    else
-      out_.texels.push_back(flat ? flat_texel(value) : upsampled_texel(kTable, rgb, emission));
+    out_.texels.push_back(flat ? flat_texel(value) : texel_of(rgb, use, height));
     sum += value;
     out_.texel_bounds.push_back(texel_bound(out_.texels.back()));
     largest = std::max(largest, double{out_.texel_bounds.back()});

@@ -215,6 +215,15 @@ struct SpotEmitter {
   Spectrum intensity;       // on the axis
   double cutoff_angle = 0;  // rad
   double beam_width = 0;    // rad
+  /// A picture over the square around the cone that the intensity is multiplied by; a spectral bitmap is the intensity.
+  std::optional<Texture> texture;
+  Transform to_world{1.0};
+};
+struct ProjectorEmitter {
+  Texture irradiance;  // W m^-2 nm^-1; a bitmap is spectrally flat, or times D65
+  bool d65 = false;
+  double scale = 1;  // pi times it and the irradiance are what a plane at distance 1 gets
+  double tan_half_x = 0, tan_half_y = 0;
   Transform to_world{1.0};
 };
 struct DirectionalEmitter {
@@ -228,7 +237,7 @@ struct Emitter {
   std::string id;
   SourcePosition position;
   std::variant<ConstantEmitter, EnvmapEmitter, SpectralEnvmapEmitter, PointEmitter, SpotEmitter,
-               DirectionalEmitter>
+               ProjectorEmitter, DirectionalEmitter>
       model;
 };
 

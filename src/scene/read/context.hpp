@@ -118,6 +118,8 @@ void check_temperatures(const Shape& shape, const std::string& label, const Plac
 /// Mitsuba's weight for choosing lights: checked, with a note.
 void accept_sampling_weight(const ReadContext& context, const ObjectReader& object);
 Emitter read_emitter(ReadContext& context, Node& node);
+/// Full angle across an image's width, rad, from fov and fov_axis or focal_length. aspect: width over height
+double read_fov(const ObjectReader& object, double aspect);
 Sensor read_sensor(ReadContext& context, Node& node);
 Film read_film(ReadContext& context, Node& node);
 /// What a sensor without <film> has.

@@ -85,6 +85,21 @@ EmitterModel read_point(ReadContext& context, const ObjectReader& object) {
   return point;
 }
 
+/// The picture of a spot, which must be one, as in Mitsuba.
+std::optional<Texture> read_spot_texture(ReadContext& context, const ObjectReader& object, double cutoff) {
+  if (!object.has("texture")) return {};
+  Node& node = object.find("texture")->resolved();
+  const bool spectral = node.type == "spectral_bitmap";
+  Texture texture = read_texture(context, object, "texture",
+                                 spectral ? SpectrumUse::kIntensity : SpectrumUse::kReflectance, Spectrum());
+  if (std::holds_alternative<Spectrum>(texture))
+    object.fail_at("texture", "texture: must be a bitmap, checkerboard or spectral_bitmap");
+  if (spectral && object.has("intensity"))
+    object.fail_at("intensity", "'intensity' together with a spectral_bitmap, which is the intensity itself");
+  object.check(cutoff < 90, "cutoff_angle", cutoff, "must be below 90 degrees with a texture");
+  return texture;
+}
+
 EmitterModel read_spot(ReadContext& context, const ObjectReader& object) {
   SpotEmitter spot;
   spot.intensity = emission(context, object, "intensity", SpectrumUse::kIntensity);
@@ -94,9 +109,33 @@ EmitterModel read_spot(ReadContext& context, const ObjectReader& object) {
   object.check(beam >= 0 && beam <= cutoff, "beam_width", beam, "must be from 0 to cutoff_angle");
   spot.cutoff_angle = cutoff * std::numbers::pi / 180;
   spot.beam_width = beam * std::numbers::pi / 180;
-  if (object.has("texture")) object.fail_at("texture", "a spot light's texture is not supported");
+  spot.texture = read_spot_texture(context, object, cutoff);
   spot.to_world = rotation_and_position(object);
   return spot;
+}
+
+/// Width over height of what is projected; 1 of what has no pixels.
+double aspect_of(const Texture& texture) {
+  if (const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture))
+    return static_cast<double>((*bitmap)->image->width) / (*bitmap)->image->height;
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    return static_cast<double>((*spectral)->image->width) / (*spectral)->image->height;
+  return 1;
+}
+
+EmitterModel read_projector(ReadContext& context, const ObjectReader& object) {
+  ProjectorEmitter projector;
+  if (!object.has("irradiance")) object.fail_here("parameter 'irradiance' is missing");
+  projector.irradiance = read_texture(context, object, "irradiance", SpectrumUse::kIrradiance, Spectrum());
+  projector.d65 = object.find("irradiance")->resolved().type == "d65";
+  projector.scale = object.get_float("scale", 1);
+  object.check(projector.scale >= 0, "scale", projector.scale, "must be >= 0");
+  check_at_most(object, "scale", projector.scale, kMaxQuantity);
+  const double aspect = aspect_of(projector.irradiance);
+  projector.tan_half_x = std::tan(0.5 * read_fov(object, aspect));
+  projector.tan_half_y = projector.tan_half_x / aspect;
+  projector.to_world = rotation_and_position(object);
+  return projector;
 }
 
 EmitterModel read_directional(ReadContext& context, const ObjectReader& object) {
@@ -122,13 +161,34 @@ struct EmitterType {
   EmitterModel (*read)(ReadContext&, const ObjectReader&);
 };
 
-constexpr EmitterType kEmitterTypes[] = {
-    {"constant", read_constant}, {"envmap", read_envmap}, {"spectral_envmap", read_spectral_envmap},
-    {"point", read_point},       {"spot", read_spot},     {"directional", read_directional}};
+constexpr EmitterType kEmitterTypes[] = {{"constant", read_constant},
+                                         {"envmap", read_envmap},
+                                         {"spectral_envmap", read_spectral_envmap},
+                                         {"point", read_point},
+                                         {"spot", read_spot},
+                                         {"projector", read_projector},
+                                         {"directional", read_directional}};
+
+/// What Mitsuba has and we do not, and why or what to use.
+constexpr std::pair<std::string_view, std::string_view> kNotSupported[] = {
+    {"sun", "use directional with angular_radius, which `kiloband sky --sun` writes"},
+    {"sky", "`kiloband sky` writes a clear sky, of another model, for spectral_envmap"},
+    {"sunsky",
+     "`kiloband sky --sun` writes a clear sky, of another model, for spectral_envmap and its sun as directional"},
+    {"timed_sunsky",
+     "`kiloband sky --sun` writes a clear sky, of another model, for spectral_envmap and its sun as directional; "
+     "nothing moves"},
+    {"directionalarea",
+     "no path from a camera finds light of a single direction from an area; Mitsuba 3.9.1's path "
+     "integrator renders it black, too"}};
 
 [[noreturn]] void refuse(const ObjectReader& object) {
-  object.refuse_type(
-      {"area", "thermal", "constant", "envmap", "spectral_envmap", "point", "spot", "directional"});
+  const Node& node = object.node();
+  for (const auto& [type, instead] : kNotSupported)
+    if (node.type == type)
+      fail(node.type_place, "emitter type '" + node.type + "' is not supported: " + std::string(instead));
+  object.refuse_type({"area", "thermal", "constant", "envmap", "spectral_envmap", "point", "spot",
+                      "projector", "directional"});
 }
 
 }  // namespace

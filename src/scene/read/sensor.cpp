@@ -44,9 +44,9 @@ double diagonal_fov(const ObjectReader& object) {
   return 2 * std::atan(std::hypot(36.0, 24.0) / (2 * f_mm));
 }
 
-/// Full angle across the film's width, rad, from fov and fov_axis or focal_length.
-double read_fov(const ObjectReader& object, const Film& film) {
-  const double aspect = static_cast<double>(film.width) / film.height;
+}  // namespace
+
+double read_fov(const ObjectReader& object, double aspect) {
   const auto axis =
       static_cast<FovAxis>(object.get_choice("fov_axis", {"x", "y", "diagonal", "smaller", "larger"}));
   if (!object.has("fov")) return fov_x(diagonal_fov(object), FovAxis::kDiagonal, aspect);
@@ -55,6 +55,8 @@ double read_fov(const ObjectReader& object, const Film& film) {
   object.check(degrees > 0 && degrees < 180, "fov", degrees, "must be between 0 and 180 degrees");
   return fov_x(degrees * std::numbers::pi / 180, axis, aspect);
 }
+
+namespace {
 
 ThinLensSensor read_lens(const ObjectReader& object, const Sensor& sensor, double fov) {
   ThinLensSensor lens;
@@ -122,7 +124,7 @@ Sensor read_sensor(ReadContext& context, Node& node) {
                   "widths of the film");
     check_at_most(object, "principal_point_offset_y", sensor.principal_point_y, kMaxOffset,
                   "heights of the film");
-    const double fov = read_fov(object, sensor.film);
+    const double fov = read_fov(object, static_cast<double>(sensor.film.width) / sensor.film.height);
     if (thin_lens) {
       sensor.model = read_lens(object, sensor, fov);
     } else {

@@ -327,6 +327,20 @@ std::vector<BrokenScene> table() {
       {"beam wider than the cutoff",
        complete_scene(R"xml(<emitter type="spot"><float name="beam_width" value="30"/></emitter>)xml"),
        "scene.xml:2:54: error: spot emitter: beam_width 30: must be from 0 to cutoff_angle"},
+      {"spot with a texture that is none",
+       complete_scene(R"xml(<emitter type="spot"><spectrum name="texture" value="0.5"/></emitter>)xml"),
+       "scene.xml:2:54: error: spot emitter: texture: must be a bitmap, checkerboard or spectral_bitmap"},
+      {"spot with a texture over half of all directions",
+       complete_scene(
+           R"xml(<emitter type="spot"><float name="cutoff_angle" value="90"/><texture name="texture" type="checkerboard"/></emitter>)xml"),
+       "scene.xml:2:56: error: spot emitter: cutoff_angle 90: must be below 90 degrees with a texture"},
+      {"projector of nothing",
+       complete_scene(R"xml(<emitter type="projector"><float name="fov" value="30"/></emitter>)xml"),
+       "scene.xml:2:2: error: projector emitter: parameter 'irradiance' is missing"},
+      {"projector of less than nothing",
+       complete_scene(
+           R"xml(<emitter type="projector"><spectrum name="irradiance" value="1"/><float name="fov" value="30"/><float name="scale" value="-1"/></emitter>)xml"),
+       "scene.xml:2:123: error: projector emitter: scale -1: must be >= 0"},
       {"radius of a sun that floats cannot resolve",
        complete_scene(
            R"xml(<emitter type="directional"><float name="angular_radius" value="1e-4"/></emitter>)xml"),

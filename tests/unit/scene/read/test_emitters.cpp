@@ -35,6 +35,46 @@ TEST(SceneEmitter, SpotAngles) {
   EXPECT_EQ(spot.intensity(560), illuminant_d65()(560));
 }
 
+/// Two by one values.
+void write_picture(const TemporaryFolder& folder) {
+  folder.write("picture.ppm", "P3\n2 1\n255\n0 0 0 255 255 255\n");
+}
+
+TEST(SceneEmitter, SpotsMayHaveATexture) {
+  EXPECT_FALSE(emitter_of<SpotEmitter>(R"(<emitter type="spot"/>)").texture);
+  const TemporaryFolder folder;
+  write_picture(folder);
+  const auto spot = emitter_of<SpotEmitter>(
+      R"(<emitter type="spot"><texture name="texture" type="bitmap"><string name="filename" value="picture.ppm"/></texture></emitter>)",
+      folder.path());
+  ASSERT_TRUE(spot.texture);
+  EXPECT_EQ(std::get<std::shared_ptr<const BitmapTexture>>(*spot.texture)->image->width, 2u);
+  EXPECT_EQ(spot.intensity(560), illuminant_d65()(560));
+}
+
+/// As wide as the field of view says, as high as the picture's pixels do.
+TEST(SceneEmitter, ProjectorsFieldOfView) {
+  const TemporaryFolder folder;
+  write_picture(folder);
+  const auto projector = [&](const std::string& parameters) {
+    return emitter_of<ProjectorEmitter>(
+        R"(<emitter type="projector"><texture name="irradiance" type="bitmap"><string name="filename" value="picture.ppm"/></texture>)" +
+            parameters + "</emitter>",
+        folder.path());
+  };
+  const auto wide = projector(R"(<float name="fov" value="90"/><float name="scale" value="3"/>)");
+  EXPECT_NEAR(wide.tan_half_x, 1, 1e-12);
+  EXPECT_NEAR(wide.tan_half_y, 0.5, 1e-12);
+  EXPECT_EQ(wide.scale, 3);
+  EXPECT_FALSE(wide.d65);
+  const auto high = projector(R"(<float name="fov" value="90"/><string name="fov_axis" value="y"/>)");
+  EXPECT_NEAR(high.tan_half_x, 2, 1e-12);
+  EXPECT_NEAR(high.tan_half_y, 1, 1e-12);
+  const auto square = emitter_of<ProjectorEmitter>(
+      R"(<emitter type="projector"><spectrum name="irradiance" value="2"/><float name="fov" value="90"/></emitter>)");
+  EXPECT_NEAR(square.tan_half_y, 1, 1e-12);
+}
+
 TEST(SceneEmitter, DirectionalIsNormalised) {
   EXPECT_EQ(emitter_of<DirectionalEmitter>(
                 R"(<emitter type="directional"><vector name="direction" value="0 -5 0"/></emitter>)")
@@ -66,6 +106,18 @@ TEST(SceneEmitter, EnvironmentMapIsLoaded) {
   ASSERT_TRUE(envmap.image);
   EXPECT_EQ(envmap.image->width, 2u);
   EXPECT_EQ(envmap.image->pixels[3], 1);
+}
+
+TEST(SceneEmitter, WhatIsNotReadSaysWhatToUse) {
+  const auto message = [](const std::string& type) {
+    return error_of(scene("<emitter type='" + type + "'/>" + kSensor + kSphere));
+  };
+  EXPECT_EQ(message("sun"),
+            "scene.xml:2:16: error: emitter type 'sun' is not supported: use directional with "
+            "angular_radius, which `kiloband sky --sun` writes");
+  for (const char* type : {"sky", "sunsky", "timed_sunsky"})
+    EXPECT_NE(message(type).find("`kiloband sky"), std::string::npos) << type;
+  EXPECT_NE(message("directionalarea").find("no path from a camera finds"), std::string::npos);
 }
 
 TEST(SceneEmitter, SamplingWeightIsNoted) {
