@@ -20,6 +20,7 @@
   X(scene, IN, KbSceneConstants, constants) SEP                                                                  \
   X(scene, IN, KbMaterial, materials) SEP                                                                        \
   X(scene, IN, KbBump, bumps) SEP             /* by material */                                                  \
+  X(scene, IN, KbRoughness, roughness) SEP    /* by material */                                                  \
   X(scene, IN, float, tables) SEP             /* of materials, thermal emission: KbMaterial::table, KbThermal::table */ \
   X(scene, IN, KbSurface, surfaces) SEP                                                                          \
   X(scene, IN, KbShape, shapes) SEP                                                                              \

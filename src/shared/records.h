@@ -70,6 +70,12 @@ typedef struct {
 } KbBump;
 KB_STATIC_ASSERT(sizeof(KbBump) == 8, bump_size);
 
+/* Roughness that varies over the surface of a material: bitmap references, or KB_NONE for its own. */
+typedef struct {
+  kb_u32 alpha_u_ref, alpha_v_ref;
+} KbRoughness;
+KB_STATIC_ASSERT(sizeof(KbRoughness) == 8, roughness_size);
+
 #define KB_SURFACE_TRANSMISSIVE 1u /* one material, both sides, not flipped */
 #define KB_SURFACE_TWO_SIDED 2u    /* back != KB_NONE: the frame is flipped for directions from below */
 #define KB_SURFACE_THERMAL 4u      /* emits by Kirchhoff's law: front_thermal, back_thermal */

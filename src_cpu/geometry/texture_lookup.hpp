@@ -44,6 +44,11 @@ inline float opacity_at(const FlatScene& scene, const KbSurface& surface, glm::v
                                         : share_at(scene, surface.opacity_ref, surface.opacity, uv);
 }
 
+/// A roughness where `ref` is not KB_NONE: the value of a bitmap. `alpha` elsewhere.
+inline float roughness_at(const FlatScene& scene, uint32_t ref, float alpha, glm::vec2 uv) {
+  return ref == KB_NONE ? alpha : bitmap_value(scene, resolve_spectrum(scene, ref, uv).texture);
+}
+
 /// Upper bound of a resolved spectrum over guide bands and rendered channels
 /// (of a lookup: of its four texels).
 float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum);

@@ -112,6 +112,21 @@ inline V3 bump_normals(Shading& s, M seen, M turned) {
   return normal;
 }
 
+/// Roughness that varies over surfaces, one path at a time.
+inline void look_up_roughness(Shading& s, M seen) {
+  const FlatScene& scene = s.scene();
+  const WordArray side(s.side);
+  const FloatArray u(s.hit.uv.x), v(s.hit.uv.y);
+  FloatArray alpha_u(s.material.alpha_u), alpha_v(s.material.alpha_v);
+  each_lane(seen, [&](uint32_t i) KB_LAMBDA {
+    const KbRoughness& maps = scene.roughness[side[i]];
+    alpha_u[i] = roughness_at(scene, maps.alpha_u_ref, alpha_u[i], {u[i], v[i]});
+    alpha_v[i] = roughness_at(scene, maps.alpha_v_ref, alpha_v[i], {u[i], v[i]});
+  });
+  s.material.alpha_u = alpha_u;
+  s.material.alpha_v = alpha_v;
+}
+
 /// The material that is seen, its spectra, the frame and the direction to where the path comes from. Returns the
 /// lanes that have a material which scatters.
 KB_INLINE M find_material(Shading& s, U surface, M hit) {
@@ -131,6 +146,7 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   s.vertex.b = resolve(scene, ref_b, s.hit.uv, seen & (ref_b != U(KB_NONE)));
   s.material.bound_a = bound_at(scene, ref_a, s.vertex.a, s.material.bound_a, seen & (ref_a != U(KB_NONE)));
   s.material.bound_b = bound_at(scene, ref_b, s.vertex.b, s.material.bound_b, seen & (ref_b != U(KB_NONE)));
+  if (scene.features.roughness_map) look_up_roughness(s, seen);
   const V3 normal = scene.features.bump ? bump_normals(s, seen, turned) : s.hit.shading_normal;
   s.frame = make_frame(normal);
   const M anisotropic = seen & (s.material.alpha_u != s.material.alpha_v);

@@ -52,6 +52,7 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
   return {.constants = up("scene constants", std::vector{scene_constants(scene)}),
           .materials = up("materials", scene.materials),
           .bumps = up("bump maps", scene.bumps),
+          .roughness = up("roughness", scene.roughness),
           .tables = up("tables", scene.tables),
           .surfaces = up("surfaces", scene.surfaces),
           .shapes = up("shapes", scene.shapes),

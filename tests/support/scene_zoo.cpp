@@ -213,6 +213,29 @@ Text bumps() {
               bump("0.02", map("repeat", scale("1")) + bsdf("plastic")));
 }
 
+/// Roughness that varies, along one axis and along both, of metal and glass.
+Text roughness_maps() {
+  const auto rough = [](const Text& type, const Text& alphas) {
+    return bsdf(type, text("distribution", "ggx") + alphas);
+  };
+  const auto map = [](const Text& name, const Text& file, const Text& filter) {
+    return texture("bitmap", name, text("filename", file) + text("filter_type", filter) + yes("raw"),
+                   scale("2.3"));
+  };
+  const Text both = map("alpha_u", "grey.pgm", "bilinear") + map("alpha_v", "colours.ppm", "nearest");
+  return rectangle(scale("0.5") + turn("y", "20") + translate("-0.45 0.4 0"),
+                   rough("roughconductor", map("alpha", "colours.ppm", "bilinear"))) +
+         rectangle(scale("0.4") + turn("x", "-40") + translate("0.5 0.4 0"),
+                   bsdf("twosided", rough("roughconductor", both))) +
+         ball("-0.5 -0.5 0.1", "0.35", rough("roughdielectric", map("alpha", "grey.pgm", "bilinear"))) +
+         ball("0.4 -0.5 0.1", "0.35",
+              bsdf("mask",
+                   real("opacity", "0.8") +
+                       bsdf("blendbsdf", real("weight", "0.5") + diffuse("0.5") +
+                                             rough("roughconductor", map("alpha_v", "grey.pgm", "nearest") +
+                                                                         real("alpha_u", "0.3")))));
+}
+
 Text instance(const Text& group, const Text& steps) {
   return shape("instance", steps, "<ref id='" + group + "'/>");
 }
@@ -331,6 +354,8 @@ std::vector<ZooScene> make_scenes() {
        kCurved},
       {"panes", scene(10, perspective(small_film("gaussian")) + lit_room + panes()), kCurved},
       {"blends", scene(8, perspective(small_film("gaussian")) + lit_room + blends() + sky("0.3")), kCurved},
+      {"roughness_maps", scene(6, perspective(small_film("tent")) + lit_room + roughness_maps() + sky("0.3")),
+       kCurved},
       {"bumps",
        scene(5, perspective(small_film("gaussian")) + left(diffuse("0.5")) + right(diffuse("0.5")) +
                     ceiling(diffuse("0.5")) + bumps() + ceiling_lamp() + sky("0.3")),

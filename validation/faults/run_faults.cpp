@@ -50,7 +50,8 @@ std::string concerned_case(const faults::PlantedFault& fault) {
                                                               {"bumps", "stress/glade"},
                                                               {"instances", "stress/glade"},
                                                               {"suns", "stress/glade"},
-                                                              {"projected_lights", "stress/glade"}};
+                                                              {"projected_lights", "stress/glade"},
+                                                              {"roughness_maps", "stress/glade"}};
   const auto found = kCases.find(fault.zoo_scene);
   return found == kCases.end() ? "stress/metals_and_lamps" : found->second;
 }

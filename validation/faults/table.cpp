@@ -92,6 +92,8 @@ constexpr PlantedFault kFaults[] = {
      "plastics", kMeans},
     {KB_PLANTED_ROUGHNESS_SQUARED, "roughness-squared", kBoth, "alpha is squared", "rough metal, glass or plastic", "metals",
      kBackends},
+    {KB_PLANTED_ROUGHNESS_AXES, "roughness-axes", kBoth, "the map of alpha_u is taken for both axes", "a texture as alpha_u or alpha_v",
+     "roughness_maps", kMeans},
     {KB_PLANTED_FRESNEL_NK, "fresnel-nk", kBoth, "n and k are exchanged", "metal", "metals", kMeans},
     {KB_PLANTED_REFRACTION_INVERTED, "refraction-inverted", kBoth, "rays bend away where they should bend towards the normal",
      "smooth dielectric", "glasses", kMeans},

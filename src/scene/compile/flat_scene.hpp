@@ -82,7 +82,8 @@ struct FlatScene {
   std::vector<KbCheckerboard> checkerboards;
 
   std::vector<KbMaterial> materials;
-  std::vector<KbBump> bumps;  // by material
+  std::vector<KbBump> bumps;           // by material
+  std::vector<KbRoughness> roughness;  // by material
   std::vector<KbSurface> surfaces;
   std::vector<KbThermal> thermals;
   std::vector<float> tables;  // what KbMaterial::table, KbThermal::table and field_offset refer to

@@ -22,7 +22,7 @@ class Flattener {
   // textures.cpp
   uint32_t reference(const Texture& texture, const SpectrumSource& use);
   /// What a bitmap's values stand for; one image used in two ways is flattened twice.
-  enum class BitmapUse { kReflectance, kEmission, kPicture, kOpacity, kHeight, kNormals };
+  enum class BitmapUse { kReflectance, kEmission, kPicture, kOpacity, kRoughness, kHeight, kNormals };
   /// height: that a value of 1 stands for (kHeight)
   uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use, float height = 1);
   static KbFloat4 texel_of(const float* rgb, BitmapUse use, float height);
@@ -48,6 +48,7 @@ class Flattener {
   // materials.cpp
   uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated, const std::string& outer_id);
   KbBump bump(const BumpedBsdf& bumped);
+  KbRoughness roughness_maps(const Bsdf& scattering);
   KbMaterial make(const DiffuseBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);

@@ -148,6 +148,27 @@ KbBump Flattener::bump(const BumpedBsdf& bumped) {
   return record;
 }
 
+/// throws InputError where the roughness is that of all wavelengths' tables
+KbRoughness Flattener::roughness_maps(const Bsdf& scattering) {
+  const std::optional<Roughness>* rough = nullptr;
+  if (const auto* metal = std::get_if<ConductorBsdf>(&scattering.model)) rough = &metal->roughness;
+  const auto* glass = std::get_if<DielectricBsdf>(&scattering.model);
+  if (glass) rough = &glass->roughness;
+  KbRoughness record{KB_NONE, KB_NONE};
+  if (!rough || !*rough) return record;
+  const auto use = [&](const std::shared_ptr<const BitmapTexture>& map) {
+    return map ? KB_REF_BITMAP | bitmap(map, BitmapUse::kRoughness) : KB_NONE;
+  };
+  record = {use((*rough)->map_u), use((*rough)->map_v)};
+  if (record.alpha_u_ref == KB_NONE && record.alpha_v_ref == KB_NONE) return record;
+  if (glass && !(glass->int_ior.is_constant() && glass->ext_ior.is_constant()))
+    throw InputError(scattering.position, describe(scattering) +
+                                              ": alpha: a rough dielectric whose index depends on the "
+                                              "wavelength cannot have a texture here");
+  out_.features.roughness_map = true;
+  return record;
+}
+
 /// Its name: its own id, or that of the bsdf that it is nested in, or a number.
 uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated,
                              const std::string& outer_id) {
@@ -173,6 +194,7 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
   set_tables(record, compensated ? compensate(record, *scattering) : std::vector<float>());
   out_.materials.push_back(record);
   out_.bumps.push_back(bumped ? bump(*bumped) : KbBump{KB_NONE, 0});
+  out_.roughness.push_back(roughness_maps(*scattering));
   const std::string& own_id = bsdf->id.empty() ? scattering->id : bsdf->id;
   const std::string& id = own_id.empty() ? outer_id : own_id;
   out_.material_names.push_back(id.empty() ? fmt::format("material {}", out_.materials.size() - 1) : id);

@@ -20,6 +20,7 @@ namespace kiloband {
   X(MASK, mask, "mask")                                                                               \
   X(BLEND, blend, "blend")                                                                            \
   X(BUMP, bump, "bump or normal map")                                                                 \
+  X(ROUGHNESS_MAP, roughness_map, "roughness map")                                                    \
   X(DISPERSION, dispersion, "dispersion")                                                             \
   X(BITMAP, bitmap, "bitmap")                                                                         \
   X(CHECKERBOARD, checkerboard, "checkerboard")                                                       \

@@ -87,6 +87,7 @@ uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use)
 /// A texel that is not flat.
 KbFloat4 Flattener::texel_of(const float* rgb, BitmapUse use, float height) {
   static const SigmoidTable kTable;
+  if (use == BitmapUse::kRoughness) return flat_texel(luminance_of(rgb));
   if (use == BitmapUse::kHeight) return flat_texel(height * luminance_of(rgb));
   if (use == BitmapUse::kNormals) return {2 * rgb[0] - 1, 2 * rgb[1] - 1, 2 * rgb[2] - 1, 1};
   if (use == BitmapUse::kPicture) return picture_texel(kTable, rgb);
@@ -113,7 +114,8 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
   record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
   store_uv_transform(texture->to_uv, record.to_uv);
 
-  const bool geometry = use == BitmapUse::kHeight || use == BitmapUse::kNormals;
+  const bool geometry =
+      use == BitmapUse::kRoughness || use == BitmapUse::kHeight || use == BitmapUse::kNormals;
   const bool flat =
       !geometry && (texture->raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emission));
   double sum = 0;

@@ -69,7 +69,13 @@ void Flattener::check_thermal(const Bsdf& bsdf, const KbMaterial& material) cons
   };
   if (const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf.model))
     require(diffuse->reflectance, "reflectance");
+  const auto refuse_map = [&](const std::optional<Roughness>& roughness) {
+    if (roughness && (roughness->map_u || roughness->map_v))
+      throw InputError(bsdf.position,
+                       name + ": alpha: a material that emits thermally cannot have a texture here");
+  };
   if (const auto* metal = std::get_if<ConductorBsdf>(&bsdf.model)) {
+    refuse_map(metal->roughness);
     require(metal->specular_reflectance, "specular_reflectance");
     if (is_textured(metal->specular_reflectance) && !(material.flags & KB_MATERIAL_PERFECT_MIRROR)) {
       throw InputError(
@@ -88,6 +94,7 @@ void Flattener::check_thermal(const Bsdf& bsdf, const KbMaterial& material) cons
     }
   }
   if (const auto* glass = std::get_if<DielectricBsdf>(&bsdf.model)) {
+    refuse_map(glass->roughness);
     require(glass->specular_reflectance, "specular_reflectance");
     require(glass->specular_transmittance, "specular_transmittance");
     const bool lossless = is_one(glass->specular_reflectance) && is_one(glass->specular_transmittance);

@@ -71,6 +71,8 @@ struct Roughness {
   Microfacet distribution = Microfacet::kBeckmann;
   double alpha_u = 0.1;
   double alpha_v = 0.1;
+  /// Instead of the numbers: values over the surface, of colours the luminance. One image for both is isotropic.
+  std::shared_ptr<const BitmapTexture> map_u, map_v;
   bool sample_visible = true;
 };
 

@@ -18,21 +18,56 @@ void check_alpha(const ObjectReader& object, std::string_view name, double alpha
   object.check(alpha >= kMinAlpha && alpha <= kMaxAlpha, name, alpha, "must be from 1e-06 to 100");
 }
 
-/// distribution, alpha or alpha_u and alpha_v, sample_visible. One alpha: isotropic.
-Roughness read_roughness(const ObjectReader& object, bool anisotropic) {
+/// An alpha: a number, or null and a bitmap of them.
+std::shared_ptr<const BitmapTexture> read_alpha(ReadContext& context, const ObjectReader& object,
+                                                std::string_view name, double& alpha) {
+  Node* node = object.find(name);
+  if (!node || node->resolved().kind != TagKind::kObject) {
+    alpha = object.get_float(name, alpha);
+    check_alpha(object, name, alpha);
+    return nullptr;
+  }
+  node->resolved().used = true;
+  const Texture texture = read_texture_object(context, node->resolved());
+  const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture);
+  if (!bitmap) object.fail_at(name, std::string(name) + ": only a number or a bitmap is supported here");
+  for (const float value : (*bitmap)->image->pixels)
+    if (value > kMaxAlpha)
+      object.fail_at(name, std::string(name) + ": a value of '" + (*bitmap)->file.filename().string() +
+                               "' is " + format_number(value) + ": must be from 0 to 100");
+  return *bitmap;
+}
+
+/// distribution and sample_visible.
+Roughness read_distribution(const ObjectReader& object) {
   Roughness result;
   result.distribution =
       object.get_choice("distribution", {"beckmann", "ggx"}) == 1 ? Microfacet::kGgx : Microfacet::kBeckmann;
   result.sample_visible = object.get_bool("sample_visible", true);
-  const double alpha = object.get_float("alpha", 0.1);
-  check_alpha(object, "alpha", alpha);
-  result.alpha_u = result.alpha_v = alpha;
-  if (!anisotropic || !(object.has("alpha_u") || object.has("alpha_v"))) return result;
+  return result;
+}
+
+/// And alpha, or alpha_u and alpha_v. One alpha: isotropic.
+Roughness read_roughness(ReadContext& context, const ObjectReader& object) {
+  Roughness result = read_distribution(object);
+  if (!object.has("alpha_u") && !object.has("alpha_v")) {
+    result.map_u = result.map_v = read_alpha(context, object, "alpha", result.alpha_u);
+    result.alpha_v = result.alpha_u;
+    return result;
+  }
   if (object.has("alpha")) object.fail_at("alpha", "'alpha' together with 'alpha_u' or 'alpha_v'");
-  result.alpha_u = object.require_float("alpha_u");
-  result.alpha_v = object.require_float("alpha_v");
-  check_alpha(object, "alpha_u", result.alpha_u);
-  check_alpha(object, "alpha_v", result.alpha_v);
+  for (const char* name : {"alpha_u", "alpha_v"})
+    if (!object.has(name)) object.require_float(name);
+  result.map_u = read_alpha(context, object, "alpha_u", result.alpha_u);
+  result.map_v = read_alpha(context, object, "alpha_v", result.alpha_v);
+  return result;
+}
+
+/// Of a plastic: one number, which its tables are made for.
+Roughness read_plastic_roughness(const ObjectReader& object) {
+  Roughness result = read_distribution(object);
+  result.alpha_u = result.alpha_v = object.get_float("alpha", 0.1);
+  check_alpha(object, "alpha", result.alpha_u);
   return result;
 }
 
@@ -71,7 +106,7 @@ BsdfModel read_conductor(ReadContext& context, const ObjectReader& object, bool 
   ConductorBsdf bsdf;
   read_metal(context, object, bsdf);
   bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
-  if (rough) bsdf.roughness = read_roughness(object, true);
+  if (rough) bsdf.roughness = read_roughness(context, object);
   return bsdf;
 }
 
@@ -95,7 +130,7 @@ DielectricBsdf read_dielectric(ReadContext& context, const ObjectReader& object,
   bsdf.specular_transmittance =
       reflectance(context, object, "specular_transmittance", bsdf.specular_transmittance);
   if (!rough) return bsdf;
-  bsdf.roughness = read_roughness(object, true);
+  bsdf.roughness = read_roughness(context, object);
   if (bsdf.int_ior.is_constant() && bsdf.ext_ior.is_constant() && bsdf.int_ior(550) == bsdf.ext_ior(550)) {
     object.fail_at("int_ior", "int_ior and ext_ior are equal: there is no rough interface");
   }
@@ -109,7 +144,7 @@ BsdfModel read_plastic(ReadContext& context, const ObjectReader& object, bool ro
   bsdf.int_ior = read_ior(object, "int_ior", bsdf.int_ior);
   bsdf.ext_ior = read_ior(object, "ext_ior", bsdf.ext_ior);
   bsdf.nonlinear = object.get_bool("nonlinear", false);
-  if (rough) bsdf.roughness = read_roughness(object, false);
+  if (rough) bsdf.roughness = read_plastic_roughness(object);
   return bsdf;
 }
 

@@ -126,6 +126,18 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:41: error: constant emitter: radiance: a texture is not supported here"},
       {"alpha 0", complete_scene(R"xml(<bsdf type="roughplastic"><float name="alpha" value="0"/></bsdf>)xml"),
        "scene.xml:2:54: error: roughplastic bsdf: alpha 0: must be > 0"},
+      {"alpha with a pattern",
+       complete_scene(
+           R"xml(<bsdf type="roughconductor"><texture name="alpha" type="checkerboard"/></bsdf>)xml"),
+       "scene.xml:2:57: error: roughconductor bsdf: alpha: only a number or a bitmap is supported here"},
+      {"alpha above 100 in an image",
+       complete_scene(
+           R"xml(<bsdf type="roughconductor"><texture name="alpha_u" type="bitmap"><string name="filename" value="large.pfm"/></texture><float name="alpha_v" value="0.1"/></bsdf>)xml"),
+       "scene.xml:2:59: error: roughconductor bsdf: alpha_u: a value of 'large.pfm' is 101: must be from 0 to 100"},
+      {"alpha of plastic in an image",
+       complete_scene(
+           R"xml(<bsdf type="roughplastic"><texture name="alpha" type="checkerboard"/></bsdf>)xml"),
+       "scene.xml:2:55: error: roughplastic bsdf: parameter 'alpha': expected a float, found a texture"},
       {"alpha and alpha_u",
        complete_scene(
            R"xml(<bsdf type="roughconductor"><float name="alpha" value="0.1"/><float name="alpha_u" value="0.1"/></bsdf>)xml"),
@@ -363,6 +375,7 @@ TEST(BrokenScenes, Entities) {
   folder.write("word.spd", "400 0.1\n500 high\n");
   folder.write("bright.spd", "400 0.1\n500 1.2\n");
   folder.write("one.pfm", pfm_image(1, 1, 1, {0.5f}));
+  folder.write("large.pfm", pfm_image(1, 1, 1, {101.0f}));
   folder.write("negative.txt", "400 1.6\n800 -1.5\n");
   expect_messages(table(), folder);
 }

@@ -48,7 +48,27 @@ TEST(SceneBsdf, RoughnessParameters) {
   EXPECT_EQ(brushed.roughness->distribution, Microfacet::kGgx);
   EXPECT_EQ(brushed.roughness->alpha_u, 0.3);
   EXPECT_EQ(brushed.roughness->alpha_v, 0.05);
+  EXPECT_FALSE(brushed.roughness->map_u || brushed.roughness->map_v);
   EXPECT_FALSE(brushed.roughness->sample_visible);
+}
+
+TEST(SceneBsdf, RoughnessMayBeABitmap) {
+  const TemporaryFolder folder;
+  folder.write("map.pgm", "P2\n2 1\n255\n0 255\n");
+  const auto map = [](const char* name) {
+    return "<texture type='bitmap' name='" + std::string(name) +
+           "'><string name='filename' value='map.pgm'/></texture>";
+  };
+  const auto even =
+      model_of<ConductorBsdf>("<bsdf type='roughconductor'>" + map("alpha") + "</bsdf>", folder.path());
+  ASSERT_TRUE(even.roughness->map_u);
+  EXPECT_EQ(even.roughness->map_u, even.roughness->map_v);
+  const auto glass = model_of<DielectricBsdf>(
+      "<bsdf type='roughdielectric'>" + map("alpha_v") + "<float name='alpha_u' value='0.3'/></bsdf>",
+      folder.path());
+  EXPECT_FALSE(glass.roughness->map_u);
+  EXPECT_EQ(glass.roughness->alpha_u, 0.3);
+  EXPECT_TRUE(glass.roughness->map_v);
 }
 
 TEST(SceneBsdf, DielectricIndices) {
