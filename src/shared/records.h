@@ -114,6 +114,10 @@ KB_STATIC_ASSERT(sizeof(KbSurface) == 48, surface_size);
 #define KB_TEXTURE_BANDS 4u
 #define KB_TEXTURE_WEIGHTS 8u
 #define KB_TEXTURE_NORMALS 32u /* texels are normals: (x, y, z, 1) */
+/* Values at the vertices of a mesh: two texels for each row of a triangle, (v0, v1) and (v2, v2), which the weights (1 - fx) (1 - fy) ...
+   of a lookup interpolate with fy = b2, fx = b1 / (b0 + b1); with KB_TEXTURE_NEAREST one texel per triangle. */
+#define KB_TEXTURE_TRIANGLES 64u
+#define KB_TRIANGLES_ACROSS 32768u /* at most side by side */
 #define KB_TEXTURE_SPECTRAL (KB_TEXTURE_BANDS | KB_TEXTURE_WEIGHTS)
 #define KB_VALUE_UNIT 16u /* floats: spectral texels of a texture begin at a multiple of it */
 

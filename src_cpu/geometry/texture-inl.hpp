@@ -21,6 +21,31 @@ struct Resolved {
   TextureSample sample;
 };
 
+/// TexturePoint in lanes.
+struct TexturePlace {
+  V2 uv;
+  U triangle;
+  V2 barycentric;
+};
+/// A place that is no hit of a mesh.
+KB_INLINE TexturePlace place_at(V2 uv) {
+  return {uv, U(0u), {F(0), F(0)}};
+}
+
+/// The places lane by lane.
+class TexturePoints {
+ public:
+  explicit TexturePoints(const TexturePlace& at)
+      : u_(at.uv.x), v_(at.uv.y), b1_(at.barycentric.x), b2_(at.barycentric.y), triangle_(at.triangle) {}
+  TexturePoint operator[](uint32_t lane) const {
+    return {{u_[lane], v_[lane]}, triangle_[lane], {b1_[lane], b2_[lane]}};
+  }
+
+ private:
+  FloatArray u_, v_, b1_, b2_;
+  WordArray triangle_;
+};
+
 KB_INLINE Resolved resolved_row(U row) {
   return {row, no_lanes(), {U(0u), U(0u), F(0), F(0)}};
 }
@@ -33,14 +58,18 @@ KB_INLINE Resolved select(M m, const Resolved& yes, const Resolved& no) {
 }
 
 /// Bitmaps and checkerboards.
-inline Resolved resolve_textures(const FlatScene& scene, U ref, V2 uv, U row, M active) {
+inline Resolved resolve_textures(const FlatScene& scene, U ref, const TexturePlace& at, U row, M active) {
   Resolved resolved = resolved_row(row);
   each_distinct(active, ref, [&](uint32_t one, M lanes) KB_LAMBDA {
     const uint32_t index = one & KB_REF_INDEX_MASK;
     if ((one & KB_REF_KIND_MASK) == KB_REF_CHECKERBOARD) {
-      resolved.row = select(lanes, checkerboard_row(scene.checkerboards[index], uv), resolved.row);
+      resolved.row = select(lanes, checkerboard_row(scene.checkerboards[index], at.uv), resolved.row);
     } else {
-      const Resolved lookup{U(0u), lanes, sample_bitmap(scene.textures[index], index, uv)};
+      const KbTexture& texture = scene.textures[index];
+      const bool by_triangle = (texture.flags & KB_TEXTURE_TRIANGLES) != 0;
+      const Resolved lookup{U(0u), lanes,
+                            by_triangle ? sample_triangles(texture, index, at.triangle, at.barycentric)
+                                        : sample_bitmap(texture, index, at.uv)};
       resolved = select(lanes, lookup, resolved);
     }
   });
@@ -48,11 +77,11 @@ inline Resolved resolve_textures(const FlatScene& scene, U ref, V2 uv, U row, M 
 }
 
 /// Spectra by reference. Lanes that are not active get row 0.
-KB_INLINE Resolved resolve(const FlatScene& scene, U ref, V2 uv, M active) {
+KB_INLINE Resolved resolve(const FlatScene& scene, U ref, const TexturePlace& at, M active) {
   const U row = select(active, ref & U(KB_REF_INDEX_MASK), U(0u));
   const M other = active & has_bits(ref, KB_REF_KIND_MASK);
   if (!any(other)) return resolved_row(row);
-  return resolve_textures(scene, ref, uv, row, other);
+  return resolve_textures(scene, ref, at, row, other);
 }
 
 /// Upper bounds of resolved spectra at this very point: the bounds of a whole image would keep paths alive for ever

@@ -100,6 +100,16 @@ KB_INLINE TextureSample sample_bitmap(const KbTexture& texture, uint32_t index, 
   return texture_sample(index, wrap_linear(x - half, width, wrap), wrap_linear(y - half, height, wrap));
 }
 
+/// KB_TEXTURE_TRIANGLES: triangle, and the weights of its second and third vertex.
+KB_INLINE TextureSample sample_triangles(const KbTexture& texture, uint32_t index, U triangle, V2 weights) {
+  const U x = triangle & U(KB_TRIANGLES_ACROSS - 1), y = shift_right<15>(triangle);
+  static_assert(KB_TRIANGLES_ACROSS == 1u << 15);
+  if (texture.flags & KB_TEXTURE_NEAREST) return {U(index), x | shift_left<16>(y), F(0), F(0)};
+  const U xy = shift_left<1>(x) | shift_left<17>(y);
+  const F rest = F(1) - weights.y, fx = min(max(weights.x / rest, F(0)), F(1));
+  return {U(index), xy, select(rest > F(0), fx, F(0)), min(max(weights.y, F(0)), F(1))};
+}
+
 /// The row of ref0 where both coordinates are in the same half of their period, that of ref1 elsewhere (Mitsuba's order).
 KB_INLINE U checkerboard_row(const KbCheckerboard& board, V2 uv) {
   const auto second_half = [&](const float* m) KB_LAMBDA {

@@ -24,8 +24,9 @@ KbTextureSample sample_envmap_texture(const KbTexture& texture, uint32_t index, 
   return sample_of(one_lane::sample_envmap_texture(texture, index, to_lane(uv)));
 }
 
-ResolvedSpectrum resolve_spectrum(const FlatScene& scene, uint32_t ref, glm::vec2 uv) {
-  const one_lane::Resolved one = one_lane::resolve(scene, ref, to_lane(uv), {true});
+ResolvedSpectrum resolve_spectrum(const FlatScene& scene, uint32_t ref, const TexturePoint& at) {
+  const one_lane::TexturePlace place{to_lane(at.uv), {at.triangle}, to_lane(at.barycentric)};
+  const one_lane::Resolved one = one_lane::resolve(scene, ref, place, {true});
   return {static_cast<uint16_t>(one.row.v), one.textured.v, sample_of(one.sample)};
 }
 
@@ -38,16 +39,17 @@ float bitmap_value(const FlatScene& scene, const KbTextureSample& sample) {
   return (1 - sample.fy) * top + sample.fy * bottom;
 }
 
-float share_at(const FlatScene& scene, uint32_t ref, float constant, glm::vec2 uv) {
+float share_at(const FlatScene& scene, uint32_t ref, float constant, const TexturePoint& at) {
   if (ref == KB_NONE) return constant;
-  const ResolvedSpectrum value = resolve_spectrum(scene, ref, uv);
+  const ResolvedSpectrum value = resolve_spectrum(scene, ref, at);
   return std::clamp(bitmap_value(scene, value.texture), 0.0f, 1.0f);
 }
 
-const KbSurface& blended_surface(const FlatScene& scene, const KbSurface& blend, glm::vec2 uv, float& u) {
+const KbSurface& blended_surface(const FlatScene& scene, const KbSurface& blend, const TexturePoint& at,
+                                 float& u) {
   const KbSurface* surface = &blend;
   while (surface->flags & KB_SURFACE_BLEND) {
-    const float weight = share_at(scene, surface->weight_ref, surface->weight, uv);
+    const float weight = share_at(scene, surface->weight_ref, surface->weight, at);
     const bool second = u < weight;
     u = std::min(second ? u / weight : (u - weight) / (1 - weight), KB_ONE_MINUS_EPSILON);
     surface = &scene.surfaces[second ? surface->second : surface->first];

@@ -109,7 +109,7 @@ KB_INLINE F environment_pdf(const FlatScene& scene, V2 uv) {
 
 KB_INLINE Resolved environment_radiance(const FlatScene& scene, V2 uv, M active) {
   const KbEmitter& emitter = scene.emitters[scene.environment];
-  if (emitter.type == KB_EMITTER_CONSTANT) return resolve(scene, U(emitter.ref), uv, active);
+  if (emitter.type == KB_EMITTER_CONSTANT) return resolve(scene, U(emitter.ref), place_at(uv), active);
   const uint32_t texture = emitter.ref & KB_REF_INDEX_MASK;
   return {U(0u), active, sample_envmap_texture(scene.textures[texture], texture, uv)};
 }

@@ -53,7 +53,8 @@ KB_INLINE Light sample_mesh_light(const FlatScene& scene, U emitter, U shape, V3
   light.pdf = on_light.pdf * KB_GATHER_FLOAT(emitters, KbEmitter, select_pdf, emitter);
   light.factor = on_light.factor;
   light.infinite = light.delta = no_lanes();
-  light.radiance = resolve(scene, ref, on_light.uv, active & (light.pdf > F(0)));
+  light.radiance = resolve(scene, ref, {on_light.uv, on_light.triangle, on_light.barycentric},
+                           active & (light.pdf > F(0)));
   return light;
 }
 
@@ -76,13 +77,9 @@ KB_INLINE Light sample_suns(const FlatScene& scene, U emitter, const F4& u, M ac
   const F density = sun_density(KB_GATHER_FLOAT(emitters, KbEmitter, one_minus_cos, emitter),
                                 KB_GATHER_FLOAT(emitters, KbEmitter, select_pdf, emitter));
   const U ref = KB_GATHER_WORD(emitters, KbEmitter, ref, emitter);
-  return {sample_sun_direction(scene, emitter, u.z, u.w),
-          no_vector(),
-          select(active, density, F(0)),
-          KB_GATHER_FLOAT(emitters, KbEmitter, scale, emitter),
-          active,
-          no_lanes(),
-          resolve(scene, ref, {F(0), F(0)}, active)};
+  return {sample_sun_direction(scene, emitter, u.z, u.w),       no_vector(), select(active, density, F(0)),
+          KB_GATHER_FLOAT(emitters, KbEmitter, scale, emitter), active,      no_lanes(),
+          resolve(scene, ref, place_at({F(0), F(0)}), active)};
 }
 
 /// Points, spots, projectors and directional lights.
@@ -107,7 +104,7 @@ KB_INLINE Light sample_delta_lights(const FlatScene& scene, U emitter, U type, V
           sample.factor,
           infinite,
           active,
-          resolve(scene, ref, sample.uv, lit)};
+          resolve(scene, ref, place_at(sample.uv), lit)};
 }
 
 /// Area lights on shapes of other kinds.

@@ -149,7 +149,8 @@ EmittedRadiance with_temperature(const EmittedRadiance& emissivity, float temper
 
 ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 towards,
                                  glm::vec2 u) {
-  const KbSurface& surface = chosen_surface(scene, scene.shapes[hit.shape].surface, hit.uv, u.x);
+  const TexturePoint at(hit.uv, hit.triangle, hit.barycentric);
+  const KbSurface& surface = chosen_surface(scene, scene.shapes[hit.shape].surface, at, u.x);
   const uint32_t index = on_front(hit.shading_normal, towards) ? surface.front_thermal : surface.back_thermal;
   if (index == KB_NONE) return {};
   const KbThermal& thermal = scene.thermals[index];
@@ -157,9 +158,9 @@ ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, 
   const ShadingFrame frame(hit.shading_normal, anisotropic ? hit.tangent : glm::vec3(0));
   const Source source = choose_source(scene, thermal, aspect_of(thermal, frame.to_local(towards)), u);
   if (!(source.weight > 0)) return {};
-  const ResolvedSpectrum spectrum = resolve_spectrum(scene, source.ref, hit.uv);
+  const ResolvedSpectrum spectrum = resolve_spectrum(scene, source.ref, at);
   ThermalRadiance emitted;
-  emitted.weight = source.weight * opacity_at(scene, surface, hit.uv);
+  emitted.weight = source.weight * opacity_at(scene, surface, at);
   emitted.radiance = {spectrum.row, spectrum.textured, spectrum.texture};
   if (thermal.field != KB_NONE)
     emitted.radiance = with_temperature(emitted.radiance, temperature_at(scene, thermal, hit));

@@ -40,6 +40,13 @@ KB_INLINE void add_escaped(Shading& s) {
   }
 }
 
+/// Where textures are looked up.
+KB_INLINE TexturePlace texture_place(const Shading& s) {
+  if (!s.scene().features.mesh_attribute) return place_at(s.hit.uv);
+  const RayQueue& rays = s.wave.rays();
+  return {s.hit.uv, load(rays.primitive + s.first), {load(rays.u + s.first), load(rays.v + s.first)}};
+}
+
 /// Emission of area lights that were hit.
 KB_INLINE void add_emission(Shading& s, M hit) {
   const FlatScene& scene = s.scene();
@@ -59,7 +66,7 @@ KB_INLINE void add_emission(Shading& s, M hit) {
   s.vertex.set(emits, KB_VERTEX_EMIT);
   s.vertex.emit_weight = select(emits, weight, F(0));
   s.vertex.emission =
-      resolve(scene, KB_GATHER_WORD(scene.emitters.data(), KbEmitter, ref, index), s.hit.uv, emits);
+      resolve(scene, KB_GATHER_WORD(scene.emitters.data(), KbEmitter, ref, index), texture_place(s), emits);
   s.vertex.set(emits & s.vertex.emission.textured, KB_VERTEX_TEX_EMIT);
 }
 
@@ -70,12 +77,11 @@ inline U choose_surfaces(Shading& s, U surface, M hit) {
   const KbSurface* surfaces = scene.surfaces.data();
   WordArray chosen(surface);
   FloatArray u(s.u.x), opacity(KB_GATHER_FLOAT(surfaces, KbSurface, opacity, surface));
-  const FloatArray uv_x(s.hit.uv.x), uv_y(s.hit.uv.y);
+  const TexturePoints points(texture_place(s));
   each_lane(hit, [&](uint32_t i) KB_LAMBDA {
-    const glm::vec2 uv(uv_x[i], uv_y[i]);
-    const KbSurface& one = chosen_surface(scene, chosen[i], uv, u[i]);
+    const KbSurface& one = chosen_surface(scene, chosen[i], points[i], u[i]);
     chosen[i] = static_cast<uint32_t>(&one - surfaces);
-    opacity[i] = opacity_at(scene, one, uv);
+    opacity[i] = opacity_at(scene, one, points[i]);
   });
   s.opacity = opacity;
   const F x = u;
@@ -116,12 +122,12 @@ inline V3 bump_normals(Shading& s, M seen, M turned) {
 inline void look_up_roughness(Shading& s, M seen) {
   const FlatScene& scene = s.scene();
   const WordArray side(s.side);
-  const FloatArray u(s.hit.uv.x), v(s.hit.uv.y);
+  const TexturePoints points(texture_place(s));
   FloatArray alpha_u(s.material.alpha_u), alpha_v(s.material.alpha_v);
   each_lane(seen, [&](uint32_t i) KB_LAMBDA {
     const KbRoughness& maps = scene.roughness[side[i]];
-    alpha_u[i] = roughness_at(scene, maps.alpha_u_ref, alpha_u[i], {u[i], v[i]});
-    alpha_v[i] = roughness_at(scene, maps.alpha_v_ref, alpha_v[i], {u[i], v[i]});
+    alpha_u[i] = roughness_at(scene, maps.alpha_u_ref, alpha_u[i], points[i]);
+    alpha_v[i] = roughness_at(scene, maps.alpha_v_ref, alpha_v[i], points[i]);
   });
   s.material.alpha_u = alpha_u;
   s.material.alpha_v = alpha_v;
@@ -142,8 +148,9 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   s.side = select(seen, select(turned, record[1], record[0]), U(0u));
   s.material = gather_material(scene.materials.data(), scene.tables.data(), s.side);
   const U ref_a = s.material.ref_a, ref_b = s.material.ref_b;
-  s.vertex.a = resolve(scene, ref_a, s.hit.uv, seen & (ref_a != U(KB_NONE)));
-  s.vertex.b = resolve(scene, ref_b, s.hit.uv, seen & (ref_b != U(KB_NONE)));
+  const TexturePlace place = texture_place(s);
+  s.vertex.a = resolve(scene, ref_a, place, seen & (ref_a != U(KB_NONE)));
+  s.vertex.b = resolve(scene, ref_b, place, seen & (ref_b != U(KB_NONE)));
   s.material.bound_a = bound_at(scene, ref_a, s.vertex.a, s.material.bound_a, seen & (ref_a != U(KB_NONE)));
   s.material.bound_b = bound_at(scene, ref_b, s.vertex.b, s.material.bound_b, seen & (ref_b != U(KB_NONE)));
   if (scene.features.roughness_map) look_up_roughness(s, seen);

@@ -9,6 +9,10 @@ namespace kiloband::scene_text {
 inline Text metal(const Text& type, const Text& more = "") {
   return bsdf(type, spectrum("eta", "450:1.4, 550:0.4, 650:0.2") + spectrum("k", "450:1.9, 650:3.4") + more);
 }
+/// Glass whose index depends on the wavelength.
+inline Text dispersive(const Text& type, const Text& more = "") {
+  return bsdf(type, text("int_material", "glass.txt") + more);
+}
 inline Text roughness(const Text& distribution, const Text& alpha, const Text& alpha_v = "") {
   return text("distribution", distribution) +
          (alpha_v.empty() ? real("alpha", alpha) : real("alpha_u", alpha) + real("alpha_v", alpha_v));

@@ -5,6 +5,7 @@
 #include "tests/support/scene_gas_text.hpp"
 #include "tests/support/scene_lamp_text.hpp"
 #include "tests/support/scene_room_text.hpp"
+#include "tests/support/scene_surface_text.hpp"
 #include "tests/support/scene_text.hpp"
 
 namespace kiloband::test {
@@ -128,10 +129,6 @@ Text analytic_shapes() {
                yes("flip_normals") + bsdf("twosided", diffuse("0.8")));
 }
 
-Text dispersive(const Text& type, const Text& more = "") {
-  return bsdf(type, text("int_material", "glass.txt") + more);
-}
-
 /// Materials by name: metals, and a flint glass.
 Text named_materials() {
   return ball("-0.6 0.4 -0.2", "0.35", bsdf("conductor", text("metal", "Al"))) +
@@ -177,63 +174,6 @@ Text blends() {
          ball("0.8 -0.6 0", "0.25",
               blend(half, dispersive("roughdielectric", roughness("ggx", "0.2")) +
                               bsdf("mask", real("opacity", "0.5") + red)));
-}
-
-/// Bump and normal maps on all shapes and in all that nests, strong enough to turn normals away from the camera.
-Text bumps() {
-  const auto map = [](const Text& wrap, const Text& to_uv, const Text& file = "grey.pgm") {
-    return texture("bitmap", "map", text("filename", file) + text("wrap_mode", wrap) + yes("raw"), to_uv);
-  };
-  const auto bump = [](const Text& height, const Text& contents) {
-    return bsdf("bumpmap", real("scale", height) + contents);
-  };
-  const Text plain = number("boolean", "flip_invalid_normals", "false") +
-                     number("boolean", "use_shadowing_function", "false");
-  const Text paint = bsdf("roughplastic", roughness("ggx", "0.2")), mirrored = map("mirror", scale("2.7"));
-  const Text coat = bump("0.1", mirrored + paint);
-  return floor(bump("0.3", map("repeat", scale("2") + turn("z", "25")) + diffuse("0.6"))) +
-         back(bsdf("normalmap", map("repeat", scale("3"), "tilts.pfm") + diffuse("450:0.8, 650:0.4"))) +
-         ball("-0.6 0.4 -0.2", "0.3",
-              bump("0.2", mirrored + metal("roughconductor", roughness("ggx", "0.25", "0.4")))) +
-         ball("0 0.4 -0.2", "0.3", bump("-0.02", mirrored + bsdf("dielectric"))) +
-         ball("0.6 0.4 -0.2", "0.3",
-              bump("0.1",
-                   map("clamp", scale("1.5")) + dispersive("roughdielectric", roughness("ggx", "0.2")))) +
-         rectangle(scale("0.3") + turn("y", "150") + translate("-0.6 -0.4 0.2"),
-                   bsdf("twosided", coat + diffuse("0.5"))) +
-         rectangle(scale("0.25") + turn("y", "150") + translate("0 -0.2 0.3"),
-                   bump("0.1", mirrored + bsdf("twosided", paint))) +
-         shape("disk", scale("0.3") + turn("y", "-30") + translate("0.6 -0.2 0.3"),
-               bump("0.2", plain + mirrored +
-                               bsdf("blendbsdf", real("weight", "0.5") + paint + metal("conductor")))) +
-         shape("cylinder", step("scale", "x='0.1' y='0.1' z='0.5'") + translate("0.2 -0.7 0"),
-               bsdf("normalmap", plain + map("mirror", scale("2"), "colours.ppm") +
-                                     bsdf("mask", real("opacity", "0.7") + bsdf("plastic")))) +
-         mesh("gem.obj", scale("0.3") + translate("-0.1 -0.7 0.4"),
-              bump("0.02", map("repeat", scale("1")) + bsdf("plastic")));
-}
-
-/// Roughness that varies, along one axis and along both, of metal and glass.
-Text roughness_maps() {
-  const auto rough = [](const Text& type, const Text& alphas) {
-    return bsdf(type, text("distribution", "ggx") + alphas);
-  };
-  const auto map = [](const Text& name, const Text& file, const Text& filter) {
-    return texture("bitmap", name, text("filename", file) + text("filter_type", filter) + yes("raw"),
-                   scale("2.3"));
-  };
-  const Text both = map("alpha_u", "grey.pgm", "bilinear") + map("alpha_v", "colours.ppm", "nearest");
-  return rectangle(scale("0.5") + turn("y", "20") + translate("-0.45 0.4 0"),
-                   rough("roughconductor", map("alpha", "colours.ppm", "bilinear"))) +
-         rectangle(scale("0.4") + turn("x", "-40") + translate("0.5 0.4 0"),
-                   bsdf("twosided", rough("roughconductor", both))) +
-         ball("-0.5 -0.5 0.1", "0.35", rough("roughdielectric", map("alpha", "grey.pgm", "bilinear"))) +
-         ball("0.4 -0.5 0.1", "0.35",
-              bsdf("mask",
-                   real("opacity", "0.8") +
-                       bsdf("blendbsdf", real("weight", "0.5") + diffuse("0.5") +
-                                             rough("roughconductor", map("alpha_v", "grey.pgm", "nearest") +
-                                                                         real("alpha_u", "0.3")))));
 }
 
 Text instance(const Text& group, const Text& steps) {
@@ -356,6 +296,7 @@ std::vector<ZooScene> make_scenes() {
       {"blends", scene(8, perspective(small_film("gaussian")) + lit_room + blends() + sky("0.3")), kCurved},
       {"roughness_maps", scene(6, perspective(small_film("tent")) + lit_room + roughness_maps() + sky("0.3")),
        kCurved},
+      {"attributes", scene(6, perspective(small_film("tent")) + lit_room + attributes() + sky("0.3"))},
       {"bumps",
        scene(5, perspective(small_film("gaussian")) + left(diffuse("0.5")) + right(diffuse("0.5")) +
                     ceiling(diffuse("0.5")) + bumps() + ceiling_lamp() + sky("0.3")),

@@ -73,6 +73,15 @@ const char* const kHotPly =
     "property list uchar int vertex_indices\nend_header\n"
     "-1 -1 0 0 0 2000\n1 -1 0.2 1 0 2200\n1 1 0 1 1 2500\n-1 1 0.2 0 1 2300\n3 0 1 2\n3 0 2 3\n";
 
+/// A crooked strip of four triangles with colours and values at vertices and faces.
+const char* const kTintedPly =
+    "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float r\nproperty float g\nproperty float b\nproperty float w\nelement face 4\n"
+    "property list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
+    "-1 -1 0 0.9 0.1 0.2 0.1\n1 -1 0.2 0.2 0.8 0.1 0.9\n-1 0 0.3 0.1 0.3 0.9 0.5\n1 0 0 0.6 0.6 0.6 0.7\n"
+    "-1 1 0 0.8 0.7 0.1 0.2\n1 1 0.1 0.3 0.9 0.8 0.4\n"
+    "3 0 1 2 200 40 40\n3 1 3 2 40 200 60\n3 2 3 4 80 60 220\n3 3 5 4 128 128 128\n";
+
 /// Nodes of a plume, 4 x 3 x 5: temperature and scale.
 std::string plume_nodes() {
   std::string text;
@@ -93,6 +102,7 @@ ZooFolder::ZooFolder() {
                                {0.8f, 0.5f, 0.9f, 0.4f, 0.7f, 0.95f, 0.5f, 0.2f, 0.9f,  //
                                 0.3f, 0.3f, 0.9f, 0.5f, 0.5f, 1, 0.65f, 0.75f, 0.9f}));
   write("hot.ply", kHotPly);
+  write("tinted.ply", kTintedPly);
   write("gem.obj", kGem);
   write("prism.obj", kPrism);
   write("plume.txt", plume_nodes());

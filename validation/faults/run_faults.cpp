@@ -51,7 +51,8 @@ std::string concerned_case(const faults::PlantedFault& fault) {
                                                               {"instances", "stress/glade"},
                                                               {"suns", "stress/glade"},
                                                               {"projected_lights", "stress/glade"},
-                                                              {"roughness_maps", "stress/glade"}};
+                                                              {"roughness_maps", "stress/glade"},
+                                                              {"attributes", "stress/glade"}};
   const auto found = kCases.find(fault.zoo_scene);
   return found == kCases.end() ? "stress/metals_and_lamps" : found->second;
 }

@@ -57,6 +57,8 @@ constexpr PlantedFault kFaults[] = {
     {KB_PLANTED_BUMP_SLOPE, "bump-slope", kBoth, "the slope of bump maps along v has the wrong sign", "bumpmap", "bumps", kMeans},
     {KB_PLANTED_INSTANCE_NORMAL, "instance-normal", kBoth, "vertex normals of instances are not turned into the world", "instances", "instances",
      kMeans},
+    {KB_PLANTED_ATTRIBUTE_CORNERS, "attribute-corners", kBoth, "values at a triangle's second vertex get the weight of its third, and the reverse",
+     "mesh_attribute of vertices", "attributes", kMeans},
     // ---- lights
     {KB_PLANTED_LIGHT_PDF, "light-pdf", kBoth, "the density of light samples is 0.5 % too large", "light samples", "diffuse_room",
      kMeans},

@@ -83,6 +83,10 @@ void Flattener::add_area_emitter(uint32_t shape_index) {
   }
   Spectrum colour = illuminant_d65();
   double mean = 1;
+  if (std::holds_alternative<std::shared_ptr<const MeshAttributeTexture>>(shape.emitter->radiance)) {
+    colour = Spectrum::constant(1);
+    mean = texture_means_[record.ref & KB_REF_INDEX_MASK];
+  }
   if (const auto* spectrum = std::get_if<Spectrum>(&shape.emitter->radiance)) {
     colour = *spectrum;
   } else if (const auto* image =

@@ -27,6 +27,21 @@ class Flattener {
   uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use, float height = 1);
   static KbFloat4 texel_of(const float* rgb, BitmapUse use, float height);
   float texel_bound(const KbFloat4& texel) const;
+  // attributes.cpp
+  /// What was compiled of a bsdf for every mesh, or for this one; or null.
+  const uint32_t* find_of_mesh(const auto& known, const void* bsdf, auto key) {
+    const auto for_all = known.find({bsdf, key, nullptr});
+    if (for_all != known.end()) return &for_all->second;
+    const auto for_this = known.find({bsdf, key, mesh_});
+    if (for_this == known.end()) return nullptr;
+    ++mesh_lookups_;
+    return &for_this->second;
+  }
+  uint32_t mesh_attribute(const std::shared_ptr<const MeshAttributeTexture>& texture,
+                          const SpectrumSource& use);
+  static KbFloat4 attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
+                                  double unit);
+  void finish_attribute(const KbTexture& record, std::size_t count, bool emits);
   // spectral.cpp
   uint32_t spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
                            const SpectrumSource& use);
@@ -183,10 +198,15 @@ class Flattener {
   const CompileOptions& options_;
   FlatScene out_;
   SpectrumTableBuilder spectra_;
-  std::map<std::pair<const void*, uint32_t>, uint32_t> surfaces_;  // by bsdf and heat
-  std::vector<std::shared_ptr<const Bsdf>> distributed_;           // blends moved outwards: keys of the above
-  std::map<std::pair<const void*, bool>, uint32_t> materials_;     // by bsdf and compensation
-  std::map<std::tuple<uint32_t, float, float>, Coating> coatings_;  // by distribution, roughness, index
+  /// By bsdf, heat, and of a bsdf with mesh attributes the mesh.
+  std::map<std::tuple<const void*, uint32_t, const void*>, uint32_t> surfaces_;
+  std::vector<std::shared_ptr<const Bsdf>> distributed_;  // blends moved outwards: keys of the above
+  /// By bsdf, compensation, and of a bsdf with mesh attributes the mesh.
+  std::map<std::tuple<const void*, bool, const void*>, uint32_t> materials_;
+  const Mesh* mesh_ = nullptr;    // of the shape that is compiled
+  std::size_t mesh_lookups_ = 0;  // how often something of it was asked for
+  std::map<std::pair<const void*, const void*>, uint32_t> attributes_;  // by texture and mesh
+  std::map<std::tuple<uint32_t, float, float>, Coating> coatings_;      // by distribution, roughness, index
   std::map<std::pair<uint32_t, uint32_t>, std::vector<float>> conductor_bounds_;  // by rows of n and k
   std::map<const void*, uint32_t> checkerboards_;
   std::map<std::pair<const void*, uint32_t>, uint32_t> media_;  // by medium and the boundary's material

@@ -172,8 +172,8 @@ KbRoughness Flattener::roughness_maps(const Bsdf& scattering) {
 /// Its name: its own id, or that of the bsdf that it is nested in, or a number.
 uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated,
                              const std::string& outer_id) {
-  const auto known = materials_.find({bsdf.get(), compensated});
-  if (known != materials_.end()) return known->second;
+  if (const auto* known = find_of_mesh(materials_, bsdf.get(), compensated)) return *known;
+  const std::size_t lookups = mesh_lookups_;
   const std::string name = describe(*bsdf);
   const auto* bumped = std::get_if<BumpedBsdf>(&bsdf->model);
   const std::shared_ptr<const Bsdf>& scattering = bumped ? bumped->nested : bsdf;
@@ -201,7 +201,8 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
   const auto index = static_cast<uint32_t>(out_.materials.size() - 1);
   if (index >= 1u << (32 - KB_VERTEX_MATERIAL_SHIFT))
     throw InputError(bsdf->position, "more than 1048576 bsdfs");
-  return materials_[{bsdf.get(), compensated}] = index;
+  materials_[{bsdf.get(), compensated, mesh_lookups_ > lookups ? mesh_ : nullptr}] = index;
+  return index;
 }
 
 }  // namespace kiloband

@@ -24,6 +24,7 @@ namespace kiloband {
   X(DISPERSION, dispersion, "dispersion")                                                             \
   X(BITMAP, bitmap, "bitmap")                                                                         \
   X(CHECKERBOARD, checkerboard, "checkerboard")                                                       \
+  X(MESH_ATTRIBUTE, mesh_attribute, "mesh attribute")                                                 \
   X(SPECTRAL_TEXTURE, spectral_texture, "spectral texture")                                           \
   X(AREA_LIGHT, area_light, "area light")                                                             \
   X(CONSTANT_LIGHT, constant_light, "constant environment")                                           \

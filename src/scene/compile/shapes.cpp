@@ -82,6 +82,8 @@ void Flattener::add_shapes() {
 
 /// What does not depend on the geometry.
 KbShape Flattener::begin_shape(const Shape& shape, uint32_t heat) {
+  const auto* mesh = std::get_if<MeshShape>(&shape.geometry);
+  mesh_ = mesh ? mesh->mesh.get() : nullptr;
   KbShape record{};
   record.surface = surface(shape.bsdf, heat);
   record.emitter = record.first_cdf = KB_NONE;

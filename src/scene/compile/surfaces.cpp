@@ -63,6 +63,8 @@ void Flattener::set_share(const Texture& texture, const SpectrumSource& use, uin
     constant = static_cast<float>(spectra_.guide_mean(*spectrum));
   } else if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
     ref = KB_REF_BITMAP | bitmap(*image, BitmapUse::kOpacity);
+  } else if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture)) {
+    ref = KB_REF_BITMAP | mesh_attribute(*attribute, use);
   } else {
     throw InputError(use.position, use.name + ": only a number or a bitmap is supported here");
   }
@@ -92,12 +94,15 @@ uint32_t Flattener::blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t hea
 }
 
 uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
-  if (const auto found = surfaces_.find({bsdf.get(), heat}); found != surfaces_.end()) return found->second;
+  if (const auto* known = find_of_mesh(surfaces_, bsdf.get(), heat)) return *known;
+  const std::size_t lookups = mesh_lookups_;
   const BsdfPointer outermost = distributed(*bsdf);
   if (outermost) distributed_.push_back(outermost);  // keeps its parts, too
   const Bsdf& used = outermost ? *outermost : *bsdf;
   const auto* parts = std::get_if<BlendBsdf>(&used.model);
-  return surfaces_[{bsdf.get(), heat}] = parts ? blend(*parts, used, heat) : new_surface(bsdf, heat);
+  const uint32_t index = parts ? blend(*parts, used, heat) : new_surface(bsdf, heat);
+  surfaces_[{bsdf.get(), heat, mesh_lookups_ > lookups ? mesh_ : nullptr}] = index;
+  return index;
 }
 
 uint32_t Flattener::new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {

@@ -80,6 +80,8 @@ uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use)
   }
   if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
     return KB_REF_BITMAP | spectral_bitmap(*spectral, use);
+  if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture))
+    return KB_REF_BITMAP | mesh_attribute(*attribute, use);
   return KB_REF_CHECKERBOARD |
          checkerboard(std::get<std::shared_ptr<const CheckerboardTexture>>(texture), use);
 }
@@ -177,6 +179,8 @@ double Flattener::texture_mean(const Texture& texture) {
   }
   if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
     return texture_means_[spectral_bitmap(*spectral, {})];
+  if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture))
+    return texture_means_[mesh_attribute(*attribute, {})];
   const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
   return 0.5 * (spectra_.guide_mean(board.color0) + spectra_.guide_mean(board.color1));
 }
@@ -188,6 +192,8 @@ double Flattener::texture_bound(const Texture& texture) {
   }
   if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
     return texture_bounds_[spectral_bitmap(*spectral, {})];
+  if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture))
+    return texture_bounds_[mesh_attribute(*attribute, {})];
   const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
   return std::max(spectra_.bound(board.color0), spectra_.bound(board.color1));
 }

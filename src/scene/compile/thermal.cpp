@@ -47,6 +47,9 @@ void Flattener::require_emission_data(const Texture& texture, const SpectrumSour
     require_emission_data((*board)->color0, {use.name + " color0", use.position});
     require_emission_data((*board)->color1, {use.name + " color1", use.position});
   }
+  if (std::holds_alternative<std::shared_ptr<const MeshAttributeTexture>>(texture))
+    throw InputError(use.position,
+                     use.name + ": a surface that emits thermally cannot have a mesh_attribute here");
   const auto* spectrum = std::get_if<Spectrum>(&texture);
   const auto data = spectrum ? spectrum->data_range() : std::nullopt;
   if (!data || spectrum->extrapolates()) return;

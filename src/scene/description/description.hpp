@@ -26,6 +26,10 @@ using Transform = glm::dmat4;
 // ---- textures ----
 enum class WrapMode { kRepeat, kMirror, kClamp };
 
+/// The largest radiance of a scene: Planck's law reaches 4e10 W m^-2 sr^-1 nm^-1 at kMaxTemperatureK, the sun has 3e4. Of irradiance and
+/// intensity too.
+inline constexpr double kMaxEmission = 1e15;
+
 struct BitmapTexture {
   std::string id;
   SourcePosition position;
@@ -58,11 +62,20 @@ struct SpectralBitmapTexture {
   glm::dmat3 to_uv{1.0};
 };
 
+/// Values at the vertices or faces of the mesh that has the material or lamp: vertex_NAME or face_NAME, as Mitsuba names them. Three are a
+/// colour, one is flat; times scale.
+struct MeshAttributeTexture {
+  std::string id;
+  SourcePosition position;
+  std::string name;
+  double scale = 1;
+};
+
 /// A spectral parameter. For emission a bitmap is upsampled per texel and multiplied by D65 as in Mitsuba; a
 /// spectral bitmap is taken as it is.
 using Texture =
     std::variant<Spectrum, std::shared_ptr<const BitmapTexture>, std::shared_ptr<const CheckerboardTexture>,
-                 std::shared_ptr<const SpectralBitmapTexture>>;
+                 std::shared_ptr<const SpectralBitmapTexture>, std::shared_ptr<const MeshAttributeTexture>>;
 
 // ---- BSDFs ----
 enum class Microfacet { kBeckmann, kGgx };

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ struct Mesh {
   bool front_by_normals = false;
   /// Every further vertex property of a PLY file by name ("temperature", "red" ...), one value per position.
   std::map<std::string, std::vector<float>> vertex_attributes;
+  /// The same of its faces, one value per triangle: a polygon's for each of its triangles. Triangle strips have none.
+  std::map<std::string, std::vector<float>> face_attributes;
+  /// Which of them the file has in bytes, 0 to 255: "vertex red", "face red".
+  std::set<std::string> byte_attributes;
 };
 
 struct MeshOptions {
@@ -61,7 +66,8 @@ Mesh read_obj(const std::filesystem::path& file, const MeshOptions& options, con
 
 /// PLY 1.0: ascii, binary_little_endian, binary_big_endian, every scalar type by its old and new name.
 /// Element vertex: x y z, nx ny nz, texture coordinates u v or texture_u texture_v or s t, the rest goes to
-/// vertex_attributes (lists are skipped). Element face: list vertex_indices or vertex_index. Element tristrips: the same list
+/// vertex_attributes (lists are skipped). Element face: list vertex_indices or vertex_index, numbers go to face_attributes. Element
+/// tristrips: the same list
 /// of triangle strips one after another, -1 between them. Other elements are skipped with a note.
 Mesh read_ply(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});
 

@@ -38,12 +38,16 @@ class BodyReader {
       }
     }
     source_.finish();
+    const PlyElement* strips = header_.find(std::string(kStrips));
+    if (strips && strips->count > 0) mesh_.face_attributes.clear();  // their triangles have none
   }
 
  private:
   std::vector<Slot> vertex_slots();
   void bind(std::vector<Slot>& slots, std::initializer_list<const char*> names, float* first);
   void read_vertices(const std::vector<Slot>& slots);
+  float read_number();
+  std::vector<std::vector<float>*> face_slots();
   void read_faces();
   void read_polygon();
   void read_strips();
@@ -88,7 +92,9 @@ std::vector<Slot> BodyReader<Source>::vertex_slots() {
   }
   for (size_t i = 0; i < slots.size(); ++i) {
     if (slots[i].target || element_->properties[i].is_list) continue;
-    std::vector<float>& values = mesh_.vertex_attributes[element_->properties[i].name];
+    const PlyProperty& property = element_->properties[i];
+    if (property.type == PlyType::kUint8) mesh_.byte_attributes.insert("vertex " + property.name);
+    std::vector<float>& values = mesh_.vertex_attributes[property.name];
     values.resize(count);
     slots[i] = {values.data(), 1};
   }
@@ -110,23 +116,45 @@ void BodyReader<Source>::read_vertices(const std::vector<Slot>& slots) {
         skip_property();
         continue;
       }
-      const double value = read(property_->type);
-      const auto narrow = static_cast<float>(value);
-      if (!std::isfinite(value)) fail("the value is not finite");
-      if (!std::isfinite(narrow)) fail("the value is too large for a float");
-      slots[i].target[row_ * slots[i].stride] = narrow;
+      slots[i].target[row_ * slots[i].stride] = read_number();
     }
   }
+}
+
+template <typename Source>
+float BodyReader<Source>::read_number() {
+  const double value = read(property_->type);
+  const auto narrow = static_cast<float>(value);
+  if (!std::isfinite(value)) fail("the value is not finite");
+  if (!std::isfinite(narrow)) fail("the value is too large for a float");
+  return narrow;
+}
+
+/// Where the numbers of faces go, by property; null for lists and those of strips.
+template <typename Source>
+std::vector<std::vector<float>*> BodyReader<Source>::face_slots() {
+  std::vector<std::vector<float>*> slots;
+  for (const PlyProperty& property : element_->properties) {
+    const bool taken = !property.is_list && element_->name != kStrips;
+    slots.push_back(taken ? &mesh_.face_attributes[property.name] : nullptr);
+    if (taken) slots.back()->reserve(element_->count);
+    if (taken && property.type == PlyType::kUint8) mesh_.byte_attributes.insert("face " + property.name);
+  }
+  return slots;
 }
 
 template <typename Source>
 void BodyReader<Source>::read_faces() {
   const std::string_view list = index_list(*element_);
   mesh_.triangles.reserve(mesh_.triangles.size() + element_->count);
+  const std::vector<std::vector<float>*> slots = face_slots();
+  std::vector<float> numbers(slots.size());
   for (row_ = 0; row_ < element_->count; ++row_) {
-    for (const PlyProperty& property : element_->properties) {
-      property_ = &property;
-      if (property.name != list) {
+    for (size_t i = 0; i < slots.size(); ++i) {
+      property_ = &element_->properties[i];
+      if (slots[i]) {
+        numbers[i] = read_number();
+      } else if (property_->name != list) {
         skip_property();
       } else if (element_->name == kStrips) {
         read_strips();
@@ -134,6 +162,8 @@ void BodyReader<Source>::read_faces() {
         read_polygon();
       }
     }
+    for (size_t i = 0; i < slots.size(); ++i)
+      if (slots[i]) slots[i]->resize(mesh_.triangles.size(), numbers[i]);
   }
 }
 

@@ -10,9 +10,6 @@
 
 namespace kiloband {
 
-/// Planck's law reaches 4e10 W m^-2 sr^-1 nm^-1 at kMaxTemperatureK, the sun has 3e4.
-/// Of irradiance and intensity too.
-inline constexpr double kMaxEmission = 1e15;
 /// Sensor responses, weights of endmembers, factors of light.
 inline constexpr double kMaxQuantity = 1e15;
 /// n and k of conductors: metals have about 1000 at 1 mm. Fresnel's formulas need the fourth power.

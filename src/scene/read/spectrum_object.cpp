@@ -145,7 +145,7 @@ constexpr SpectrumType kSpectrumTypes[] = {
 
 std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, SpectrumUse use) {
   const ObjectReader object(node);
-  std::vector<std::string_view> known = {"bitmap", "checkerboard", "spectral_bitmap"};
+  std::vector<std::string_view> known = {"bitmap", "checkerboard", "spectral_bitmap", "mesh_attribute"};
   for (const SpectrumType& type : kSpectrumTypes) {
     known.push_back(type.name);
     if (object.type() != type.name) continue;
@@ -157,7 +157,8 @@ std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, Sp
     object.finish();
     return result;
   }
-  if (object.type() == "bitmap" || object.type() == "checkerboard" || object.type() == "spectral_bitmap")
+  if (object.type() == "bitmap" || object.type() == "checkerboard" || object.type() == "spectral_bitmap" ||
+      object.type() == "mesh_attribute")
     return std::nullopt;
   object.refuse_type(known);
 }

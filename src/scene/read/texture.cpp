@@ -37,6 +37,20 @@ Texture read_checkerboard(ReadContext& context, const ObjectReader& object) {
   return std::shared_ptr<const CheckerboardTexture>(std::move(board));
 }
 
+Texture read_mesh_attribute(const ObjectReader& object) {
+  auto attribute = std::make_shared<MeshAttributeTexture>();
+  attribute->id = object.node().id;
+  attribute->position = object.node().place.position();
+  attribute->name = object.require_string("name");
+  if (!attribute->name.starts_with("vertex_") && !attribute->name.starts_with("face_"))
+    object.fail_at("name", "name '" + attribute->name + "': must begin with vertex_ or face_");
+  attribute->scale = object.get_float("scale", 1);
+  object.check(attribute->scale >= 0, "scale", attribute->scale, "must be >= 0");
+  check_at_most(object, "scale", attribute->scale, kMaxQuantity);
+  object.finish();
+  return std::shared_ptr<const MeshAttributeTexture>(std::move(attribute));
+}
+
 }  // namespace
 
 Texture read_texture_object(ReadContext& context, Node& node) {
@@ -45,6 +59,7 @@ Texture read_texture_object(ReadContext& context, Node& node) {
   const ObjectReader object(node);
   Texture texture = node.type == "bitmap"            ? read_bitmap(context, object)
                     : node.type == "spectral_bitmap" ? read_spectral_bitmap(context, object)
+                    : node.type == "mesh_attribute"  ? read_mesh_attribute(object)
                                                      : read_checkerboard(context, object);
   context.textures.emplace(&node, texture);
   return texture;

@@ -13,7 +13,7 @@ const char* const kSource = R"(
 #include "geometry/texture.clh"
 __kernel void resolve(ARGS) {
   ITEM
-  const ResolvedSpectrum r = resolve_spectrum(&scene, in->u[0], VEC2(0));
+  const ResolvedSpectrum r = resolve_spectrum(&scene, in->u[0], place_at(VEC2(0)));
   out->u[0] = r.row; out->u[1] = r.textured; out->u[2] = r.texture.xy; out->u[3] = r.texture.texture;
   out->f[0] = r.texture.fx; out->f[1] = r.texture.fy;
   out->f[2] = r.textured ? bitmap_value(&scene, &r.texture) : 0.0f;

@@ -154,6 +154,26 @@ TEST_F(Ply, ReadsTriangleStrips) {
             (Triangles{{0, 1, 2}, {0, 2, 3}}));
 }
 
+/// Before and behind the list; a polygon's for each of its triangles; strips have none.
+TEST_F(Ply, NumbersOfFaces) {
+  const std::string faces =
+      "element face 2\nproperty uchar red\nproperty list uchar int vertex_indices\nproperty float heat\nproperty list uchar uchar "
+      "rest\n";
+  const std::string square = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const Mesh mesh = read(vertex_header("ascii") + faces + "end_header\n" + square +
+                         "7 4 0 1 2 3 0.5 0\n9 3 0 1 2 1.5 1 3\n");
+  EXPECT_EQ(mesh.triangles.size(), 3u);
+  ASSERT_EQ(mesh.face_attributes.size(), 2u);
+  EXPECT_EQ(mesh.face_attributes.at("red"), (std::vector<float>{7, 7, 9}));
+  EXPECT_EQ(mesh.face_attributes.at("heat"), (std::vector<float>{0.5f, 0.5f, 1.5f}));
+  EXPECT_EQ(mesh.byte_attributes, (std::set<std::string>{"face red"}));
+  EXPECT_TRUE(mesh.vertex_attributes.empty());
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+  EXPECT_TRUE(read(vertex_header("ascii") + faces + strips + square +
+                   "7 4 0 1 2 3 0.5 0\n9 3 0 1 2 1.5 1 3\n3 0 2 3\n")
+                  .face_attributes.empty());
+}
+
 TEST_F(Ply, SkipsOtherElementsWhereverTheyStand) {
   const std::string header =
       "ply\ncomment made by hand\nformat binary_little_endian 1.0\nobj_info x\nelement camera 2\nproperty "
