@@ -6,6 +6,10 @@ target_include_directories(kiloband_flags INTERFACE ${PROJECT_SOURCE_DIR}/src ${
 if(KILOBAND_WERROR)
   target_compile_options(kiloband_flags INTERFACE -Werror)
 endif()
+if(KILOBAND_NATIVE)  # base/simd_targets.hpp
+  target_compile_options(kiloband_flags INTERFACE -march=native)
+  target_compile_definitions(kiloband_flags INTERFACE KILOBAND_NATIVE)
+endif()
 if(KILOBAND_SANITIZE)
   target_compile_options(kiloband_flags INTERFACE -fsanitize=${KILOBAND_SANITIZE} -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer)

@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh build
-cmake --preset release -DKILOBAND_TESTS=OFF -DKILOBAND_BENCH=OFF -DKILOBAND_UNITY=ON > build.log 2>&1 || { cat build.log; exit 1; }
+cmake --preset release -DKILOBAND_TESTS=OFF -DKILOBAND_BENCH=OFF -DKILOBAND_UNITY=ON -DKILOBAND_NATIVE=ON > build.log 2>&1 || { cat build.log; exit 1; }
 rm -f build.log
 cmake --build --preset release --target kiloband
 

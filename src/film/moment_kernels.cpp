@@ -2,7 +2,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "film/moment_kernels.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL)
+#include "base/simd_targets.hpp"
+// Before foreach_target.h.
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway asks for.
 #include <hwy/highway.h>

@@ -15,7 +15,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src_cpu/evaluate/evaluator_kernels.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL)
+#include "base/simd_targets.hpp"
+// Before foreach_target.h.
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway asks for.
 #include <hwy/highway.h>
@@ -242,12 +243,18 @@ namespace kiloband::cpu {
 // Every target has its own namespace: the choice is the caller's, not Highway's global one.
 const EvaluatorKernels& evaluator_kernels(Isa isa) {
   switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
     case Isa::kAvx512:
       return N_AVX3::kKernels;
+#endif
+#if HWY_TARGETS & HWY_AVX2
     case Isa::kAvx2:
       return N_AVX2::kKernels;
+#endif
+#if HWY_TARGETS & HWY_SSE4
     case Isa::kSse4:
       return N_SSE4::kKernels;
+#endif
     default:
       throw std::logic_error("evaluator_kernels: the instruction set is not resolved");
   }

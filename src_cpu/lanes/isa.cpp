@@ -1,5 +1,7 @@
 #include "src_cpu/lanes/isa.hpp"
 
+#include "base/simd_targets.hpp"
+// Before Highway, which it tells what there is code for.
 #include <hwy/targets.h>
 
 #include <cstdint>
@@ -46,7 +48,7 @@ const char* to_string(Isa isa) {
 }
 
 bool is_available(Isa isa) {
-  return isa == Isa::kAuto || (hwy::SupportedTargets() & target_of(isa)) != 0;
+  return isa == Isa::kAuto || (hwy::SupportedTargets() & HWY_TARGETS & target_of(isa)) != 0;
 }
 
 Isa resolve_isa(Isa wanted) {
@@ -57,7 +59,7 @@ Isa resolve_isa(Isa wanted) {
   }
   if (!is_available(wanted))
     throw DeviceError(std::string("instruction set '") + to_string(wanted) +
-                      "': this processor does not have it");
+                      "': this processor does not have it, or the program no code for it");
   return wanted;
 }
 

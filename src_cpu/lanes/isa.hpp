@@ -14,12 +14,12 @@ const char* to_string(Isa isa);
 /// The instruction set of that name; nothing: there is none.
 std::optional<Isa> find_isa(std::string_view name);
 
-/// True if this machine runs code for `isa`; kAuto always does.
+/// True if the program has code for `isa` and this machine runs it; kAuto always does.
 bool is_available(Isa isa);
 
 /// The best instruction set of this machine that the program has code for if `wanted` is
 /// kAuto, else `wanted`.
-/// throws DeviceError  the machine lacks it
+/// throws DeviceError  the machine or the program lacks it
 Isa resolve_isa(Isa wanted);
 
 }  // namespace kiloband::cpu

@@ -4,7 +4,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src_cpu/path/path_kernels.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL)
+#include "base/simd_targets.hpp"
+// Before foreach_target.h.
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway asks for.
 #include "src_cpu/lanes/highway_lanes-inl.hpp"
@@ -25,12 +26,18 @@ namespace kiloband::cpu {
 
 const PathKernels& path_kernels(Isa isa) {
   switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
     case Isa::kAvx512:
       return N_AVX3::kPathKernels;
+#endif
+#if HWY_TARGETS & HWY_AVX2
     case Isa::kAvx2:
       return N_AVX2::kPathKernels;
+#endif
+#if HWY_TARGETS & HWY_SSE4
     case Isa::kSse4:
       return N_SSE4::kPathKernels;
+#endif
     default:
       throw std::logic_error("path_kernels: the instruction set is not resolved");
   }

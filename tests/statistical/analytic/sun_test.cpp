@@ -78,6 +78,24 @@ TEST(Sun, SeenThroughAPane) {
   expect_image_mean(result, channel_integrals(radiance, result), 0.005);
 }
 
+/// 16 and a lamp without radius are rendered, 17 are refused.
+TEST(Sun, AtMostSixteen) {
+  std::string suns = emitter("directional", kIrradiance.text("irradiance"));
+  for (int i = 0; i < 16; ++i) suns += sun(1, 0, 0, 1);
+  const std::string camera = perspective(lookat("0, 0, 0", "0, 0, 1"), 0.02, film(4));
+  const RenderResult result = render_valid(scene(1, camera + suns), kBands, {}, {4, 46});
+  const Function radiance = [](double nm) { return 16 * kIrradiance(nm) * radiance_of(1); };
+  expect_image_mean(result, channel_integrals(radiance, result), 0.005);
+  try {
+    render_valid(scene(1, camera + suns + sun(1, 0, 0, 1)), kBands, {}, {4, 47});
+    ADD_FAILURE() << "17 suns were taken";
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("more than 16 directional emitters with an angular_radius"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 /// hide_emitters: the camera sees none, a mirror does.
 TEST(Sun, HiddenFromTheCamera) {
   const std::string hidden =

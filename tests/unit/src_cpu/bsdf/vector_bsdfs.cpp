@@ -4,7 +4,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/unit/src_cpu/bsdf/vector_bsdfs.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL)
+#include "base/simd_targets.hpp"
+// Before foreach_target.h.
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway asks for.
 #include "src_cpu/lanes/highway_lanes-inl.hpp"
@@ -16,12 +17,18 @@ namespace kiloband::test {
 
 LaneAnswers answers_of(cpu::Isa isa, const LaneQueries& queries) {
   switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
     case cpu::Isa::kAvx512:
       return cpu::N_AVX3::answer_queries(queries);
+#endif
+#if HWY_TARGETS & HWY_AVX2
     case cpu::Isa::kAvx2:
       return cpu::N_AVX2::answer_queries(queries);
+#endif
+#if HWY_TARGETS & HWY_SSE4
     case cpu::Isa::kSse4:
       return cpu::N_SSE4::answer_queries(queries);
+#endif
     default:
       throw std::logic_error("answers_of: the instruction set is not resolved");
   }

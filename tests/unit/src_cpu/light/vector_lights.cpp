@@ -4,7 +4,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/unit/src_cpu/light/vector_lights.cpp"
-#define HWY_DISABLED_TARGETS (HWY_SCALAR | HWY_EMU128 | HWY_SSSE3 | HWY_AVX3_DL)
+#include "base/simd_targets.hpp"
+// Before foreach_target.h.
 #include <hwy/foreach_target.h>
 // After foreach_target.h, as Highway asks for.
 #include "src_cpu/lanes/highway_lanes-inl.hpp"
@@ -17,18 +18,24 @@ namespace kiloband::test {
 // Each table is made where it is asked for: the code that makes it is code of its instruction set.
 const std::vector<SceneFunction>& scene_functions_of(cpu::Isa isa) {
   switch (isa) {
+#if HWY_TARGETS & HWY_AVX3
     case cpu::Isa::kAvx512: {
       static const std::vector<SceneFunction> functions = cpu::N_AVX3::scene_functions();
       return functions;
     }
+#endif
+#if HWY_TARGETS & HWY_AVX2
     case cpu::Isa::kAvx2: {
       static const std::vector<SceneFunction> functions = cpu::N_AVX2::scene_functions();
       return functions;
     }
+#endif
+#if HWY_TARGETS & HWY_SSE4
     case cpu::Isa::kSse4: {
       static const std::vector<SceneFunction> functions = cpu::N_SSE4::scene_functions();
       return functions;
     }
+#endif
     default:
       throw std::logic_error("scene_functions_of: the instruction set is not resolved");
   }
