@@ -41,8 +41,8 @@ Pixel parse_pixel(const std::string& text) {
 }
 
 const char* name_of_kind(uint32_t kind) {
-  static constexpr const char* kNames[] = {"scaled",     "two-term", "nonlinear",         "conductor",
-                                           "dispersive", "gas",      "rough transmission"};
+  static constexpr const char* kNames[] = {"scaled",     "two-term", "nonlinear",          "conductor",
+                                           "dispersive", "gas",      "rough transmission", "tinted"};
   return kind < std::size(kNames) ? kNames[kind] : "?";
 }
 
@@ -86,7 +86,7 @@ void print_gas(const FlatScene& scene, const KbPathVertex& v) {
 void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
   const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
   if (kind == KB_KIND_MEDIUM) return print_gas(scene, v);
-  const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
+  const bool two = kb_has_two_spectra(kind);
   answer("vertex     {}", name_of_kind(kind));
   const uint32_t material = v.head >> KB_VERTEX_MATERIAL_SHIFT;
   const bool reflects = v.head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);

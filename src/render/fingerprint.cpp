@@ -80,6 +80,7 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   hash.add_all(scene.tables);
   hash.add_all(scene.bumps);
   hash.add_all(scene.roughness);
+  hash.add_all(scene.principled_maps);
   hash.add_all(scene.surfaces);
   hash.add_all(scene.shapes);
   hash.add_all(scene.positions);

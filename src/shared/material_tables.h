@@ -5,6 +5,7 @@
      conductor, rough   KB_CONDUCTOR_CELLS + 1 upper bounds of Fresnel's reflectance over all channels, at equidistant
      or not, but no     cosines from 0 to 1. F falls from normal incidence to a minimum and rises to 1 at grazing
      perfect mirror     incidence, so that the nodes bound what is between them
+     principled         KB_PRINCIPLED_NUMBERS numbers (principled.h)
      compensated        then the table of energy compensation (thermal.h) */
 #ifndef KILOBAND_SHARED_MATERIAL_TABLES_H
 #define KILOBAND_SHARED_MATERIAL_TABLES_H

@@ -27,6 +27,9 @@
                             light sample (w0 = nee0) or a scattering event (w0 = scatter0), not both, and no emission:
                             what these would need holds the directions
 
+     KB_KIND_TINTED         B(w0, w1) = w0 * S_a + w1                   for w1 >= 0,
+                                        w0 * S_a - w1 * sqrt(S_a)       for w1 < 0
+
    KB_VERTEX_NEGATIVE, of the first vertex of a path only: tau_0 = -1, where the reconstruction filter is negative.
 
    KB_VERTEX_DEGRADE: after B is applied only channel kb_as_u32(scatter1) goes on, tau of the others becomes 0
@@ -57,8 +60,19 @@ enum KbVertexKind {
   KB_KIND_CONDUCTOR = 3,
   KB_KIND_DISPERSIVE = 4,
   KB_KIND_MEDIUM = 5,
-  KB_KIND_ROUGH_TRANSMISSION = 6
+  KB_KIND_ROUGH_TRANSMISSION = 6,
+  KB_KIND_TINTED = 7
 };
+
+/* Does B have S_b? */
+KB_FN bool kb_has_two_spectra(kb_u32 kind) {
+  return kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
+}
+
+/* Is w1 a weight, too? Else it is an argument of the spectral factor. */
+KB_FN bool kb_has_two_weights(kb_u32 kind) {
+  return kb_has_two_spectra(kind) || kind == KB_KIND_TINTED;
+}
 
 #define KB_VERTEX_KIND_MASK 0x7u
 #define KB_VERTEX_EMIT 0x8u

@@ -24,7 +24,8 @@ enum KbMaterialType {
   KB_MATERIAL_ROUGH_DIELECTRIC = 4,
   KB_MATERIAL_PLASTIC = 5,
   KB_MATERIAL_ROUGH_PLASTIC = 6,
-  KB_MATERIAL_COUNT = 7
+  KB_MATERIAL_PRINCIPLED = 7, /* principled.h */
+  KB_MATERIAL_COUNT = 8
 };
 
 #define KB_MATERIAL_NONLINEAR 1u      /* plastic: colour shifts by internal scattering */
@@ -33,13 +34,15 @@ enum KbMaterialType {
 #define KB_MATERIAL_PERFECT_MIRROR 8u /* conductor: eta 0, k 1, reflectance 1 at every wavelength */
 #define KB_MATERIAL_COMPENSATED 16u   /* rough: scaled by 1 / E, its single-scattering albedo (thermal.h) */
 #define KB_MATERIAL_GGX 32u           /* rough: the distribution of normals; else Beckmann */
-#define KB_MATERIAL_THIN 64u          /* smooth dielectric: a pane, two boundaries and no inside */
+#define KB_MATERIAL_THIN \
+  64u /* smooth dielectric: a pane, two boundaries and no inside; principled: a sheet */
 
 /* One leaf BSDF. Spectral quantities are references; scalars that steer sampling are averages over the guide bands. */
 typedef struct {
   kb_u32 type;    /* KbMaterialType */
   kb_u32 flags;   /* KB_MATERIAL_* */
-  kb_u32 ref_a;   /* diffuse: reflectance; conductor, plastic, dielectric: specular reflectance */
+  kb_u32 ref_a;   /* diffuse: reflectance; conductor, plastic, dielectric: specular reflectance;
+                          principled: base colour */
   kb_u32 ref_b;   /* plastic: diffuse reflectance; dielectric: specular transmittance;
                           compensated conductor: ref_a times the reflectance at normal incidence */
   kb_u32 eta_row; /* index of refraction inside: conductors, dispersive dielectrics; else KB_NONE */
@@ -53,7 +56,7 @@ typedef struct {
   float specular_weight; /* plastic: probability scale of the specular lobe,
                             s / (s + d) of the guide means, mixed with uniform */
   float bound_a;         /* upper bound of ref_a over guide and rendered channels */
-  float bound_b;         /* the same of ref_b */
+  float bound_b;         /* the same of ref_b; principled: 1, of what is white */
   kb_u32 table;          /* where its tables begin in those of the scene (material_tables.h), or KB_NONE */
 } KbMaterial;
 KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);

@@ -20,6 +20,8 @@
 #include "src_cpu/bsdf/dielectric-inl.hpp"
 #include "src_cpu/bsdf/diffuse-inl.hpp"
 #include "src_cpu/bsdf/plastic-inl.hpp"
+#include "src_cpu/bsdf/principled-inl.hpp"
+#include "src_cpu/bsdf/principled_thin-inl.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
@@ -47,6 +49,24 @@ KB_INLINE void sample_dielectric_side(const Material& m, V3 wi, F u_lobe, V2 u, 
   sample.wo = select(active & below, flip(sample.wo), sample.wo);
 }
 
+/// Lanes with a principled material, of any kind and side.
+inline BsdfValue eval_any_principled(const Material& m, V3 wi, V3 wo, M active) {
+  BsdfValue value = no_value();
+  active = active & (abs(wi.z) > F(0)) & (abs(wo.z) > F(0));
+  const M thin = has_bits(m.flags, KB_MATERIAL_THIN);
+  if (const M lanes = active & !thin; any(lanes)) eval_principled(m, wi, wo, lanes, value);
+  if (const M lanes = active & thin; any(lanes)) eval_sheet(m, wi, wo, lanes, value);
+  return value;
+}
+
+inline void sample_any_principled(const Material& m, V3 wi, F u_lobe, V2 u, M active, BsdfSample& sample) {
+  const M thin = has_bits(m.flags, KB_MATERIAL_THIN);
+  const F refracts = (F(1) - number_of(m, KB_PRINCIPLED_METALLIC)) * number_of(m, KB_PRINCIPLED_SPEC_TRANS);
+  if (const M lanes = active & !thin & ((wi.z > F(0)) | (refracts > F(0))); any(lanes))
+    sample_principled(m, wi, u_lobe, u, lanes, sample);
+  if (const M lanes = active & thin; any(lanes)) sample_sheet(m, wi, u_lobe, u, lanes, sample);
+}
+
 KB_INLINE BsdfValue eval_bsdf(const Material& m, V3 wi, V3 wo, M active) {
   BsdfValue value = no_value();
   const M above = active & (wi.z > F(0)) & (wo.z > F(0));
@@ -60,6 +80,9 @@ KB_INLINE BsdfValue eval_bsdf(const Material& m, V3 wi, V3 wo, M active) {
   const M glass = active & is_type(m.type, KB_MATERIAL_ROUGH_DIELECTRIC) & (abs(wi.z) > F(0)) &
                   (abs(wo.z) > F(0)) & !not_degraded(m);
   if (any(glass)) eval_dielectric_side(m, wi, wo, glass, value);
+  if (m.principled)
+    if (const M lanes = active & is_type(m.type, KB_MATERIAL_PRINCIPLED); any(lanes))
+      put(value, lanes, eval_any_principled(m, wi, wo, lanes));
   compensate(m, wi, active, value);
   return value;
 }
@@ -80,6 +103,9 @@ KB_INLINE BsdfSample sample_bsdf(const Material& m, V3 wi, F u_lobe, V2 u, M act
   const M glass = active & (abs(wi.z) > F(0)) &
                   (is_type(m.type, KB_MATERIAL_DIELECTRIC) | is_type(m.type, KB_MATERIAL_ROUGH_DIELECTRIC));
   if (any(glass)) sample_dielectric_side(m, wi, u_lobe, u, glass, sample);
+  if (m.principled)
+    if (const M lanes = active & (abs(wi.z) > F(0)) & is_type(m.type, KB_MATERIAL_PRINCIPLED); any(lanes))
+      sample_any_principled(m, wi, u_lobe, u, lanes, sample);
   compensate(m, wi, active, sample);
   return sample;
 }

@@ -21,8 +21,8 @@ one_lane::V3 lane_of(glm::vec3 v) {
 }
 
 one_lane::Material lane_of(const KbMaterial& m) {
-  return {m.type,    m.flags,   m.ref_a,   m.ref_b,    m.alpha_u,  m.alpha_v, m.eta,  m.specular_weight,
-          m.fdr_int, m.bound_a, m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr};
+  return {m.type,    m.flags,   m.ref_a,   m.ref_b,    m.alpha_u,  m.alpha_v, m.eta,   m.specular_weight,
+          m.fdr_int, m.bound_a, m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr, nullptr};
 }
 
 /// Offsets count from the first of its tables.
@@ -66,11 +66,29 @@ KB_INLINE one_lane::Material lane_of_type(const MaterialContext& context) {
   return m;
 }
 
+/// A principled material with its numbers.
+struct PrincipledLane {
+  explicit PrincipledLane(const MaterialContext& context) : material(lane_of(context)) {
+    if (!context.table) throw std::logic_error("principled material without its numbers");
+    for (uint32_t n = 0; n < KB_PRINCIPLED_NUMBERS; ++n) numbers.number[n] = F(context.table[n]);
+    material.principled = &numbers;
+    one_lane::set_principled_alpha(material, kActive);
+  }
+  PrincipledLane(const PrincipledLane&) = delete;
+  PrincipledLane& operator=(const PrincipledLane&) = delete;
+
+  one_lane::Material material;
+  one_lane::Principled numbers;
+};
+
+BsdfValue value_of(const one_lane::BsdfValue& v) {
+  return {v.w0.v, v.w1.v, v.pdf.v, v.lobe_b.v};
+}
+
 template <KbMaterialType Type>
 KB_INLINE BsdfValue eval_type(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) {
   const one_lane::Material m = lane_of_type<Type>(context);
-  const one_lane::BsdfValue v = one_lane::eval_bsdf(m, lane_of(wi), lane_of(wo), kActive);
-  return {v.w0.v, v.w1.v, v.pdf.v, v.lobe_b.v};
+  return value_of(one_lane::eval_bsdf(m, lane_of(wi), lane_of(wo), kActive));
 }
 
 template <KbMaterialType Type>
@@ -110,6 +128,9 @@ BsdfValue eval_bsdf(const MaterialContext& context, glm::vec3 wi, glm::vec3 wo) 
     case KB_MATERIAL_ROUGH_PLASTIC:
       check_rough_plastic(context);
       return call_eval<KB_MATERIAL_ROUGH_PLASTIC>(context, wi, wo);
+    case KB_MATERIAL_PRINCIPLED:
+      return value_of(
+          one_lane::eval_bsdf(PrincipledLane(context).material, lane_of(wi), lane_of(wo), kActive));
     default:
       return {};
   }
@@ -133,6 +154,9 @@ BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lob
     case KB_MATERIAL_ROUGH_PLASTIC:
       check_rough_plastic(context);
       return call_sample<KB_MATERIAL_ROUGH_PLASTIC>(context, wi, u_lobe, u);
+    case KB_MATERIAL_PRINCIPLED:
+      return sample_of(
+          one_lane::sample_bsdf(PrincipledLane(context).material, lane_of(wi), u_lobe, {u.x, u.y}, kActive));
     default:
       return {};
   }

@@ -22,9 +22,10 @@ namespace kiloband::cpu {
 
 /// The weights of one direction pair, for KbVertexKind eval_kind(material).
 struct BsdfValue {
-  float w0 = 0, w1 = 0;  // f |cos theta_o| without spectral factors [1/sr]; see KB_KIND_*
-  float pdf = 0;         // solid angle [1/sr], of sample_bsdf choosing wo (0 for delta lobes)
-  bool lobe_b = false;   // KB_KIND_SCALED: the factor is S_b instead of S_a (dielectric transmittance)
+  /// f |cos theta_o| without spectral factors [1/sr]; see KB_KIND_*. KB_KIND_TINTED: w1 < 0 where sqrt(S_a) is the factor
+  float w0 = 0, w1 = 0;
+  float pdf = 0;        // solid angle [1/sr], of sample_bsdf choosing wo (0 for delta lobes)
+  bool lobe_b = false;  // KB_KIND_SCALED: the factor is S_b instead of S_a (dielectric transmittance)
 };
 
 /// A vertex has one kind: for materials with a non-delta lobe `kind` equals eval_kind(material), so that

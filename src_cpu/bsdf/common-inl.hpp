@@ -10,11 +10,17 @@
 #endif
 
 #include "shared/material_tables.h"
+#include "shared/principled.h"
 #include "shared/records.h"
 #include "src_cpu/lanes/lane_access-inl.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
+
+/// The numbers of principled materials: KbPrincipledNumber.
+struct Principled {
+  F number[KB_PRINCIPLED_NUMBERS];
+};
 
 /// What the BSDFs read of a KbMaterial, which is described there.
 struct Material {
@@ -24,6 +30,7 @@ struct Material {
   U compensation;       // where its table of energy compensation begins there, or KB_NONE
   F channel_eta;        // dispersive: interior over exterior index at the chosen wavelength; 0: not degraded
   const float* tables;  // of the scene; for lanes that have a table at all
+  const Principled* principled;  // of lanes that have a principled material; null: none has
 };
 
 struct BsdfValue {
@@ -107,6 +114,7 @@ KB_INLINE Material gather_material(const KbMaterial* materials, const float* tab
   m.compensation = compensation_offset(m.type, m.flags, m.table);
   m.channel_eta = F(0);
   m.tables = tables;
+  m.principled = nullptr;
   return m;
 }
 
@@ -116,6 +124,7 @@ KB_INLINE U eval_kind(U type, U flags) {
   const M plastic = is_type(type, KB_MATERIAL_PLASTIC) | is_type(type, KB_MATERIAL_ROUGH_PLASTIC);
   U kind(uint32_t{KB_KIND_SCALED});
   kind = select(metal & !has_bits(flags, KB_MATERIAL_PERFECT_MIRROR), U(uint32_t{KB_KIND_CONDUCTOR}), kind);
+  kind = select(is_type(type, KB_MATERIAL_PRINCIPLED), U(uint32_t{KB_KIND_TINTED}), kind);
   return select(plastic,
                 select(has_bits(flags, KB_MATERIAL_NONLINEAR), U(uint32_t{KB_KIND_NONLINEAR}),
                        U(uint32_t{KB_KIND_TWO_TERM})),

@@ -164,6 +164,8 @@ double scattering(const Point& at, const KbPathVertex& vertex, double a, double 
       return w0 * a * vertex_fresnel(at, vertex, w1);
     case KB_KIND_ROUGH_TRANSMISSION:
       return w0 * a * rough_transmission(at, vertex);
+    case KB_KIND_TINTED:
+      return w0 * a + (w1 >= 0 ? w1 : -w1 * std::sqrt(a));
     default:
       return w0 * a;
   }
@@ -184,8 +186,7 @@ void apply(const Point& at, const KbPathVertex& v, const KbTextureSample* sample
   const uint32_t kind = v.head & KB_VERTEX_KIND_MASK;
   const bool reflects = v.head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
   const double a = value(KB_VERTEX_TEX_A, reflects, v.row_a, false);
-  const double b = value(KB_VERTEX_TEX_B, reflects && (kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR),
-                         v.row_b, false);
+  const double b = value(KB_VERTEX_TEX_B, reflects && kb_has_two_spectra(kind), v.row_b, false);
   const double emitted = value(KB_VERTEX_TEX_EMIT, v.head & KB_VERTEX_EMIT, v.emit_row, true);
   const double light = value(KB_VERTEX_TEX_NEE, v.head & KB_VERTEX_NEE, v.nee_row, true);
   if (v.head & KB_VERTEX_EMIT) state.radiance += state.tau * v.emit_weight * emitted;

@@ -51,6 +51,8 @@ HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, 
       return hn::Mul(scaled, fresnel(*f, k));
     case KB_KIND_ROUGH_TRANSMISSION:
       return hn::Mul(scaled, rough_transmission(*v.transmission, k));
+    case KB_KIND_TINTED:
+      return w1 >= 0 ? hn::Add(scaled, constant(w1)) : hn::MulAdd(constant(-w1), hn::Sqrt(a), scaled);
     default:
       return scaled;
   }
@@ -67,7 +69,7 @@ HWY_INLINE void general_vector(const GeneralVertex& v, const double* lambda, std
   if (v.flags & (KB_VERTEX_NEE | KB_VERTEX_SCATTER)) {
     const Floats a = source(v.a, lambda, k);
     Floats b = hn::Zero(kTag);
-    if (v.kind == KB_KIND_TWO_TERM || v.kind == KB_KIND_NONLINEAR) b = source(v.b, lambda, k);
+    if (kb_has_two_spectra(v.kind)) b = source(v.b, lambda, k);
     if (v.kind == KB_KIND_NONLINEAR) b = hn::Div(b, hn::NegMulAdd(b, constant(v.fdr_int), constant(1)));
     if (v.flags & KB_VERTEX_NEE) {
       const Floats f = reflect(v, a, b, v.nee0, v.nee1, v.nee_fresnel, k);

@@ -183,7 +183,7 @@ ProgramBuilder::Sources ProgramBuilder::sources(const KbPathVertex& vertex, cons
     if (head & flag) return texture(*samples++, emission, spectra);
     return {used ? spectra.spectrum(row) : nullptr, nullptr};
   };
-  const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
+  const bool two = kb_has_two_spectra(kind);
   Sources from;
   from.a = source(KB_VERTEX_TEX_A, reflects, vertex.row_a, false);
   from.b = source(KB_VERTEX_TEX_B, reflects && two, vertex.row_b, false);

@@ -58,9 +58,9 @@ inline float opacity_at(const FlatScene& scene, const KbSurface& surface, const 
                                         : share_at(scene, surface.opacity_ref, surface.opacity, at);
 }
 
-/// A roughness where `ref` is not KB_NONE: the value of a bitmap. `alpha` elsewhere.
-inline float roughness_at(const FlatScene& scene, uint32_t ref, float alpha, const TexturePoint& at) {
-  return ref == KB_NONE ? alpha : bitmap_value(scene, resolve_spectrum(scene, ref, at).texture);
+/// A material's number where `ref` is not KB_NONE: the value of a bitmap. `number` elsewhere.
+inline float number_at(const FlatScene& scene, uint32_t ref, float number, const TexturePoint& at) {
+  return ref == KB_NONE ? number : bitmap_value(scene, resolve_spectrum(scene, ref, at).texture);
 }
 
 /// Upper bound of a resolved spectrum over guide bands and rendered channels

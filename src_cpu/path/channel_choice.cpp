@@ -1,6 +1,7 @@
 #include "src_cpu/path/channel_choice.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kiloband::cpu {
 namespace {
@@ -15,12 +16,18 @@ float probability_in(float carried, float total, uint32_t channels) {
   return (1 - KB_EVEN_CHANNELS) * (carried / total) + KB_EVEN_CHANNELS * even;
 }
 
+/// B of KB_KIND_TINTED
+float tinted(const KbPathVertex& vertex, float a) {
+  const float w1 = vertex.scatter1;
+  return vertex.scatter0 * a + (w1 >= 0 ? w1 : -w1 * std::sqrt(a));
+}
+
 }  // namespace
 
 void carry(BinnedThroughput& carried, const KbPathVertex& vertex, std::span<const float> bins) {
   const uint32_t kind = vertex.head & KB_VERTEX_KIND_MASK;
   if (kind == KB_KIND_MEDIUM) return;  // gas: lines are finer than bins
-  const bool two = kind == KB_KIND_TWO_TERM || kind == KB_KIND_NONLINEAR;
+  const bool two = kb_has_two_spectra(kind);
   if (vertex.head & (KB_VERTEX_TEX_A | (two ? KB_VERTEX_TEX_B : 0u))) return;
   const float* a = &bins[std::size_t{vertex.row_a} * KB_CHANNEL_BINS];
   const float* b = two ? &bins[std::size_t{vertex.row_b} * KB_CHANNEL_BINS] : a;
@@ -28,7 +35,7 @@ void carry(BinnedThroughput& carried, const KbPathVertex& vertex, std::span<cons
   const float share = two && sum > 0 ? vertex.scatter1 / sum : 0.0f;
   float largest = 0;
   for (uint32_t i = 0; i < KB_CHANNEL_BINS; ++i) {
-    carried[i] *= (1 - share) * a[i] + share * b[i];
+    carried[i] *= kind == KB_KIND_TINTED ? tinted(vertex, a[i]) : (1 - share) * a[i] + share * b[i];
     largest = std::max(largest, carried[i]);
   }
   if (!(largest > 0)) return;  // nothing goes on: any choice is as good

@@ -126,11 +126,33 @@ inline void look_up_roughness(Shading& s, M seen) {
   FloatArray alpha_u(s.material.alpha_u), alpha_v(s.material.alpha_v);
   each_lane(seen, [&](uint32_t i) KB_LAMBDA {
     const KbRoughness& maps = scene.roughness[side[i]];
-    alpha_u[i] = roughness_at(scene, maps.alpha_u_ref, alpha_u[i], points[i]);
-    alpha_v[i] = roughness_at(scene, maps.alpha_v_ref, alpha_v[i], points[i]);
+    alpha_u[i] = number_at(scene, maps.alpha_u_ref, alpha_u[i], points[i]);
+    alpha_v[i] = number_at(scene, maps.alpha_v_ref, alpha_v[i], points[i]);
   });
   s.material.alpha_u = alpha_u;
   s.material.alpha_v = alpha_v;
+}
+
+/// The numbers of principled materials, of the numbers' maps the values here.
+inline void look_up_principled(Shading& s, M seen) {
+  const FlatScene& scene = s.scene();
+  const M lanes = seen & is_type(s.material.type, KB_MATERIAL_PRINCIPLED);
+  if (!any(lanes)) return;
+  s.principled = gather_principled(scene.tables.data(), select(lanes, s.material.table, U(0u)), lanes);
+  s.material.principled = &s.principled;
+  if (!scene.principled_maps.empty()) {
+    const WordArray side(s.side);
+    const TexturePoints points(texture_place(s));
+    for (uint32_t n = 0; n < KB_PRINCIPLED_MAPPED; ++n) {
+      FloatArray number(s.principled.number[n]);
+      each_lane(lanes, [&](uint32_t i) KB_LAMBDA {
+        const uint32_t ref = scene.principled_maps[std::size_t{side[i]} * KB_PRINCIPLED_MAPPED + n];
+        number[i] = number_at(scene, ref, number[i], points[i]);
+      });
+      s.principled.number[n] = number;
+    }
+  }
+  set_principled_alpha(s.material, lanes);
 }
 
 /// The material that is seen, its spectra, the frame and the direction to where the path comes from. Returns the
@@ -154,6 +176,7 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   s.material.bound_a = bound_at(scene, ref_a, s.vertex.a, s.material.bound_a, seen & (ref_a != U(KB_NONE)));
   s.material.bound_b = bound_at(scene, ref_b, s.vertex.b, s.material.bound_b, seen & (ref_b != U(KB_NONE)));
   if (scene.features.roughness_map) look_up_roughness(s, seen);
+  if (scene.features.principled) look_up_principled(s, seen);
   const V3 normal = scene.features.bump ? bump_normals(s, seen, turned) : s.hit.shading_normal;
   s.frame = make_frame(normal);
   const M anisotropic = seen & (s.material.alpha_u != s.material.alpha_v);
@@ -188,7 +211,7 @@ KB_INLINE M add_light(Shading& s, M scatters) {
   M lit = smooth & (light.pdf > F(0)) & (light.factor > F(0));
   if (!any(lit)) return lit;
   const BsdfValue value = eval_bsdf(s.material, s.wi, s.frame.to_local(light.direction), lit);
-  lit = lit & ((value.w0 >= F(KB_LEAST_BSDF_VALUE)) | (value.w1 >= F(KB_LEAST_BSDF_VALUE)));
+  lit = lit & ((value.w0 >= F(KB_LEAST_BSDF_VALUE)) | (abs(value.w1) >= F(KB_LEAST_BSDF_VALUE)));
   const F mis = select(light.delta, F(1), power_heuristic(light.pdf, value.pdf * s.opacity));
   F weight = mis * s.opacity * light.factor / light.pdf;
   if (scene.features.bump) weight = weight * bump_share(s, light.direction);
@@ -215,7 +238,8 @@ KB_INLINE M add_light(Shading& s, M scatters) {
 /// What a bump map leaves of a sample.
 KB_INLINE void bump_sample(const Shading& s, BsdfSample& sample) {
   const F share = bump_share(s, s.frame.to_world(sample.wo));
-  const M two = (sample.kind == U(KB_KIND_TWO_TERM)) | (sample.kind == U(KB_KIND_NONLINEAR));
+  const M two = (sample.kind == U(KB_KIND_TWO_TERM)) | (sample.kind == U(KB_KIND_NONLINEAR)) |
+                (sample.kind == U(KB_KIND_TINTED));
   sample.w0 = sample.w0 * share;
   sample.w1 = select(two, sample.w1 * share, sample.w1);
   sample.bound = sample.bound * share;

@@ -41,6 +41,7 @@ struct Shading {
   F opacity;
   U side;  // the material that is seen
   Material material;
+  Principled principled;  // only in scenes with principled materials
   Frame frame;
   V3 wi;
   // Only in scenes with bump maps:
@@ -125,7 +126,7 @@ KB_INLINE M roulette(Shading& s, F& bound, M scattered) {
   const M survives = scattered & (s.u.w < q);
   s.vertex.clear(scattered & !survives, KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
   s.vertex.scatter0 = s.vertex.scatter0 / q;
-  s.vertex.scatter1 = select(s.vertex.has_two_terms(), s.vertex.scatter1 / q, s.vertex.scatter1);
+  s.vertex.scatter1 = select(s.vertex.has_two_weights(), s.vertex.scatter1 / q, s.vertex.scatter1);
   bound = bound / q;
   return survives;
 }
@@ -163,7 +164,7 @@ KB_INLINE void continue_paths(Shading& s, V3 direction, F bound, F pdf, M delta,
 /// The factors S_a and S_b that the vertex needs, and their lookups. use_b: S_b stands in the place of S_a.
 KB_INLINE void finish_spectra(Vertex& v, M needed, M use_b) {
   v.a = select(use_b, v.b, v.a);
-  const M two = needed & v.has_two_terms();
+  const M two = needed & v.has_two_spectra();
   v.a.row = select(needed, v.a.row, U(0u));
   v.b.row = select(two, v.b.row, U(0u));
   v.set(needed & v.a.textured, KB_VERTEX_TEX_A);

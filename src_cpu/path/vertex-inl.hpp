@@ -29,10 +29,11 @@ struct Vertex {
   KB_INLINE void clear(M m, uint32_t flags) { head = select(m, head & U(~flags), head); }
   KB_INLINE U kind() const { return head & U(KB_VERTEX_KIND_MASK); }
   KB_INLINE void set_kind(M m, U kind) { head = select(m, (head & U(~KB_VERTEX_KIND_MASK)) | kind, head); }
-  /// Both weights have a spectral factor; else the second one is no weight.
-  KB_INLINE M has_two_terms() const {
+  /// kb_has_two_spectra(), kb_has_two_weights()
+  KB_INLINE M has_two_spectra() const {
     return (kind() == U(KB_KIND_TWO_TERM)) | (kind() == U(KB_KIND_NONLINEAR));
   }
+  KB_INLINE M has_two_weights() const { return has_two_spectra() | (kind() == U(KB_KIND_TINTED)); }
 };
 
 KB_INLINE Vertex empty_vertex() {
@@ -47,7 +48,7 @@ KB_INLINE M stays_finite(const Vertex& v, F& magnitude) {
   if (v.kind().v == KB_KIND_MEDIUM)
     return {std::isfinite(v.nee0.v) && std::isfinite(v.scatter0.v)};  // columns
 #endif
-  const M two = v.has_two_terms();
+  const M two = v.has_two_weights();
   const F emitted = select(v.has(KB_VERTEX_EMIT), v.emit_weight, F(0));
   const F lit = select(v.has(KB_VERTEX_NEE), abs(v.nee0) + select(two, abs(v.nee1), F(0)), F(0));
   const M fits = magnitude * (emitted + v.scale * lit) < F(KB_LARGEST_WEIGHT);

@@ -53,6 +53,7 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .materials = up("materials", scene.materials),
           .bumps = up("bump maps", scene.bumps),
           .roughness = up("roughness", scene.roughness),
+          .principled_maps = up("principled maps", scene.principled_maps),
           .tables = up("tables", scene.tables),
           .surfaces = up("surfaces", scene.surfaces),
           .shapes = up("shapes", scene.shapes),

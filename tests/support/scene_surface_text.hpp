@@ -62,6 +62,36 @@ inline Text roughness_maps() {
                                                                          real("alpha_u", "0.3")))));
 }
 
+/// Principled materials, thick and thin, nested and with images as numbers.
+inline Text principled() {
+  const auto map = [](const Text& name, const Text& file) {
+    return texture("bitmap", name, text("filename", file) + yes("raw"), scale("1.7"));
+  };
+  const auto thick = [](const Text& contents) { return bsdf("principled", contents); };
+  const auto thin = [](const Text& contents) { return bsdf("principledthin", contents); };
+  const Text colour = spectrum("base_color", "450:0.2, 550:0.7, 650:0.4");
+  const Text coloured = texture("bitmap", "base_color", text("filename", "colours.ppm"), scale("2"));
+  const Text many = real("metallic", "0.3") + real("spec_trans", "0.5") + real("anisotropic", "0.7") +
+                    real("spec_tint", "0.5") + real("sheen", "0.6") + real("sheen_tint", "0.5") +
+                    real("flatness", "0.4") + real("clearcoat", "0.8") + real("clearcoat_gloss", "0.3");
+  return ball("-0.6 0.4 -0.2", "0.3",
+              thick(colour + map("roughness", "grey.pgm") + map("metallic", "colours.ppm"))) +
+         ball("0 0.4 -0.2", "0.3", thick(colour + real("spec_trans", "1") + real("roughness", "0.3"))) +
+         ball("0.6 0.4 -0.2", "0.3", thick(coloured + many)) +
+         ball("-0.6 -0.5 0", "0.3", thick(colour + many + real("eta", "1.3"))) +
+         ball("0 -0.5 0.1", "0.25",
+              bsdf("mask",
+                   real("opacity", "0.7") + bsdf("blendbsdf", real("weight", "0.5") + metal("conductor") +
+                                                                  thick(colour + real("clearcoat", "1"))))) +
+         rectangle(scale("0.3") + turn("y", "30") + translate("0.5 -0.4 0.2"),
+                   thin(colour + real("diff_trans", "1.2") + real("roughness", "0.3"))) +
+         rectangle(scale("0.25") + turn("y", "160") + translate("0.1 0 0.4"),
+                   thin(coloured + map("spec_trans", "grey.pgm") + real("spec_tint", "0.3") +
+                        real("sheen", "0.5") + map("eta", "above_one.pfm"))) +
+         rectangle(scale("0.25") + turn("x", "-60") + translate("-0.3 -0.8 0.5"),
+                   bsdf("twosided", thick(colour + real("specular", "0.9"))));
+}
+
 /// Attributes of a mesh in all that takes them, in one material for two meshes, in a group, on a lamp.
 inline Text attributes() {
   const auto of = [](const Text& name, const Text& attribute) {

@@ -101,6 +101,7 @@ ZooFolder::ZooFolder() {
   write("tilts.pfm", pfm_image(3, 2, 3,
                                {0.8f, 0.5f, 0.9f, 0.4f, 0.7f, 0.95f, 0.5f, 0.2f, 0.9f,  //
                                 0.3f, 0.3f, 0.9f, 0.5f, 0.5f, 1, 0.65f, 0.75f, 0.9f}));
+  write("above_one.pfm", pfm_image(2, 2, 1, {1, 1.3f, 1.7f, 2.5f}));
   write("hot.ply", kHotPly);
   write("tinted.ply", kTintedPly);
   write("gem.obj", kGem);

@@ -52,7 +52,8 @@ std::string concerned_case(const faults::PlantedFault& fault) {
                                                               {"suns", "stress/glade"},
                                                               {"projected_lights", "stress/glade"},
                                                               {"roughness_maps", "stress/glade"},
-                                                              {"attributes", "stress/glade"}};
+                                                              {"attributes", "stress/glade"},
+                                                              {"principled", "stress/glade"}};
   const auto found = kCases.find(fault.zoo_scene);
   return found == kCases.end() ? "stress/metals_and_lamps" : found->second;
 }

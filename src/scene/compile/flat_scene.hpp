@@ -84,6 +84,8 @@ struct FlatScene {
   std::vector<KbMaterial> materials;
   std::vector<KbBump> bumps;           // by material
   std::vector<KbRoughness> roughness;  // by material
+  /// [material][KB_PRINCIPLED_MAPPED]: bitmap references, or KB_NONE for the number; empty if there is none.
+  std::vector<uint32_t> principled_maps;
   std::vector<KbSurface> surfaces;
   std::vector<KbThermal> thermals;
   std::vector<float> tables;  // what KbMaterial::table, KbThermal::table and field_offset refer to

@@ -48,6 +48,8 @@ void Flattener::add_spares() {
   out_.positions.push_back({0, 0, 0});
   if (!out_.normals.empty()) out_.normals.push_back({0, 0, 0});
   if (!out_.triangles.empty()) out_.triangles.push_back(0);
+  if (!out_.principled_maps.empty())
+    out_.principled_maps.resize(out_.materials.size() * KB_PRINCIPLED_MAPPED, KB_NONE);
 }
 
 std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, const CompileOptions& options) {

@@ -68,6 +68,12 @@ class Flattener {
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
+  // principled.cpp
+  KbMaterial make(const PrincipledBsdf& model, const std::string& name, const SourcePosition& position);
+  /// The material's table.
+  std::vector<float> principled_numbers(const PrincipledBsdf& model, const std::string& name,
+                                        const SourcePosition& position);
+  void add_principled_maps(const PrincipledBsdf& model);
 
   // surfaces.cpp
   /// heat: of the shape, or KB_NONE. Materials and surfaces with different heat are different.
@@ -245,6 +251,9 @@ class Flattener {
   std::vector<double> texture_means_, texture_bounds_;    // per bitmap: mean value, largest texel bound
   double raw_emission_peak_ = 0, rgb_emission_peak_ = 0;  // largest texel scale of emitting bitmaps
 };
+
+/// Without references and tables.
+KbMaterial empty_material(uint32_t type);
 
 /// "bsdf 'wall'", for messages.
 std::string describe(const Bsdf& bsdf);

@@ -29,6 +29,8 @@ void set_roughness(KbMaterial& record, const Roughness& roughness) {
   if (roughness.sample_visible) record.flags |= KB_MATERIAL_SAMPLE_VISIBLE;
 }
 
+}  // namespace
+
 KbMaterial empty_material(uint32_t type) {
   KbMaterial record{};
   record.type = type;
@@ -37,8 +39,6 @@ KbMaterial empty_material(uint32_t type) {
   record.table = KB_NONE;
   return record;
 }
-
-}  // namespace
 
 KbMaterial Flattener::make(const DiffuseBsdf& model, const std::string& name,
                            const SourcePosition& position) {
@@ -191,8 +191,12 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
         }
       },
       scattering->model);
-  set_tables(record, compensated ? compensate(record, *scattering) : std::vector<float>());
+  const auto* principled = std::get_if<PrincipledBsdf>(&scattering->model);
+  set_tables(record, principled    ? principled_numbers(*principled, name, bsdf->position)
+                     : compensated ? compensate(record, *scattering)
+                                   : std::vector<float>());
   out_.materials.push_back(record);
+  if (principled) add_principled_maps(*principled);
   out_.bumps.push_back(bumped ? bump(*bumped) : KbBump{KB_NONE, 0});
   out_.roughness.push_back(roughness_maps(*scattering));
   const std::string& own_id = bsdf->id.empty() ? scattering->id : bsdf->id;

@@ -21,6 +21,8 @@ namespace kiloband {
   X(BLEND, blend, "blend")                                                                            \
   X(BUMP, bump, "bump or normal map")                                                                 \
   X(ROUGHNESS_MAP, roughness_map, "roughness map")                                                    \
+  X(PRINCIPLED, principled, "principled")                                                             \
+  X(PRINCIPLED_MAP, principled_map, "principled map")                                                 \
   X(DISPERSION, dispersion, "dispersion")                                                             \
   X(BITMAP, bitmap, "bitmap")                                                                         \
   X(CHECKERBOARD, checkerboard, "checkerboard")                                                       \

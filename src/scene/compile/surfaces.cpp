@@ -131,7 +131,10 @@ uint32_t Flattener::new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_
   record.front = material(front, emits && is_rough(*front), outer_id);
   if (back) record.back = material(back, emits && is_rough(*back), outer_id);
   const uint32_t type = out_.materials[record.front].type;
-  if (!back && (type == KB_MATERIAL_DIELECTRIC || type == KB_MATERIAL_ROUGH_DIELECTRIC))
+  const auto* bumped = std::get_if<BumpedBsdf>(&front->model);
+  const auto* principled = std::get_if<PrincipledBsdf>(bumped ? &bumped->nested->model : &front->model);
+  if (!back && (type == KB_MATERIAL_DIELECTRIC || type == KB_MATERIAL_ROUGH_DIELECTRIC ||
+                (principled && passes_light(*principled))))
     record.flags |= KB_SURFACE_TRANSMISSIVE;
   if (emits) {
     record.flags |= KB_SURFACE_THERMAL;

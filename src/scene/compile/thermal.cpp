@@ -67,6 +67,11 @@ void Flattener::check_thermal(const Bsdf& bsdf, const KbMaterial& material) cons
   const std::string name = describe(bsdf);
   if (std::holds_alternative<BumpedBsdf>(bsdf.model))
     throw InputError(bsdf.position, name + ": a shape that emits thermally cannot have a bump or normal map");
+  if (std::holds_alternative<PrincipledBsdf>(bsdf.model))
+    throw InputError(bsdf.position,
+                     name +
+                         ": a principled material cannot emit thermally: what it absorbs has no "
+                         "closed form; use a plastic, a conductor or a dielectric");
   const auto require = [&](const Texture& texture, const char* parameter) {
     require_emission_data(texture, {name + ": " + parameter, bsdf.position});
   };

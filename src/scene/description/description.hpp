@@ -15,6 +15,7 @@
 #include "scene/image/image.hpp"
 #include "scene/image/spectral_image.hpp"
 #include "scene/mesh/mesh.hpp"
+#include "shared/principled.h"
 #include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 
@@ -118,6 +119,27 @@ struct PlasticBsdf {
   std::optional<Roughness> roughness;
 };
 
+/// A number of a material, or a bitmap of them: values over the surface, of colours the luminance.
+struct MappedNumber {
+  double number = 0;
+  std::shared_ptr<const BitmapTexture> map;
+};
+
+/// The model and its numbers: shared/principled.h.
+struct PrincipledBsdf {
+  Texture base_color = Spectrum::constant(0.5);
+  std::array<MappedNumber, KB_PRINCIPLED_LUMINANCE> numbers;  // by KbPrincipledNumber
+  std::array<double, KB_PRINCIPLED_NUMBERS - KB_PRINCIPLED_RATES> rates{1, 1, 1, 1};
+  bool thin = false;
+};
+
+/// To the other side of its surface.
+inline bool passes_light(const PrincipledBsdf& bsdf) {
+  const MappedNumber& trans = bsdf.numbers[KB_PRINCIPLED_SPEC_TRANS];
+  const MappedNumber& metallic = bsdf.numbers[KB_PRINCIPLED_METALLIC];
+  return bsdf.thin || ((trans.map || trans.number > 0) && (metallic.map || metallic.number < 1));
+}
+
 /// Nothing but a boundary between media: rays go on as if it were not there.
 struct NullBsdf {};
 
@@ -154,8 +176,8 @@ struct BumpedBsdf {
 struct Bsdf {
   std::string id;  // for messages; empty if unnamed
   SourcePosition position;
-  std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, TwoSidedBsdf, MaskBsdf, BlendBsdf,
-               BumpedBsdf, NullBsdf>
+  std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, PrincipledBsdf, TwoSidedBsdf,
+               MaskBsdf, BlendBsdf, BumpedBsdf, NullBsdf>
       model;
 };
 

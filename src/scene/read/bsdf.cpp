@@ -6,6 +6,7 @@
 #include "scene/read/context.hpp"
 #include "scene/read/ior.hpp"
 #include "scene/read/limits.hpp"
+#include "scene/read/principled.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {
@@ -21,21 +22,11 @@ void check_alpha(const ObjectReader& object, std::string_view name, double alpha
 /// An alpha: a number, or null and a bitmap of them.
 std::shared_ptr<const BitmapTexture> read_alpha(ReadContext& context, const ObjectReader& object,
                                                 std::string_view name, double& alpha) {
-  Node* node = object.find(name);
-  if (!node || node->resolved().kind != TagKind::kObject) {
-    alpha = object.get_float(name, alpha);
-    check_alpha(object, name, alpha);
-    return nullptr;
-  }
-  node->resolved().used = true;
-  const Texture texture = read_texture_object(context, node->resolved());
-  const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture);
-  if (!bitmap) object.fail_at(name, std::string(name) + ": only a number or a bitmap is supported here");
-  for (const float value : (*bitmap)->image->pixels)
-    if (value > kMaxAlpha)
-      object.fail_at(name, std::string(name) + ": a value of '" + (*bitmap)->file.filename().string() +
-                               "' is " + format_number(value) + ": must be from 0 to 100");
-  return *bitmap;
+  auto map = read_number_map(context, object, name, {0, kMaxAlpha, "must be from 0 to 100"});
+  if (map) return map;
+  alpha = object.get_float(name, alpha);
+  check_alpha(object, name, alpha);
+  return nullptr;
 }
 
 /// distribution and sample_visible.
@@ -148,6 +139,13 @@ BsdfModel read_plastic(ReadContext& context, const ObjectReader& object, bool ro
   return bsdf;
 }
 
+BsdfModel read_principled_thick(ReadContext& c, const ObjectReader& o) {
+  return read_principled(c, o, false);
+}
+BsdfModel read_principled_thin(ReadContext& c, const ObjectReader& o) {
+  return read_principled(c, o, true);
+}
+
 /// Is the model, or one that is blended in it, of this kind?
 template <class Kind>
 bool contains(const Bsdf& bsdf) {
@@ -159,6 +157,10 @@ bool contains(const Bsdf& bsdf) {
 }
 
 bool transmits(const Bsdf& bsdf) {
+  if (const auto* principled = std::get_if<PrincipledBsdf>(&bsdf.model)) return passes_light(*principled);
+  if (const auto* bumped = std::get_if<BumpedBsdf>(&bsdf.model)) return transmits(*bumped->nested);
+  if (const auto* blend = std::get_if<BlendBsdf>(&bsdf.model))
+    return transmits(*blend->first) || transmits(*blend->second);
   return contains<DielectricBsdf>(bsdf) || contains<MaskBsdf>(bsdf) || contains<NullBsdf>(bsdf);
 }
 
@@ -363,6 +365,8 @@ constexpr BsdfType kBsdfTypes[] = {
     {"thindielectric", read_dielectric_thin},
     {"plastic", read_plastic_smooth},
     {"roughplastic", read_plastic_rough},
+    {"principled", read_principled_thick},
+    {"principledthin", read_principled_thin},
     {"twosided", read_two_sided},
     {"mask", read_mask},
     {"blendbsdf", read_blend},

@@ -160,6 +160,7 @@ bool lets_light_in(const Bsdf& bsdf) {
   const auto* blend = std::get_if<BlendBsdf>(&bsdf.model);
   if (blend) return lets_light_in(*blend->first) || lets_light_in(*blend->second);
   if (const auto* bumped = std::get_if<BumpedBsdf>(&bsdf.model)) return lets_light_in(*bumped->nested);
+  if (const auto* principled = std::get_if<PrincipledBsdf>(&bsdf.model)) return passes_light(*principled);
   return std::holds_alternative<NullBsdf>(bsdf.model) || std::holds_alternative<DielectricBsdf>(bsdf.model) ||
          std::holds_alternative<MaskBsdf>(bsdf.model);
 }

@@ -42,6 +42,8 @@ double allowance(const KbMaterial& m, const Query& query, glm::dvec3 wo) {
       return kRounding + fresnel_noise(dot, eta) + fresnel_noise(std::abs(wi.z), eta);
     case KB_MATERIAL_ROUGH_PLASTIC:
       return kRounding + fresnel_noise(dot, eta);
+    case KB_MATERIAL_PRINCIPLED:  // the first power of the lobes' probabilities has Fresnel's factor of wi
+      return 2 * kRounding + fresnel_noise(dot, eta) + fresnel_noise(std::abs(wi.z), m.eta);
     default:
       return kRounding;
   }
@@ -64,6 +66,10 @@ std::string located(const KbMaterial& material, const Query& q) {
 /// radiance scaling of transmission.
 double expected_bound(const KbMaterial& m, const Sample& s) {
   if (s.kind == KB_KIND_TWO_TERM) return double(s.w0) * m.bound_a + double(s.w1) * m.bound_b;
+  if (s.kind == KB_KIND_TINTED) {
+    const double second = s.w1 < 0 ? -s.w1 * std::sqrt(double(m.bound_a)) : double(s.w1);
+    return (double(s.w0) * m.bound_a + second) * s.eta * s.eta;
+  }
   if (s.kind == KB_KIND_NONLINEAR)
     return double(s.w0) * m.bound_a + double(s.w1) * m.bound_b / (1 - double(m.bound_b) * m.fdr_int);
   return double(s.w0) * s.eta * s.eta * (s.flags & kLobeB ? m.bound_b : m.bound_a);

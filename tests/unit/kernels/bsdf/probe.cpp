@@ -26,6 +26,10 @@ static inline MaterialContext context_of(__global const KbMaterial* materials, _
   context.material = materials[query->material];
   context.table = context.material.table == KB_NONE ? 0 : tables + context.material.table;
   context.dispersion_eta = query->dispersion_eta;
+#if KB_HAS_PRINCIPLED
+  read_principled_numbers(&context);
+  set_principled_alpha(&context);
+#endif
 #if KB_HAS_COMPENSATION
   context.compensation = compensation_table(&context.material, context.table);
 #endif
@@ -110,6 +114,13 @@ uint32_t Scene::add(const KbMaterial& given) {
   }
   materials_.push_back(material);
   return static_cast<uint32_t>(materials_.size() - 1);
+}
+
+uint32_t Scene::add(const PrincipledExample& example) {
+  const uint32_t index = add_without_table(principled_material(example));
+  materials_[index].table = static_cast<uint32_t>(tables_.size());
+  tables_.insert(tables_.end(), example.numbers.begin(), example.numbers.end());
+  return index;
 }
 
 uint32_t Scene::add_without_table(KbMaterial material) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src_cpu/bsdf/bsdf.hpp"
+#include "tests/support/principled_numbers.hpp"
 
 namespace kiloband::test {
 
@@ -40,6 +41,7 @@ class Scene {
  public:
   /// Returns the material's index.
   uint32_t add(const KbMaterial& material);
+  uint32_t add(const PrincipledExample& example);
   /// The same for a material whose table is missing.
   uint32_t add_without_table(KbMaterial material);
 

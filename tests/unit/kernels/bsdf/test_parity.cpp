@@ -38,6 +38,15 @@ TEST(DeviceBsdf, AgreesWithTheCpuForEveryMaterial) {
   Comparison(scene).check(queries, scene.on_cpu(queries), scene.on_device(queries));
 }
 
+TEST(DeviceBsdf, AgreesWithTheCpuForPrincipledMaterials) {
+  Scene scene;
+  Uniform uniform(4);
+  std::vector<Query> queries;
+  for (const PrincipledExample& example : principled_examples())
+    add_queries(scene, scene.add(example), 0, 5000, uniform, queries);
+  Comparison(scene).check(queries, scene.on_cpu(queries), scene.on_device(queries));
+}
+
 TEST(DeviceBsdf, AgreesWithTheCpuForDispersiveDielectrics) {
   Scene scene;
   Uniform uniform(2);
@@ -97,15 +106,18 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 TEST(DeviceBsdf, SpecialisedBuildsGiveTheSameBits) {
-  const char* const macros[KB_MATERIAL_COUNT] = {"DIFFUSE",      "CONDUCTOR",        "ROUGH_CONDUCTOR",
-                                                 "DIELECTRIC",   "ROUGH_DIELECTRIC", "PLASTIC",
-                                                 "ROUGH_PLASTIC"};
+  const char* const macros[KB_MATERIAL_COUNT] = {"DIFFUSE",       "CONDUCTOR",        "ROUGH_CONDUCTOR",
+                                                 "DIELECTRIC",    "ROUGH_DIELECTRIC", "PLASTIC",
+                                                 "ROUGH_PLASTIC", "PRINCIPLED"};
   for (uint32_t type = 0; type < KB_MATERIAL_COUNT; ++type) {
     Scene scene;
     Uniform uniform(3 + type);
     std::vector<Query> queries;
     for (const KbMaterial& material : every_material())
       if (material.type == type) add_queries(scene, scene.add(material), 0, 200, uniform, queries);
+    if (type == KB_MATERIAL_PRINCIPLED)
+      for (const PrincipledExample& example : principled_examples())
+        add_queries(scene, scene.add(example), 0, 200, uniform, queries);
     const std::string options = std::string("-DKB_SPECIALISED -DKB_HAS_") + macros[type] + "=1";
     const Answers general = scene.on_device(queries), special = scene.on_device(queries, options);
     EXPECT_TRUE(same_bits(general.values, special.values)) << macros[type];

@@ -31,8 +31,8 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:36: error: medium type 'homogeneous' is not supported"},
       {"unknown bsdf", complete_scene(R"xml(<bsdf type="difuse"/>)xml"),
        "scene.xml:2:13: error: bsdf type 'difuse' is not supported; did you mean 'diffuse'?"},
-      {"unsupported bsdf", complete_scene(R"xml(<bsdf type="principled"/>)xml"),
-       "scene.xml:2:13: error: bsdf type 'principled' is not supported"},
+      {"unsupported bsdf", complete_scene(R"xml(<bsdf type="measured"/>)xml"),
+       "scene.xml:2:13: error: bsdf type 'measured' is not supported"},
       {"reflectance above 1",
        complete_scene(
            R"xml(<bsdf type="diffuse" id="leaf"><spectrum name="reflectance" value="500:0.9, 550:1.27"/></bsdf>)xml"),

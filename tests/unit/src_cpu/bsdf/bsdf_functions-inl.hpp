@@ -56,6 +56,12 @@ inline test::LaneAnswers answer_queries(const test::LaneQueries& q) {
     };
     Material m = gather_material(q.materials, q.tables, load(&q.material[i]));
     m.channel_eta = load(&q.channel_eta[i]);
+    const M principled = is_type(m.type, KB_MATERIAL_PRINCIPLED);
+    const Principled numbers = gather_principled(q.tables, select(principled, m.table, U(0u)), principled);
+    if (any(principled)) {
+      m.principled = &numbers;
+      set_principled_alpha(m, principled);
+    }
     const V3 wi = vector(q.wi), wo = vector(q.wo);
     const M active = load(&q.active[i]) != U(0u);
     const M compensated = active & (m.compensation != U(KB_NONE));

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "reference.hpp"
+#include "tests/support/principled_numbers.hpp"
 
 namespace kiloband::test {
 
@@ -50,6 +51,7 @@ MaterialContext context_of(const Case& c) {
   MaterialContext context{&c.material, nullptr, c.dispersion};
   if (c.material.type == KB_MATERIAL_ROUGH_PLASTIC)
     context.table = coating_of(c.material).transmittance.data();
+  if (c.material.type == KB_MATERIAL_PRINCIPLED) context.table = c.numbers.data();
   return context;
 }
 
@@ -102,6 +104,15 @@ std::vector<Case> make_cases() {
   KbMaterial dispersive = rough(KB_MATERIAL_ROUGH_DIELECTRIC, KB_MATERIAL_GGX, 0.2f, 0.2f, true);
   dispersive.flags |= KB_MATERIAL_DISPERSIVE;
   cases.push_back({"rough dispersive, degraded", dispersive, direction(35), DispersionState{1.62f}});
+  for (const PrincipledExample& example : principled_examples())
+    for (const double degrees : {0.0, 35.0, 80.0, 145.0}) {
+      if (degrees > 90 && !example.thin && !(example.numbers[KB_PRINCIPLED_SPEC_TRANS] > 0)) continue;
+      cases.push_back({"principled " + example.name + ", " + std::to_string(degrees) + " degrees",
+                       principled_material(example),
+                       direction(degrees),
+                       {},
+                       example.numbers});
+    }
   return cases;
 }
 

@@ -26,6 +26,7 @@ struct Case {
   KbMaterial material;
   glm::vec3 wi;
   DispersionState dispersion;
+  std::vector<float> numbers = {};  // of principled materials
 };
 
 /// Of a rough plastic; computed once per roughness.

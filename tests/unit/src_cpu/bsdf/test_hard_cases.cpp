@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cases.hpp"
+#include "tests/support/principled_numbers.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -36,8 +37,9 @@ void check(const BsdfSample& s, glm::vec3 wi) {
   ASSERT_EQ(s.transmission, (s.wo.z > 0) != (wi.z > 0));
 }
 
-void check(const BsdfValue& v) {
-  for (float x : {v.w0, v.w1, v.pdf}) {
+/// tinted: KB_KIND_TINTED, whose w1 has a sign
+void check(const BsdfValue& v, bool tinted) {
+  for (float x : {v.w0, tinted ? std::abs(v.w1) : v.w1, v.pdf}) {
     ASSERT_TRUE(std::isfinite(x));
     ASSERT_GE(x, 0);
   }
@@ -45,8 +47,9 @@ void check(const BsdfValue& v) {
 
 void check_material(const Case& c, const std::vector<glm::vec3>& all) {
   const MaterialContext context = context_of(c);
+  const bool tinted = c.material.type == KB_MATERIAL_PRINCIPLED;
   for (glm::vec3 wi : all) {
-    for (glm::vec3 wo : all) ASSERT_NO_FATAL_FAILURE(check(eval_bsdf(context, wi, wo)));
+    for (glm::vec3 wo : all) ASSERT_NO_FATAL_FAILURE(check(eval_bsdf(context, wi, wo), tinted));
     for (float a : kUniforms)
       for (float b : kUniforms)
         for (float lobe : {0.0f, 0.04f, 0.5f, 0.99999994f})
@@ -96,6 +99,20 @@ TEST(HardCases, SmoothAndCoatedMaterialsStayFinite) {
   for (float alpha : {1e-4f, 1.0f})
     ASSERT_NO_FATAL_FAILURE(
         check_material({"", plastic(KB_MATERIAL_ROUGH_PLASTIC, true, alpha), {}, {}}, all));
+}
+
+TEST(HardCases, PrincipledMaterialsStayFinite) {
+  const std::vector<glm::vec3> all = directions();
+  for (const PrincipledExample& example : principled_examples())
+    for (const float eta : {1.0f, 1.001f, 1.5f, 10.0f})
+      for (const float roughness : {0.0f, 1e-3f, 1.0f}) {
+        SCOPED_TRACE(testing::Message() << example.name << " eta " << eta << " roughness " << roughness);
+        PrincipledNumbers numbers = example.numbers;
+        numbers[KB_PRINCIPLED_ETA] = eta;
+        numbers[KB_PRINCIPLED_ROUGHNESS] = roughness;
+        numbers[KB_PRINCIPLED_LUMINANCE] = roughness;
+        ASSERT_NO_FATAL_FAILURE(check_material({"", principled_material(example), {}, {}, numbers}, all));
+      }
 }
 
 TEST(HardCases, NotANumberEndsThePath) {

@@ -8,12 +8,13 @@
 #include "bsdf_functions.hpp"
 #include "cases.hpp"
 #include "shared/material_tables.h"
+#include "shared/principled.h"
 #include "shared/thermal.h"
 
 namespace kiloband::test {
 namespace {
 
-constexpr std::size_t kMaterials = 512, kCount = 1 << 16;
+constexpr std::size_t kMaterials = 512, kCount = 9 << 13;
 
 /// Materials of every kind, with tables of random numbers.
 struct RandomScene {
@@ -51,10 +52,19 @@ struct RandomScene {
     const bool rough = m.type == KB_MATERIAL_ROUGH_CONDUCTOR || m.type == KB_MATERIAL_ROUGH_DIELECTRIC ||
                        m.type == KB_MATERIAL_ROUGH_PLASTIC;
     if (rough && chance(0.3f)) m.flags |= KB_MATERIAL_COMPENSATED;
+    if (m.type == KB_MATERIAL_PRINCIPLED) add_principled(m);
     add_table(kb_floats_before_compensation(m.type, m.flags), 0, 1);
     if (m.flags & KB_MATERIAL_COMPENSATED) add_compensation(m);
     if (m.table == tables.size()) m.table = KB_NONE;
     materials.push_back(m);
+  }
+
+  /// Numbers that are often 0 or 1.
+  void add_principled(KbMaterial& m) {
+    m.flags = KB_MATERIAL_GGX | KB_MATERIAL_SAMPLE_VISIBLE | (chance(0.4f) ? KB_MATERIAL_THIN : 0u);
+    for (int n = 0; n < KB_PRINCIPLED_NUMBERS; ++n)
+      tables.push_back(chance(0.3f) ? 0.0f : chance(0.3f) ? 1.0f : between(0, 1));
+    tables[m.table + KB_PRINCIPLED_ETA] = chance(0.2f) ? 1.0f : between(1, 2.5f);
   }
 
   void add_compensation(const KbMaterial& m) {

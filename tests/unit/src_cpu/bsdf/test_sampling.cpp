@@ -5,6 +5,7 @@
 
 #include "cases.hpp"
 #include "reference.hpp"
+#include "shared/principled.h"
 
 namespace kiloband::test {
 namespace {
@@ -24,6 +25,8 @@ double factor(const KbMaterial& m, const BsdfSample& s) {
       return s.w0 * kSa + s.w1 * kSb;
     case KB_KIND_NONLINEAR:
       return s.w0 * kSa + s.w1 * kSb / (1 - kSb * m.fdr_int);
+    case KB_KIND_TINTED:
+      return s.w0 * kSa + (s.w1 < 0 ? -s.w1 * std::sqrt(kSa) : s.w1);
     default:
       return s.w0 * (s.lobe_b ? kSb : kSa);
   }
@@ -34,7 +37,7 @@ double delta_probability(const Case& c) {
   return first.delta ? first.pdf : 0;
 }
 
-// 110 chi-square tests; family-wise error rate 1e-3 by Sidak's correction (seeds are fixed: it passes or
+// 140 chi-square tests; family-wise error rate 1e-3 by Sidak's correction (seeds are fixed: it passes or
 // fails for good). With 150 000 draws in about 100 bins, a root-mean-square deviation of the density of 2.5 %
 // is found in 9 of 10 cases.
 TEST(BsdfSampling, DirectionsFollowTheDensity) {
@@ -104,7 +107,7 @@ TEST(BsdfSampling, WeightsAreValueOverDensityAndBoundsHold) {
       ASSERT_NEAR(v.pdf, s.pdf, 1e-4 * s.pdf);
       ASSERT_NEAR(v.w0 / v.pdf, s.w0, 1e-4 * std::max(1.0f, s.w0));
       const bool cosine = c.material.type == KB_MATERIAL_ROUGH_CONDUCTOR;
-      ASSERT_NEAR(cosine ? v.w1 : v.w1 / v.pdf, s.w1, 1e-4 * std::max(1.0f, s.w1));
+      ASSERT_NEAR(cosine ? v.w1 : v.w1 / v.pdf, s.w1, 1e-4 * std::max(1.0f, std::abs(s.w1)));
       ASSERT_EQ(v.lobe_b, s.lobe_b);
     }
   }
@@ -123,11 +126,17 @@ TEST(BsdfSampling, ValuesAreReciprocal) {
       const BsdfSample s = sample_bsdf(context, c.wi, u_lobe, uniform.pair());
       if (!(s.pdf > 0) || s.delta || std::abs(s.wo.z) < 0.02f) continue;
       const BsdfValue there = eval_bsdf(context, c.wi, s.wo), back = eval_bsdf(context, s.wo, c.wi);
-      const double eta2 = !s.transmission ? 1 : c.wi.z > 0 ? index * index : 1 / (index * index);
+      const bool thin = c.material.flags & KB_MATERIAL_THIN;
+      // Mitsuba's rule for sheets makes one direction dark where the other is not.
+      if (thin && s.transmission && c.numbers[KB_PRINCIPLED_SPEC_TRANS] > 0) continue;
+      const double eta2 = !s.transmission || thin ? 1 : c.wi.z > 0 ? index * index : 1 / (index * index);
       const double f = there.w0 / std::abs(s.wo.z) * eta2, g = back.w0 / std::abs(c.wi.z);
       // Narrow lobes amplify the rounding of the half vector: alpha 0.01 to about 1e-3.
       ASSERT_NEAR(f, g, 2e-3 * std::max(f, 1e-3));
-      if (eval_kind(c.material) != KB_KIND_CONDUCTOR)
+      if (eval_kind(c.material) == KB_KIND_TINTED) {
+        const double a = std::abs(there.w1 / s.wo.z) * eta2, b = std::abs(back.w1 / c.wi.z);
+        ASSERT_NEAR(a, b, 2e-3 * std::max(a, 1e-3));
+      } else if (eval_kind(c.material) != KB_KIND_CONDUCTOR)
         ASSERT_NEAR(there.w1 / s.wo.z, back.w1 / c.wi.z, 1e-5);
       else
         ASSERT_NEAR(there.w1, back.w1, 1e-6);
@@ -169,9 +178,14 @@ TEST(BsdfSampling, RoughValuesMatchTheTextbook) {
   }
 }
 
+bool scatters_below(const Case& c) {
+  return c.material.type == KB_MATERIAL_PRINCIPLED &&
+         ((c.material.flags & KB_MATERIAL_THIN) || c.numbers[KB_PRINCIPLED_SPEC_TRANS] > 0);
+}
+
 TEST(BsdfSampling, ReflectingMaterialsAreBlackFromBehind) {
   for (const Case& c : scattering_cases()) {
-    if (c.material.type == KB_MATERIAL_ROUGH_DIELECTRIC) continue;
+    if (c.material.type == KB_MATERIAL_ROUGH_DIELECTRIC || scatters_below(c)) continue;
     const MaterialContext context = context_of(c);
     const glm::vec3 below = direction(130), above = direction(40);
     EXPECT_EQ(sample_bsdf(context, below, 0.3f, {0.4f, 0.6f}).pdf, 0) << c.name;
