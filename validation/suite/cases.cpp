@@ -83,7 +83,8 @@ std::vector<Case> all_cases(const SceneFolders& folders) {
       stress / "red_glass_ball.xml", "400:700:16", {24, 24}, {4, 32, 256});
   add("stress/lens_and_glass", "a lens that blurs by a pixel, smooth glass, total reflection",
       stress / "lens_and_glass.xml", "400:700:12", {32, 32}, {4, 32, 256});
-  add("stress/glade", "instances, bumps, blends, panes, a sun, thrown pictures, a filter with negative parts",
+  add("stress/glade",
+      "instances, bumps, blends, panes, principled materials, a sun, thrown pictures, a filter with negative parts",
       stress / "glade.xml", "400:700:12", {32, 32}, {4, 32, 256});
   if (!folders.data.empty()) {
     for (const char* name : {"buddha", "conference", "dragon", "f16", "lucy", "suzanne"}) {

@@ -105,6 +105,7 @@ std::vector<MitsubaCase> mitsuba_cases(const fs::path& root) {
           own("lamps", 1536, "seven kinds of lamp, mask, two sides, orthographic camera"),
           own("pictures", 768, "spots with textures, projectors"),
           own("varied", 768, "roughness from images, attributes of meshes"),
+          own("principled", 768, "principled materials, thick and thin"),
           own("bumps", 768, "bump and normal maps on all shapes, from behind"),
           own("instances", 768, "groups that are turned, stretched and mirrored"),
           own("lens_and_textures", 768, "thin lens, textures, black body")};
