@@ -117,7 +117,11 @@ double read_ambient_temperature(ReadContext& context, Node& node);
 void check_temperatures(const Shape& shape, const std::string& label, const Place& place);
 /// Mitsuba's weight for choosing lights: checked, with a note.
 void accept_sampling_weight(const ReadContext& context, const ObjectReader& object);
-Emitter read_emitter(ReadContext& context, Node& node);
+/// An <emitter> of the scene; of type sunsky the sky and the sun.
+std::vector<Emitter> read_emitters(ReadContext& context, Node& node);
+/// The transform of an emitter that is not a surface.
+/// throws InputError  to_world shears, or scales differently along its axes
+Transform rotation_and_position(const ObjectReader& object);
 /// Full angle across an image's width, rad, from fov and fov_axis or focal_length. aspect: width over height
 double read_fov(const ObjectReader& object, double aspect);
 Sensor read_sensor(ReadContext& context, Node& node);

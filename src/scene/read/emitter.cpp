@@ -4,6 +4,7 @@
 
 #include "scene/read/context.hpp"
 #include "scene/read/limits.hpp"
+#include "scene/read/sunsky.hpp"
 #include "scene/xml/values.hpp"
 #include "spectral/colour/colour.hpp"
 
@@ -19,19 +20,6 @@ Spectrum default_emission() {
 
 Spectrum emission(ReadContext& context, const ObjectReader& object, std::string_view name, SpectrumUse use) {
   return read_spectrum(context, object, name, use, default_emission());
-}
-
-/// The transform of an emitter that is not a surface.
-Transform rotation_and_position(const ObjectReader& object) {
-  Transform to_world = object.get_transform("to_world");
-  if (!is_similarity(glm::dmat3(to_world))) {
-    object.fail_at("to_world", "to_world must only rotate, move, mirror and scale uniformly");
-  }
-  // Its size means nothing here, but its square would have to fit into single precision.
-  for (int axis = 0; axis < 3; ++axis)
-    if (std::abs(glm::length(glm::dvec3(to_world[axis])) - 1) > 1e-6)
-      to_world[axis] = glm::dvec4(unit_vector(glm::dvec3(to_world[axis])), 0);
-  return to_world;
 }
 
 EmitterModel read_constant(ReadContext& context, const ObjectReader& object) {
@@ -169,15 +157,14 @@ constexpr EmitterType kEmitterTypes[] = {{"constant", read_constant},
                                          {"projector", read_projector},
                                          {"directional", read_directional}};
 
+/// It is two emitters.
+constexpr std::string_view kSunsky = "sunsky";
+
 /// What Mitsuba has and we do not, and why or what to use.
 constexpr std::pair<std::string_view, std::string_view> kNotSupported[] = {
-    {"sun", "use directional with angular_radius, which `kiloband sky --sun` writes"},
-    {"sky", "`kiloband sky` writes a clear sky, of another model, for spectral_envmap"},
-    {"sunsky",
-     "`kiloband sky --sun` writes a clear sky, of another model, for spectral_envmap and its sun as directional"},
-    {"timed_sunsky",
-     "`kiloband sky --sun` writes a clear sky, of another model, for spectral_envmap and its sun as directional; "
-     "nothing moves"},
+    {"sun", "of old files; use sunsky with sky_scale 0, whose up is +Z"},
+    {"sky", "of old files; use sunsky with sun_scale 0, whose up is +Z"},
+    {"timed_sunsky", "nothing moves here; use sunsky, at one time"},
     {"directionalarea",
      "no path from a camera finds light of a single direction from an area; Mitsuba 3.9.1's path "
      "integrator renders it black, too"}};
@@ -188,10 +175,22 @@ constexpr std::pair<std::string_view, std::string_view> kNotSupported[] = {
     if (node.type == type)
       fail(node.type_place, "emitter type '" + node.type + "' is not supported: " + std::string(instead));
   object.refuse_type({"area", "thermal", "constant", "envmap", "spectral_envmap", "point", "spot",
-                      "projector", "directional"});
+                      "projector", "directional", "sunsky"});
 }
 
 }  // namespace
+
+Transform rotation_and_position(const ObjectReader& object) {
+  Transform to_world = object.get_transform("to_world");
+  if (!is_similarity(glm::dmat3(to_world))) {
+    object.fail_at("to_world", "to_world must only rotate, move, mirror and scale uniformly");
+  }
+  // Its size means nothing here, but its square would have to fit into single precision.
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(glm::length(glm::dvec3(to_world[axis])) - 1) > 1e-6)
+      to_world[axis] = glm::dvec4(unit_vector(glm::dvec3(to_world[axis])), 0);
+  return to_world;
+}
 
 /// Mitsuba's weight for choosing lights. Ours are chosen by what they emit: only the noise differs.
 void accept_sampling_weight(const ReadContext& context, const ObjectReader& object) {
@@ -210,6 +209,8 @@ AreaEmitter read_area_emitter(ReadContext& context, Node& node) {
     if (node.type == type.name)
       fail(node.type_place, object.label() + ": only area and thermal emitters can be part of a shape");
   }
+  if (node.type == kSunsky)
+    fail(node.type_place, object.label() + ": only area and thermal emitters can be part of a shape");
   if (node.type != "area") refuse(object);
   if (object.has("to_world")) object.fail_at("to_world", "an area emitter has no transform of its own");
   accept_sampling_weight(context, object);
@@ -218,14 +219,20 @@ AreaEmitter read_area_emitter(ReadContext& context, Node& node) {
   return emitter;
 }
 
-Emitter read_emitter(ReadContext& context, Node& node) {
+std::vector<Emitter> read_emitters(ReadContext& context, Node& node) {
   const ObjectReader object(node);
+  if (node.type == kSunsky) {
+    accept_sampling_weight(context, object);
+    std::vector<Emitter> emitters = read_sunsky(context, object);
+    object.finish();
+    return emitters;
+  }
   for (const EmitterType& type : kEmitterTypes) {
     if (node.type != type.name) continue;
     accept_sampling_weight(context, object);
     Emitter emitter{node.id, node.place.position(), type.read(context, object)};
     object.finish();
-    return emitter;
+    return {std::move(emitter)};
   }
   refuse(object);
 }

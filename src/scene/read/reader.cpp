@@ -107,7 +107,11 @@ class SceneReader {
   }
 
   void add_emitter(Node& node) {
-    scene_.emitters.push_back(read_emitter(context_, node));
+    for (Emitter& emitter : read_emitters(context_, node)) add_emitter(node, std::move(emitter));
+  }
+
+  void add_emitter(Node& node, Emitter emitter) {
+    scene_.emitters.push_back(std::move(emitter));
     const auto& model = scene_.emitters.back().model;
     const auto* directional = std::get_if<DirectionalEmitter>(&model);
     has_sun_ |= directional && directional->angular_radius > 0;

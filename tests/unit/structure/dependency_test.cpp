@@ -31,7 +31,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
      {"src/base", "src/shared", "src/spectral", "src/scene/mesh", "src/scene/image"}},
     {"src/scene/xml", {"src/base"}},
     {"src/scene/read",
-     {"src/base", "src/spectral", "src/scene/mesh", "src/scene/image", "src/scene/description",
+     {"src/base", "src/spectral", "src/sky", "src/scene/mesh", "src/scene/image", "src/scene/description",
       "src/scene/xml"}},
     {"src/scene/optics", {"src/base", "src/shared", "src/spectral"}},
     {"src/scene/compile",

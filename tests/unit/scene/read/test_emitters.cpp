@@ -113,10 +113,10 @@ TEST(SceneEmitter, WhatIsNotReadSaysWhatToUse) {
     return error_of(scene("<emitter type='" + type + "'/>" + kSensor + kSphere));
   };
   EXPECT_EQ(message("sun"),
-            "scene.xml:2:16: error: emitter type 'sun' is not supported: use directional with "
-            "angular_radius, which `kiloband sky --sun` writes");
-  for (const char* type : {"sky", "sunsky", "timed_sunsky"})
-    EXPECT_NE(message(type).find("`kiloband sky"), std::string::npos) << type;
+            "scene.xml:2:16: error: emitter type 'sun' is not supported: of old files; use sunsky with "
+            "sky_scale 0, whose up is +Z");
+  for (const char* type : {"sky", "timed_sunsky"})
+    EXPECT_NE(message(type).find("use sunsky"), std::string::npos) << type;
   EXPECT_NE(message("directionalarea").find("no path from a camera finds"), std::string::npos);
 }
 
