@@ -21,7 +21,7 @@
   X(scene, IN, KbMaterial, materials) SEP                                                                        \
   X(scene, IN, KbBump, bumps) SEP             /* by material */                                                  \
   X(scene, IN, KbRoughness, roughness) SEP    /* by material */                                                  \
-  X(scene, IN, kb_u32, principled_maps) SEP   /* [material][KB_PRINCIPLED_MAPPED]: bitmaps or KB_NONE; empty without */ \
+  X(scene, IN, kb_u32, principled_maps) SEP   /* [material][KB_PRINCIPLED_MAPPED]: bitmaps or KB_NONE; empty without principled ones */ \
   X(scene, IN, float, tables) SEP             /* of materials, thermal emission: KbMaterial::table, KbThermal::table */ \
   X(scene, IN, KbSurface, surfaces) SEP                                                                          \
   X(scene, IN, KbShape, shapes) SEP                                                                              \

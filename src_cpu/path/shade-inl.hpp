@@ -140,7 +140,7 @@ inline void look_up_principled(Shading& s, M seen) {
   if (!any(lanes)) return;
   s.principled = gather_principled(scene.tables.data(), select(lanes, s.material.table, U(0u)), lanes);
   s.material.principled = &s.principled;
-  if (!scene.principled_maps.empty()) {
+  if (scene.features.principled_map) {
     const WordArray side(s.side);
     const TexturePoints points(texture_place(s));
     for (uint32_t n = 0; n < KB_PRINCIPLED_MAPPED; ++n) {

@@ -62,9 +62,10 @@ inline Text roughness_maps() {
                                                                          real("alpha_u", "0.3")))));
 }
 
-/// Principled materials, thick and thin, nested and with images as numbers.
-inline Text principled() {
-  const auto map = [](const Text& name, const Text& file) {
+/// Principled materials, thick and thin, nested; with images as numbers, or numbers alone.
+inline Text principled(bool images) {
+  const auto map = [images](const Text& name, const Text& file) {
+    if (!images) return real(name, name == "eta" ? "1.4" : "0.3");
     return texture("bitmap", name, text("filename", file) + yes("raw"), scale("1.7"));
   };
   const auto thick = [](const Text& contents) { return bsdf("principled", contents); };

@@ -296,10 +296,10 @@ std::vector<ZooScene> make_scenes() {
       {"blends", scene(8, perspective(small_film("gaussian")) + lit_room + blends() + sky("0.3")), kCurved},
       {"roughness_maps", scene(6, perspective(small_film("tent")) + lit_room + roughness_maps() + sky("0.3")),
        kCurved},
-      {"principled", scene(7, perspective(small_film("tent")) + lit_room + principled() + sky("0.3")),
+      {"principled", scene(7, perspective(small_film("tent")) + lit_room + principled(true) + sky("0.3")),
        kCurved},
       {"principled_dispersion",
-       scene(7, perspective(small_film("box")) + lit_room + principled() +
+       scene(7, perspective(small_film("box")) + lit_room + principled(false) +
                     ball("0.1 -0.1 0.3", "0.2", dispersive("dielectric"))),
        kCurved},
       {"attributes", scene(6, perspective(small_film("tent")) + lit_room + attributes() + sky("0.3"))},

@@ -84,7 +84,7 @@ struct FlatScene {
   std::vector<KbMaterial> materials;
   std::vector<KbBump> bumps;           // by material
   std::vector<KbRoughness> roughness;  // by material
-  /// [material][KB_PRINCIPLED_MAPPED]: bitmap references, or KB_NONE for the number; empty if there is none.
+  /// [material][KB_PRINCIPLED_MAPPED]: bitmap references, or KB_NONE for the number; empty without principled materials.
   std::vector<uint32_t> principled_maps;
   std::vector<KbSurface> surfaces;
   std::vector<KbThermal> thermals;

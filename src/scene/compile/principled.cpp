@@ -65,8 +65,8 @@ void Flattener::add_principled_maps(const PrincipledBsdf& model) {
     if (model.numbers[n].map) row[n] = use(model.numbers[n].map);
   const auto* colour = std::get_if<std::shared_ptr<const BitmapTexture>>(&model.base_color);
   if (colour && is_tinted(model)) row[KB_PRINCIPLED_LUMINANCE] = use(*colour);
-  if (std::ranges::all_of(row, [](uint32_t ref) { return ref == KB_NONE; })) return;
-  out_.features.principled_map = true;
+  // A row also where there is no map: kernels that are not made for the scene look.
+  out_.features.principled_map |= std::ranges::any_of(row, [](uint32_t ref) { return ref != KB_NONE; });
   out_.principled_maps.resize((out_.materials.size() - 1) * KB_PRINCIPLED_MAPPED, KB_NONE);
   out_.principled_maps.insert(out_.principled_maps.end(), row.begin(), row.end());
 }

@@ -82,9 +82,11 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// Where a map has a number, paths are those of the number, bit by bit: the halves of a square.
 TEST_P(PrincipledMapTest, HalvesAreThoseOfTheirNumbers) {
-  const auto [name, thin, low_value, high_value] = GetParam();
+  const Number& tried = GetParam();
+  const char* const name = tried.name;
+  const bool thin = tried.thin;
   const TemporaryFolder folder;
-  folder.write("halves.pfm", pfm_image(2, 1, 1, {low_value, high_value}));
+  folder.write("halves.pfm", pfm_image(2, 1, 1, {tried.low, tried.high}));
   Text others;
   for (const char* other :
        {"roughness", "anisotropic", "spec_trans", "spec_tint", "sheen", "sheen_tint", "flatness"})
@@ -101,8 +103,8 @@ TEST_P(PrincipledMapTest, HalvesAreThoseOfTheirNumbers) {
                         {}, {4, 61}, folder.path());
   };
   const RenderResult varied = square(image(name, "halves.pfm"));
-  const RenderResult low = square(real(name, double{low_value})),
-                     high = square(real(name, double{high_value}));
+  const RenderResult low = square(real(name, double{tried.low})),
+                     high = square(real(name, double{tried.high}));
   const std::size_t channels = varied.image_mean.size();
   std::size_t different = 0;
   for (std::size_t i = 0; i < varied.mean.size(); ++i) {
