@@ -16,7 +16,8 @@ constexpr std::size_t kFetchAhead = 6;
 
 /// Few channels leave half of the widest vectors empty: narrower ones do the same operations on each channel.
 const EvaluatorKernels& kernels_for_channels(Isa isa, std::size_t channels) {
-  return evaluator_kernels(isa == Isa::kAvx512 && channels <= kMaxLanes / 2 ? Isa::kAvx2 : isa);
+  const bool narrow = isa == Isa::kAvx512 && channels <= kMaxLanes / 2 && is_available(Isa::kAvx2);
+  return evaluator_kernels(narrow ? Isa::kAvx2 : isa);
 }
 
 }  // namespace
