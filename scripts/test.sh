@@ -13,6 +13,8 @@ werror=OFF
 case "$preset" in asan | tsan) bench=OFF ;; release) werror=ON ;; esac
 cmake --preset "$preset" -DKILOBAND_TESTS=ON -DKILOBAND_BENCH="$bench" -DKILOBAND_WERROR="$werror" -DKILOBAND_UNITY=ON
 cmake --build --preset "$preset"
-if [ "$preset" = release ]; then scripts/tidy.sh; fi
+if [ "$preset" = release ]; then
+  scripts/tidy.sh
+  scripts/fuzz.sh 60
+fi
 ctest --preset "$preset" --parallel "$(nproc)"
-if [ "$preset" = release ]; then scripts/fuzz.sh 60; fi
