@@ -109,10 +109,12 @@ void Renderer::warn_of_cache() const {
 void Renderer::make_device() {
   groups_.reset();
   state_.reset();
+  // PoCL keeps what it compiles itself; before it hands out a binary it compiles every kernel a second time, for groups of any size.
+  const bool program_cache = options_.program_cache && !context_.device().is_pocl();
   state_ = std::make_unique<DeviceState>(
       context_, host_,
       DeviceSettings{method_, settings_.wavelengths == WavelengthMode::kShared, options_.specialised,
-                     options_.program_cache, options_.device_memory});
+                     program_cache, options_.device_memory});
   groups_ = std::make_unique<GroupRenderer>(*state_, settings_, options_.launch_seconds, options_.pool_slots,
                                             options_.sink);
 }

@@ -18,7 +18,7 @@ struct Options {
   std::optional<uint64_t> device_memory;  // bytes; nothing: default_memory_budget
   std::optional<Method> method;           // nothing: kDefaultMethod
   bool specialised = true;                // kernels compiled for the scene's features only
-  bool program_cache = true;              // binaries on disk
+  bool program_cache = true;              // binaries on disk, where the driver does not keep them itself
   double launch_seconds = 0.5;            // longest launch aimed at: display drivers kill long ones
   std::optional<uint32_t> pool_slots;     // paths in flight; nothing: what the device gains from
   DiagnosticSink sink;                    // notes on smaller pools and repeated work; may be empty

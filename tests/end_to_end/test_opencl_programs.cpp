@@ -69,6 +69,7 @@ fs::path file_of_cache(const TemporaryFolder& cache, std::size_t index) {
   return files.at(index);
 }
 
+/// On a driver that calls itself otherwise than PoCL, whose programs are not kept twice.
 class CachedPrograms : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -79,6 +80,9 @@ class CachedPrograms : public ::testing::Test {
   /// Bytes of the image; empty after a failure.
   std::string render(Environment environment, const std::string& warning = "") const {
     const TemporaryFolder folder;
+    environment.emplace_back("LD_PRELOAD", SHIM_LIBRARY);
+    environment.emplace_back("ASAN_OPTIONS", "verify_asan_link_order=0");
+    environment.emplace_back("KILOBAND_SHIM_PLATFORM", "Some driver");
     environment.emplace_back("XDG_CACHE_HOME", cache_.path().string());
     const Outcome outcome = run_program(folder, kRender, {.environment = environment});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -124,6 +128,15 @@ TEST_F(CachedPrograms, FolderThatIsNone) {
       render({}, "warning: cannot write '" + (cache_ / "kiloband/programs").string() +
                      "': Not a directory: compiled kernels are not kept, and every run compiles anew\n"),
       image_);
+}
+
+/// What it compiles it keeps itself, and binaries cost it as much again.
+TEST(OpenclProgram, PoclKeepsItsOwnPrograms) {
+  const TemporaryFolder folder, cache;
+  const Outcome outcome =
+      run_program(folder, kRender, {.environment = {{"XDG_CACHE_HOME", cache.path().string()}}});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_FALSE(fs::exists(cache / "kiloband"));
 }
 
 /// PoCL has no device where its folder cannot be written: it gets another one, which is removed.

@@ -7,6 +7,7 @@
 //   KILOBAND_SHIM_REPORT    file to write at exit: a line "NAME CALLS" per function, then "live_buffers N",
 //                           the references to buffers that were not released, and "failed N", the calls that
 //                           were failed
+//   KILOBAND_SHIM_PLATFORM  the name that platforms give
 //
 // In sanitizer builds run with ASAN_OPTIONS=verify_asan_link_order=0.
 #define CL_TARGET_OPENCL_VERSION 120
@@ -108,6 +109,17 @@ extern "C" {
 cl_int clGetPlatformIDs(cl_uint entries, cl_platform_id* platforms, cl_uint* count) {
   const cl_int code = plan.next(kGetPlatformIds);
   return code ? code : REAL(clGetPlatformIDs)(entries, platforms, count);
+}
+
+cl_int clGetPlatformInfo(cl_platform_id platform, cl_platform_info what, size_t size, void* value,
+                         size_t* needed) {
+  const char* name = std::getenv("KILOBAND_SHIM_PLATFORM");
+  if (!name || what != CL_PLATFORM_NAME) return REAL(clGetPlatformInfo)(platform, what, size, value, needed);
+  const size_t length = std::strlen(name) + 1;
+  if (needed) *needed = length;
+  if (value && size < length) return CL_INVALID_VALUE;
+  if (value) std::memcpy(value, name, length);
+  return CL_SUCCESS;
 }
 
 cl_context clCreateContext(const cl_context_properties* properties, cl_uint count,
