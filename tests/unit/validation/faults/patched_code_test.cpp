@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "tests/unit/validation/faults/shell.hpp"
 
@@ -98,24 +99,56 @@ std::map<std::string, std::string> compile_commands() {
   return commands;
 }
 
-TEST_F(PatchedCode, SourcesCompile) {
+/// Files that are compiled with the same flags: `command` has FILE for their path and writes nothing.
+struct Unit {
+  std::string command;
+  std::vector<std::string> files;
+};
+
+/// Files of a folder are compiled together: names in a library's anonymous namespaces differ, and headers are read once.
+/// Those that are compiled once per instruction set include themselves and stay alone.
+std::vector<Unit> units_of(const std::set<std::string>& files) {
+  static const std::regex kObject(" -o [^ ]*");
   const std::map<std::string, std::string> commands = compile_commands();
-  const auto compile = [&](const std::string& file) {
-    const auto command = commands.find((kRoot / file).string());
-    if (command == commands.end()) throw std::runtime_error(file + " is not built");
-    return run_shell(replaced(command->second, kRoot.string(), tree().string()) +
-                     " -fsyntax-only -DKILOBAND_FAULTS");
-  };
+  std::map<std::pair<std::string, fs::path>, std::vector<std::string>> together;
+  std::vector<Unit> units;
+  for (const std::string& file : files) {
+    const std::string path = (kRoot / file).string();
+    const auto found = commands.find(path);
+    if (found == commands.end()) throw std::runtime_error(file + " is not built");
+    const std::string command = std::regex_replace(replaced(found->second, path, "FILE"), kObject, "") +
+                                " -fsyntax-only -DKILOBAND_FAULTS";
+    if (read_file(path).find("hwy/foreach_target.h") != std::string::npos)
+      units.push_back({command, {file}});
+    else
+      together[{command, fs::path(file).parent_path()}].push_back(file);
+  }
+  for (const auto& [key, those] : together) units.push_back({key.first, those});
+  return units;
+}
+
+Said compile(const Unit& unit, const fs::path& tree) {
+  fs::path file = tree / unit.files[0];
+  if (unit.files.size() > 1) {
+    file = tree / "together.cpp";
+    std::ofstream text(file);
+    for (const std::string& one : unit.files) text << "#include \"" << one << "\"\n";
+  }
+  return run_shell(replaced(replaced(unit.command, kRoot.string(), tree.string()), "FILE", file.string()));
+}
+
+TEST_F(PatchedCode, SourcesCompile) {
   const std::set<std::string> files = patched_sources();
   EXPECT_GE(files.size(), 20u) << "the scan of the patches has lost its way";
-  for (const std::string& file : files) {
-    const Said said = compile(file);
-    EXPECT_EQ(said.code, 0) << file << "\n" << said.text;
+  for (const Unit& unit : units_of(files)) {
+    const Said said = compile(unit, tree());
+    EXPECT_EQ(said.code, 0) << testing::PrintToString(unit.files) << "\n" << said.text;
   }
   // The check itself can fail.
   const std::string broken = "src_cpu/path/camera.cpp";
   std::ofstream(tree() / broken, std::ios::app) << "int mistake() { return KB_PLANTED(NO_SUCH_FAULT); }\n";
-  EXPECT_NE(compile(broken).text.find("KB_PLANTED_NO_SUCH_FAULT"), std::string::npos);
+  const Said said = compile(units_of({broken}).at(0), tree());
+  EXPECT_NE(said.text.find("KB_PLANTED_NO_SUCH_FAULT"), std::string::npos) << said.text;
 }
 
 }  // namespace
