@@ -118,6 +118,7 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["device_memory_bytes"] = done.device_memory_bytes;
   json["longest_launch_seconds"] = done.longest_launch_seconds;
   json["kernel_seconds"] = done.kernel_seconds;
+  json["kernel_launches"] = done.kernel_launches;
   json["device_losses"] = done.device_losses;
   json["invalid_samples"] = done.invalid_samples;
   json["resumed_samples"] = report.resumed_samples;

@@ -157,6 +157,7 @@ BackendStatistics Renderer::statistics() const {
   BackendStatistics done = done_;
   if (state_) done.device_memory_bytes = std::max(done.device_memory_bytes, state_->memory.peak());
   done.kernel_seconds = context_.kernel_seconds();
+  done.kernel_launches = context_.kernel_launches();
   return done;
 }
 

@@ -55,9 +55,10 @@ struct BackendInfo {
 /// What a backend has done over its life; each fills it as far as it can.
 struct BackendStatistics {
   uint64_t paths = 0, vertices = 0, rays = 0, invalid_samples = 0;
-  std::vector<InvalidSample> first_invalid;      // at most 16
-  std::map<std::string, double> kernel_seconds;  // on the device, by kernel
-  uint64_t device_memory_bytes = 0;              // peak, beside the host's
+  std::vector<InvalidSample> first_invalid;         // at most 16
+  std::map<std::string, double> kernel_seconds;     // on the device, by kernel
+  std::map<std::string, uint64_t> kernel_launches;  // how many took these seconds
+  uint64_t device_memory_bytes = 0;                 // peak, beside the host's
   double longest_launch_seconds = 0;  // of a kernel, measured on the device: display drivers kill long ones
   uint32_t device_losses = 0;         // how often the device was lost and set up again
 };

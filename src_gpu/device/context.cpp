@@ -54,6 +54,7 @@ double DeviceContext::take_longest(LaunchScale scale) {
     const double seconds = seconds_of(*this, launch.event);
     longest = std::max(longest, seconds);
     kernel_seconds_[launch.kernel] += seconds;
+    ++kernel_launches_[launch.kernel];
   }
   std::erase_if(launches_, [&](const Launch& launch) { return launch.scale == scale; });
   return longest;

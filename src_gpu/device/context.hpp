@@ -62,6 +62,8 @@ class DeviceContext {
   double take_longest(LaunchScale scale);
   /// Seconds on the device by kernel, of all launches that take_longest() has seen.
   const std::map<std::string, double>& kernel_seconds() const { return kernel_seconds_; }
+  /// Their number.
+  const std::map<std::string, uint64_t>& kernel_launches() const { return kernel_launches_; }
 
   /// Built programs by the hash of source and options; build_program looks here first.
   std::map<std::string, cl::Program>& programs() { return programs_; }
@@ -89,6 +91,7 @@ class DeviceContext {
   };
   std::vector<Launch> launches_;
   std::map<std::string, double> kernel_seconds_;
+  std::map<std::string, uint64_t> kernel_launches_;
   uint32_t generation_ = 0;
 };
 
