@@ -49,7 +49,8 @@ class CpuBackend final : public Backend {
     check_threads(threads_);
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
     records_ = make_triangle_records(scene_);
-    tracer_scene_ = {&scene_, embree_.get(), records_};
+    light_triangles_ = make_light_triangles(scene_);
+    tracer_scene_ = {&scene_, embree_.get(), records_, light_triangles_};
     for (int i = 0; i < threads_; ++i) {
       workers_.push_back(std::make_unique<BlockWorker>(tracer_scene_, derived_, settings_, isa_));
     }
@@ -90,6 +91,7 @@ class CpuBackend final : public Backend {
   Isa isa_;
   int threads_;
   std::vector<TriangleRecord> records_;
+  std::vector<LightTriangle> light_triangles_;
   TracerScene tracer_scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<std::unique_ptr<BlockWorker>> workers_;

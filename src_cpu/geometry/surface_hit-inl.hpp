@@ -147,6 +147,12 @@ KB_INLINE ShapeHead gather_shape(const FlatScene& scene, U shape) {
   return {a[0], a[1], a[2], a[3], b[0], b[1], b[2], as_floats(b[3])};
 }
 
+/// Of a shape that all lanes have.
+KB_INLINE ShapeHead shared_shape(const KbShape& shape) {
+  return {U(shape.type),           U(shape.flags),          U(shape.surface),   U(shape.emitter),
+          U(shape.first_triangle), U(shape.triangle_count), U(shape.first_cdf), F(shape.area)};
+}
+
 /// The vertices of triangle `primitive` of a shape.
 KB_INLINE void gather_indices(const FlatScene& scene, U first_triangle, U primitive, M active,
                               U (&index)[3]) {

@@ -14,6 +14,7 @@
 #include "shared/estimator.h"
 #include "src_cpu/geometry/surface_hit-inl.hpp"
 #include "src_cpu/lanes/lane_sampler-inl.hpp"
+#include "src_cpu/light/light_triangles.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
@@ -78,40 +79,81 @@ struct AreaSample {
   V2 barycentric;
 };
 
+/// What lights are sampled from.
+struct Lights {
+  const FlatScene& scene;
+  const LightTriangle* triangles =
+      nullptr;  // make_light_triangles(), or null; the bits of samples are the same
+};
+
+/// A triangle of an area light.
+struct LitTriangle {
+  Triangle t;
+  V3 normal;
+  F offset, factor;
+};
+KB_INLINE LitTriangle gather_lit_triangle(const LightTriangle* triangles, U index) {
+  static_assert(offsetof(LightTriangle, normal) == 36 && offsetof(LightTriangle, factor) == 52);
+  const Addresses at(triangles, index);
+  U a[4], b[4], c[4], d[4];
+  at.load(0, a);
+  at.load(16, b);
+  at.load(32, c);
+  at.load(48, d);
+  const auto vector = [](U x, U y, U z) KB_LAMBDA { return V3{as_floats(x), as_floats(y), as_floats(z)}; };
+  return {triangle_of(vector(a[0], a[1], a[2]), vector(a[3], b[0], b[1]), vector(b[2], b[3], c[0])),
+          vector(c[1], c[2], c[3]), as_floats(d[0]), as_floats(d[1])};
+}
+/// The same from the arrays of the scene. area: of the shape
+KB_INLINE LitTriangle make_lit_triangle(const FlatScene& scene, U shape_flags, F area, U first_triangle,
+                                        U first_cdf, U triangle, M active) {
+  U index[3];
+  gather_indices(scene, first_triangle, triangle, active, index);
+  const float* cdf = scene.area_cdf.data();
+  const U at = first_cdf + triangle;
+  LitTriangle lit;
+  lit.t = gather_triangle(scene, index);
+  lit.normal = triangle_normal(lit.t, shape_flags, active);
+  lit.offset = surface_offset(largest_coordinates(lit.t), lit.normal);
+  lit.factor = triangle_area(lit.t) / area / (gather(cdf, at + U(1u)) - gather(cdf, at));
+  return lit;
+}
+
 /// Triangles are chosen with the steps that lattice_cdf() gave them, which is their part of the area only up
 /// to 2^-24. The density is 1 / area of the mesh, as for hits, whose triangle is unknown, so that MIS weights
 /// sum to 1; `factor` is that density over the real one, probability of the triangle / its area.
-/// shape  an emitting mesh in active lanes
-KB_INLINE AreaSample sample_mesh(const FlatScene& scene, U shape, V3 point, F u_triangle, F u, F v,
-                                 bool need_uv, M active) {
-  const float* cdf = scene.area_cdf.data();
-  const ShapeHead record = gather_shape(scene, shape);
+/// record  of an emitting mesh in active lanes
+KB_INLINE AreaSample sample_mesh(const Lights& lights, const ShapeHead& record, V3 point, F u_triangle, F u,
+                                 F v, bool need_uv, M active) {
+  const FlatScene& scene = lights.scene;
   const U first = select(active, record.first_cdf, U(0u));
   const U count = select(active, record.triangle_count, U(1u));
   const U flags = record.flags;
   const F area = record.area;
   AreaSample sample;
-  sample.triangle = find_interval(cdf, first, count, u_triangle);
-  U index[3];
-  gather_indices(scene, record.first_triangle, sample.triangle, active, index);
-  const Triangle t = gather_triangle(scene, index);
+  sample.triangle = find_interval(scene.area_cdf.data(), first, count, u_triangle);
+  const LitTriangle lit = lights.triangles ? gather_lit_triangle(lights.triangles, first + sample.triangle)
+                                           : make_lit_triangle(scene, flags, area, record.first_triangle,
+                                                               first, sample.triangle, active);
+  const Triangle& t = lit.t;
+  U index[3] = {U(0u), U(0u), U(0u)};
+  if (any(active & has_bits(flags, KB_SHAPE_HAS_NORMALS | KB_SHAPE_HAS_UVS)))
+    gather_indices(scene, record.first_triangle, sample.triangle, active, index);
   sample.barycentric = uniform_triangle(u, v);
   const V3 weights{F(1) - sample.barycentric.x - sample.barycentric.y, sample.barycentric.x,
                    sample.barycentric.y};
   sample.position = t.p0 + t.e1 * sample.barycentric.x + t.e2 * sample.barycentric.y;
-  const V3 normal = triangle_normal(t, flags, active);
-  sample.offset = surface_offset(largest_coordinates(t), normal);
-  const V3 shading_normal = triangle_shading_normal(scene, flags, index, weights, normal, active);
+  sample.offset = lit.offset;
+  const V3 shading_normal = triangle_shading_normal(scene, flags, index, weights, lit.normal, active);
   const V3 to_light = sample.position - point;
   const F distance = length(to_light);
-  sample.normal = lit_side(flags, to_light, distance, normal, shading_normal);
+  sample.normal = lit_side(flags, to_light, distance, lit.normal, shading_normal);
   sample.pdf = select(active, area_to_solid_angle(to_light, distance, sample.normal, area), F(0));
   sample.direction = to_light * (F(1) / distance);
-  const U at = first + sample.triangle;
-  sample.factor = triangle_area(t) / area / (gather(cdf, at + U(1u)) - gather(cdf, at));
+  sample.factor = lit.factor;
   sample.uv = sample.barycentric;  // Mitsuba: barycentric coordinates
   const M has_uvs = active & has_bits(flags, KB_SHAPE_HAS_UVS);
-  V3 tangent = normal;
+  V3 tangent = lit.normal;
   if (need_uv && any(has_uvs)) triangle_uv(scene, t, index, weights, has_uvs, sample.uv, tangent);
   return sample;
 }

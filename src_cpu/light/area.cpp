@@ -36,9 +36,8 @@ void finish_by_area(AreaLightSample& sample, const KbShape& shape, glm::vec3 poi
 
 AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::vec3 point, float u_triangle,
                             glm::vec2 u, bool need_uv) {
-  const auto index = static_cast<uint32_t>(&shape - scene.shapes.data());
-  const one_lane::AreaSample one =
-      one_lane::sample_mesh(scene, index, to_lane(point), u_triangle, u.x, u.y, need_uv, {true});
+  const one_lane::AreaSample one = one_lane::sample_mesh(
+      {scene}, one_lane::shared_shape(shape), to_lane(point), u_triangle, u.x, u.y, need_uv, {true});
   AreaLightSample sample;
   sample.pdf = one.pdf.v;
   sample.factor = one.factor.v;

@@ -53,7 +53,7 @@ LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_se
   if (emitter.type == KB_EMITTER_THERMAL)
     return sample_shape_light(scene, emitter, point, u_select.y, u_position);
   const one_lane::Light light = one_lane::sample_lights(
-      scene, to_lane(point), {u_select.x, u_select.y, u_position.x, u_position.y}, {true});
+      {scene}, to_lane(point), {u_select.x, u_select.y, u_position.x, u_position.y}, {true});
   LightSample sample;
   sample.direction = to_glm(light.direction);
   sample.target = to_glm(light.target);

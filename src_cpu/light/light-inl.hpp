@@ -39,18 +39,32 @@ KB_INLINE V3 no_vector() {
   return {F(0), F(0), F(0)};
 }
 
-/// Area lights on meshes.
-KB_INLINE Light sample_mesh_light(const FlatScene& scene, U emitter, U shape, V3 point, const F4& u,
-                                  M active) {
-  const KbEmitter* emitters = scene.emitters.data();
-  const U ref = KB_GATHER_WORD(emitters, KbEmitter, ref, emitter);
+/// The members of KbEmitter that area lights have. A scene's only emitter is read once for all lanes.
+struct EmitterHead {
+  U type, ref, shape;
+  F select_pdf;
+};
+KB_INLINE EmitterHead gather_emitter(const FlatScene& scene, U emitter) {
+  static_assert(offsetof(KbEmitter, ref) == 4 && offsetof(KbEmitter, select_pdf) == 12);
+  if (const KbEmitter& only = scene.emitters.front(); scene.emitters.size() == 1)
+    return {U(only.type), U(only.ref), U(only.shape), F(only.select_pdf)};
+  U words[4];
+  Addresses(scene.emitters.data(), emitter).load(0, words);
+  return {words[0], words[1], words[2], as_floats(words[3])};
+}
+
+/// Area lights on meshes. record: of their shapes
+KB_INLINE Light sample_mesh_light(const Lights& lights, const EmitterHead& emitter, const ShapeHead& record,
+                                  V3 point, const F4& u, M active) {
+  const FlatScene& scene = lights.scene;
+  const U ref = emitter.ref;
   const bool textured = any(active & has_bits(ref, KB_REF_KIND_MASK));
-  const AreaSample on_light = sample_mesh(scene, shape, point, u.y, u.z, u.w, textured, active);
+  const AreaSample on_light = sample_mesh(lights, record, point, u.y, u.z, u.w, textured, active);
   Light light;
   light.direction = on_light.direction;
   light.target =
       on_light.position + on_light.normal * target_offset(on_light.offset, on_light.position - point);
-  light.pdf = on_light.pdf * KB_GATHER_FLOAT(emitters, KbEmitter, select_pdf, emitter);
+  light.pdf = on_light.pdf * emitter.select_pdf;
   light.factor = on_light.factor;
   light.infinite = light.delta = no_lanes();
   light.radiance = resolve(scene, ref, {on_light.uv, on_light.triangle, on_light.barycentric},
@@ -142,22 +156,23 @@ inline void sample_shape_lights(const FlatScene& scene, U emitter, V3 point, con
 }
 
 /// sample_light() of emitter.hpp, without thermally emitting shapes. u: selection, triangle, position.
-KB_INLINE Light sample_lights(const FlatScene& scene, V3 point, const F4& u, M active) {
+KB_INLINE Light sample_lights(const Lights& lights, V3 point, const F4& u, M active) {
+  const FlatScene& scene = lights.scene;
   const auto emitters = static_cast<uint32_t>(scene.emitters.size());
   U emitter(0u);
   if (emitters > 1) emitter = find_interval(scene.emitter_cdf.data(), U(0u), U(emitters), u.x);
-  const U type = KB_GATHER_WORD(scene.emitters.data(), KbEmitter, type, emitter);
+  const EmitterHead head = gather_emitter(scene, emitter);
+  const U type = head.type;
   const M on_shape = active & (type == U(KB_EMITTER_AREA));
-  M mesh = on_shape;
-  U shape(0u);
-  if (any(on_shape)) {
-    shape = select(on_shape, KB_GATHER_WORD(scene.emitters.data(), KbEmitter, shape, emitter), U(0u));
-    mesh = on_shape & (KB_GATHER_WORD(scene.shapes.data(), KbShape, type, shape) == U(KB_SHAPE_MESH)) &
-           (KB_GATHER_WORD(scene.shapes.data(), KbShape, first_cdf, shape) != U(KB_NONE));
-  }
   const M sky = active & (emitter == U(scene.environment));
   Light light{no_vector(), no_vector(), F(0), F(0), no_lanes(), no_lanes(), resolved_row(U(0u))};
-  if (any(mesh)) light = sample_mesh_light(scene, emitter, shape, point, u, mesh);
+  M mesh = on_shape;
+  if (any(on_shape)) {
+    const ShapeHead record = emitters == 1 ? shared_shape(scene.shapes[scene.emitters[0].shape])
+                                           : gather_shape(scene, select(on_shape, head.shape, U(0u)));
+    mesh = on_shape & (record.type == U(KB_SHAPE_MESH)) & (record.first_cdf != U(KB_NONE));
+    if (any(mesh)) light = sample_mesh_light(lights, head, record, point, u, mesh);
+  }
   if (any(sky)) light = select(sky, sample_environment(scene, u, sky), light);
   const M delta = active & ((type == U(KB_EMITTER_POINT)) | (type == U(KB_EMITTER_SPOT)) |
                             (type == U(KB_EMITTER_DIRECTIONAL)) | (type == U(KB_EMITTER_PROJECTOR)));

@@ -70,7 +70,8 @@ float DispersedPaths::channel_eta(const KbMaterial& material, uint32_t channel, 
 /// Returns its probability.
 float DispersedPaths::survive(const Shading& s, const BinnedThroughput& carried) {
   PathState& path = s.wave.paths[s.path.v];
-  const float u = kb_degrade_sample(path.key.seed, path.key.pixel, path.key.sample, s.bounce.number);
+  const float u =
+      kb_degrade_sample(s.bounce.settings.seed, path.film_pixel, s.bounce.id.sample, s.bounce.number);
   const ChannelChoice choice = choose_channel(carried, static_cast<uint32_t>(scene_.channels.size()), u);
   path.channel = choice.channel;
   return choice.probability;
@@ -137,7 +138,7 @@ HeroSet DispersedPaths::choose_heroes(const Shading& s, const KbMaterial& materi
     own.hero_weights.fill(1.0f / static_cast<float>(heroes.count));
   }
   heroes.q = own.hero_weights;
-  const float offset = kb_hero_offset(path.key.seed, path.key.pixel, path.key.sample);
+  const float offset = kb_hero_offset(s.bounce.settings.seed, path.film_pixel, s.bounce.id.sample);
   for (uint32_t c = 0; c < heroes.count; ++c) {
     heroes.eta[c] = channel_eta(material, hero_channel(c, heroes.count, channels, offset), mu_of(path));
     if (cpu::acts_smooth(material, heroes.eta[c]) || cpu::acts_smooth(material, 1 / heroes.eta[c])) return {};
@@ -171,10 +172,10 @@ void DispersedPaths::append_pair(Shading& s, const Boundary& at, const cpu::Boun
 void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSet& heroes,
                                     RareFeatures& rare) {
   if (scene_.emitters.empty()) return;
-  const Light light =
-      scene_.features.thermal
-          ? choose_thermal_light(s)
-          : sample_lights(scene_, s.hit.point, s.numbers(kb_block_light(s.bounce.number)), {true});
+  const Light light = scene_.features.thermal
+                          ? choose_thermal_light(s)
+                          : sample_lights({scene_, s.bounce.lights}, s.hit.point,
+                                          s.numbers(kb_block_light(s.bounce.number)), {true});
   if (!(light.pdf.v > 0) || !(light.factor.v > 0)) return;
   const glm::vec3 wo = to_glm(s.frame.to_local(light.direction));
   const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
@@ -198,7 +199,8 @@ void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSe
 /// Samples a direction for all channels. Returns whether the path goes on.
 bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSet& heroes) {
   const PathState& path = s.wave.paths[s.path.v];
-  const KbFloat4 h = kb_hero_sample(path.key.seed, path.key.pixel, path.key.sample, s.bounce.number);
+  const KbFloat4 h =
+      kb_hero_sample(s.bounce.settings.seed, path.film_pixel, s.bounce.id.sample, s.bounce.number);
   const glm::vec3 wo = sample_heroes(at.material, heroes, at.wi, {h.x, h.y}, s.u.x.v, {s.u.y.v, s.u.z.v});
   const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
   const HeroDensity density = hero_density(at.material, heroes, at.wi, wo);

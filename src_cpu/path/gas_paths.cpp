@@ -73,7 +73,8 @@ void append_medium(Wave& wave, uint32_t path, const KbPathVertex& medium,
   v.scatter0 = medium.scatter0;
   append(wave, path, v, {true});
   for (std::size_t i = 0; i < cells.size(); i += 4) {
-    WaveEntry extension{};
+    WaveEntry extension;
+    extension.vertex = {};
     extension.next = KB_NONE;
     const auto some = cells.subspan(i, std::min<std::size_t>(4, cells.size() - i));
     std::memcpy(static_cast<void*>(&extension.vertex), some.data(), some.size_bytes());

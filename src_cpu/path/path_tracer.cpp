@@ -52,6 +52,24 @@ void record_shadows(const Wave& wave, const ShadowQueue& rays) {
   wave.recording->shadow_ends.push_back(wave.recording->shadow.size());
 }
 
+/// Copies the linked vertices of a path from `entry` on, up to the last that has light: what lies behind cannot
+/// contribute. Returns the end of the copy. to: has room for all of them
+KbPathVertex* copy_lit_vertices(const WaveEntry* entries, uint32_t entry, KbPathVertex* to) {
+  KbPathVertex *last = nullptr, *end = to;
+  for (; entry != KB_NONE; entry = entries[entry].next) {
+    KbPathVertex* const copy = to;
+    *to++ = entries[entry].vertex;
+    const bool lit = copy->head & (KB_VERTEX_EMIT | KB_VERTEX_NEE);
+    copy->head &= copy->head & KB_VERTEX_NEE ? ~0u : ~KB_VERTEX_TEX_NEE;  // its sample comes last: drop it
+    const uint32_t extensions = kb_vertex_extensions(copy->head);
+    for (uint32_t i = 1; i <= extensions; ++i) *to++ = entries[entry + i].vertex;
+    last = lit ? copy : last;
+    end = lit ? to : end;
+  }
+  if (last) last->head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
+  return end;
+}
+
 }  // namespace
 
 PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& settings, const PathKernels& kernels)
@@ -67,9 +85,9 @@ PathTracer::~PathTracer() = default;
 
 void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<const float> mu, PathBuffer& out,
                        std::vector<uint32_t>& invalid) {
-  out.clear();
+  out.paths.clear();
   invalid.clear();
-  if (flat_.integrator.max_depth == 0) return;
+  if (flat_.integrator.max_depth == 0) return out.clear();
   const std::span<const TriangleRecord> records = scene_.records;
   Bounce bounce{flat_,
                 settings_,
@@ -77,6 +95,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
                 0,
                 rare_.get(),
                 records.empty() ? nullptr : records.data(),
+                scene_.lights.empty() ? nullptr : scene_.lights.data(),
                 records.size() > kMostCachedRecords};
   wave_.paths.resize(kWavePaths + 1);
   wave_.entries.clear();
@@ -141,39 +160,29 @@ const ShadowQueue& PathTracer::answered_shadows() {
 void PathTracer::trace_shadows() {
   if (rare_ && rare_->gas()) return rare_->gas()->trace_shadows(wave_);
   const ShadowQueue& rays = answered_shadows();
-  for (uint32_t i = 0; i < rays.count; ++i)
-    if (rays.t_max[i] < 0) wave_.entries[rays.entry[i]].vertex.head &= ~KB_VERTEX_NEE;
+  for (uint32_t i = 0; i < rays.count; ++i)  // without a branch: nobody foresees what is hidden
+    wave_.entries[rays.entry[i]].vertex.head &= rays.t_max[i] < 0 ? ~KB_VERTEX_NEE : ~0u;
 }
 
-/// Copies the linked vertices of every path to one contiguous run, without what cannot contribute: everything
-/// behind the last vertex that has light.
+/// Copies the wave's linked vertices, each path's to one contiguous run, without what cannot contribute.
 void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) const {
-  const std::vector<WaveEntry>& entries = wave_.entries;
+  out.entries.resize(wave_.entries.size());  // what is there is written over
+  KbPathVertex* const begin = out.entries.data();
+  KbPathVertex* end = begin;
   for (const PathState& path : wave_.paths) {
     if (path.pixel == KB_NONE) continue;
     if (path.flags & kInvalidPath) {
       invalid.push_back(path.pixel);
       continue;
     }
-    uint32_t last_lit = KB_NONE;
-    for (uint32_t s = path.first_entry; s != KB_NONE; s = entries[s].next) {
-      if (entries[s].vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE)) last_lit = s;
-    }
-    if (last_lit == KB_NONE) continue;
-    const auto first = static_cast<uint32_t>(out.entries.size());
-    for (uint32_t s = path.first_entry;; s = entries[s].next) {
-      KbPathVertex vertex = entries[s].vertex;
-      if (!(vertex.head & KB_VERTEX_NEE))
-        vertex.head &= ~KB_VERTEX_TEX_NEE;  // its sample comes last: drop it
-      if (s == last_lit) vertex.head &= ~(KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
-      if (s == path.first_entry && (path.flags & kNegativePath)) vertex.head |= KB_VERTEX_NEGATIVE;
-      out.entries.push_back(vertex);
-      for (uint32_t i = 0; i < kb_vertex_extensions(vertex.head); ++i)
-        out.entries.push_back(entries[s + 1 + i].vertex);
-      if (s == last_lit) break;
-    }
-    out.paths.push_back({first, static_cast<uint32_t>(out.entries.size()) - first, path.pixel});
+    KbPathVertex* const first = end;
+    end = copy_lit_vertices(wave_.entries.data(), path.first_entry, first);
+    if (end == first) continue;
+    if (path.flags & kNegativePath) first->head |= KB_VERTEX_NEGATIVE;
+    out.paths.push_back(
+        {static_cast<uint32_t>(first - begin), static_cast<uint32_t>(end - first), path.pixel});
   }
+  out.entries.resize(static_cast<std::size_t>(end - begin));
 }
 
 }  // namespace kiloband::cpu

@@ -33,6 +33,7 @@ struct TracerScene {
   const FlatScene* flat = nullptr;
   const EmbreeScene* embree = nullptr;
   std::span<const TriangleRecord> records{};  // or none
+  std::span<const LightTriangle> lights{};    // or none
 };
 
 /// Builds the paths of one block and sample. One object per thread: it owns all scratch memory.

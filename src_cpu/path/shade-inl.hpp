@@ -197,7 +197,8 @@ KB_INLINE Light choose_light(Shading& s, M smooth) {
 #ifdef KB_ONE_LANE
   if (s.scene().features.thermal) return choose_thermal_light(s);
 #endif
-  return sample_lights(s.scene(), s.hit.point, s.numbers(kb_block_light(s.bounce.number)), smooth);
+  return sample_lights({s.scene(), s.bounce.lights}, s.hit.point, s.numbers(kb_block_light(s.bounce.number)),
+                       smooth);
 }
 
 /// Next-event estimation: stores the weights as if the light were visible, and queues the shadow rays. Returns the

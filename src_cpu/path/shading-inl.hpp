@@ -66,12 +66,11 @@ struct Shading {
   /// What of the paths' keys differs between paths is all that is read of them.
   KB_INLINE SamplerKeys sampler_keys() const {
     SamplerKeys read{U(0u), U(bounce.id.sample), U(kb_reverse_bits(bounce.id.index)), U(0u), U(0u)};
-    constexpr std::size_t kKey = offsetof(PathState, key);
     if (bounce.sampler() == KB_SAMPLER_INDEPENDENT) {
-      read.pixel = state_word(kKey + offsetof(KbSamplerKey, pixel));
+      read.pixel = state_word(offsetof(PathState, film_pixel));
     } else {
-      read.key0 = state_word(kKey + offsetof(KbSamplerKey, key0));
-      read.key1 = state_word(kKey + offsetof(KbSamplerKey, key1));
+      read.key0 = state_word(offsetof(PathState, key0));
+      read.key1 = state_word(offsetof(PathState, key1));
     }
     return read;
   }

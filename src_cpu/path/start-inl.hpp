@@ -72,9 +72,9 @@ KB_INLINE void start_lanes(const Bounce& bounce, const WaveBlock& block, const P
     state.previous_point[2] = origin.z[i];
     state.pixel = pixel[i];
     state.flags = negative >> i & 1 ? kNegativePath : 0;
-    state.key.pixel = film_pixel[i];
-    state.key.key0 = key0[i];
-    state.key.key1 = key1[i];
+    state.film_pixel = film_pixel[i];
+    state.key0 = key0[i];
+    state.key1 = key1[i];
   });
 }
 
@@ -87,10 +87,6 @@ inline void start_wave(const Bounce& bounce, const PixelRect& asked, Wave& wave)
   PathState common = kNoPath;
   common.magnitude = 1;
   common.previous_delta = 1;
-  common.key.seed = bounce.settings.seed;
-  common.key.sampler = bounce.sampler();
-  common.key.sample = bounce.id.sample;
-  common.key.reversed_index = kb_reverse_bits(bounce.id.index);
   RayQueue& rays = wave.rays();
   rays.count = block.width * block.height;
   for (uint32_t first = 0; first < rays.count; first += kLanes)

@@ -7,8 +7,8 @@ namespace kiloband::cpu::one_lane {
 namespace {
 
 KbFloat4 thermal_numbers(const Shading& s) {
-  const KbSamplerKey& key = s.wave.paths[s.path.v].key;
-  return kb_thermal_sample(key.seed, key.pixel, key.sample, s.bounce.number);
+  const uint32_t pixel = s.wave.paths[s.path.v].film_pixel;
+  return kb_thermal_sample(s.bounce.settings.seed, pixel, s.bounce.id.sample, s.bounce.number);
 }
 
 Resolved to_lanes(const EmittedRadiance& radiance) {

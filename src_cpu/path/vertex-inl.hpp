@@ -96,7 +96,8 @@ inline void append_lookups(Wave& wave, uint32_t head, uint32_t i, const LookupAr
   for (uint32_t k = 0; k < 4; ++k)
     if (head & kFlags[k]) samples[count++] = lookups[k].at(i);
   for (uint32_t k = 0; k < count; k += 2) {
-    WaveEntry extension{};
+    WaveEntry extension;
+    extension.vertex = {};
     extension.next = KB_NONE;
     std::memcpy(static_cast<void*>(&extension.vertex), &samples[k],
                 std::min(count - k, 2u) * sizeof(KbTextureSample));

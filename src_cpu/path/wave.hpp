@@ -10,6 +10,7 @@
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/ray_queue.hpp"
 #include "src_cpu/geometry/triangle_records.hpp"
+#include "src_cpu/light/light_triangles.hpp"
 
 namespace kiloband::cpu {
 
@@ -23,8 +24,8 @@ struct SampleId {
 inline constexpr uint32_t kInvalidPath = 1;   // a weight is not finite, or the path is endless
 inline constexpr uint32_t kNegativePath = 2;  // KB_VERTEX_NEGATIVE of its first vertex
 
-/// What is known of a path between bounces. Lanes gather its members.
-struct PathState {
+/// What is known of a path between bounces, in one cache line. Lanes gather its members.
+struct alignas(64) PathState {
   float previous_point[3];  // m
   float previous_pdf;       // solid angle [1/sr], of the BSDF sample that led here; 0 for delta lobes
   float bound;              // upper bound of the throughput over all channels, without radiance scaling
@@ -34,9 +35,11 @@ struct PathState {
   uint32_t pixel;           // in the block
   uint32_t channel;         // after degradation, else KB_NONE
   uint32_t first_entry, last_entry;  // linked list in the wave's entries
-  KbSamplerKey key;                  // of the path's random numbers
+  // Of its KbSamplerKey, what differs between paths:
+  uint32_t film_pixel;
+  uint32_t key0, key1;
 };
-static_assert(sizeof(PathState) == 80);
+static_assert(sizeof(PathState) == 64);
 
 /// What the lanes without a path and the pixels that a block lacks have.
 inline constexpr PathState kNoPath{
@@ -46,6 +49,7 @@ inline constexpr PathState kNoPath{
 struct WaveEntry {
   KbPathVertex vertex;
   uint32_t next;  // the path's next vertex
+  WaveEntry() {}  // sets nothing: who adds one fills it in
 };
 
 /// Every ray that is traced, with its path's index in the block (benchmarks of bare queries, traced paths).
@@ -83,6 +87,7 @@ struct Bounce {
   uint32_t number = 0;                      // 0: what camera rays hit
   one_lane::RareFeatures* rare = nullptr;   // what few scenes have: one lane alone uses it
   const TriangleRecord* records = nullptr;  // null: hits are made from the arrays of the scene
+  const LightTriangle* lights = nullptr;    // null: so are light samples
   bool prefetches = false;                  // records, which are more than the caches hold
 
   uint32_t sampler() const {

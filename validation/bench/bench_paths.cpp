@@ -56,6 +56,7 @@ struct Bench {
   std::shared_ptr<const FlatScene> compiled;
   std::unique_ptr<EmbreeScene> embree;
   std::vector<TriangleRecord> records;
+  std::vector<LightTriangle> lights;
   TracerScene tracer;
   std::vector<PixelRect> blocks;
 
@@ -65,7 +66,8 @@ struct Bench {
     const FlatScene& flat = *compiled;
     embree = std::make_unique<EmbreeScene>(flat, "avx512", 1);
     records = make_triangle_records(flat);
-    tracer = {&flat, embree.get(), records};
+    lights = make_light_triangles(flat);
+    tracer = {&flat, embree.get(), records, lights};
     blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
   }
 };

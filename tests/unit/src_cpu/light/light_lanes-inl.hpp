@@ -30,7 +30,8 @@ namespace kiloband::cpu::KB_LANES {
   }
 
 KB_SCENE_FUNCTION(lights, {
-  const Light light = sample_lights(scene, {a(0), a(1), a(2)}, {a(3), a(4), a(5), a(6)}, first_lanes(kLanes));
+  const Light light =
+      sample_lights({scene}, {a(0), a(1), a(2)}, {a(3), a(4), a(5), a(6)}, first_lanes(kLanes));
   const M sampled = light.pdf > F(0);
   put(0, light.pdf);
   put(1, select(sampled, light.factor, F(0)));

@@ -22,8 +22,9 @@ struct Traced {
 };
 
 Traced trace(const FlatScene& scene, const EmbreeScene& embree, SamplerType sampler,
-             const PathKernels& kernels, std::span<const TriangleRecord> records = {}) {
-  const TracerScene tracer_scene{&scene, &embree, records};
+             const PathKernels& kernels, std::span<const TriangleRecord> records = {},
+             std::span<const LightTriangle> lights = {}) {
+  const TracerScene tracer_scene{&scene, &embree, records, lights};
   SamplingSettings settings;
   settings.sampler = sampler;
   settings.replicates = 1;
@@ -86,7 +87,11 @@ TEST_P(PathsOfLanes, AreThoseWithRecordsOfTriangles) {
   const EmbreeScene embree(scene, "sse4.2", 1);
   const PathKernels& kernels = path_kernels(resolve_isa(Isa::kAuto));
   const SamplerType sampler = SamplerType::kIndependent;
-  expect_same_bits(trace(scene, embree, sampler, kernels), trace(scene, embree, sampler, kernels, records));
+  const std::vector<LightTriangle> lights = make_light_triangles(scene);
+  ASSERT_EQ(lights.size(), scene.area_cdf.size());
+  const Traced without = trace(scene, embree, sampler, kernels);
+  expect_same_bits(without, trace(scene, embree, sampler, kernels, records, lights));
+  expect_same_bits(without, trace(scene, embree, sampler, one_lane_path_kernels(), records, lights));
 }
 
 TEST(TriangleRecords, AreLeftOutOfScenesWithTooMany) {
@@ -96,6 +101,10 @@ TEST(TriangleRecords, AreLeftOutOfScenesWithTooMany) {
   ASSERT_GT(count, 1u);
   EXPECT_EQ(make_triangle_records(scene, count).size(), count);
   EXPECT_TRUE(make_triangle_records(scene, count - 1).empty());
+  const std::size_t lights = scene.area_cdf.size();
+  ASSERT_GT(lights, 1u);
+  EXPECT_EQ(make_light_triangles(scene, lights).size(), lights);
+  EXPECT_TRUE(make_light_triangles(scene, lights - 1).empty());
 }
 
 /// Camera rays of blocks at the edges of a film, and of parts of blocks.
