@@ -14,6 +14,19 @@ namespace {
 // 64 * 2^-24 = 4e-6 in the worst case (all samples equal) and 5e-7 typically, however many samples follow.
 constexpr uint32_t kFoldInterval = 64;
 
+/// Whether the float sums go to double before a sample.
+bool folds_before(uint32_t index) {
+  return index > 0 && index % kFoldInterval == 0;
+}
+
+/// Whether they do before one of the range's samples. Where not, closed sums stay as they are: a viewer asks for sample
+/// after sample, and would copy two thirds of the film for nothing.
+bool folds_within(const SampleRange& range) {
+  for (uint32_t done = 0; done < range.count && done < kFoldInterval; ++done)
+    if (folds_before(range.first + done)) return true;
+  return false;
+}
+
 }  // namespace
 
 BlockWorker::BlockWorker(const TracerScene& scene, const DerivedChannels& derived,
@@ -58,7 +71,7 @@ uint32_t BlockWorker::add_samples(const PixelRect& block, const SampleRange& ran
   for (; done < range.count && !stop; ++done) {
     const uint32_t index = range.first + done;
     const SampleId id{range.replicate + index * settings_.replicates, range.replicate, index};
-    if (index > 0 && index % kFoldInterval == 0) fold_sums();
+    if (folds_before(index)) fold_sums();
     add_sample(block, id);
     for (uint32_t& count : counts_) ++count;
     for (const uint32_t pixel : invalid_) {
@@ -78,23 +91,26 @@ std::vector<BlockWorker::Columns> BlockWorker::columns_of_film() const {
   return columns;
 }
 
-/// The block's sums so far.
+/// The block's sums so far; closed ones where they will be added to.
 void BlockWorker::take_sums(const SpectralFilm& film, const PixelRect& block, const SampleRange& range) {
   const std::size_t stride = evaluator_.stride();
   const std::vector<Columns> all_columns = columns_of_film();
-  sums_.assign(block.pixels() * stride, 0.0f);
-  folded_.assign(range.first > kFoldInterval ? sums_.size() : 0, 0.0);
+  sums_.resize(block.pixels() * stride);
+  folded_.assign(range.first > kFoldInterval && folds_within(range) ? sums_.size() : 0, 0.0);
   counts_.assign(block.pixels(), 0);
   for (std::size_t p = 0; p < block.pixels(); ++p) {
     const PixelSumsView from = film.pixel_sums(range.replicate, film.pixel_index(block, p));
     counts_[p] = from.count;
+    float* end = &sums_[p * stride];  // of what is written
     for (const Columns& columns : all_columns) {
       const std::size_t to = p * stride + columns.here;
-      std::copy_n(&from.open[columns.film], columns.count, &sums_[to]);
+      std::fill(end, &sums_[to], 0.0f);
+      end = std::copy_n(&from.open[columns.film], columns.count, &sums_[to]);
       if (folded_.empty()) continue;
       for (std::size_t c = 0; c < columns.count; ++c)
         folded_[to + c] = std::bit_cast<double>(from.closed[columns.film + c]);
     }
+    std::fill(end, sums_.data() + (p + 1) * stride, 0.0f);
   }
 }
 

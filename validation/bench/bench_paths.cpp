@@ -251,7 +251,7 @@ void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) 
   SamplingSettings settings;
   settings.replicates = variance ? 16 : 1;
   settings.wavelengths = wavelengths;
-  BlockWorker worker(bench.tracer, {}, settings, Isa::kAuto);
+  BlockWorker worker(bench.tracer, {}, settings, resolve_isa(Isa::kAuto));
   const std::atomic<bool> stop{false};
   constexpr uint32_t kSpp = 64;
   for (auto _ : state) {
@@ -265,6 +265,27 @@ void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) 
     }
   }
   count_paths(state, 64 * 64 * kSpp);
+}
+
+/// What a viewer does: sample after sample of all pixels, of a film that keeps sums.
+void frames(benchmark::State& state) {
+  Bench& bench = bench_of("cornell", static_cast<std::size_t>(state.range(0)));
+  SamplingSettings settings;
+  settings.replicates = 1;
+  BlockWorker worker(bench.tracer, {}, settings, resolve_isa(Isa::kAuto));
+  const std::atomic<bool> stop{false};
+  FilmOptions options{bench.compiled->channels.size()};
+  options.sums = BlockWorker::sum_rule();
+  SpectralFilm film({0, 0, bench.compiled->film.crop_width, bench.compiled->film.crop_height}, options);
+  uint32_t sample = 0;
+  const auto render_frame = [&] {
+    for (uint32_t b = 0; b < film.blocks().size(); ++b)
+      worker.go_on(film, b, {0, sample, 1}, stop, {[](uint64_t) {}, [](const InvalidSample&) {}});
+    ++sample;
+  };
+  while (sample < 70) render_frame();  // there are closed sums then
+  for (auto _ : state) render_frame();
+  count_paths(state, pixels_of(bench));
 }
 
 void register_all() {
@@ -286,6 +307,7 @@ void register_all() {
   benchmark::RegisterBenchmark("render/shared-variance", render, true, WavelengthMode::kShared)
       ->Arg(8)
       ->Arg(512);
+  benchmark::RegisterBenchmark("frames", frames)->Arg(8)->Arg(100);
   benchmark::RegisterBenchmark("render/per-path", render, false, WavelengthMode::kPerPath)->Arg(8)->Arg(512);
 }
 
