@@ -18,16 +18,17 @@ TEST(CheckScenes, SaysWhatStopsTheOthers) {
   const Outcome outcome = run_program(folder, {"info", "--check", "."});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(outcome.out,
-            "stopped a/b/worse.xml\n"
-            "  ./a/b/worse.xml:2:13: error: bsdf type 'hair' is not supported\n"
-            "  ./a/b/worse.xml:2:32: error: bsdf type 'difuse' is not supported; did you mean 'diffuse'?\n"
-            "loads   a/good.xml\n"
-            "stopped hair.xml\n"
-            "  ./hair.xml:4:13: error: bsdf type 'hair' is not supported\n"
-            "1 of 3 scenes load\n"
-            "    2 stopped by: bsdf type 'hair' is not supported\n"
-            "    1 stopped by: bsdf type 'difuse' is not supported\n");
+  EXPECT_EQ(
+      outcome.out,
+      "stopped a/b/worse.xml\n"
+      "  ./a/b/worse.xml:2:13: error: bsdf type 'hair' is not supported: there is no such model; 'roughdielectric' or 'principled' come near\n"
+      "  ./a/b/worse.xml:2:32: error: bsdf type 'difuse' is not supported; did you mean 'diffuse'?\n"
+      "loads   a/good.xml\n"
+      "stopped hair.xml\n"
+      "  ./hair.xml:4:13: error: bsdf type 'hair' is not supported: there is no such model; 'roughdielectric' or 'principled' come near\n"
+      "1 of 3 scenes load\n"
+      "    2 stopped by: bsdf type 'hair' is not supported: there is no such model; 'roughdielectric' or 'principled' come near\n"
+      "    1 stopped by: bsdf type 'difuse' is not supported\n");
 }
 
 /// What only shows when a scene is made ready for rendering stops it too, and the options are those of the render.

@@ -26,7 +26,9 @@ TEST(WrongScene, IsRefusedByRenderAndInfo) {
        "broken.xml:3:3: error: not well-formed XML: Start-end tags mismatch"},
       {leaf(R"xml(<spectrum name="reflectance" value="400:0.5, 550:1.27"/>)xml"),
        "broken.xml:2:68: error: bsdf 'leaf': reflectance 1.27 at 550 nm: must be in [0, 1]"},
-      {complete_scene(kSensor), "broken.xml:3:2: error: scene: a second sensor: only one is supported"},
+      {complete_scene(kSensor + R"xml(<sensor type="batch"/>)xml"),
+       "broken.xml:2:146: error: sensor type 'batch' is not supported: one camera a scene; -D can choose among "
+       "several"},
       {complete_scene(R"xml(<shape type="obj"><string name="filename" value="index.obj"/></shape>)xml"),
        "broken.xml:2:50: error: ./index.obj:4: f: corner '4': position index 4: must be in 1..3, the "
        "number of such lines above"},

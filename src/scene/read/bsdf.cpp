@@ -73,31 +73,16 @@ BsdfModel read_diffuse(ReadContext& context, const ObjectReader& object) {
   return bsdf;
 }
 
-/// The index of a conductor: eta and k, Mitsuba's name, a built-in metal or a file, or the perfect mirror.
-void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf& bsdf) {
-  const bool explicit_index = object.has("eta") || object.has("k");
-  bsdf.eta = read_spectrum(context, object, "eta", SpectrumUse::kQuantity, bsdf.eta);
-  bsdf.k = read_spectrum(context, object, "k", SpectrumUse::kQuantity, bsdf.k);
-  check_metal_index(bsdf.eta, object.label() + ": eta", object.value_place("eta"));
-  check_metal_index(bsdf.k, object.label() + ": k", object.value_place("k"));
-  if (object.has("material") && explicit_index)
-    object.fail_at("material", "'material' together with 'eta' or 'k'");
-  auto constants = read_conductor_name(context, object);
-  if (object.has("metal")) {
-    if (explicit_index || object.has("material"))
-      object.fail_at("metal", "'metal' together with 'material', 'eta' or 'k'");
-    constants = read_material(context, object, "metal", MaterialFamily::kMetal);
-  }
-  if (!constants) return;
-  bsdf.eta = constants->n;
-  bsdf.k = *constants->k;
-}
-
 BsdfModel read_conductor(ReadContext& context, const ObjectReader& object, bool rough) {
   ConductorBsdf bsdf;
   read_metal(context, object, bsdf);
   bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
   if (rough) bsdf.roughness = read_roughness(context, object);
+  if (object.node().legacy && object.has("ext_eta")) {
+    const double outside = read_ior(object, "ext_eta", 1);
+    object.check(outside > 0.999 && outside < 1.001, "ext_eta", outside,
+                 "conductors stand in air here (1): divide eta and k by it");
+  }
   return bsdf;
 }
 
@@ -184,8 +169,9 @@ BsdfModel read_two_sided(ReadContext& context, const ObjectReader& object) {
 Texture read_share(ReadContext& context, const ObjectReader& object, const std::string& name,
                    const Texture& fallback) {
   Texture share = reflectance(context, object, name, fallback);
+  if (auto board = number_board(share)) return board;
   if (std::holds_alternative<std::shared_ptr<const CheckerboardTexture>>(share))
-    object.fail_at(name, name + ": a checkerboard is not supported here");
+    object.fail_at(name, name + ": a checkerboard must have two numbers here");
   if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(share))
     object.fail_at(name, name + ": a spectral_bitmap is not supported here");
   return share;
@@ -198,7 +184,7 @@ BsdfModel read_mask(ReadContext& context, const ObjectReader& object) {
   if (!nested) object.fail_here("needs a nested bsdf");
   bsdf.nested = read_bsdf(context, *nested);
   if (contains<MaskBsdf>(*bsdf.nested)) object.fail_here("the nested bsdf is a mask itself");
-  if (contains<NullBsdf>(*bsdf.nested)) object.fail_here("the nested bsdf is null");
+  if (std::holds_alternative<NullBsdf>(bsdf.nested->model)) return NullBsdf{};  // rays pass either way
   return bsdf;
 }
 

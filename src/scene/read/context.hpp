@@ -81,19 +81,22 @@ void check_spectrum(const Spectrum& spectrum, const std::string& label, Spectrum
 std::optional<Texture> read_spectrum_object(ReadContext& context, Node& node, SpectrumUse use);
 /// A <texture type="bitmap">, checkerboard or spectral_bitmap.
 Texture read_texture_object(ReadContext& context, Node& node);
+/// A checkerboard of two numbers, where a number is wanted, as a bitmap of 2 x 2 texels; null for any other texture. As in Mitsuba 3.9.1
+/// color1 is where its colours have color0.
+std::shared_ptr<const BitmapTexture> number_board(const Texture& texture);
 /// A <texture type="spectral_bitmap">.
 Texture read_spectral_bitmap(ReadContext& context, const ObjectReader& object);
 /// throws InputError  values or mixtures above 1, endmembers that describe emission
 void check_spectral_reflectance(const SpectralBitmapTexture& texture, const std::string& label,
                                 const Place& place);
-/// throws InputError  values above kMaxEmission
+/// throws InputError  values above kMaxEmission, of a checkerboard of colours, too
 void check_emission_texture(const Texture& texture, const std::string& label, const Place& place);
 /// throws InputError  pixels of an image that, times `scale`, are above kMaxEmission
 void check_emission_image(const Image& image, const std::filesystem::path& file, double scale,
                           const std::string& label, const Place& place);
 void check_emission_image(const SpectralImage& image, double scale, const std::string& label,
                           const Place& place);
-/// throws InputError  a bitmap with values above 1
+/// throws InputError  a bitmap or checkerboard with values above 1
 void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place);
 
 std::shared_ptr<const Bsdf> read_bsdf(ReadContext& context, Node& node);
@@ -102,6 +105,9 @@ std::shared_ptr<const Medium> read_medium(ReadContext& context, Node& node);
 /// throws InputError  a medium that is not named "interior"
 std::shared_ptr<const Medium> read_interior(ReadContext& context, const ObjectReader& shape);
 Shape read_shape(ReadContext& context, Node& node);
+/// The shapes in a <shape type="merge">, which says that they may be stored together: it has no other meaning.
+/// throws InputError  none, or groups and instances
+std::vector<Node*> merged_shapes(Node& node);
 /// A <shape type="shapegroup">; the same node is read once.
 /// throws InputError  it has no shapes, shapes that emit or bound a medium, or contains itself
 std::shared_ptr<const ShapeGroup> read_shape_group(ReadContext& context, Node& node);

@@ -157,23 +157,12 @@ constexpr EmitterType kEmitterTypes[] = {{"constant", read_constant},
                                          {"projector", read_projector},
                                          {"directional", read_directional}};
 
-/// It is two emitters.
-constexpr std::string_view kSunsky = "sunsky";
-
-/// What Mitsuba has and we do not, and why or what to use.
-constexpr std::pair<std::string_view, std::string_view> kNotSupported[] = {
-    {"sun", "of old files; use sunsky with sky_scale 0, whose up is +Z"},
-    {"sky", "of old files; use sunsky with sun_scale 0, whose up is +Z"},
-    {"timed_sunsky", "nothing moves here; use sunsky, at one time"},
-    {"directionalarea",
-     "no path from a camera finds light of a single direction from an area; Mitsuba 3.9.1's path "
-     "integrator renders it black, too"}};
+/// They may be two emitters; `sun` and `sky` are of old files.
+bool is_sunsky(const Node& node) {
+  return node.type == "sunsky" || (node.legacy && (node.type == "sun" || node.type == "sky"));
+}
 
 [[noreturn]] void refuse(const ObjectReader& object) {
-  const Node& node = object.node();
-  for (const auto& [type, instead] : kNotSupported)
-    if (node.type == type)
-      fail(node.type_place, "emitter type '" + node.type + "' is not supported: " + std::string(instead));
   object.refuse_type({"area", "thermal", "constant", "envmap", "spectral_envmap", "point", "spot",
                       "projector", "directional", "sunsky"});
 }
@@ -209,7 +198,7 @@ AreaEmitter read_area_emitter(ReadContext& context, Node& node) {
     if (node.type == type.name)
       fail(node.type_place, object.label() + ": only area and thermal emitters can be part of a shape");
   }
-  if (node.type == kSunsky)
+  if (is_sunsky(node))
     fail(node.type_place, object.label() + ": only area and thermal emitters can be part of a shape");
   if (node.type != "area") refuse(object);
   if (object.has("to_world")) object.fail_at("to_world", "an area emitter has no transform of its own");
@@ -221,7 +210,7 @@ AreaEmitter read_area_emitter(ReadContext& context, Node& node) {
 
 std::vector<Emitter> read_emitters(ReadContext& context, Node& node) {
   const ObjectReader object(node);
-  if (node.type == kSunsky) {
+  if (is_sunsky(node)) {
     accept_sampling_weight(context, object);
     std::vector<Emitter> emitters = read_sunsky(context, object);
     object.finish();

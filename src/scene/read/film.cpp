@@ -106,15 +106,27 @@ void read_filter(const ObjectReader& film_object, Film& film) {
   object.finish();
 }
 
+/// Mitsuba 0.x's film for pictures: an hdrfilm whose output is a PNG.
+void accept_picture_film(const ReadContext& context, const ObjectReader& object) {
+  note(context.sink, object.node().type_place.position(),
+       object.label() + ": read as an hdrfilm; --preview writes a picture");
+  accept_obsolete(context, object,
+                  {"banner", "attach_log", "file_format", "pixel_format", "gamma", "exposure",
+                   "tonemap_method", "key", "burn", "high_quality_edges"});
+}
+
 /// What Mitsuba's films say about their output files: checked, without meaning here (-o decides).
 void accept_output_parameters(const ReadContext& context, const ObjectReader& object) {
-  if (object.node().legacy) accept_obsolete(context, object, {"banner", "attach_log", "file_format"});
+  if (object.type() == "ldrfilm") return accept_picture_film(context, object);
+  if (object.node().legacy)
+    accept_obsolete(context, object, {"banner", "attach_log", "file_format", "high_quality_edges"});
   object.get_choice("file_format", {"openexr", "exr", "rgbe", "pfm"});
   if (object.type() == "hdrfilm") {
     object.get_choice("pixel_format", {"rgb", "luminance", "luminance_alpha", "rgba", "xyz", "xyza"});
   }
   object.get_choice("component_format", {"float16", "float32", "uint32"});
   object.get_bool("sample_border", false);
+  object.get_bool("compensate", false);  // Mitsuba's sums with their rounding errors; ours have them always
 }
 
 /// True for a table that is 1 everywhere in its range: a channel as it stands.
@@ -202,7 +214,8 @@ Film default_film(const ReadContext& context) {
 Film read_film(ReadContext& context, Node& node) {
   const ObjectReader object(node);
   Film film;
-  if (node.type != "hdrfilm" && node.type != "specfilm" && node.type != "bandfilm") {
+  const bool old_picture = node.legacy && node.type == "ldrfilm";
+  if (node.type != "hdrfilm" && node.type != "specfilm" && node.type != "bandfilm" && !old_picture) {
     object.refuse_type({"hdrfilm", "specfilm", "bandfilm"});
   }
   read_size(context, object, film);

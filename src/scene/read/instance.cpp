@@ -17,6 +17,20 @@ void check_member(const ObjectReader& group, const Node& node, const Shape& shap
   if (std::holds_alternative<NullBsdf>(shape.bsdf->model)) refuse("have a null bsdf");
 }
 
+/// The shapes of a group, those of merges one by one.
+std::vector<Node*> members(const ObjectReader& group) {
+  std::vector<Node*> found;
+  for (Node* member : group.nested("shape")) {
+    if (member->type != "merge") {
+      found.push_back(member);
+      continue;
+    }
+    const std::vector<Node*> merged = merged_shapes(*member);
+    found.insert(found.end(), merged.begin(), merged.end());
+  }
+  return found;
+}
+
 bool has_analytic_shapes(const ShapeGroup& group) {
   return std::ranges::any_of(group.shapes,
                              [](const Shape& s) { return !std::holds_alternative<MeshShape>(s.geometry); }) ||
@@ -25,6 +39,17 @@ bool has_analytic_shapes(const ShapeGroup& group) {
 }
 
 }  // namespace
+
+std::vector<Node*> merged_shapes(Node& node) {
+  const ObjectReader object(node);
+  std::vector<Node*> shapes = object.nested("shape");
+  if (shapes.empty()) object.fail_here("has no shapes");
+  for (const Node* shape : shapes)
+    if (shape->type == "merge" || shape->type == "shapegroup" || shape->type == "instance")
+      fail(shape->place, object.label() + ": shapes of type " + shape->type + " cannot be merged");
+  object.finish();
+  return shapes;
+}
 
 std::shared_ptr<const ShapeGroup> read_shape_group(ReadContext& context, Node& node) {
   const ObjectReader object(node);
@@ -36,7 +61,7 @@ std::shared_ptr<const ShapeGroup> read_shape_group(ReadContext& context, Node& n
     auto group = std::make_shared<ShapeGroup>();
     group->id = node.id;
     group->position = node.place.position();
-    for (Node* member : object.nested("shape")) {
+    for (Node* member : members(object)) {
       if (member->type == "shapegroup")
         fail(member->place, object.label() + ": a group in a group: write an instance of it");
       if (member->type == "instance") {

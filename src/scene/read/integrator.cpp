@@ -49,13 +49,29 @@ Integrator read_path(const ObjectReader& object) {
   return result;
 }
 
+/// How Mitsuba divides its work, and when it gives up: checked, without meaning here.
+void accept_scheduling(ReadContext& context, const ObjectReader& object) {
+  count(object, "samples_per_pass", 0);
+  count(object, "block_size", 0);
+  if (object.has("timeout")) {
+    object.get_float("timeout", -1);
+    note(context.sink, object.value_place("timeout").position(),
+         object.label() + ": 'timeout' has no meaning here: use --time");
+  }
+  if (object.node().legacy) accept_obsolete(context, object, {"strict_normals"});
+}
+
 /// The one integrator in another that adds images to it. Its own image is that of the nested one.
 ReadIntegrator read_nested(ReadContext& context, const ObjectReader& object) {
   Node* nested = object.nested_one("integrator");
-  if (!nested) object.fail_here("needs a nested integrator");
+  if (!nested && object.type() != "aov") object.fail_here("needs a nested integrator");
   object.get_bool("hide_emitters", false);  // without effect in Mitsuba: the nested one has its own
+  accept_scheduling(context, object);
   object.finish();
-  return read_integrator(context, *nested);
+  if (nested) return read_integrator(context, *nested);
+  note(context.sink, object.node().type_place.position(),
+       object.label() + ": has no nested integrator: there is the image of 'path', too");
+  return {};
 }
 
 /// Adds an image of second moments in Mitsuba; the variance of the mean says the same.
@@ -118,36 +134,35 @@ struct IntegratorType {
   ReadIntegrator (*read)(ReadContext&, const ObjectReader&);
 };
 
-ReadIntegrator read_plain(ReadContext&, const ObjectReader& object) {
+ReadIntegrator read_plain(ReadContext& context, const ObjectReader& object) {
   ReadIntegrator result{read_path(object), 1, {}};
   result.integrator.hide_emitters = object.get_bool("hide_emitters", false);
+  accept_scheduling(context, object);
   object.finish();
   return result;
 }
 
-ReadIntegrator read_direct(ReadContext&, const ObjectReader& object) {
+/// For derivatives; the image is that of `path`.
+ReadIntegrator read_replayed(ReadContext& context, const ObjectReader& object) {
+  note(context.sink, object.node().type_place.position(),
+       object.label() + ": nothing is differentiated: rendered as 'path', which has the same image");
+  return read_plain(context, object);
+}
+
+ReadIntegrator read_direct(ReadContext& context, const ObjectReader& object) {
   ReadIntegrator result;
   result.integrator.max_depth = 2;
   result.splitting = direct_splitting(object);
   result.integrator.hide_emitters = object.get_bool("hide_emitters", false);
+  accept_scheduling(context, object);
   object.finish();
   return result;
 }
 
-constexpr IntegratorType kIntegratorTypes[] = {{"path", read_plain},    {"direct", read_direct},
-                                               {"volpath", read_plain}, {"volpathmis", read_plain},
-                                               {"moment", read_moment}, {"aov", read_aov}};
-
-/// Integrators of Mitsuba whose image is not that of a path tracer, and what to do instead.
-constexpr std::pair<std::string_view, std::string_view> kRefused[] = {
-    {"ptracer", "paths begin at the camera here; 'path' gives its image"},
-    {"stokes", "light has no polarisation here; 'path' gives the first component without it"},
-    {"depth", "--aov depth gives its image"},
-    {"prb", "nothing is differentiated; 'path' has the same image"},
-    {"prbvolpath", "nothing is differentiated; 'volpath' has the same image"},
-    {"prb_basic", "nothing is differentiated; 'path' has the same image"},
-    {"direct_projective", "nothing is differentiated; 'direct' has the same image"},
-    {"prb_projective", "nothing is differentiated; 'path' has the same image"}};
+constexpr IntegratorType kIntegratorTypes[] = {
+    {"path", read_plain},       {"direct", read_direct},      {"volpath", read_plain},
+    {"volpathmis", read_plain}, {"moment", read_moment},      {"aov", read_aov},
+    {"prb", read_replayed},     {"prb_basic", read_replayed}, {"prbvolpath", read_replayed}};
 
 }  // namespace
 
@@ -158,21 +173,17 @@ ReadIntegrator read_integrator(ReadContext& context, Node& node) {
     if (type.name == node.type) return type.read(context, object);
     names.push_back(type.name);
   }
-  for (const auto& [name, instead] : kRefused) {
-    if (name == node.type)
-      fail(node.type_place, "integrator type '" + node.type + "' is not supported: " + std::string(instead));
-  }
   object.refuse_type(names);
 }
 
 uint64_t read_sampler(ReadContext& context, Node& node) {
   const ObjectReader object(node);
-  const std::vector<std::string_view> kMapped = {"stratified", "multijitter", "orthogonal",
-                                                 "ldsampler",  "halton",      "sobol"};
+  const std::vector<std::string_view> kMapped = {"stratified", "multijitter", "orthogonal", "ldsampler",
+                                                 "halton",     "sobol",       "hammersley"};
   const bool mapped = std::find(kMapped.begin(), kMapped.end(), node.type) != kMapped.end();
   if (!mapped && node.type != "independent") {
-    object.refuse_type(
-        {"independent", "stratified", "multijitter", "orthogonal", "ldsampler", "halton", "sobol"});
+    object.refuse_type({"independent", "stratified", "multijitter", "orthogonal", "ldsampler", "halton",
+                        "sobol", "hammersley"});
   }
   const int64_t samples = positive(object, "sample_count", 4, kMaxCount);
   if (object.has("seed")) {
@@ -182,7 +193,8 @@ uint64_t read_sampler(ReadContext& context, Node& node) {
   }
   if (node.type == "stratified" || node.type == "multijitter" || node.type == "orthogonal")
     object.get_bool("jitter", true);
-  if (node.legacy) accept_obsolete(context, object, {"dimension"});
+  if (node.type == "orthogonal") count(object, "strength", 2);
+  if (node.legacy) accept_obsolete(context, object, {"dimension", "scramble"});
   if (mapped) {
     note(context.sink, node.type_place.position(),
          "sampler type '" + node.type + "' is replaced by the program's own (--sampler)");

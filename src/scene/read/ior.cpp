@@ -160,4 +160,23 @@ std::optional<OpticalConstants> read_conductor_name(ReadContext& context, const 
   return constants;
 }
 
+void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf& bsdf) {
+  const bool explicit_index = object.has("eta") || object.has("k");
+  bsdf.eta = read_spectrum(context, object, "eta", SpectrumUse::kQuantity, bsdf.eta);
+  bsdf.k = read_spectrum(context, object, "k", SpectrumUse::kQuantity, bsdf.k);
+  check_metal_index(bsdf.eta, object.label() + ": eta", object.value_place("eta"));
+  check_metal_index(bsdf.k, object.label() + ": k", object.value_place("k"));
+  if (object.has("material") && explicit_index)
+    object.fail_at("material", "'material' together with 'eta' or 'k'");
+  auto constants = read_conductor_name(context, object);
+  if (object.has("metal")) {
+    if (explicit_index || object.has("material"))
+      object.fail_at("metal", "'metal' together with 'material', 'eta' or 'k'");
+    constants = read_material(context, object, "metal", MaterialFamily::kMetal);
+  }
+  if (!constants) return;
+  bsdf.eta = constants->n;
+  bsdf.k = *constants->k;
+}
+
 }  // namespace kiloband

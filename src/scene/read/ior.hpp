@@ -30,4 +30,8 @@ std::optional<OpticalConstants> read_conductor_name(ReadContext& context, const 
 /// throws InputError at `place`  n or k of a conductor is above kMaxMetalIndex
 void check_metal_index(const Spectrum& spectrum, const std::string& label, const Place& place);
 
+/// The index of a conductor: eta and k, Mitsuba's name, a built-in metal or a file, or the perfect mirror.
+/// throws InputError  more than one of these; values out of range
+void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf& bsdf);
+
 }  // namespace kiloband

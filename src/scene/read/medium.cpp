@@ -114,6 +114,22 @@ void read_gas(ReadContext& context, const ObjectReader& object, Medium& medium) 
                         : GasSpectrum::kSampled;
 }
 
+/// Mitsuba's medium where its albedo is 0: it absorbs alone.
+void read_homogeneous(ReadContext& context, const ObjectReader& object, Medium& medium) {
+  const Spectrum albedo =
+      read_spectrum(context, object, "albedo", SpectrumUse::kReflectance, Spectrum::constant(0.75));
+  if (albedo.max_over(1, 1e9) > 0)
+    object.fail_at("albedo", "albedo: nothing scatters in a volume here: must be 0");
+  medium.absorption =
+      read_spectrum(context, object, "sigma_t", SpectrumUse::kAbsorption, Spectrum::constant(1));
+  medium.scale = object.get_float("scale", 1);
+  object.check(medium.scale >= 0, "scale", medium.scale, "must be >= 0");
+  check_at_most(object, "scale", medium.scale, kMaxAbsorptionScale);
+  object.get_bool("has_spectral_extinction", true);  // how Mitsuba samples
+  object.get_bool("sample_emitters", true);
+  object.nested_one("phase");  // nothing is scattered
+}
+
 /// The product of all factors of the absorption.
 void check_absorption(const ObjectReader& object, const Medium& medium) {
   double node_scale = 1;
@@ -145,8 +161,10 @@ std::shared_ptr<const Medium> read_medium(ReadContext& context, Node& node) {
       medium->field = read_jet(object);
     else
       medium->field = read_grid(context, object);
+  } else if (node.type == "homogeneous") {
+    read_homogeneous(context, object, *medium);
   } else {
-    object.refuse_type({"absorbing", "plume"});
+    object.refuse_type({"absorbing", "plume", "homogeneous"});
   }
   check_absorption(object, *medium);
   object.finish();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/read/refused_types.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {
@@ -189,8 +190,9 @@ void ObjectReader::fail_here(const std::string& message) const {
 }
 
 void ObjectReader::refuse_type(const std::vector<std::string_view>& known) const {
-  fail(object_.type_place,
-       object_.tag + " type '" + object_.type + "' is not supported" + suggestion(object_.type, known));
+  const std::string_view why = why_refused(object_.tag, object_.type);
+  fail(object_.type_place, object_.tag + " type '" + object_.type + "' is not supported" +
+                               (why.empty() ? suggestion(object_.type, known) : ": " + std::string(why)));
 }
 
 void ObjectReader::finish() const {

@@ -67,13 +67,16 @@ std::shared_ptr<const BitmapTexture> read_number_map(ReadContext& context, const
   if (!node || node->resolved().kind != TagKind::kObject) return nullptr;
   node->resolved().used = true;
   const Texture texture = read_texture_object(context, node->resolved());
-  const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture);
-  if (!bitmap) object.fail_at(name, std::string(name) + ": only a number or a bitmap is supported here");
-  for (const float value : (*bitmap)->image->pixels)
+  const auto* found = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture);
+  const auto bitmap = found ? *found : number_board(texture);
+  if (!bitmap)
+    object.fail_at(
+        name, std::string(name) + ": only a number, a bitmap or a checkerboard of numbers is supported here");
+  for (const float value : bitmap->image->pixels)
     if (!(value >= range.min && value <= range.max))
-      object.fail_at(name, std::string(name) + ": a value of '" + (*bitmap)->file.filename().string() +
-                               "' is " + format_number(value) + ": " + range.rule);
-  return *bitmap;
+      object.fail_at(name, std::string(name) + ": a value of '" + bitmap->file.filename().string() + "' is " +
+                               format_number(value) + ": " + range.rule);
+  return bitmap;
 }
 
 PrincipledBsdf read_principled(ReadContext& context, const ObjectReader& object, bool thin) {

@@ -74,8 +74,10 @@ class SceneReader {
     } else if (tag == "texture" || tag == "spectrum") {
       read_texture_node(context_, node, ObjectReader(node).label(), SpectrumUse::kAny);
     } else if (tag == "sensor") {
-      if (sensors_ > 1) fail(child.place, scene.label() + ": a second sensor: only one is supported");
-      scene_.sensor = read_sensor(context_, node);
+      Sensor sensor = read_sensor(context_, node);
+      if (sensors_ == 1) scene_.sensor = std::move(sensor);
+      if (sensors_ == 2)
+        warn(sink_, child.place.position(), scene.label() + ": a second sensor: the first is rendered");
     } else if (tag == "integrator") {
       if (integrators_ > 1) fail(child.place, scene.label() + ": a second integrator");
       integrator_ = read_integrator(context_, node);
@@ -87,12 +89,15 @@ class SceneReader {
   }
 
   void add_shape(Node& node) {
-    if (node.type == "shapegroup")
+    if (node.type == "shapegroup") {
       read_shape_group(context_, node);
-    else if (node.type == "instance")
+    } else if (node.type == "instance") {
       scene_.instances.push_back(read_instance(context_, node));
-    else
+    } else if (node.type == "merge") {
+      for (Node* member : merged_shapes(node)) add_shape(*member);
+    } else {
       scene_.shapes.push_back(read_shape(context_, node));
+    }
   }
 
   /// Named "atmosphere" it fills the space outside all shapes; else it is there to be referred to.

@@ -9,7 +9,8 @@
 namespace kiloband {
 namespace {
 
-constexpr double kMinFocus = 1e-6;  // m
+constexpr double kMinFocus = 1e-6;     // m
+constexpr double kNearOfMeter = 1e-9;  // m
 constexpr double kMaxOffset = 1000;
 
 enum class FovAxis { kX, kY, kDiagonal, kSmaller, kLarger };
@@ -84,6 +85,9 @@ void read_common(ReadContext& context, const ObjectReader& object, Sensor& senso
   const double open = object.get_float("shutter_open", 0);  // nothing moves: the times have no effect
   const double close = object.get_float("shutter_close", 0);
   object.check(close >= open, "shutter_close", close, "must not be before shutter_open");
+  if (object.has("srf"))
+    object.fail_at("srf",
+                   "srf: channels have no response here: name it in a specfilm, or give it to --response");
   Node* film = object.nested_one("film");
   sensor.film = film ? read_film(context, *film) : default_film(context);
   if (Node* sampler = object.nested_one("sampler")) sensor.sample_count = read_sampler(context, *sampler);
@@ -104,13 +108,39 @@ void check_rigid(const ObjectReader& object, const Transform& to_world) {
     object.fail_at("to_world", "to_world shears: a camera's transform must only rotate and move");
 }
 
+/// One ray: a camera whose film of one pixel has no extent.
+Sensor read_radiance_meter(ReadContext& context, const ObjectReader& object) {
+  Sensor sensor;
+  read_common(context, object, sensor);
+  sensor.near_clip = kNearOfMeter;
+  if (object.has("origin") || object.has("direction")) {
+    if (object.has("to_world"))
+      object.fail_at("to_world", "'to_world' together with 'origin' or 'direction'");
+    const glm::dvec3 origin = object.get_vector("origin", {0, 0, 0});
+    const glm::dvec3 z = unit_vector(object.get_vector("direction", {0, 0, 1}));
+    if (z == glm::dvec3(0)) object.fail_at("direction", "direction: its length must be > 0");
+    const glm::dvec3 helper = std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 x = glm::normalize(glm::cross(helper, z));
+    sensor.to_world = {glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0),
+                       glm::dvec4(origin, 1)};
+  }
+  check_rigid(object, sensor.to_world);
+  if (sensor.film.width != 1 || sensor.film.height != 1)
+    object.fail_here("its film must be of one pixel, found " + std::to_string(sensor.film.width) + " x " +
+                     std::to_string(sensor.film.height));
+  sensor.model = PerspectiveSensor{0};
+  object.finish();
+  return sensor;
+}
+
 }  // namespace
 
 Sensor read_sensor(ReadContext& context, Node& node) {
   const ObjectReader object(node);
+  if (node.type == "radiancemeter") return read_radiance_meter(context, object);
   const bool thin_lens = node.type == "thinlens", orthographic = node.type == "orthographic";
   if (!thin_lens && !orthographic && node.type != "perspective") {
-    object.refuse_type({"perspective", "thinlens", "orthographic"});
+    object.refuse_type({"perspective", "thinlens", "orthographic", "radiancemeter"});
   }
   Sensor sensor;
   read_common(context, object, sensor);

@@ -189,6 +189,7 @@ Shape read_shape(ReadContext& context, Node& node) {
   shape.position = node.place.position();
   shape.to_world = object.get_transform("to_world");
   shape.flip_normals = object.get_bool("flip_normals", false);
+  object.get_float("silhouette_sampling_weight", 1);  // of Mitsuba's derivatives
   shape.geometry = type.read(context, object, shape);
   if (Node* emitter = object.nested_one("emitter")) {
     shape.emitter_position = emitter->place.position();

@@ -57,6 +57,11 @@ Spectrum read_uniform(ReadContext&, const ObjectReader& object, SpectrumUse) {
   return Spectrum::constant(object.get_float("value", 1));
 }
 
+/// A number that Mitsuba does not turn into a colour.
+Spectrum read_raw_constant(ReadContext&, const ObjectReader& object, SpectrumUse) {
+  return Spectrum::constant(object.require_float("value"));
+}
+
 double temperature(const ObjectReader& object) {
   const double kelvin = object.require_float("temperature");
   object.check(kelvin >= 0, "temperature", kelvin, "must be >= 0 K");
@@ -135,11 +140,15 @@ struct SpectrumType {
   Spectrum (*read)(ReadContext&, const ObjectReader&, SpectrumUse);  // null: d65, which may give a texture
 };
 
-constexpr SpectrumType kSpectrumTypes[] = {
-    {"regular", false, read_regular}, {"irregular", false, read_irregular},
-    {"uniform", false, read_uniform}, {"blackbody", true, read_blackbody},
-    {"planck", true, read_planck},    {"d65", true, nullptr},
-    {"srgb", false, read_srgb},       {"file", false, read_file}};
+constexpr SpectrumType kSpectrumTypes[] = {{"regular", false, read_regular},
+                                           {"irregular", false, read_irregular},
+                                           {"uniform", false, read_uniform},
+                                           {"blackbody", true, read_blackbody},
+                                           {"planck", true, read_planck},
+                                           {"d65", true, nullptr},
+                                           {"srgb", false, read_srgb},
+                                           {"file", false, read_file},
+                                           {"rawconstant", false, read_raw_constant}};
 
 }  // namespace
 

@@ -3,7 +3,8 @@
 // Mitsuba's parameters of a sunsky, our clear sky (docs/sky_model.md) as an environment and its sun as a
 // directional light with an angular radius.
 //
-// Local up is +Z, +X is south and +Y west, as in Mitsuba 3. Below the horizon there is nothing.
+// Local up is +Z, +X is south and +Y west, as in Mitsuba 3; in old files, which have `sun` and `sky`, too, up is +Y.
+// Below the horizon there is nothing.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -56,7 +57,12 @@ PlaceAndTime read_place_and_time(const ObjectReader& object) {
   return at;
 }
 
-/// Unit vector to the sun, local.
+/// In files of Mitsuba 0.x up is +Y, and sun_direction stands in the world. Local there to local here.
+Transform up_to_y() {
+  return glm::rotate(glm::dmat4(1), -90 * kDegree, glm::dvec3(1, 0, 0));
+}
+
+/// Unit vector to the sun, local. Of old files +X is east and +Z south.
 glm::dvec3 read_direction(const ObjectReader& object) {
   if (object.has("sun_direction")) {
     for (const char* name : kTimeParameters)
@@ -64,10 +70,16 @@ glm::dvec3 read_direction(const ObjectReader& object) {
     const glm::dvec3 direction = object.get_vector("sun_direction", {0, 0, 1});
     const double length = glm::length(direction);
     if (!(length > 0)) object.fail_at("sun_direction", "sun_direction: its length must be > 0");
-    return direction / length;
+    if (!object.node().legacy) return direction / length;
+    const glm::dmat3 frame(rotation_and_position(object) * up_to_y());
+    return glm::normalize(glm::inverse(frame) * direction);
   }
   const SunPosition sun = sun_position(read_place_and_time(object));
   const double elevation = sun.elevation_deg * kDegree, azimuth = sun.azimuth_deg * kDegree;
+  if (object.node().legacy)
+    return glm::inverse(glm::dmat3(up_to_y())) * glm::dvec3(std::sin(azimuth) * std::cos(elevation),
+                                                            std::sin(elevation),
+                                                            -std::cos(azimuth) * std::cos(elevation));
   return {-std::cos(azimuth) * std::cos(elevation), -std::sin(azimuth) * std::cos(elevation),
           std::sin(elevation)};
 }
@@ -109,14 +121,26 @@ struct Scales {
   double sky, sun;
 };
 
+/// Of `sun` and `sky` of old files there is one, `scale`.
 Scales read_scales(const ObjectReader& object) {
   const auto read = [&](const char* name) {
     return read_in(object, name, 1, 0, 1e6, "must be from 0 to 1e+06");
   };
+  if (object.type() == "sky") return {read("scale"), 0};
+  if (object.type() == "sun") return {0, read("scale")};
   const Scales scales{read("sky_scale"), read("sun_scale")};
   if (scales.sky == 0 && scales.sun == 0)
     object.fail_here("sky_scale and sun_scale are both 0: there is no light");
   return scales;
+}
+
+/// Full angle, degrees.
+double read_aperture(ReadContext& context, const ObjectReader& object) {
+  constexpr double kSun = 0.5358;
+  if (!object.node().legacy)
+    return read_in(object, "sun_aperture", kSun, 0.01, 90, "must be from 0.01 to 90 degrees");
+  accept_obsolete(context, object, {"resolution", "stretch", "extend"});
+  return kSun * read_in(object, "sun_radius_scale", 1, 0.02, 150, "must be from 0.02 to 150");
 }
 
 void note_differences(ReadContext& context, const ObjectReader& object) {
@@ -133,15 +157,15 @@ std::vector<Emitter> read_sunsky(ReadContext& context, const ObjectReader& objec
   const double turbidity = read_in(object, "turbidity", 3, 1, 10, "must be from 1 to 10");
   const glm::dvec3 sun = read_direction(object);
   if (!(sun.z > 0)) object.fail_here("the sun is not above the horizon");
-  const double aperture =
-      read_in(object, "sun_aperture", 0.5358, 0.01, 90, "must be from 0.01 to 90 degrees");
+  const double aperture = read_aperture(context, object);
   const Scales scales = read_scales(object);
   SkyParameters parameters;
   parameters.sun_elevation_deg = std::asin(std::min(sun.z, 1.0)) / kDegree;
   parameters.sun_azimuth_deg = std::atan2(sun.x, sun.y) / kDegree;  // of the map that is turned to +Z
   parameters.aerosol_500nm = aerosol_of(turbidity);
   parameters.ground_albedo = read_albedo(context, object);
-  const Transform to_world = rotation_and_position(object);
+  const Transform to_world =
+      rotation_and_position(object) * (object.node().legacy ? up_to_y() : Transform(1.0));
   note_differences(context, object);
 
   const ClearSky sky(parameters);

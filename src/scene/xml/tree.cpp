@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 
+#include "scene/xml/old_elements.hpp"
 #include "scene/xml/substitute.hpp"
 #include "scene/xml/values.hpp"
 
@@ -102,6 +103,8 @@ class Expander {
     if (outer.depth > kMaxNesting) {
       fail(source.place, "nested more than " + std::to_string(kMaxNesting) + " levels deep");
     }
+    if (outer.legacy)
+      if (const auto modern = modern_form(substituted(source, true))) return object(*modern, outer);
     FileState state = outer;
     if (source.tag == "scene") state.legacy = scene_version(source);
     const XmlElement element = substituted(source, state.legacy);

@@ -32,7 +32,7 @@ std::vector<BrokenScene> table() {
       {"lens without aperture", scene(R"xml(<sensor type="thinlens"/>)xml"),
        "scene.xml:2:2: error: thinlens sensor: parameter 'aperture_radius' is missing"},
       {"unknown film", scene(R"xml(<sensor type="perspective"><film type="ldrfilm"/></sensor>)xml"),
-       "scene.xml:2:40: error: film type 'ldrfilm' is not supported; did you mean 'hdrfilm'?"},
+       "scene.xml:2:40: error: film type 'ldrfilm' is not supported: it is read in files of versions below 2; use hdrfilm, --preview writes PNG"},
       {"film of width 0",
        scene(
            R"xml(<sensor type="perspective"><film type="hdrfilm"><integer name="width" value="0"/></film></sensor>)xml"),
@@ -100,7 +100,7 @@ std::vector<BrokenScene> table() {
            R"xml(<integrator type="direct"><integer name="emitter_samples" value="0"/><integer name="bsdf_samples" value="0"/></integrator>)xml"),
        "scene.xml:2:66: error: direct integrator: emitter_samples and bsdf_samples are both 0"},
       {"unknown integrator", complete_scene(R"xml(<integrator type="bdpt"/>)xml"),
-       "scene.xml:2:19: error: integrator type 'bdpt' is not supported"},
+       "scene.xml:2:19: error: integrator type 'bdpt' is not supported: 'path' gives the same image"},
   };
 }
 

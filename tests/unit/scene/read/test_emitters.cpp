@@ -112,9 +112,10 @@ TEST(SceneEmitter, WhatIsNotReadSaysWhatToUse) {
   const auto message = [](const std::string& type) {
     return error_of(scene("<emitter type='" + type + "'/>" + kSensor + kSphere));
   };
-  EXPECT_EQ(message("sun"),
-            "scene.xml:2:16: error: emitter type 'sun' is not supported: of old files; use sunsky with "
-            "sky_scale 0, whose up is +Z");
+  EXPECT_EQ(
+      message("sun"),
+      "scene.xml:2:16: error: emitter type 'sun' is not supported: it is read in files of versions below 2; "
+      "use sunsky with sky_scale 0");
   for (const char* type : {"sky", "timed_sunsky"})
     EXPECT_NE(message(type).find("use sunsky"), std::string::npos) << type;
   EXPECT_NE(message("directionalarea").find("no path from a camera finds"), std::string::npos);

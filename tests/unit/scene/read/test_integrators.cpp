@@ -81,8 +81,7 @@ TEST(AovIntegrator, Errors) {
       {{"no type", aov("depth"),
         "scene.xml:2:51: error: aov integrator: aovs: 'depth' is not NAME:TYPE with a known type"},
        {"misspelt type", aov("a:dept"),
-        "scene.xml:2:51: error: aov integrator: aovs: 'a:dept' is not NAME:TYPE with a known type; did you mean 'depth'?"},
-       {"alone", aov("a:depth", ""), "scene.xml:2:2: error: aov integrator: needs a nested integrator"}});
+        "scene.xml:2:51: error: aov integrator: aovs: 'a:dept' is not NAME:TYPE with a known type; did you mean 'depth'?"}});
 }
 
 TEST(Integrators, WhatIsRefusedSaysWhatWorks) {
