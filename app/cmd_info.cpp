@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <iterator>
 #include <memory>
 
 #include "app/check_scenes.hpp"
@@ -24,12 +25,14 @@ double mebibytes(double bytes) {
 const char* name_of(uint32_t emitter_type) {
   static constexpr const char* kNames[] = {"area",        "constant", "envmap", "point",    "spot",
                                            "directional", "thermal",  "sun",    "projector"};
+  static_assert(std::size(kNames) == KB_EMITTER_PROJECTOR + 1);
   return kNames[emitter_type];
 }
 
 const char* name_of_material(uint32_t type) {
   static constexpr const char* kNames[] = {"diffuse",         "conductor", "roughconductor", "dielectric",
-                                           "roughdielectric", "plastic",   "roughplastic"};
+                                           "roughdielectric", "plastic",   "roughplastic",   "principled"};
+  static_assert(std::size(kNames) == KB_MATERIAL_COUNT);
   return kNames[type];
 }
 

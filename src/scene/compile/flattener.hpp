@@ -214,7 +214,7 @@ class Flattener {
   std::map<std::pair<const void*, const void*>, uint32_t> attributes_;  // by texture and mesh
   std::map<std::tuple<uint32_t, float, float>, Coating> coatings_;      // by distribution, roughness, index
   std::map<std::pair<uint32_t, uint32_t>, std::vector<float>> conductor_bounds_;  // by rows of n and k
-  std::map<const void*, uint32_t> checkerboards_;
+  std::map<std::pair<const void*, bool>, uint32_t> checkerboards_;                // and whether it emits
   std::map<std::pair<const void*, uint32_t>, uint32_t> media_;  // by medium and the boundary's material
   std::vector<Heat> heats_;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> emission_rows_, complements_,

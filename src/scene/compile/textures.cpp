@@ -160,8 +160,8 @@ float Flattener::texel_bound(const KbFloat4& texel) const {
 
 uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture,
                                  const SpectrumSource& use) {
-  const auto [place, is_new] =
-      checkerboards_.try_emplace(texture.get(), static_cast<uint32_t>(out_.checkerboards.size()));
+  const auto [place, is_new] = checkerboards_.try_emplace({texture.get(), use.emission},
+                                                          static_cast<uint32_t>(out_.checkerboards.size()));
   if (!is_new) return place->second;
   out_.features.checkerboard = true;
   KbCheckerboard record{};
