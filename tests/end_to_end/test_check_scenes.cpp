@@ -31,6 +31,17 @@ TEST(CheckScenes, SaysWhatStopsTheOthers) {
       "    1 stopped by: bsdf type 'difuse' is not supported\n");
 }
 
+/// Of every material there is a name.
+TEST(SceneInfo, NamesEveryMaterial) {
+  const TemporaryFolder folder;
+  folder.write(
+      "scene.xml",
+      complete_scene(R"(<shape type="sphere"><bsdf type="principled" id="p"/></shape><shape type="cube"/>)"));
+  const Outcome outcome = run_program(folder, {"info", "scene.xml"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("  principled       p\n"), std::string::npos) << outcome.out;
+}
+
 /// What only shows when a scene is made ready for rendering stops it too, and the options are those of the render.
 TEST(CheckScenes, ScenesAreCompiledWithTheOptionsGiven) {
   const TemporaryFolder folder;
