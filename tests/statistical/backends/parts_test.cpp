@@ -16,7 +16,7 @@ using Parts = std::vector<uint32_t>;
 
 constexpr uint32_t kReplicates = 2, kSamples = 67;  // over all chunks: 64 on the CPU, 16 with PoCL
 /// Several sizes, on and off the bounds of chunks.
-const std::vector<Parts> kCuts{{67}, {1, 1, 2, 4, 24, 35}, {16, 48, 3}};
+const std::vector<Parts> kCuts{{67}, {1, 1, 2, 4, 24, 35}, {16, 48, 3}, {64, 1, 1, 1}, {65, 2}};
 
 /// All means and their variances of a film that holds sums, after parts of these sizes.
 std::vector<float> in_parts(Backend& backend, const PixelRect& rect, const Parts& parts) {
