@@ -9,6 +9,8 @@ find_package(fmt REQUIRED)
 find_package(Boost REQUIRED)  # boost::math: distributions
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+find_package(nlohmann_json REQUIRED)
+find_package(libjpeg-turbo REQUIRED)  # the viewer's frames
 if(KILOBAND_FUZZ)  # files are read without backends and without the program
   return()
 endif()
@@ -18,7 +20,7 @@ find_package(OpenCL REQUIRED)
 find_package(OpenCLHeaders REQUIRED)
 find_package(OpenCLHeadersCpp REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(nlohmann_json REQUIRED)
+pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 if(KILOBAND_TESTS)
   find_package(GTest REQUIRED)
 endif()
