@@ -74,6 +74,8 @@ class CpuBackend final : public Backend {
     return paths;
   }
 
+  void camera_moved() override {}  // the scene's is looked at for every block
+
   BackendInfo info() const override { return {"cpu", processor_name(), to_string(isa_)}; }
   BackendStatistics statistics() const override;
   std::vector<double> film_scale() const override;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "src_gpu/scene/scene_arguments.hpp"
+
 namespace kiloband::opencl {
 namespace {
 
@@ -70,6 +72,13 @@ uint64_t DeviceState::table_bytes() const {
 uint64_t DeviceState::slot_bytes() const {
   const uint64_t more = chunk_entries() - KB_CHUNK_ENTRIES;
   return opencl::slot_bytes(host_.spectra.layout, shape_) + more * sizeof(KbPathVertex);
+}
+
+void DeviceState::camera_moved() {
+  const std::vector constants{scene_constants(host_.scene)};
+  scene_.constants.upload(std::span(constants));
+  const std::vector layout{host_.spectra.layout};
+  spectra_.layout.upload(std::span(layout));
 }
 
 void DeviceState::release_pool() {

@@ -47,6 +47,8 @@ class DeviceState {
   /// throws DeviceOutOfMemory
   void make_pool(const PoolSize& size, uint64_t film_pixels, bool open);
   void release_pool();
+  /// The host's scene has another camera.
+  void camera_moved();
   bool has_pool() const { return pool_.has_value(); }
 
   /// Bytes that a film pixel, a dense table of spectra, a slot (beside the pool's own) take.

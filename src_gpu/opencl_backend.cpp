@@ -51,6 +51,11 @@ class Renderer final : public Backend {
     return repeated([&] { return groups_->trace(pixels_of(rect), range); });
   }
 
+  void camera_moved() override {
+    host_.spectra.layout.film_width = host_.scene.camera.film_width;
+    repeated([&] { state_->camera_moved(); });
+  }
+
   BackendInfo info() const override {
     const DeviceInfo& device = context_.device();
     return {"opencl", device.name, "opencl " + device.driver_version, to_string(method_)};

@@ -88,6 +88,10 @@ class Backend {
   /// block of 32 x 32 pixels; range.count is 1.
   virtual std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) = 0;
 
+  /// The scene's camera was moved (move_camera() in scene/compile), between two renders: what follows has the bits of a backend that is
+  /// made for the scene as it is now.
+  virtual void camera_moved() = 0;
+
   virtual BackendInfo info() const = 0;
   virtual BackendStatistics statistics() const = 0;
   /// Factors that turn film values of all channels, derived ones included, into W m^-2 sr^-1.

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "film/signed_filter.hpp"
+#include "scene/compile/camera_media.hpp"
 #include "scene/compile/flattener.hpp"
 
 namespace kiloband {
@@ -36,17 +37,20 @@ void Flattener::set_filter() {
   out_.features.signed_filter = filter.negative;
 }
 
-void Flattener::set_camera() {
-  const Sensor& sensor = in_.sensor;
-  KbCamera& camera = out_.camera;
+namespace {
+
+/// All of the camera but its filter, and the media in which its rays begin.
+void place_camera(FlatScene& scene, const Sensor& sensor) {
+  KbCamera& camera = scene.camera;
+  Sensor placed = sensor;
+  placed.to_world = placed_at(scene.origin, sensor.to_world);
   camera.film_width = sensor.film.width;
   camera.film_height = sensor.film.height;
-  set_filter();
   camera.principal_x = static_cast<float>(sensor.principal_point_x);
   camera.principal_y = static_cast<float>(sensor.principal_point_y);
   camera.near_clip = static_cast<float>(sensor.near_clip);
   camera.far_clip = static_cast<float>(sensor.far_clip);
-  store_transform(placed(sensor.to_world), camera.to_world);
+  store_transform(placed.to_world, camera.to_world);
   if (const auto* perspective = std::get_if<PerspectiveSensor>(&sensor.model)) {
     camera.type = KB_CAMERA_PERSPECTIVE;
     camera.tan_half_fov_x = static_cast<float>(std::tan(0.5 * perspective->fov_x));
@@ -58,6 +62,19 @@ void Flattener::set_camera() {
   } else {
     camera.type = KB_CAMERA_ORTHOGRAPHIC;
   }
+  if (scene.features.gas) scene.camera_media = media_at_camera(scene, placed);
+}
+
+}  // namespace
+
+void Flattener::set_camera() {
+  set_filter();
+  place_camera(out_, in_.sensor);
+}
+
+void move_camera(FlatScene& scene, const Sensor& sensor) {
+  check_camera_place(sensor);
+  place_camera(scene, sensor);
 }
 
 }  // namespace kiloband

@@ -133,5 +133,13 @@ struct CompileOptions {
 /// A complete scene: whoever renders it reads it and changes nothing, so that backends share it.
 /// throws InputError for what cannot be rendered in these channels (no data, more than 65535 spectra ...)
 std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, const CompileOptions& options);
+/// The same for who moves the camera between renders: move_camera(), and Backend::camera_moved() of all who render it.
+std::shared_ptr<FlatScene> compile_scene_to_move(const SceneDescription& scene,
+                                                 const CompileOptions& options);
+
+/// The scene seen by another sensor, of the same kind and filter: what compile_scene() would have made of it.
+/// The film's size may be another, too; scene.film stays as it is.
+/// throws InputError  a place or size that single precision cannot take
+void move_camera(FlatScene& scene, const Sensor& sensor);
 
 }  // namespace kiloband

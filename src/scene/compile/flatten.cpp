@@ -52,9 +52,14 @@ void Flattener::add_spares() {
     out_.principled_maps.resize(out_.materials.size() * KB_PRINCIPLED_MAPPED, KB_NONE);
 }
 
-std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, const CompileOptions& options) {
+std::shared_ptr<FlatScene> compile_scene_to_move(const SceneDescription& scene,
+                                                 const CompileOptions& options) {
   if (options.channels.empty()) throw InputError("no channel to render");
-  return std::make_shared<const FlatScene>(Flattener(scene, options).run());
+  return std::make_shared<FlatScene>(Flattener(scene, options).run());
+}
+
+std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, const CompileOptions& options) {
+  return compile_scene_to_move(scene, options);
 }
 
 std::vector<std::string> SceneFeatures::names() const {

@@ -264,6 +264,11 @@ std::string describe(const Bsdf& bsdf);
 uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePosition& position,
                            const std::string& name);
 
+/// Moved so that the origin, in the scene file's coordinates, is at 0.
+Transform placed_at(const std::array<double, 3>& origin, const Transform& to_world);
+/// throws InputError  a place or size that single precision cannot take
+void check_camera_place(const Sensor& sensor);
+
 /// Row-major 3x4 of an affine transform.
 void store_transform(const Transform& transform, float (&out)[12]);
 /// Row-major 2x3.

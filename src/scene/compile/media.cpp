@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/compile/camera_media.hpp"
 #include "scene/compile/flattener.hpp"
 #include "spectral/planck.hpp"
 
@@ -156,9 +155,6 @@ void Flattener::add_media() {
   out_.features.gas = true;
   if (in_.atmosphere) out_.atmosphere = medium(in_.atmosphere, KB_NONE);
   for (uint32_t i = 0; i < out_.shapes.size(); ++i) out_.interiors.push_back(interior(i));
-  Sensor sensor = in_.sensor;
-  sensor.to_world = placed(sensor.to_world);
-  out_.camera_media = media_at_camera(out_, sensor);
 }
 
 }  // namespace kiloband

@@ -78,6 +78,11 @@ void check_field(const std::shared_ptr<const Medium>& medium) {
 
 }  // namespace
 
+void check_camera_place(const Sensor& sensor) {
+  const Part camera{sensor.position, "sensor"};
+  check_frame(sensor.to_world, camera);
+}
+
 void Flattener::check_places() {
   Extent all;
   const auto add = [&](const glm::dvec3& p, const Part& part) {
@@ -105,9 +110,8 @@ void Flattener::check_places() {
   check_field(in_.atmosphere);
   for (const Emitter& emitter : in_.emitters)
     if (const auto place = place_of(emitter)) add(*place, {emitter.position, named("emitter", emitter.id)});
-  const Part camera{in_.sensor.position, "sensor"};
-  check_frame(in_.sensor.to_world, camera);
-  add(glm::dvec3(in_.sensor.to_world[3]), camera);
+  check_camera_place(in_.sensor);
+  all.add(glm::dvec3(in_.sensor.to_world[3]));
   const double side = all.largest_side();
   if (side <= kFarApart * (1 + 1e-6)) return;
   warn(options_.sink, {in_.file.string(), 0, 0},
@@ -130,7 +134,11 @@ void Flattener::set_origin() {
 
 /// The transform to the coordinates of FlatScene.
 Transform Flattener::placed(const Transform& to_world) const {
-  const auto& o = out_.origin;
+  return placed_at(out_.origin, to_world);
+}
+
+Transform placed_at(const std::array<double, 3>& origin, const Transform& to_world) {
+  const auto& o = origin;
   if (o[0] == 0 && o[1] == 0 && o[2] == 0) return to_world;
   return glm::translate(Transform{1.0}, -glm::dvec3(o[0], o[1], o[2])) * to_world;
 }
