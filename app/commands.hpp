@@ -27,5 +27,6 @@ Command add_sensor(CLI::App& program);
 Command add_trace(CLI::App& program);
 Command add_devices(CLI::App& program);
 Command add_validate(CLI::App& program);
+Command add_view(CLI::App& program);
 
 }  // namespace kiloband

@@ -31,8 +31,8 @@ int fail(int code, const std::string& message, const char* hint = "") {
 void check_command(const std::map<std::string, Command>& commands, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-' || commands.contains(argv[1])) return;
   throw InputError(fmt::format(
-      "unknown command '{}': must be render, info, convert, sensor, compare, sky, devices, trace or "
-      "validate (see kiloband --help)",
+      "unknown command '{}': must be render, info, convert, sensor, compare, sky, devices, trace, "
+      "validate or view (see kiloband --help)",
       argv[1]));
 }
 
@@ -66,6 +66,7 @@ int run(int argc, char** argv) {
   commands["sky"] = add_sky(program);
   commands["trace"] = add_trace(program);
   commands["validate"] = add_validate(program);
+  commands["view"] = add_view(program);
   check_command(commands, argc, argv);
   try {
     program.parse(argc, argv);

@@ -28,8 +28,8 @@ TEST(WrongOption, Command) {
       {
           {{}, "A subcommand is required (see kiloband --help)"},
           {{"rendr", "scene.xml"},
-           "unknown command 'rendr': must be render, info, convert, sensor, compare, sky, devices, trace or "
-           "validate (see kiloband --help)"},
+           "unknown command 'rendr': must be render, info, convert, sensor, compare, sky, devices, trace, "
+           "validate or view (see kiloband --help)"},
           {{"render"}, "SCENE is required (see kiloband render --help)"},
           {{"render", "none.xml"}, "none.xml: error: file not found"},
           {{"render", "."}, ".: error: not a regular file"},

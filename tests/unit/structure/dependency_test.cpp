@@ -43,7 +43,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
       "src/scene/description", "src/scene/compile"}},
     {"src/viewer",
      {"src/base", "src/shared", "src/spectral", "src/files", "src/cube", "src/film", "src/post",
-      "src/scene/description", "src/scene/compile", "src/render"}},
+      "src/scene/description", "src/scene/read", "src/scene/compile", "src/render"}},
     {"kernels/base", {"src/shared"}},
     {"kernels/geometry", {"src/shared", "kernels/base"}},
     {"kernels/bsdf", {"src/shared", "kernels/base"}},
