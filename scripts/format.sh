@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Formats all C++ and OpenCL files that git does not ignore as .clang-format says, with Debian 12's clang-format.
+# Formats all C++, OpenCL and JavaScript files that git does not ignore as .clang-format says, with Debian 12's clang-format.
 # Usage: scripts/format.sh [--check]   (--check changes nothing: prints the files that differ, each with its first line that
 # does, and exits with 1 if there are any)
 set -euo pipefail
@@ -26,8 +26,8 @@ fi
 
 # Where there is no repository (an unpacked archive), all files but those of the build.
 list_files() {
-  git -c safe.directory="$PWD" ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp' '*.h' '*.cl' '*.clh' 2>/dev/null ||
-    find . -path ./build -prune -o -type f -regextype posix-egrep -regex '.*\.(cpp|hpp|h|cl|clh)' -print
+  git -c safe.directory="$PWD" ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp' '*.h' '*.cl' '*.clh' '*.js' 2>/dev/null ||
+    find . -path ./build -prune -o -type f -regextype posix-egrep -regex '.*\.(cpp|hpp|h|cl|clh|js)' -print
 }
 files=()
 while IFS= read -r file; do

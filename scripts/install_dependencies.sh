@@ -4,15 +4,17 @@
 # what scripts/gallery.sh draws with besides what is built with)
 set -euo pipefail
 
+# libjs-dygraphs: draws the spectra in the page of `kiloband view`, which embeds it.
 # openimageio-tools: CMake's description of libopenimageio-dev insists on its programs, without depending on them.
 build=(g++ cmake ninja-build pkg-config git ca-certificates
   libembree-dev libtbb-dev libopenexr-dev libopenimageio-dev openimageio-tools libglm-dev libpugixml-dev zlib1g-dev libyaml-cpp-dev
   libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev libcpp-httplib-dev libturbojpeg0-dev libjs-dygraphs libboost-dev libboost-math-dev
   opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev)
 # libclang-rt-dev: libFuzzer and the sanitizers of clang; libomp-dev: OpenMP that ThreadSanitizer can follow (GCC's looks like
-# data races to it); llvm: names of functions in their reports; patch: plants faults (scripts/plant_faults.sh).
+# data races to it); llvm: names of functions in their reports; patch: plants faults (scripts/plant_faults.sh); python3-selenium,
+# chromium, chromium-driver: the page of `kiloband view` in a browser (tests/end_to_end/viewer).
 tests=(libgtest-dev libbenchmark-dev clang clang-format clang-tidy libclang-rt-dev libomp-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib
-  patch)
+  patch python3-selenium chromium chromium-driver)
 
 packages=("${build[@]}")
 case "${1:-test}" in

@@ -1,0 +1,108 @@
+// Requests to the server. Whatever goes wrong is shown (notices.js) with the server's own words, and thrown.
+import {notice} from './notices.js';
+import {set, state} from './state.js';
+
+export class ServerError extends Error {
+  constructor(message, status) {
+    super(message);
+    this.status = status;
+  }
+}
+
+async function checked(response) {
+  if (response.ok) return response;
+  let message = `${response.status} ${response.statusText}`;
+  const text = await response.text();
+  try {
+    message = JSON.parse(text).error ?? message;
+  } catch {
+    if (text && text.length < 500) message = text;
+  }
+  throw new ServerError(message, response.status);
+}
+
+/** The response to GET `path`?`parameters`. Throws ServerError; TypeError when nobody answers; AbortError. */
+export async function get(path, parameters = {}, signal = undefined) {
+  const query = new URLSearchParams(parameters).toString();
+  return checked(await fetch(query ? `${path}?${query}` : path, {signal, cache: 'no-store'}));
+}
+
+export const get_json = async (...given) => (await get(...given)).json();
+
+/** POSTs `body` (an object; a text for uploads). Shows errors; returns the answer, or null after an error. */
+export async function post(path, body) {
+  const text = typeof body === 'string';
+  try {
+    const response = await checked(
+        await fetch(path, {
+          method: 'POST',
+          headers: {'Content-Type': text ? 'text/plain' : 'application/json', 'X-Kiloband': '1'},
+          body: text ? body : JSON.stringify(body),
+        }),
+    );
+    const answer = await response.text();
+    return answer ? JSON.parse(answer) : {};
+  } catch (error) {
+    show_error(error);
+    return null;
+  }
+}
+
+export function show_error(error) {
+  if (error.name === 'AbortError') return;
+  if (error instanceof ServerError)
+    notice(error.message, 'error');
+  else if (state.connected)
+    notice(`The request failed: ${error.message}`, 'error');
+}
+
+let source = null;
+let wait_ms = 500;
+let loading_scene = false;
+let scene_wanted = false;
+
+/** Reads /api/scene; calls that come while one is under way are one more. */
+export async function load_scene() {
+  scene_wanted = true;
+  if (loading_scene) return;
+  loading_scene = true;
+  try {
+    while (scene_wanted) {
+      scene_wanted = false;
+      set({scene: await get_json('/api/scene')});
+      await new Promise((resolve) => setTimeout(resolve, 200));
+    }
+  } catch (error) {
+    show_error(error);
+  } finally {
+    loading_scene = false;
+  }
+}
+
+/** Keeps the stream of events open while the page is visible, and opens it again when the server comes back. */
+export function connect() {
+  if (source || document.hidden) return;
+  source = new EventSource('/api/events');
+  source.onopen = () => {
+    wait_ms = 500;
+    set({connected: true});
+    load_scene();
+  };
+  source.onerror = () => {
+    disconnect();
+    set({connected: false});
+    setTimeout(connect, wait_ms);
+    wait_ms = Math.min(2 * wait_ms, 4000);
+  };
+  source.addEventListener('status', (event) => set({status: JSON.parse(event.data)}));
+  source.addEventListener('scene', load_scene);
+  source.addEventListener('frame', (event) => set({announced: JSON.parse(event.data)}));
+}
+
+function disconnect() {
+  source?.close();
+  source = null;
+}
+
+document.addEventListener('visibilitychange', () => (document.hidden ? disconnect() : connect()));
+addEventListener('pagehide', disconnect);

@@ -1,0 +1,210 @@
+// The plot of spectra: curves with bands of one standard error, the marker of the channel that the image shows. Drawn
+// by dygraphs.
+import {linear_ticks, log_text, log_ticks, shared_exponent, superscript, tick_text, unit_text, wavelength} from './format.js';
+import {selections} from './pins.js';
+import {channel_centre, default_ranges, has_channel, on, set, set_view, state} from './state.js';
+
+const box = document.getElementById('plot');
+const note = document.getElementById('plot-note');
+let graph = null;
+let drawn = [];  // [{selection, curve}] in the order of the series
+let asked = false;
+
+export const in_axis_unit = (nm) => (state.plot.micrometres ? nm / 1000 : nm);
+export const curves_shown = () => drawn;
+export const the_graph = () => graph;
+const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** The smallest number that a logarithmic axis shows: bands that reach zero end there. */
+function log_floor(curves) {
+  let least = Infinity;
+  let most = 0;
+  for (const {curve} of curves) {
+    for (const value of curve.mean) {
+      if (value > 0) [least, most] = [Math.min(least, value), Math.max(most, value)];
+    }
+  }
+  return Number.isFinite(least) ? Math.max(least / 2, most * 1e-8) : 1e-12;
+}
+
+function bars(curve, index, floor) {
+  const mean = curve.mean[index];
+  if (mean === null) return [null, null, null];
+  const error = curve.standard_error?.[index] ?? 0;
+  if (!state.plot.log_y) return [mean - error, mean, mean + error];
+  return mean > 0 ? [Math.max(floor, mean - error), Math.max(floor, mean), Math.max(floor, mean + error)] :
+                    [null, null, null];
+}
+
+function table() {
+  const floor = state.plot.log_y ? log_floor(drawn) : 0;
+  return state.scene.channels.map(
+      (channel, index) =>
+          [in_axis_unit(channel_centre(index)),
+           ...drawn.map(({curve}) => bars(curve, index, floor)),
+  ]);
+}
+
+function x_ticks(low, high, pixels) {
+  const ticks = state.plot.log_x ? log_ticks(low, high) : linear_ticks(low, high, pixels / 70);
+  const step = ticks.length > 1 ? ticks[1] - ticks[0] : 1;
+  return ticks.map((v) => ({v, label: state.plot.log_x ? log_text(v) : tick_text(v, step)}));
+}
+
+let exponent = 0;  // that the labels of the vertical axis share
+function y_ticks(low, high, pixels) {
+  if (state.plot.log_y && low > 0) {
+    set_exponent(0);
+    return log_ticks(low, high).map((v) => ({v, label: log_text(v)}));
+  }
+  const ticks = linear_ticks(low, high, pixels / 40);
+  const step = ticks.length > 1 ? ticks[1] - ticks[0] : 1;
+  set_exponent(shared_exponent(Math.max(Math.abs(low), Math.abs(high))));
+  return ticks.map((v) => ({v, label: tick_text(v, step, 10 ** exponent)}));
+}
+
+function set_exponent(value) {
+  exponent = value;
+  document.getElementById('plot-y').textContent = y_title();
+}
+
+export function y_title() {
+  const name = state.scene?.quantity === 'integral' ? 'Radiance of the channel' : 'Spectral radiance';
+  const unit = unit_text(state.scene?.unit);
+  const factor = exponent ? `10${superscript(exponent)} ` : '';
+  return factor || unit ? `${name} (${factor}${unit})` : name;
+}
+export const x_title = () => `Wavelength (${state.plot.micrometres ? 'µm' : 'nm'})`;
+
+/** What the image shows, behind the curves: the channel, or three ranges of false colour. */
+function draw_marker(context, area, g) {
+  if (!state.scene) return;
+  const stripe = (low, high, colour) => {
+    const left = g.toDomXCoord(in_axis_unit(low));
+    const width = Math.max(1.5, g.toDomXCoord(in_axis_unit(high)) - left);
+    context.fillStyle = colour;
+    context.fillRect(Math.max(area.x, left), area.y, Math.min(width, area.x + area.w - left), area.h);
+  };
+  const {mode, channel, ranges} = state.view;
+  if (has_channel(mode) && state.scene.channels[channel]) {
+    const {min_nm, max_nm} = state.scene.channels[channel];
+    stripe(min_nm, max_nm, style('--marker'));
+  } else if (mode === 'false') {
+    const {r, g: green, b} = ranges ?? default_ranges();
+    stripe(...b, 'rgba(60, 110, 255, 0.2)');
+    stripe(...green, 'rgba(40, 170, 70, 0.2)');
+    stripe(...r, 'rgba(240, 60, 50, 0.2)');
+  }
+}
+
+/** The channel nearest to a place on the horizontal axis. */
+function channel_near(x) {
+  let best = 0;
+  state.scene.channels.forEach((_, index) => {
+    const distance = (i) => Math.abs(in_axis_unit(channel_centre(i)) - x);
+    if (distance(index) < distance(best)) best = index;
+  });
+  return best;
+}
+
+function click(event, x) {
+  const channel = channel_near(graph.toDataXCoord(graph.eventToDomCoords(event)[0]));
+  set_view(has_channel(state.view.mode) ? {channel} : {channel, mode: 'channel'});
+}
+
+const kDashes = [null, [7, 3], [2, 3]];
+
+function options() {
+  const series = {};
+  drawn.forEach(({selection}, i) => {
+    const strong = selection.key === state.marked;
+    series[`c${i}`] = {
+      color: selection.colour ?? style('--text'),
+      strokeWidth: strong  ? 3 :
+          selection.colour ? 1.6 :
+                             1.1,
+      strokePattern: kDashes[selection.dash % kDashes.length],
+    };
+  });
+  const few = state.scene.channels.length <= 40;
+  const size_px = 0.92 * parseFloat(getComputedStyle(document.documentElement).fontSize);
+  return {
+    labels: ['x', ...drawn.map((_, i) => `c${i}`)],
+    series,
+    drawPoints: few,
+    pointSize: 2.5,
+    logscale: state.plot.log_y,
+    gridLineColor: style('--grid'),
+    axisLineColor: style('--line'),
+    axes: {
+      x: {logscale: state.plot.log_x, ticker: (a, b, pixels) => x_ticks(a, b, pixels), axisLineColor: style('--line')},
+      y: {ticker: (a, b, pixels) => y_ticks(a, b, pixels), axisLabelWidth: 3.6 * size_px},
+    },
+    axisLabelFontSize: size_px,
+  };
+}
+
+function make(file) {
+  graph = new Dygraph(box, file, {
+    ...options(),
+    customBars: true,
+    fillAlpha: 0.22,
+    legend: 'never',
+    showLabelsOnHighlight: false,
+    highlightCircleSize: 3.5,
+    connectSeparatedPoints: false,
+    rightGap: 10,
+    xRangePad: 4,
+    yRangePad: 8,
+    underlayCallback: draw_marker,
+    clickCallback: click,
+    highlightCallback: (event, x, points, row) => set({pointed: row}),
+    unhighlightCallback: () => set({pointed: null}),
+    zoomCallback: () => set({plot_zoomed: graph.isZoomed()}),
+  });
+}
+
+function draw() {
+  asked = false;
+  if (!state.scene) return;
+  const by_key = new Map(state.curves.map((curve) => [curve.select, curve]));
+  const shown = selections().filter((selection) => by_key.has(selection.key));
+  drawn = shown.map((selection) => ({selection, curve: by_key.get(selection.key)}));
+  const empty = drawn.length === 0;
+  note.hidden = !empty;
+  box.classList.toggle('empty', empty);
+  // An empty plot keeps its axes: one series without values.
+  if (empty)
+    drawn = [{selection: {key: '', colour: '#0000', dash: 0}, curve: {mean: state.scene.channels.map(() => null)}}];
+  const file = table();
+  if (graph)
+    graph.updateOptions({...options(), file});
+  else
+    make(file);
+  if (empty) drawn = [];
+  document.getElementById('plot-x').textContent = x_title();
+  set({drawn: true});
+}
+
+export function redraw_plot() {
+  if (asked) return;
+  asked = true;
+  requestAnimationFrame(draw);
+}
+
+export function reset_zoom() {
+  graph?.resetZoom();
+  set({plot_zoomed: false});
+}
+
+new ResizeObserver(() => graph?.resize()).observe(box);
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw_plot);
+on('curves pins hover scene view plot marked', redraw_plot);
+on('plot', reset_zoom);
+
+/** What the marker stands at, or what the mouse points at in the plot. */
+export function readout_channel() {
+  if (state.pointed !== null && state.pointed !== undefined) return state.pointed;
+  return has_channel(state.view.mode) ? state.view.channel : null;
+}
+export const channel_text = (index) => wavelength(channel_centre(index), state.plot.micrometres);

@@ -1,0 +1,92 @@
+// What the page knows, in one place. Modules change it by set() and are told by on(): no module asks another for its
+// state.
+const listeners = new Map();
+
+export const state = {
+  scene: null,   // GET /api/scene
+  status: null,  // last event `status`
+  frame: null,   // header of the frame that is shown
+  connected: false,
+  curves: [],       // [{key, select, pixels, mean, standard_error}] as last received
+  pins: [],         // [{key, select: [x, y] | [x0, y0, x1, y1], letter, colour}]
+  hover: null,      // [x, y] of the pixel under the mouse or the keyboard's cursor
+  marked: null,     // key of the pin that the legend points at
+  tool: 'inspect',  // or 'camera'
+  view: {
+    mode: 'color',
+    channel: 0,
+    map: 'viridis',
+    scale: 'linear',
+    low: '',
+    high: '',
+    exposure: 0,
+    tone: 'srgb',
+    ranges: null,  // {r: [lo, hi], g, b} in nm
+    grid: true,
+  },
+  plot: {log_y: false, log_x: false, micrometres: false},
+};
+
+/** Calls `listener` whenever one of `names` is set. */
+export function on(names, listener) {
+  for (const name of names.split(' ')) {
+    if (!listeners.has(name)) listeners.set(name, []);
+    listeners.get(name).push(listener);
+  }
+}
+
+/** Sets members of the state and tells who listens, once each. */
+export function set(changes) {
+  const told = new Set();
+  Object.assign(state, changes);
+  for (const name of Object.keys(changes)) {
+    for (const listener of listeners.get(name) ?? []) {
+      if (!told.has(listener)) {
+        told.add(listener);
+        listener();
+      }
+    }
+  }
+}
+
+export const set_view = (changes) => set({view: {...state.view, ...changes}});
+export const set_plot = (changes) => set({plot: {...state.plot, ...changes}});
+
+/** Modes that show one number per pixel, by colour map and colour bar. */
+export const is_scalar = (mode) => mode === 'channel' || mode === 'error' || mode === 'temperature';
+/** Modes of which the view's channel is one parameter. */
+export const has_channel = (mode) => mode === 'channel' || mode === 'temperature';
+
+export const is_rendering = () => state.status?.state === 'rendering' || state.status?.state === 'loading';
+
+export const channel_count = () => state.scene?.channels.length ?? 0;
+export const channel_centre = (index) => {
+  const channel = state.scene.channels[index];
+  return (channel.min_nm + channel.max_nm) / 2;
+};
+
+/** The thirds of the wavelengths, long ones red: what false colour starts with. */
+export function default_ranges() {
+  const channels = state.scene.channels;
+  const low = channels[0].min_nm;
+  const high = channels[channels.length - 1].max_nm;
+  const at = (part) => Number((low + (high - low) * part).toPrecision(6));
+  return {r: [at(2 / 3), at(1)], g: [at(1 / 3), at(2 / 3)], b: [at(0), at(1 / 3)]};
+}
+
+/** Parameters of the frame that the view asks for: /api/frame, /api/values, /api/save. */
+export function frame_parameters() {
+  const view = state.view;
+  const parameters = {mode: view.mode};
+  if (is_scalar(view.mode)) {
+    Object.assign(parameters, {map: view.map, scale: view.scale, low: view.low, high: view.high});
+  } else {
+    Object.assign(parameters, {exposure: String(Number(view.exposure.toFixed(3))), tone: view.tone});
+  }
+  if (has_channel(view.mode)) parameters.channel = String(view.channel);
+  if (view.mode === 'false') {
+    const ranges = view.ranges ?? default_ranges();
+    for (const name of 'rgb') parameters[name] = ranges[name].join('-');
+  }
+  return parameters;
+}
