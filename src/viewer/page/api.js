@@ -1,4 +1,5 @@
 // Requests to the server. Whatever goes wrong is shown (notices.js) with the server's own words, and thrown.
+import {adapted} from './adapt.js';
 import {notice} from './notices.js';
 import {set, state} from './state.js';
 
@@ -69,7 +70,7 @@ export async function load_scene() {
   try {
     while (scene_wanted) {
       scene_wanted = false;
-      set({scene: await get_json('/api/scene')});
+      set(adapted(await get_json('/api/scene')));
       await new Promise((resolve) => setTimeout(resolve, 200));
     }
   } catch (error) {
@@ -94,7 +95,10 @@ export function connect() {
     setTimeout(connect, wait_ms);
     wait_ms = Math.min(2 * wait_ms, 4000);
   };
-  source.addEventListener('status', (event) => set({status: JSON.parse(event.data)}));
+  source.addEventListener('status', (event) => {
+    set({status: JSON.parse(event.data)});
+    if (!state.scene) load_scene();
+  });
   source.addEventListener('scene', load_scene);
   source.addEventListener('frame', (event) => set({announced: JSON.parse(event.data)}));
 }

@@ -1,6 +1,6 @@
 // What the image shows: mode, exposure and tone, channel, colour map, range. The rendering is never asked to restart by
 // any of it.
-import {post} from './api.js';
+import {load_scene, post} from './api.js';
 import {button, choice, element, number_field, row, select} from './dom.js';
 import {tick_text, unit_text} from './format.js';
 import {channel_text} from './plot.js';
@@ -115,13 +115,9 @@ function map_rows() {
     unit.textContent = state.view.mode === 'error' ? '%' : unit_text(state.frame?.unit);
     auto.disabled = state.view.low === '' && state.view.high === '';
   };
-  return {
-    rows: [
-      row('Colours', map, scale), row('Range', low, ' – ', high, auto),
-      element('div', {class: 'row'}, element('span'), unit)
-    ],
-    sync
-  };
+  const range = row('Range', low, ' – ', high, auto, unit);
+  range.classList.add('wraps');  // a long unit stands below
+  return {rows: [row('Colours', map, scale), range], sync};
 }
 
 /** As it could be typed. */
@@ -133,7 +129,10 @@ function response_row() {
     const [chosen] = file.files;
     if (!chosen) return;
     const name = chosen.name.replace(/\.[^.]*$/, '');
-    if (await post(`/api/response?${new URLSearchParams({name})}`, await chosen.text())) set_mode(`response:${name}`);
+    if (await post(`/api/response?${new URLSearchParams({name})}`, await chosen.text())) {
+      await load_scene();
+      set_mode(`response:${name}`);
+    }
     file.value = '';
   };
   const open = button(

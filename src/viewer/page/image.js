@@ -4,7 +4,8 @@ import {on, set, state} from './state.js';
 import {draw_values, values_fit} from './values.js';
 
 const canvas = document.getElementById('image');
-const kMinGridScale = 8;
+const kMinGridScale = 18;
+const kMinOutlineScale = 8;  // from here on a pin is drawn around its pixel
 const kMaxScale = 200;
 const place = {
   scale: 1,
@@ -108,6 +109,9 @@ export function nearest_pixel(x, y) {
   return [clamp((x - place.x) / place.scale, film.width), clamp((y - place.y) / place.scale, film.height)];
 }
 
+/** The middle of a film pixel on the canvas. */
+export const point_of = ([x, y]) => [place.x + (x + 0.5) * place.scale, place.y + (y + 0.5) * place.scale];
+
 export const film_size = () => film;
 export const image_scale = () => place.scale;
 
@@ -187,7 +191,7 @@ function outline(context, colour, width, trace) {
 
 function draw_pin(context, pin, strong) {
   const [x, y, w, h] = box_of(pin.select);
-  const point = pin.select.length === 2 && place.scale < kMinGridScale;
+  const point = pin.select.length === 2 && place.scale < kMinOutlineScale;
   const width = strong ? 3 : 1.5;
   if (point)
     outline(context, pin.colour, width, () => context.arc(x + w / 2, y + h / 2, 5.5, 0, 2 * Math.PI));
@@ -208,7 +212,7 @@ function draw_pin(context, pin, strong) {
 function draw_pins(context) {
   for (const pin of state.pins) draw_pin(context, pin, pin.key === state.marked);
   if (state.selecting) draw_pin(context, {select: state.selecting, colour: '#ffffff'}, false);
-  if (state.hover && (place.scale >= kMinGridScale || state.hover_by_keys)) {
+  if (state.hover && (place.scale >= kMinOutlineScale || state.hover_by_keys)) {
     draw_pin(context, {select: state.hover, colour: '#ffffff'}, false);
   }
 }

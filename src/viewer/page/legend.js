@@ -2,7 +2,7 @@
 import {get, show_error} from './api.js';
 import {download, element} from './dom.js';
 import {shared_exponent, superscript, unit_text, with_error} from './format.js';
-import {place_text, unpin, unpin_all} from './pins.js';
+import {place_text, selections, unpin, unpin_all} from './pins.js';
 import {channel_text, curves_shown, readout_channel, reset_zoom} from './plot.js';
 import {export_png} from './plot_picture.js';
 import {on, set, set_plot, state} from './state.js';
@@ -16,38 +16,56 @@ function swatch({letter, colour, dash}) {
   return element('td', {class: 'who'}, made, letter ? element('b', {}, letter) : '');
 }
 
-function legend_row({selection, curve}, channel, scale) {
-  const pixels = selection.select?.length === 4 ? ` (${curve.pixels} px)` : '';
-  const error = curve?.standard_error?.[channel];
-  const scaled = (value) => (value === null || value === undefined ? value : value / scale);
-  const value = channel === null || !curve ? '' : with_error(scaled(curve.mean[channel]), scaled(error));
-  const made = element(
-      'tr', {}, swatch(selection),
-      element('td', {class: 'place'}, selection.select ? place_text(selection) + pixels : '–'),
-      element('td', {class: 'value'}, value));
+function unpin_button({key, letter}) {
+  const attributes = {class: 'plain', 'aria-label': `Unpin ${letter}`, title: 'Unpin', onclick: () => unpin(key)};
+  return element('button', attributes, '×');
+}
+
+function new_row(selection) {
   const last = element('td', {class: 'act'});
+  const made =
+      element('tr', {}, swatch(selection), element('td', {class: 'place'}), element('td', {class: 'value'}), last);
   if (selection.letter) {
-    const close = element(
-        'button', {
-          class: 'plain',
-          'aria-label': `Unpin ${selection.letter}`,
-          title: 'Unpin',
-          onclick: () => unpin(selection.key)
-        },
-        '×');
-    last.append(close);
+    last.append(unpin_button(selection));
     made.addEventListener('mouseenter', () => set({marked: selection.key}));
     made.addEventListener('mouseleave', () => set({marked: null}));
   }
-  made.append(last);
   return made;
+}
+
+/** Rows stay while their pins do: a button that is made anew while it is pressed would miss the click. */
+const held = new Map();
+function row_of(selection) {
+  const name = selection.letter + selection.key;
+  if (!held.has(name)) held.set(name, new_row(selection));
+  return held.get(name);
+}
+
+function fill_row(row, {selection, curve}, channel, scale) {
+  const pixels = selection.select?.length === 4 && curve ? ` (${curve.pixels} px)` : '';
+  const scaled = (value) => (value === null || value === undefined ? value : value / scale);
+  const known = channel !== null && curve;
+  row.cells[1].textContent = selection.select ? place_text(selection) + pixels : '–';
+  row.cells[2].textContent =
+      known ? with_error(scaled(curve.mean[channel]), scaled(curve.standard_error?.[channel])) : '';
 }
 
 /** The row of the pixel under the mouse is always there, so that nothing jumps when the mouse comes and goes. */
 function rows_shown() {
-  const pins = curves_shown().filter(({selection}) => selection.letter);
-  const hover = curves_shown().find(({selection}) => !selection.letter);
-  return [hover ?? {selection: {key: '', select: null, letter: '', colour: null, dash: 0}, curve: null}, ...pins];
+  const curve_of = new Map(curves_shown().map(({selection, curve}) => [selection.key, curve]));
+  const hover = selections().find((selection) => !selection.letter);
+  const first = {key: '', letter: '', colour: null, dash: 0, select: hover?.select ?? null};
+  return [[first, hover?.key], ...state.pins.map((pin) => [pin, pin.key])].map(
+      ([selection, key]) => ({selection, curve: curve_of.get(key)}));
+}
+
+function put_rows(rows) {
+  const wanted = rows.map(({selection}) => row_of(selection));
+  if (wanted.length === body.rows.length && wanted.every((row, i) => row === body.rows[i])) return;
+  body.replaceChildren(...wanted);
+  for (const [name, row] of held) {
+    if (!row.isConnected) held.delete(name);
+  }
 }
 
 function show() {
@@ -59,7 +77,8 @@ function show() {
   const unit = [exponent ? `10${superscript(exponent)}` : '', unit_text(state.scene.unit)].filter(Boolean).join(' ');
   id('legend-channel').textContent =
       channel === null ? '' : [`at ${channel_text(channel)}`, unit].filter(Boolean).join(', ');
-  body.replaceChildren(...rows.map((shown) => legend_row(shown, channel, 10 ** exponent)));
+  put_rows(rows);
+  rows.forEach((shown, i) => fill_row(body.rows[i], shown, channel, 10 ** exponent));
   id('legend-actions').hidden = state.pins.length === 0;
   id('plot-band').textContent =
       curves_shown().some(({curve}) => curve.standard_error) ? 'Bands: ± 1 standard error' : '';

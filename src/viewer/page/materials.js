@@ -97,6 +97,8 @@ function drawing(spectrum, width) {
   return made;
 }
 
+const is_edited = (spectrum) => spectrum.edited ?? state.edited?.[spectrum.id];
+
 async function apply(spectrum, change) {
   if (await post('/api/spectrum', {id: spectrum.id, set: change}))
     set({edited: {...state.edited, [spectrum.id]: !change.reset}});
@@ -141,7 +143,7 @@ function editor(spectrum, width, rebuild) {
     rebuild();
   });
   made.append(row('Replace by', which, ...edit_control(spectrum, kind)));
-  if (state.edited?.[spectrum.id]) {
+  if (is_edited(spectrum)) {
     made.append(
         element('div', {class: 'row alone'}, button('As in the scene file', () => apply(spectrum, {reset: true}))));
   }
@@ -169,7 +171,7 @@ function entry(spectrum, width, rebuild) {
       element(
           'span', {class: 'name', title: `${spectrum.owner}, ${spectrum.role}`}, element('span', {}, spectrum.owner),
           element('span', {class: 'quiet'}, spectrum.role)),
-      element('span', {class: 'now'}, state.edited?.[spectrum.id] ? '• ' : '', value_text(spectrum)),
+      element('span', {class: 'now'}, is_edited(spectrum) ? '• ' : '', value_text(spectrum)),
       spectrum.kind === 'temperature' ? element('span', {class: 'spark'}) : spark(spectrum),
   );
   return element('li', {class: open ? 'open' : ''}, head, open ? editor(spectrum, width, rebuild) : null);

@@ -2,17 +2,24 @@
 // by dygraphs.
 import {linear_ticks, log_text, log_ticks, shared_exponent, superscript, tick_text, unit_text, wavelength} from './format.js';
 import {selections} from './pins.js';
-import {channel_centre, default_ranges, has_channel, on, set, set_view, state} from './state.js';
+import {channel_centre, channel_count, default_ranges, has_channel, on, set, set_view, state} from './state.js';
 
 const box = document.getElementById('plot');
 const note = document.getElementById('plot-note');
 let graph = null;
+const kUnseen = {
+  key: '',
+  colour: '#0000',
+  dash: 0
+};
+const kInvitation = 'Point at the image for a spectrum; click to pin it.';
 let drawn = [];  // [{selection, curve}] in the order of the series
 let asked = false;
 
 export const in_axis_unit = (nm) => (state.plot.micrometres ? nm / 1000 : nm);
 export const curves_shown = () => drawn;
 export const the_graph = () => graph;
+const text_size = () => 0.92 * parseFloat(getComputedStyle(document.documentElement).fontSize);
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 /** The smallest number that a logarithmic axis shows: bands that reach zero end there. */
@@ -46,18 +53,19 @@ function table() {
 }
 
 function x_ticks(low, high, pixels) {
-  const ticks = state.plot.log_x ? log_ticks(low, high) : linear_ticks(low, high, pixels / 70);
+  const ticks = state.plot.log_x ? log_ticks(low, high) : linear_ticks(low, high, pixels / (5.5 * text_size()));
   const step = ticks.length > 1 ? ticks[1] - ticks[0] : 1;
   return ticks.map((v) => ({v, label: state.plot.log_x ? log_text(v) : tick_text(v, step)}));
 }
 
 let exponent = 0;  // that the labels of the vertical axis share
 function y_ticks(low, high, pixels) {
+  if (box.classList.contains('empty')) return [];
   if (state.plot.log_y && low > 0) {
     set_exponent(0);
     return log_ticks(low, high).map((v) => ({v, label: log_text(v)}));
   }
-  const ticks = linear_ticks(low, high, pixels / 40);
+  const ticks = linear_ticks(low, high, pixels / (3.6 * text_size()));
   const step = ticks.length > 1 ? ticks[1] - ticks[0] : 1;
   set_exponent(shared_exponent(Math.max(Math.abs(low), Math.abs(high))));
   return ticks.map((v) => ({v, label: tick_text(v, step, 10 ** exponent)}));
@@ -107,9 +115,15 @@ function channel_near(x) {
   return best;
 }
 
-function click(event, x) {
+/** A click shows a channel; the first of a double click, which ends a zoom, does not. */
+const kDoubleClick_ms = 220;
+let click_timer = 0;
+function click(event) {
   const channel = channel_near(graph.toDataXCoord(graph.eventToDomCoords(event)[0]));
-  set_view(has_channel(state.view.mode) ? {channel} : {channel, mode: 'channel'});
+  clearTimeout(click_timer);
+  if (event.detail > 1) return;
+  click_timer = setTimeout(
+      () => set_view(has_channel(state.view.mode) ? {channel} : {channel, mode: 'channel'}), kDoubleClick_ms);
 }
 
 const kDashes = [null, [7, 3], [2, 3]];
@@ -127,11 +141,11 @@ function options() {
     };
   });
   const few = state.scene.channels.length <= 40;
-  const size_px = 0.92 * parseFloat(getComputedStyle(document.documentElement).fontSize);
+  const size_px = text_size();
   return {
     labels: ['x', ...drawn.map((_, i) => `c${i}`)],
     series,
-    drawPoints: few,
+    drawPoints: few && !box.classList.contains('empty'),
     pointSize: 2.5,
     logscale: state.plot.log_y,
     gridLineColor: style('--grid'),
@@ -167,21 +181,25 @@ function make(file) {
 function draw() {
   asked = false;
   if (!state.scene) return;
-  const by_key = new Map(state.curves.map((curve) => [curve.select, curve]));
+  const current = state.curves.filter((curve) => curve.mean.length === channel_count());
+  const by_key = new Map(current.map((curve) => [curve.select, curve]));
   const shown = selections().filter((selection) => by_key.has(selection.key));
   drawn = shown.map((selection) => ({selection, curve: by_key.get(selection.key)}));
-  const empty = drawn.length === 0;
+  const empty = !drawn.some(({curve}) => curve.mean.some((value) => (state.plot.log_y ? value > 0 : value !== null)));
   note.hidden = !empty;
+  note.textContent = !drawn.length ? kInvitation :
+      state.plot.log_y             ? 'There is nothing above zero here.' :
+                                     'There are no samples here.';
   box.classList.toggle('empty', empty);
-  // An empty plot keeps its axes: one series without values.
-  if (empty)
-    drawn = [{selection: {key: '', colour: '#0000', dash: 0}, curve: {mean: state.scene.channels.map(() => null)}}];
+  const seen = drawn;
+  // An empty plot keeps its horizontal axis: one series that is not seen.
+  if (empty) drawn = [{selection: kUnseen, curve: {mean: state.scene.channels.map(() => 1)}}];
   const file = table();
   if (graph)
     graph.updateOptions({...options(), file});
   else
     make(file);
-  if (empty) drawn = [];
+  drawn = seen;
   document.getElementById('plot-x').textContent = x_title();
   set({drawn: true});
 }
@@ -200,7 +218,7 @@ export function reset_zoom() {
 new ResizeObserver(() => graph?.resize()).observe(box);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw_plot);
 on('curves pins hover scene view plot marked', redraw_plot);
-on('plot', reset_zoom);
+on('plot channels_changed', reset_zoom);
 
 /** What the marker stands at, or what the mouse points at in the plot. */
 export function readout_channel() {

@@ -2,7 +2,7 @@
 // colours.
 import {get_json, ServerError, show_error} from './api.js';
 import {number} from './format.js';
-import {frame_parameters, on, set, state} from './state.js';
+import {frame_parameters, set, state} from './state.js';
 
 const kMinScale = 46;  // CSS pixels per film pixel
 const kMaxPixels = 1024;
@@ -66,7 +66,3 @@ export function draw_values(context, sight, place, luminance_at) {
   }
   context.textAlign = 'start';
 }
-
-on('scene', () => {
-  if (held && state.scene.revision !== held.revision) held = {...held, text: '', revision: state.scene.revision};
-});
