@@ -186,11 +186,17 @@ export function materials_tab(tab) {
   };
   tab.append(list);
   fill();
-  const text_now = () => JSON.stringify([state.scene.spectra, state.plot.micrometres, state.edited]);
-  let shown = text_now();
+  // Scenes come with every movement of the camera: their spectra are compared, not drawn anew.
+  let scene = state.scene;
+  let spectra = JSON.stringify(scene.spectra);
+  let rest = JSON.stringify([state.plot.micrometres, state.edited]);
   return () => {
-    if (text_now() === shown) return;
-    shown = text_now();
+    const rest_now = JSON.stringify([state.plot.micrometres, state.edited]);
+    const spectra_now = scene === state.scene ? spectra : JSON.stringify(state.scene.spectra);
+    scene = state.scene;
+    if (spectra_now === spectra && rest_now === rest) return;
+    spectra = spectra_now;
+    rest = rest_now;
     fill(document.activeElement?.closest?.('[data-spectrum]')?.dataset.spectrum);
   };
 }

@@ -200,6 +200,7 @@ function draw() {
   else
     make(file);
   drawn = seen;
+  document.getElementById('plot-y').textContent = y_title();
   document.getElementById('plot-x').textContent = x_title();
   set({drawn: true});
 }

@@ -72,11 +72,11 @@ function show_tools() {
   tool_choice.hidden = !has_camera();
   tool_choice.select(state.tool);
   id('stage').classList.toggle('camera-tool', state.tool === 'camera' && has_camera());
-  zoom_text.textContent = state.zoom ? `${number(100 * state.zoom, 3)} %` : '';
+  zoom_text.textContent = state.frame && state.zoom ? `${number(100 * state.zoom, 3)} %` : '';
 }
 
 on('status scene', show_status);
 on('hover scene', show_pixel);
-on('tool scene zoom', show_tools);
+on('tool scene zoom frame', show_tools);
 on('connected', () => (id('offline').hidden = state.connected));
 on('scene', () => (document.title = `${state.scene.name} – kiloband`));
