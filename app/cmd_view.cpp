@@ -11,9 +11,14 @@
 #include "app/console/messages.hpp"
 #include "app/console/standard_output.hpp"
 #include "app/console/stop_signals.hpp"
+#include "app/options/backend_options.hpp"
 #include "app/options/render_options.hpp"
+#include "app/options/sampling_options.hpp"
 #include "base/text.hpp"
+#include "src_cpu/cpu_backend.hpp"
+#include "src_gpu/device/device.hpp"
 #include "viewer/http_server.hpp"
+#include "viewer/live_render.hpp"
 #include "viewer/stored_image.hpp"
 
 namespace kiloband {
@@ -23,7 +28,10 @@ constexpr int kPort = 8747;
 constexpr std::size_t kMemoryBytes = std::size_t{4} << 30;
 
 struct ViewOptions {
-  std::string file;
+  SceneOptions scene;  // or a cube
+  BackendOptions backend;
+  SamplingOptions sampling;
+  std::optional<uint64_t> spp;
   int port = kPort;
   std::optional<std::string> listen, token, output_dir;
   bool open = false;
@@ -95,14 +103,67 @@ void serve(viewer::ViewedImage& image, const ViewOptions& options) {
   while (!stop_requested) std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
+/// Backends that a page can choose; without an OpenCL loader the CPU alone.
+std::vector<viewer::BackendChoice> backend_choices() {
+  std::vector<viewer::BackendChoice> choices{{"cpu", cpu::processor_name(), {}, {"dpept-batch"}}};
+  try {
+    for (const opencl::DeviceInfo& device : opencl::list_devices())
+      choices.push_back({"opencl", device.name, device.index, {"dpept-batch", "dpept-path", "pt"}});
+  } catch (const DeviceError&) {  // there is none, then
+  }
+  return choices;
+}
+
+/// The backend of the command line's options, changed by what a page has chosen.
+std::unique_ptr<Backend> make_chosen(const BackendOptions& given, const viewer::LiveSettings& chosen,
+                                     std::shared_ptr<const FlatScene> scene, const DiagnosticSink& sink) {
+  BackendOptions options = given;
+  options.backend = chosen.backend;
+  if (chosen.backend == "cpu") {
+    options.device.reset(), options.device_memory.reset(), options.method.reset();
+  } else {
+    options.isa.reset(), options.threads.reset();
+    options.device = chosen.device;
+    options.method = chosen.method;
+  }
+  return make_backend(options, std::move(scene), {}, chosen.sampling, sink);
+}
+
+std::unique_ptr<viewer::ViewedImage> open_scene(const ViewOptions& options, unsigned threads,
+                                                const DiagnosticSink& sink) {
+  viewer::LiveOptions live;
+  live.settings.backend = options.backend.resolve();
+  live.settings.device = options.backend.device;
+  live.settings.method = options.backend.method.value_or("dpept-batch");
+  live.settings.sampling = options.sampling.settings(1);
+  LoadedScene loaded = load_scene(options.scene, sink);
+  live.settings.max_depth = loaded.description.integrator.max_depth;
+  live.settings.bands = options.scene.bands.value_or("");
+  live.scene = std::move(loaded.description);
+  live.channels = std::move(loaded.channels);
+  if (options.scene.guide_bands) live.guide = std::move(loaded.guide);
+  live.scene_name = std::filesystem::path(options.scene.scene).filename().string();
+  live.backends.choices = backend_choices();
+  live.backends.make = [given = options.backend, sink](const viewer::LiveSettings& chosen,
+                                                       std::shared_ptr<const FlatScene> scene) {
+    return make_chosen(given, chosen, std::move(scene), sink);
+  };
+  live.samples = options.spp;
+  live.memory_bytes = kMemoryBytes;
+  live.threads = threads;
+  live.sink = sink;
+  return viewer::start_live_render(std::move(live));
+}
+
 int view(const ViewOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGCHLD, SIG_IGN);  // the browser's starter is not waited for
   const DiagnosticSink sink = print_diagnostics(false);
   api_settings(options);  // before hours of reading
-  if (!is_cube(options.file)) throw InputError(options.file + ": must be a cube, .exr or .hdr");
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
-  const auto image = viewer::open_stored_image(options.file, kMemoryBytes, threads, sink);
+  const auto image = is_cube(options.scene.scene)
+                         ? viewer::open_stored_image(options.scene.scene, kMemoryBytes, threads, sink)
+                         : open_scene(options, threads, sink);
   catch_stop_signals();
   serve(*image, options);
   return kDone;
@@ -113,7 +174,15 @@ int view(const ViewOptions& options) {
 Command add_view(CLI::App& program) {
   auto o = std::make_shared<ViewOptions>();
   CLI::App* command = program.add_subcommand("view", "Look at a spectral image in a browser");
-  command->add_option("FILE", o->file, "spectral cube, .exr or .hdr (ENVI)")->required();
+  o->scene.add_to(*command);
+  command->get_option("SCENE")->description(
+      "Mitsuba 3 scene file (XML), or a spectral cube: .exr, .hdr (ENVI)");
+  o->backend.add_to(*command);
+  o->sampling.add_to(*command);
+  command
+      ->add_option("--spp", o->spp,
+                   "samples per pixel after which the render rests (default: 15120, the most)")
+      ->check(CLI::Range(uint64_t{1}, viewer::kMostLiveSamples));
   command->add_option("--port", o->port, "of the address that is printed (0: any that is free)")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();

@@ -63,10 +63,10 @@ int run(int argc, char** argv) {
   commands["sensor"] = add_sensor(program);
   commands["compare"] = add_compare(program);
   commands["devices"] = add_devices(program);
+  commands["view"] = add_view(program);
   commands["sky"] = add_sky(program);
   commands["trace"] = add_trace(program);
   commands["validate"] = add_validate(program);
-  commands["view"] = add_view(program);
   check_command(commands, argc, argv);
   try {
     program.parse(argc, argv);

@@ -69,6 +69,8 @@ class ReplicateSums {
   PixelSums at(std::size_t slot, std::size_t pixel);
   PixelSumsView at(std::size_t slot, std::size_t pixel) const;
   const SumRule& rule() const { return rule_; }
+  /// No pixel has a sample; what its sums hold is for the caller to clear.
+  void forget_counts() { counts_.assign(counts_.size(), 0); }
 
   /// Bytes per value with its part of nothing else.
   static std::size_t bytes_per_value(const SumRule& rule, uint32_t most_samples);

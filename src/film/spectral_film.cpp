@@ -162,7 +162,11 @@ void SpectralFilm::row(uint32_t y, std::span<float> mean, std::span<float> varia
     first = 0;
   }
   for (std::size_t x = 0; x < rect_.width; ++x) {
-    std::ranges::copy(moments->mean(first + x), mean.begin() + static_cast<std::ptrdiff_t>(x * channels));
+    const auto to = mean.subspan(x * channels, channels);
+    if (moments->samples(first + x) == 0)
+      std::ranges::fill(to, 0.0f);
+    else
+      std::ranges::copy(moments->mean(first + x), to.begin());
     if (!variance.empty()) moments->variance_of_mean(first + x, variance.subspan(x * channels, channels));
   }
 }

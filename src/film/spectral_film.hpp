@@ -68,6 +68,9 @@ class SpectralFilm {
   const FilmOptions& options() const { return options_; }
   const std::vector<PixelRect>& blocks() const { return blocks_; }
 
+  /// Folded films that keep sums: becomes as it was when it was made, in the same memory.
+  void restart();
+
   /// Thread-safe for different blocks. Folded films take the replicates of a block in order.
   /// Not for films that keep sums.
   void add(const BlockSamples& samples);
@@ -120,6 +123,7 @@ class SpectralFilm {
   void add_held(const BlockSamples& samples, std::size_t pixel_in_block);
   void add_coarse(const BlockSamples& samples, const Coarse& coarse);
   void fold_block(uint32_t block);
+  void clear_block(uint32_t block);
   BlockMeans means_of_block(uint32_t replicate, uint32_t block) const;
   void add_held_image_sums(std::vector<std::vector<double>>& sums, std::vector<uint64_t>& counts) const;
 

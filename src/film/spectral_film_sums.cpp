@@ -21,7 +21,33 @@ void SpectralFilm::open_replicate(uint32_t replicate, uint32_t block) {
   if (replicate >= options_.replicates) throw std::logic_error("SpectralFilm: no such replicate");
   if (options_.held || sums_->open.at(block) == replicate) return;
   fold_block(block);
+  if (!sums_->stale.empty() && sums_->stale[block]) {
+    clear_block(block);
+    sums_->stale[block] = 0;
+  }
   sums_->open[block] = replicate;
+}
+
+/// Sums are cleared block by block when one is opened: by threads that work on different blocks, in their caches.
+void SpectralFilm::restart() {
+  require_sums();
+  if (options_.held) throw std::logic_error("SpectralFilm::restart: replicates are held");
+  pixels_->restart();
+  sums_->values.forget_counts();
+  std::ranges::fill(sums_->attempted[0], 0);
+  std::ranges::fill(sums_->open, Sums::kNone);
+  sums_->stale.assign(blocks_.size(), 1);
+  for (std::vector<double>& sums : block_sums_) std::ranges::fill(sums, 0.0);
+  for (std::vector<uint64_t>& counts : block_counts_) std::ranges::fill(counts, 0);
+}
+
+void SpectralFilm::clear_block(uint32_t block) {
+  for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) {
+    const PixelSums sums = pixel_sums(0, pixel_index(blocks_[block], p));
+    sums.count = 0;
+    std::ranges::fill(sums.open, 0.0f);
+    std::ranges::fill(sums.closed, ClosedSum{0});
+  }
 }
 
 PixelSums SpectralFilm::pixel_sums(uint32_t replicate, std::size_t pixel) {
@@ -65,12 +91,7 @@ void SpectralFilm::fold_block(uint32_t block) {
   if (replicate == Sums::kNone) return;
   const BlockMeans means = means_of_block(replicate, block);
   add_pixels(means.samples(block, replicate, options_.channels));
-  for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) {
-    const PixelSums sums = pixel_sums(replicate, pixel_index(blocks_[block], p));
-    sums.count = 0;
-    std::ranges::fill(sums.open, 0.0f);
-    std::ranges::fill(sums.closed, ClosedSum{0});
-  }
+  clear_block(block);
   sums_->attempted[0][block] = 0;
   sums_->open[block] = Sums::kNone;
 }

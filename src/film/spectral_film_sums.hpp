@@ -33,6 +33,7 @@ struct SpectralFilm::Sums {
   ReplicateSums values;
   std::vector<std::vector<uint32_t>> attempted;  // [slot][block]
   std::vector<uint32_t> open;                    // [block] of folded films: the replicate, or kNone
+  std::vector<char> stale;                       // [block]: its sums are of before restart(); empty: none is
 };
 
 /// The means of a replicate of a block, made from sums.

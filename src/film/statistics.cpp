@@ -45,7 +45,8 @@ void ReplicateMoments::add(std::size_t unit, uint64_t n, std::span<const float> 
   const film::ScaledMeans x{channels_, means.data(), factor};
   float* const mean = mean_.data() + unit * channels_;
   if (samples_[unit] == 0) {
-    film::set_mean(x, mean);  // M2 stays 0
+    film::set_mean(x, mean);
+    if (variance_) std::fill_n(m2_.data() + unit * channels_, channels_, 0.0f);
   } else if (variance_) {
     film::update_moments(x, w, mean, m2_.data() + unit * channels_);
   } else {
@@ -53,6 +54,12 @@ void ReplicateMoments::add(std::size_t unit, uint64_t n, std::span<const float> 
   }
   samples_[unit] += n;
   ++replicates_[unit];
+}
+
+/// Means and M2 are set by the first replicate that follows.
+void ReplicateMoments::restart() {
+  std::ranges::fill(samples_, 0);
+  std::ranges::fill(replicates_, 0);
 }
 
 std::size_t ReplicateMoments::units() const {

@@ -25,6 +25,9 @@ class ReplicateMoments {
   /// Adds a replicate mean of n samples (n = 0: nothing) of a unit: `means`, one entry per channel, times `factor`.
   void add(std::size_t unit, uint64_t n, std::span<const float> means, float factor = 1);
 
+  /// Forgets all replicates; mean() of a unit is undefined until its next.
+  void restart();
+
   std::size_t units() const;
   std::size_t channels() const;
   uint64_t samples(std::size_t unit) const;             // N

@@ -112,6 +112,7 @@ struct HttpServer::Impl final : httplib::Server {
   void serve(socket_t socket) {
     SocketStream::Limits stream_limits;
     stream_limits.request = std::chrono::milliseconds(limits.request_ms);
+    stream_limits.between_requests = 2 * stream_limits.request;
     stream_limits.answer = std::chrono::milliseconds(limits.answer_ms);
     stream_limits.request_bytes = limits.body_bytes + (1u << 16);
     SocketStream stream(socket, stopping, stream_limits);

@@ -22,6 +22,8 @@ struct FrameStamp {
 
 struct ViewStatus {
   FrameStamp newest;
+  bool blank =
+      false;  // the image starts afresh and has no sample yet: the newest frame is not to be looked at
   std::string state;    // "loading", "rendering", "paused", "done", "failed"
   std::string message;  // of "failed", and warnings
   std::optional<uint64_t> target_samples;

@@ -34,6 +34,7 @@ constexpr std::array kTargets{
     Target{"spectral_image", spectral_image},
     Target{"image_header", image_header},
     Target{"checkpoint", checkpoint},
+    Target{"viewer_requests", viewer_requests},
 };
 
 std::size_t accepted = 0;

@@ -38,6 +38,7 @@ void envi_cube(std::string_view bytes);
 void spectral_image(std::string_view bytes);
 void image_header(std::string_view bytes);
 void checkpoint(std::string_view bytes);
+void viewer_requests(std::string_view bytes);
 
 /// Runs `use`; the errors of users and machines (InputError, DeviceError) are what a reader may end with.
 /// returns whether there was none

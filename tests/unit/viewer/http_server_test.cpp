@@ -1,0 +1,236 @@
+// A running server under the hands of clients that do as they like.
+#include "viewer/http_server.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "base/error.hpp"
+#include "tests/unit/viewer/viewed_cube.hpp"
+
+namespace kiloband::test {
+namespace {
+
+using namespace viewer;
+using Clock = std::chrono::steady_clock;
+
+/// A client's end of a connection.
+class Client {
+ public:
+  explicit Client(int port, int receive_buffer = 0) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    if (receive_buffer > 0)
+      setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    connected_ = connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    const timeval patience{20, 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  }
+  ~Client() { close(socket_); }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  bool send(const std::string& text) const {
+    return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
+  }
+  /// What comes until the server hangs up, or `until` was part of it.
+  std::string receive(const std::string& until = "") const {
+    std::string text;
+    char part[4096];
+    for (;;) {
+      const ssize_t size = recv(socket_, part, sizeof part, 0);
+      if (size <= 0) return text;
+      text.append(part, static_cast<std::size_t>(size));
+      if (!until.empty() && text.find(until) != std::string::npos) return text;
+    }
+  }
+  bool connected() const { return connected_; }
+
+ private:
+  int socket_;
+  bool connected_ = false;
+};
+
+std::string request(const std::string& line, const std::string& more = "", const std::string& body = "") {
+  std::string text = line + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + more;
+  if (!body.empty()) text += "Content-Length: " + std::to_string(body.size()) + "\r\n";
+  return text + "\r\n" + body;
+}
+
+const std::string kPost = "X-Kiloband: 1\r\nContent-Type: application/json\r\n";
+
+class RunningServer : public testing::Test {
+ protected:
+  static ServerLimits limits() {
+    ServerLimits limits;
+    limits.connections = 8;
+    limits.body_bytes = 1000;
+    limits.request_ms = 500;
+    limits.answer_ms = 1000;
+    return limits;
+  }
+  std::string ask(const std::string& text) {
+    const Client client(server_.port());
+    client.send(text);
+    return client.receive();
+  }
+  std::string status(const std::string& text) {
+    const std::string answer = ask(text);
+    return answer.size() < 12 ? answer : answer.substr(9, 3);
+  }
+
+  ViewedCube cube_;
+  HttpServer server_{cube_.api(), "127.0.0.1", 0, limits()};
+};
+
+TEST_F(RunningServer, AnswersItsOwnPage) {
+  EXPECT_EQ(status(request("GET /")), "200");
+  const std::string frame = ask(request("GET /api/frame?mode=channel&quality=exact"));
+  EXPECT_NE(frame.find("X-Kiloband-Frame: {"), std::string::npos);
+  EXPECT_NE(frame.find("Content-Type: image/png"), std::string::npos);
+  EXPECT_NE(ask(request("POST /api/save", kPost, R"({"format": "exr", "name": "saved"})"))
+                .find(R"({"files":["saved.exr"]})"),
+            std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(cube_.output() / "saved.exr"));
+}
+
+TEST_F(RunningServer, RefusesOthers) {
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: evil.com\r\nConnection: close\r\n\r\n"), "403");
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nConnection: close\r\n\r\n"), "403");
+  EXPECT_EQ(status(request("GET /api/events", "Origin: http://evil.com\r\n")), "403");
+  EXPECT_EQ(status(request("POST /api/save", "Content-Type: application/json\r\n", "{}")), "403");
+  EXPECT_EQ(status(request("POST /api/save", kPost + "Origin: http://evil.com\r\n", "{}")), "403");
+  EXPECT_EQ(status(request("POST /api/save",
+                           "X-Kiloband: 1\r\nContent-Type: application/x-www-form-urlencoded\r\n", "a=b")),
+            "415");
+  EXPECT_EQ(status(request("POST /api/save", kPost, "{")), "400");
+  EXPECT_EQ(status(request("GET /..%2f..%2fetc/passwd")), "404");
+  EXPECT_EQ(status(request("DELETE /")), "405");
+  EXPECT_EQ(status(request("HEAD /")), "405");
+}
+
+TEST_F(RunningServer, BoundsWhatIsSent) {
+  EXPECT_EQ(status(request("POST /api/save", kPost, std::string(1001, ' '))), "413");
+  EXPECT_EQ(status(request("POST /api/save", kPost + "Content-Length: 99999999999\r\n")), "413");
+  EXPECT_EQ(status(request("GET /" + std::string(9000, 'a'))), "414");
+  const std::string endless = ask("GET / HTTP/1.1\r\nHost: localhost\r\n" + [] {
+    std::string headers;
+    for (int i = 0; i < 20000; ++i) headers += "X-" + std::to_string(i) + ": y\r\n";
+    return headers;
+  }());
+  EXPECT_EQ(endless.find("200 OK"), std::string::npos);
+  EXPECT_EQ(status(request("GET /")), "200") << "the server lives on";
+}
+
+/// Ranges that overlap would make a large answer of a small one.
+TEST_F(RunningServer, IgnoresRanges) {
+  const std::string whole = ask(request("GET /dygraph.min.js"));
+  EXPECT_EQ(ask(request("GET /dygraph.min.js", "Range: bytes=0-,0-,0-,0-\r\n")).size(), whole.size());
+}
+
+TEST_F(RunningServer, DoesNotWaitForSlowWriters) {
+  const auto start = Clock::now();
+  const Client slow(server_.port());
+  std::thread dripping([&] {
+    for (int i = 0; i < 40 && slow.send("X"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  });
+  slow.receive();
+  EXPECT_LT(Clock::now() - start, std::chrono::seconds(3));
+  dripping.join();
+}
+
+/// Answers that nobody takes end with the time that an answer has.
+TEST_F(RunningServer, DoesNotWaitForSlowReaders) {
+  const Client slow(server_.port(), 4096);
+  std::string many;
+  for (int i = 0; i < 100; ++i) many += "GET /dygraph.min.js HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  slow.send(many);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  EXPECT_LT(slow.receive().size(), std::size_t{8} << 20) << "of 13 MB";
+}
+
+TEST_F(RunningServer, RefusesConnectionsBeyondItsLimit) {
+  std::vector<std::unique_ptr<Client>> listening;
+  for (int i = 0; i < 8; ++i) {
+    listening.push_back(std::make_unique<Client>(server_.port()));
+    listening.back()->send(request("GET /api/events"));
+    EXPECT_NE(listening.back()->receive("event: status").find("200 OK"), std::string::npos);
+  }
+  EXPECT_EQ(server_.pages(), 8u);
+  EXPECT_EQ(status(request("GET /")), "503");
+  listening.clear();
+  const auto give_up = Clock::now() + std::chrono::seconds(10);
+  while (server_.pages() > 0 && Clock::now() < give_up)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(server_.pages(), 0u) << "pages that have gone are noticed";
+  EXPECT_EQ(status(request("GET /")), "200");
+}
+
+TEST_F(RunningServer, EventsTellWhatThereIs) {
+  const Client page(server_.port());
+  page.send(request("GET /api/events"));
+  const std::string text = page.receive("event: status\ndata: {");
+  EXPECT_NE(text.find("event: scene\ndata: {\"revision\":1}"), std::string::npos);
+  EXPECT_NE(text.find("event: frame\ndata: {\"frame\":1,\"revision\":1}"), std::string::npos);
+}
+
+TEST_F(RunningServer, EndsWhilePagesLook) {
+  const Client page(server_.port());
+  ViewedCube cube;
+  const auto start = Clock::now();
+  {
+    const HttpServer server(cube.api(), "127.0.0.1", 0);
+    const Client listening(server.port()), idle(server.port()), waiting(server.port());
+    listening.send(request("GET /api/events"));
+    listening.receive("event: status");
+    waiting.send(request("GET /api/frame?after=1"));
+  }
+  EXPECT_LT(Clock::now() - start, std::chrono::seconds(12));
+}
+
+TEST(HttpServer, APortIsTakenOnce) {
+  ViewedCube cube;
+  const HttpServer server(cube.api(), "127.0.0.1", 0);
+  EXPECT_THROW(HttpServer(cube.api(), "127.0.0.1", server.port()), DeviceError);
+  EXPECT_THROW(HttpServer(cube.api(), "no such address", 0), DeviceError);
+}
+
+/// Bytes of this process in memory.
+std::size_t resident_bytes() {
+  std::size_t pages = 0, resident = 0;
+  std::FILE* const file = std::fopen("/proc/self/statm", "r");
+  if (std::fscanf(file, "%zu %zu", &pages, &resident) != 2) resident = 0;
+  std::fclose(file);
+  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// A thousand pages that come, look and go: what the first hundred have made the process take is not exceeded by more
+/// than 2 MiB, 2 KiB a page.
+TEST(HttpServer, AThousandPagesLeaveNothingBehind) {
+  ViewedCube cube;
+  ServerLimits many;
+  many.connections = 1000;
+  const HttpServer server(cube.api(), "127.0.0.1", 0, many);
+  std::size_t before = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (i == 100) before = resident_bytes();
+    while (server.pages() > 20)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until they are noticed
+    const Client events(server.port()), frames(server.port());
+    events.send(request("GET /api/events"));
+    frames.send(request("GET /api/frame?mode=channel"));
+    ASSERT_NE(frames.receive().find("200 OK"), std::string::npos);
+    ASSERT_NE(events.receive("event: frame").find("event: frame"), std::string::npos);
+  }
+  EXPECT_LT(resident_bytes(), before + (std::size_t{2} << 20));
+}
+
+}  // namespace
+}  // namespace kiloband::test
