@@ -50,6 +50,7 @@ uint64_t LiveFilm::most_samples() {
 
 void LiveFilm::restart() {
   film_.restart();
+  closed_.clear();
   replicate_ = first_ = 0;
   passes_ = 0;
 }
@@ -95,6 +96,46 @@ void LiveFilm::means(uint32_t y, std::span<float> out) const {
   film_.row(y, out, {});
   const std::size_t channels = bands_.size();
   for (uint32_t x = 0; x < width(); ++x) add_open(y, x, out.subspan(x * channels, channels));
+}
+
+void LiveFilm::prepare(const ThreeSums& sums) const {
+  constexpr std::size_t kMostKept = 4;
+  if (std::ranges::any_of(closed_, [&](const ClosedSums& kept) { return kept.sums == sums; })) return;
+  if (closed_.size() >= kMostKept) closed_.pop_front();
+  const std::size_t pixels = film_.rect().pixels();
+  closed_.push_back({sums, std::vector<float>(3 * pixels), std::vector<uint32_t>(pixels)});
+}
+
+/// Where a replicate was closed since.
+void LiveFilm::update_closed(uint32_t y, ClosedSums& closed) const {
+  const std::size_t first = std::size_t{y} * width(), channels = bands_.size();
+  bool same = true;
+  for (uint32_t x = 0; x < width(); ++x) same = same && closed.samples[first + x] == film_.samples(x, y);
+  if (same) return;
+  std::vector<float> row(width() * channels);
+  film_.row(y, row, {});
+  for (uint32_t x = 0; x < width(); ++x) {
+    closed.sums(&row[x * channels], &closed.values[3 * (first + x)]);
+    closed.samples[first + x] = static_cast<uint32_t>(film_.samples(x, y));
+  }
+}
+
+void LiveFilm::sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const {
+  const bool plain = film_.options().sums->kind == SumRule::Kind::kFolded;  // and all sums are open: kLongest
+  const auto kept = std::ranges::find_if(closed_, [&](const ClosedSums& c) { return c.sums == of_row; });
+  if (!plain || kept == closed_.end()) return PixelSource::sums(y, of_row, out);
+  update_closed(y, *kept);
+  for (uint32_t x = 0; x < width(); ++x) {
+    const std::size_t pixel = std::size_t{y} * width() + x;
+    const PixelSumsView open = film_.pixel_sums(0, pixel);
+    float* const to = &out[3 * std::size_t{x}];
+    const double count = static_cast<double>(film_.samples(x, y)) + open.count;
+    float of_open[3] = {};
+    if (open.count > 0) of_row(open.open.data(), of_open);
+    const auto a = static_cast<float>(static_cast<double>(film_.samples(x, y)) / count);
+    for (std::size_t c = 0; c < 3; ++c)
+      to[c] = count > 0 ? a * kept->values[3 * pixel + c] + of_open[c] / static_cast<float>(count) : kNothing;
+  }
 }
 
 /// That of the closed replicates' mean, for as many samples as there are: the open one has no mean to compare yet.

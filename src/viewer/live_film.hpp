@@ -1,6 +1,7 @@
 // The film of a render that is looked at while it refines.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -50,14 +51,26 @@ class LiveFilm final : public PixelSource {
   void means(uint32_t y, std::span<float> out) const override;
   bool has_variances() const override { return film_.options().variance; }
   void variances(uint32_t y, std::span<float> out) const override;
+  void sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const override;
+  void prepare(const ThreeSums& sums) const override;
 
  private:
+  /// Sums of the closed replicates' means, which change with every 16th pass or less: each frame then reads the open sums
+  /// alone, half of what there is.
+  struct ClosedSums {
+    ThreeSums sums;
+    std::vector<float> values;      // [pixel][3]
+    std::vector<uint32_t> samples;  // [pixel]: that the values are of
+  };
+  void update_closed(uint32_t y, ClosedSums& closed) const;
   void add_open(uint32_t y, uint32_t x, std::span<float> mean) const;
 
   SpectralFilm film_;
   std::vector<Band> bands_;
   std::vector<double> units_;
   uint32_t replicate_ = 0, first_ = 0;
+  mutable std::deque<ClosedSums>
+      closed_;  // of the sums that were asked for last; rows belong to who reads them
   uint64_t passes_ = 0;
 };
 

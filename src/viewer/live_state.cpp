@@ -223,8 +223,9 @@ void LiveState::render_some() {
   const double seconds = seconds_since(start);
   paths_ += backend_->statistics().paths - paths;
   if (!interrupt_) measure(some.size(), seconds);
-  film_->finish_pass();
-  if (interrupt_) return;
+  const bool was_first = film_->passes() == 0;
+  const bool is_whole = film_->finish_pass();
+  if (interrupt_ || !(is_whole || was_first)) return;  // parts are shown while there is nothing else
   ++status_.newest.frame;
   status_.blank = false;
   status_.newest.samples = film_->samples();

@@ -26,36 +26,6 @@ void deal_rows(uint32_t rows, unsigned threads, const std::function<void(uint32_
   work(0, rows / parts);
 }
 
-/// Sums of products for three sets of weights at once, in lanes that the compiler makes vectors of.
-struct ThreeSums {
-  static constexpr std::size_t kLanes = 8;
-  std::array<std::vector<float>, 3> weights;  // [component][band], times the unit
-
-  ThreeSums(const PixelSource& source, const RgbWeights& of_integrals) {
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < of_integrals.size(); ++k)
-        weights[c].push_back(static_cast<float>(of_integrals[k][c] * source.units()[k]));
-  }
-
-  void operator()(const float* values, float* out) const {
-    const std::size_t bands = weights[0].size(), whole = bands / kLanes * kLanes;
-    const float *r = weights[0].data(), *g = weights[1].data(), *b = weights[2].data();
-    float red[kLanes] = {}, green[kLanes] = {}, blue[kLanes] = {};
-    for (std::size_t k = 0; k < whole; k += kLanes) {
-      for (std::size_t i = 0; i < kLanes; ++i) red[i] += r[k + i] * values[k + i];
-      for (std::size_t i = 0; i < kLanes; ++i) green[i] += g[k + i] * values[k + i];
-      for (std::size_t i = 0; i < kLanes; ++i) blue[i] += b[k + i] * values[k + i];
-    }
-    for (std::size_t k = whole; k < bands; ++k) {
-      red[k - whole] += r[k] * values[k];
-      green[k - whole] += g[k] * values[k];
-      blue[k - whole] += b[k] * values[k];
-    }
-    out[0] = out[1] = out[2] = 0;
-    for (std::size_t i = 0; i < kLanes; ++i) out[0] += red[i], out[1] += green[i], out[2] += blue[i];
-  }
-};
-
 /// A plane of one component whose pixels are functions of their bands' means.
 template <class Value>
 Plane plane_of_means(const PixelSource& source, unsigned threads, const Value& value) {
@@ -75,18 +45,46 @@ Plane plane_of_means(const PixelSource& source, unsigned threads, const Value& v
 
 }  // namespace
 
+ThreeSums::ThreeSums(const PixelSource& source, const RgbWeights& of_integrals) {
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t k = 0; k < of_integrals.size(); ++k)
+      weights_[c].push_back(static_cast<float>(of_integrals[k][c] * source.units()[k]));
+}
+
+void ThreeSums::operator()(const float* values, float* out) const {
+  const std::size_t bands = weights_[0].size(), whole = bands / kLanes * kLanes;
+  const float *r = weights_[0].data(), *g = weights_[1].data(), *b = weights_[2].data();
+  float red[kLanes] = {}, green[kLanes] = {}, blue[kLanes] = {};
+  for (std::size_t k = 0; k < whole; k += kLanes) {
+    for (std::size_t i = 0; i < kLanes; ++i) red[i] += r[k + i] * values[k + i];
+    for (std::size_t i = 0; i < kLanes; ++i) green[i] += g[k + i] * values[k + i];
+    for (std::size_t i = 0; i < kLanes; ++i) blue[i] += b[k + i] * values[k + i];
+  }
+  for (std::size_t k = whole; k < bands; ++k) {
+    red[k - whole] += r[k] * values[k];
+    green[k - whole] += g[k] * values[k];
+    blue[k - whole] += b[k] * values[k];
+  }
+  out[0] = out[1] = out[2] = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) out[0] += red[i], out[1] += green[i], out[2] += blue[i];
+}
+
+void PixelSource::sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const {
+  const std::size_t bands = this->bands().size();
+  std::vector<float> row(width() * bands);
+  means(y, row);
+  for (std::size_t x = 0; x < width(); ++x) of_row(&row[x * bands], &out[3 * x]);
+}
+
 Plane weighted_plane(const PixelSource& source, const RgbWeights& weights, unsigned threads) {
   Plane plane{source.width(), source.height(), 3, {}};
   plane.values.resize(std::size_t{plane.width} * plane.height * 3);
-  const std::size_t bands = source.bands().size();
   const ThreeSums sums(source, weights);
+  source.prepare(sums);
+  const std::size_t row = std::size_t{plane.width} * 3;
   deal_rows(plane.height, threads, [&](uint32_t first, uint32_t end) {
-    std::vector<float> row(plane.width * bands);
-    for (uint32_t y = first; y < end; ++y) {
-      source.means(y, row);
-      float* const out = &plane.values[std::size_t{y} * plane.width * 3];
-      for (uint32_t x = 0; x < plane.width; ++x) sums(&row[x * bands], &out[3 * x]);
-    }
+    for (uint32_t y = first; y < end; ++y)
+      source.sums(y, sums, std::span(plane.values).subspan(y * row, row));
   });
   return plane;
 }

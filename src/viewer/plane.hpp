@@ -11,6 +11,24 @@
 
 namespace kiloband::viewer {
 
+class PixelSource;
+
+/// Per band, for red, green and blue; of bands' integrals.
+using RgbWeights = std::vector<std::array<float, 3>>;
+
+/// Sums of products with three sets of weights at once, in lanes that the compiler makes vectors of.
+class ThreeSums {
+ public:
+  ThreeSums(const PixelSource& source, const RgbWeights& of_integrals);
+  /// values: of a pixel, in the source's units
+  void operator()(const float* values, float* out) const;
+  bool operator==(const ThreeSums&) const = default;
+
+ private:
+  static constexpr std::size_t kLanes = 8;
+  std::array<std::vector<float>, 3> weights_;  // [component][band], times the unit
+};
+
 /// An image whose pixels are read row by row. Values are in units of the source: band k times unit(k) is its integral.
 class PixelSource {
  public:
@@ -26,10 +44,11 @@ class PixelSource {
   virtual bool has_variances() const = 0;
   /// Variances of the means, [x][band]; NaN where they are not known. Thread-safe.
   virtual void variances(uint32_t y, std::span<float> out) const = 0;
+  /// The sums of all pixels of row y, [x][3]. Thread-safe for different rows, once prepare() was called with the same.
+  virtual void sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const;
+  /// For sources that keep something for the next time.
+  virtual void prepare(const ThreeSums&) const {}
 };
-
-/// Per band, for red, green and blue; of bands' integrals.
-using RgbWeights = std::vector<std::array<float, 3>>;
 
 /// [y][x][component], 1 or 3 components; NaN: no sample.
 struct Plane {

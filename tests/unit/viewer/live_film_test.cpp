@@ -54,6 +54,41 @@ TEST(LiveFilm, MeansAreThoseOfAllSamplesAtAnyTime) {
   }
 }
 
+/// The sums of a picture are those of the means, whatever was kept of earlier ones.
+TEST(LiveFilm, SumsAreThoseOfTheMeans) {
+  LiveFilm film = small_film();
+  const RgbWeights weights{{1, 0, 0.5f}, {0, 2, 0.25f}};
+  std::vector<float> row(40 * 2);
+  const auto expect_sums = [&] {
+    const Plane plane = weighted_plane(film, weights, 2);
+    for (uint32_t y = 0; y < 33; ++y) {
+      film.means(y, row);
+      for (std::size_t x = 0; x < 40; ++x) {
+        const float* const shown = &plane.values[3 * (y * 40 + x)];
+        if (std::isnan(row[2 * x])) {
+          EXPECT_TRUE(std::isnan(shown[0]));
+          continue;
+        }
+        EXPECT_NEAR(shown[0], row[2 * x], 1e-5);
+        EXPECT_NEAR(shown[1], 2 * row[2 * x + 1], 1e-5);
+        EXPECT_NEAR(shown[2], 0.5 * row[2 * x] + 0.25 * row[2 * x + 1], 1e-5);
+      }
+    }
+  };
+  expect_sums();
+  for (int pass = 0; pass < 80; ++pass) {
+    add_pass(film, 3, [&](std::size_t pixel, std::size_t k) {
+      return static_cast<double>((pixel + k) % 5) + pass % 3;
+    });
+    expect_sums();
+  }
+  film.restart();
+  for (int pass = 0; pass < 4; ++pass) {
+    add_pass(film, 100, [&](std::size_t pixel, std::size_t) { return static_cast<double>(pixel % 3); });
+    expect_sums();
+  }
+}
+
 TEST(LiveFilm, PassesMayComeInParts) {
   LiveFilm film = small_film();
   add_pass(film, 3, [](std::size_t, std::size_t) { return 1.0; });
