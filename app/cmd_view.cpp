@@ -1,6 +1,8 @@
 // kiloband view SCENE.xml | CUBE: serves a page that shows the image while it refines.
 #include <fmt/core.h>
 #include <sys/random.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -84,12 +86,17 @@ std::string address_of(const ViewOptions& options, const viewer::ApiSettings& se
                      settings.access.token ? "?token=" + *settings.access.token : "");
 }
 
-/// By the desktop's own program; where there is none the address has been printed.
+/// By the desktop's own program; where there is none the address has been printed. A child's child, which nobody waits for:
+/// SIGCHLD cannot be ignored, since PoCL waits for the linker that it runs.
 void open_browser(const std::string& address) {
   const pid_t child = fork();
-  if (child != 0) return;
-  execlp("xdg-open", "xdg-open", address.c_str(), nullptr);
-  _exit(127);
+  if (child < 0) return;
+  if (child > 0) {
+    waitpid(child, nullptr, 0);
+    return;
+  }
+  if (fork() == 0) execlp("xdg-open", "xdg-open", address.c_str(), nullptr);
+  _exit(0);
 }
 
 void serve(viewer::ViewedImage& image, const ViewOptions& options) {
@@ -157,7 +164,6 @@ std::unique_ptr<viewer::ViewedImage> open_scene(const ViewOptions& options, unsi
 
 int view(const ViewOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGCHLD, SIG_IGN);  // the browser's starter is not waited for
   const DiagnosticSink sink = print_diagnostics(false);
   api_settings(options);  // before hours of reading
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
