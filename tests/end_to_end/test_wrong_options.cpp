@@ -174,7 +174,7 @@ TEST(WrongOption, SamplingAndOutput) {
       {
           {{"render", "glass.xml", "--quiet", "--bands", "400:1000:3"},
            "glass.xml:3:2: error: bsdf 'lens': int_ior: data from 400 to 700 nm do not cover channel 600-800 "
-           "nm"},
+           "nm: --bands names others"},
       });
 }
 

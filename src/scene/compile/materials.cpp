@@ -57,7 +57,8 @@ static void require_data(const Spectrum& spectrum, const FlatScene& scene, const
     for (const Channel& channel : *list) {
       if (channel.min_nm < data->min_nm * (1 - 1e-9) || channel.max_nm > data->max_nm * (1 + 1e-9)) {
         throw InputError(use.position,
-                         fmt::format("{}: data from {:g} to {:g} nm do not cover channel {:g}-{:g} nm",
+                         fmt::format("{}: data from {:g} to {:g} nm do not cover channel {:g}-{:g} nm: "
+                                     "--bands names others",
                                      use.name, data->min_nm, data->max_nm, channel.min_nm, channel.max_nm));
       }
     }

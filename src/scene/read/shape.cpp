@@ -210,6 +210,8 @@ Shape read_shape(ReadContext& context, Node& node) {
          object.label() + ": its bsdf is opaque, so that its interior medium has no effect");
   }
   warn_of_opposed_normals(context, object, shape);
+  for (Node* sensor : object.nested("sensor"))
+    if (sensor->type == "irradiancemeter") ObjectReader(*sensor).refuse_type({});
   object.finish();
   return shape;
 }

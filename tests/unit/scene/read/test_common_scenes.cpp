@@ -140,6 +140,13 @@ TEST(CommonScenes, CheckerboardsOnLampsMayBeBright) {
       "scene.xml:2:56: error: diffuse bsdf: reflectance: color0 10: must be in [0, 1]");
 }
 
+TEST(CommonScenes, SensorsInShapesAreRefused) {
+  expect_messages(
+      {{"irradiancemeter", complete_scene(R"(<shape type="cube"><sensor type="irradiancemeter"/></shape>)"),
+        "scene.xml:2:34: error: sensor type 'irradiancemeter' is not supported: only cameras with a film; radiance of "
+        "an even surface with a 'diffuse' of reflectance 1 is its irradiance over pi"}});
+}
+
 TEST(CommonScenes, ParametersOfOtherPurposeAreAccepted) {
   for (
       const char* text :
