@@ -48,7 +48,7 @@ def time_mitsuba(mitsuba, scene, options, seed):
 
 
 def load(mitsuba, name, options):
-    text = render_mitsuba.adapted(name, options.size, render_mitsuba.parse_bands(options.bands))
+    text = render_mitsuba.adapted(name, render_mitsuba.spectral_film(options.size, render_mitsuba.parse_bands(options.bands)))
     if options.robust:
         text = text.replace("</scene>", '<boolean name="embree_use_robust_intersections" value="true"/></scene>')
     return mitsuba.load_string(text)

@@ -2,6 +2,7 @@
 """Renders a scene file with Mitsuba 3 into the channels of kiloband, by independent replicates.
 
 Usage: render_mitsuba.py SCENE.xml --bands 400:700:8 -o OUT.hdr [--size WxH] [--spp N] [--replicates R] [--seed S]
+       render_mitsuba.py SCENE.xml --load     reads it only: exit code 2 and the reason if it is refused
        render_mitsuba.py --probe     prints the versions as JSON; `kiloband validate` asks so whether Mitsuba is there
 
 Writes OUT.r00.hdr ... (ENVI, 32-bit floats, integrals over the channels: W m^-2 sr^-1), as `kiloband render
@@ -36,7 +37,7 @@ def parse_bands(text):
     return [tuple(float(edge) for edge in band.split("-")) for band in text.split(",")]
 
 
-def _film(size, bands):
+def spectral_film(size, bands):
     """specfilm samples wavelengths by the sum of all responses, tabulated as coarsely as the narrowest one: `whole` keeps that
     above 0 wherever a channel is. It is the last band and is dropped afterwards."""
     film = ElementTree.Element("film", type="specfilm")
@@ -51,30 +52,48 @@ def _film(size, bands):
     return film
 
 
-def _with_includes(scene_file, folder):
+def _found(name, folders):
+    """The first file of that name, absolute; in the first folder if there is none."""
+    candidates = [folder / name for folder in folders]
+    return str(next((file for file in candidates if file.exists()), candidates[0]))
+
+
+def _with_includes(scene_file, folders):
     """The scene's XML with what it includes in its place, and absolute file names: all are in relation to the first scene."""
     root = ElementTree.parse(scene_file).getroot()
+    folders = folders + [folders[0] / path.get("value") for path in root.findall("path")]
     for element in root.iter():
         if element.tag == "spectrum" and "filename" in element.attrib:
-            element.set("filename", str(folder / element.get("filename")))
+            element.set("filename", _found(element.get("filename"), folders))
         if element.tag == "string" and element.get("name") == "filename":
-            element.set("value", str(folder / element.get("value")))
+            element.set("value", _found(element.get("value"), folders))
+    for element in root.iter("lookAt"):  # of Mitsuba 0.x; version 3.9.1 takes its other names
+        element.tag = "lookat"
     for place, element in reversed(list(enumerate(root))):
+        if element.tag == "path":
+            root.remove(element)
         if element.tag == "include":
             root.remove(element)
-            for inner in reversed(list(_with_includes(folder / element.get("filename"), folder))):
+            for inner in reversed(list(_with_includes(folders[0] / element.get("filename"), folders))):
                 root.insert(place, inner)
     return root
 
 
-def adapted(scene_file, size, bands):
-    """The scene's XML with another film and absolute file names."""
-    root = _with_includes(scene_file, pathlib.Path(scene_file).resolve().parent)
-    for element in root.iter():
-        for film in element.findall("film"):
-            place = list(element).index(film)
-            element.remove(film)
-            element.insert(place, _film(size, bands))
+# Of Mitsuba 0.x: version 3.9.1 refuses them, and they have no meaning for the image.
+OBSOLETE = {"sampler": ["dimension"], "integrator": ["strictNormals"], "film": ["banner"]}
+
+
+def adapted(scene_file, film=None):
+    """The scene's XML with absolute file names, and that film if one is given."""
+    root = _with_includes(scene_file, [pathlib.Path(scene_file).resolve().parent])
+    for parent in root.iter():
+        for child in list(parent):
+            if child.get("name") in OBSOLETE.get(parent.tag, []):
+                parent.remove(child)
+    for sensor in root.iter("sensor") if film is not None else ():
+        for old in sensor.findall("film"):
+            sensor.remove(old)
+        sensor.append(film)
     return ElementTree.tostring(root, encoding="unicode")
 
 
@@ -97,7 +116,7 @@ def find_mitsuba(variant):
 
 def render(mitsuba, scene_file, size, bands, spp, replicates, seed):
     """Returns float32 [replicate][line][sample][channel]. Mitsuba's seeds have 32 bits."""
-    scene = mitsuba.load_string(adapted(scene_file, size, bands))
+    scene = mitsuba.load_string(adapted(scene_file, spectral_film(size, bands)))
     seeds = [(seed * replicates + r) % 2**32 for r in range(replicates)]
     images = [numpy.array(mitsuba.render(scene, spp=spp, seed=s)) for s in seeds]
     return numpy.stack(images)[..., : len(bands)].astype(numpy.float32)
@@ -128,9 +147,10 @@ def parse():
     parser.add_argument("--replicates", type=int, default=32)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--variant", default="scalar_spectral")
+    parser.add_argument("--load", action="store_true", help="read the scene as it stands, and nothing else")
     parser.add_argument("--probe", action="store_true", help="print the versions of Mitsuba and what it needs, as JSON")
     options = parser.parse_args()
-    if not options.probe and not (options.scene and options.bands and options.output):
+    if not options.probe and not options.load and not (options.scene and options.bands and options.output):
         parser.error("SCENE.xml, --bands and -o are needed")
     return options
 
@@ -158,6 +178,10 @@ def main():
     if options.probe:
         versions = {"mitsuba": mitsuba.__version__, "variant": options.variant}
         print(json.dumps(versions | {"python": platform.python_version(), "numpy": numpy.__version__}))
+        return 0
+    if options.load:
+        mitsuba.set_log_level(mitsuba.LogLevel.Error)
+        mitsuba.load_string(adapted(options.scene))
         return 0
     bands = parse_bands(options.bands)
     size = [int(edge) for edge in options.size.split("x")]
