@@ -3,6 +3,9 @@ import {adapted} from './adapt.js';
 import {notice} from './notices.js';
 import {set, state} from './state.js';
 
+const kSceneSpacing_ms = 150;  // between two readings of /api/scene
+const kGone_ms = 1000;         // so long the stream of events has to say that the server has gone
+
 export class ServerError extends Error {
   constructor(message, status) {
     super(message);
@@ -51,33 +54,37 @@ export async function post(path, body) {
 
 export function show_error(error) {
   if (error.name === 'AbortError') return;
-  if (error instanceof ServerError)
-    notice(error.message, 'error');
-  else if (state.connected)
-    notice(`The request failed: ${error.message}`, 'error');
+  if (error instanceof ServerError) return notice(error.message, 'error');
+  // Where the server has gone, the stream of events says so (status.js) and this says nothing.
+  const tell = () => state.connected && notice(`The request failed: ${error.message}`, 'error');
+  setTimeout(tell, kGone_ms);
 }
 
 let source = null;
 let wait_ms = 500;
-let loading_scene = false;
+let loading = null;  // promise while /api/scene is read
 let scene_wanted = false;
 
-/** Reads /api/scene; calls that come while one is under way are one more. */
-export async function load_scene() {
-  scene_wanted = true;
-  if (loading_scene) return;
-  loading_scene = true;
+async function load_while_wanted() {
   try {
     while (scene_wanted) {
       scene_wanted = false;
-      set(adapted(await get_json('/api/scene')));
-      await new Promise((resolve) => setTimeout(resolve, 200));
+      const asked_ms = performance.now();
+      set({...adapted(await get_json('/api/scene')), scene_asked_ms: asked_ms});
+      await new Promise((resolve) => setTimeout(resolve, kSceneSpacing_ms));
     }
   } catch (error) {
     show_error(error);
   } finally {
-    loading_scene = false;
+    loading = null;
   }
+}
+
+/** Reads /api/scene; calls that come while it is being read are one more reading. Settles when the last is done. */
+export function load_scene() {
+  scene_wanted = true;
+  loading ??= load_while_wanted();
+  return loading;
 }
 
 /** Keeps the stream of events open while the page is visible, and opens it again when the server comes back. */

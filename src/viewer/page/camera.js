@@ -8,38 +8,42 @@ import {add, cross, dot, length, minus, rotated, scaled, unit} from './vectors.j
 const kRest_ms = 180;      // so long after the last step the movement has ended
 const kMinCosine = 0.999;  // of the angle to the upward axis: the camera never looks along it
 let pivot = null;
-let sending = false;
+let sending = null;   // promise while there is something to send
+let answered_ms = 0;  // when the server has last answered to a camera of ours
 let unsent = null;
 let rest_timer = 0;
 let moving = false;
 
 export const has_camera = () => Boolean(state.scene?.camera);
 
+/** The server's camera counts unless it was asked for before it knew ours. */
 on('scene', () => {
-  if (!has_camera()) return;
-  if (!moving && !sending) {
-    if (!state.camera || JSON.stringify(state.scene.camera.pivot) !== state.pivot_text)
-      pivot = state.scene.camera.pivot;
-    set({camera: state.scene.camera, pivot_text: JSON.stringify(state.scene.camera.pivot)});
-  }
+  if (!has_camera() || moving || sending || state.scene_asked_ms < answered_ms) return;
+  const pivot_text = JSON.stringify(state.scene.camera.pivot);
+  if (pivot_text !== state.pivot_text) pivot = state.scene.camera.pivot;
+  set({camera: state.scene.camera, pivot_text});
 });
 
-async function send() {
-  if (sending) return;
-  sending = true;
+async function send_all() {
   while (unsent) {
     const body = unsent;
     unsent = null;
     if (!(await post('/api/camera', body))) unsent = null;
   }
-  sending = false;
+  sending = null;
+  answered_ms = performance.now();
+  load_scene();
+}
+
+function send(body) {
+  unsent = body;
+  sending ??= send_all();
 }
 
 function tell(still) {
   const {origin, target, up, fov_deg} = state.camera;
-  unsent = {origin, target, up, moving: !still};
-  if (fov_deg !== undefined && fov_deg !== null) unsent.fov_deg = fov_deg;
-  send();
+  const lens = fov_deg === undefined || fov_deg === null ? {} : {fov_deg};
+  send({origin, target, up, ...lens, moving: !still});
 }
 
 /** Sets members of the camera as one step of a movement. */
@@ -113,10 +117,9 @@ export function fly(sideways, upwards, forwards) {
   shift(add(add(scaled(right, sideways), scaled(up, upwards)), scaled(forward, forwards)), true);
 }
 
-export async function reset_camera() {
+export function reset_camera() {
   clearTimeout(rest_timer);
   moving = false;
-  unsent = null;
   pivot = state.scene.camera.pivot;
-  if (await post('/api/camera', {reset: true})) load_scene();
+  send({reset: true});
 }

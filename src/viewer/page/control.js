@@ -13,38 +13,52 @@ export const restart = () => post('/api/control', {action: 'restart'});
 
 const change = (settings) => post('/api/settings', settings);
 
-/** "400:700:100" as three fields; what is no such text is one field. */
+/** [first, last, count] of channels that follow on each other and are equally wide; null of others. */
+function equal_channels() {
+  const {channels} = state.scene;
+  const first = channels[0].min_nm;
+  const last = channels[channels.length - 1].max_nm;
+  const at = (i) => first + ((last - first) * i) / channels.length;
+  const near = (value, i) => Math.abs(value - at(i)) < 1e-4 * (at(1) - at(0));
+  return channels.every(({min_nm, max_nm}, i) => near(min_nm, i) && near(max_nm, i + 1)) ?
+      [first, last, channels.length] :
+      null;
+}
+
+function band_list(settings) {
+  const send = () => whole.value.trim() && change({bands: whole.value.trim()});
+  const whole = element('input', {type: 'text', spellcheck: 'false', autocomplete: 'off', onchange: send});
+  whole.value = settings.bands ?? '';
+  whole.placeholder = `${state.scene.channels.length}, as in the scene file`;
+  whole.title = 'First:last:count in nm, or a list such as 400-410, 450-500';
+  return [row('Channels', whole)];
+}
+
+/** First, last and number of equal channels as three fields; others as the text that asks for them. */
 function band_rows(settings) {
-  const parts = /^([^:]+):([^:]+):(\d+)$/.exec(settings.bands ?? '');
-  if (!parts) {
-    const whole = element(
-        'input',
-        {type: 'text', spellcheck: 'false', autocomplete: 'off', onchange: () => change({bands: whole.value.trim()})});
-    whole.value = settings.bands ?? '';
-    return [row('Channels', whole)];
-  }
+  const parts = equal_channels();
+  if (!parts) return band_list(settings);
   const send = () => {
     const [low, high, count] = [from, to, number_of].map((field) => field.value.trim());
     if (low && high && count) change({bands: `${low}:${high}:${count}`});
   };
-  const from = number_field(parts[1], send, {'aria-label': 'Shortest wavelength, nm'});
-  const to = number_field(parts[2], send, {'aria-label': 'Longest wavelength, nm'});
-  const number_of = number_field(parts[3], send);
+  const from = number_field(parts[0], send, {'aria-label': 'Shortest wavelength, nm'});
+  const to = number_field(parts[1], send, {'aria-label': 'Longest wavelength, nm'});
+  const number_of = number_field(parts[2], send);
   return [row('Range', from, ' – ', to, element('span', {class: 'quiet'}, 'nm')), row('Channels', number_of)];
 }
 
 function backend_rows(settings) {
   const backends = state.scene.choices?.backends ?? [];
-  const index =
-      backends.findIndex((b) => b.name === settings.backend && (b.device === settings.device || b.index === undefined));
-  const at = Math.max(0, index);
-  const list = backends.map(
-      (b, i) => [i, b.name === 'cpu' ? `CPU: ${b.device}` : `${b.name === 'opencl' ? 'OpenCL' : b.name}: ${b.device}`]);
+  // A device of OpenCL has an index among them; the CPU is one.
+  const is_used = (b) => b.name === settings.backend && (b.device === settings.device || b.index === null);
+  const at = Math.max(0, backends.findIndex(is_used));
+  const kinds = {cpu: 'CPU', opencl: 'OpenCL'};
+  const list = backends.map((b, i) => [i, `${kinds[b.name] ?? b.name}: ${b.device}`]);
   const pick = (chosen) => {
-    const backend = backends[Number(chosen)];
-    const method = backend.methods.includes(settings.method) ? settings.method : backend.methods[0];
-    change(
-        {backend: backend.name, device: backend.index === undefined ? backend.device : String(backend.index), method});
+    const {name, index, methods} = backends[Number(chosen)];
+    const method = methods.includes(settings.method) ? settings.method : methods[0];
+    change({backend: name, method, ...(index === null ? {} : {device: String(index)})});
   };
   const rows = [];
   if (list.length) rows.push(row('Device', select(list, at, pick)));
@@ -81,7 +95,8 @@ export function render_tab(tab) {
   };
 }
 
-export const render_shape = () => JSON.stringify([state.scene.settings, state.scene.choices?.backends]);
+export const render_shape = () =>
+    JSON.stringify([state.scene.settings, state.scene.choices?.backends, state.scene.channels]);
 
 export async function copy_camera() {
   try {

@@ -4,14 +4,20 @@ import {get, show_error} from './api.js';
 import {show_bitmap} from './image.js';
 import {frame_parameters, is_rendering, on, set, state} from './state.js';
 
-const kFastFramesPerSecond = 2;
+const kFast = {
+  above: 2.5,
+  below: 1.5
+};  // frames per second from which on, and down to which, frames are JPEG
 let wake = () => {};
 let waiting = null;    // AbortController of a request that waits for a frame that is not there yet
 let shown_query = '';  // parameters of the frame that is shown
 let shown_number = 0;
 
+let fast = false;
 function quality() {
-  return is_rendering() && (state.status.frames_per_second ?? 0) > kFastFramesPerSecond ? 'lossy' : 'exact';
+  const rate = state.status?.frames_per_second ?? 0;
+  fast = is_rendering() && rate > (fast ? kFast.below : kFast.above);
+  return fast ? 'lossy' : 'exact';
 }
 
 function query_of_view() {

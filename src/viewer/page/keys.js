@@ -143,7 +143,7 @@ function fly_step(last) {
       flying = false;
       return rest();
     }
-    const seconds = Math.min(0.1, (now - last) / 1000);
+    const seconds = Math.min(0.1, Math.max(0, now - last) / 1000);
     const speed = 0.6 * state.camera.scale_m * (state.fast ? 4 : 1) * seconds;
     const sum = [0, 1, 2].map((i) => [...held].reduce((total, key) => total + kFly[key][i], 0) * speed);
     if (sum.some((v) => v !== 0)) fly(...sum);

@@ -182,7 +182,9 @@ export function materials_tab(tab) {
   const fill = (focus) => {
     const width = Math.max(240, tab.clientWidth - 34);
     list.replaceChildren(...state.scene.spectra.map((spectrum) => entry(spectrum, width, fill)));
-    if (focus) list.querySelector(`[data-spectrum="${CSS.escape(focus)}"]`)?.focus();
+    if (!focus) return;
+    list.querySelector(`[data-spectrum="${CSS.escape(focus)}"]`)?.focus();
+    list.querySelector('li.open')?.scrollIntoView({block: 'nearest'});
   };
   tab.append(list);
   fill();

@@ -91,7 +91,7 @@ function show() {
   show_strip(tabs, chosen);
   const shape = chosen.name + chosen.shape();
   if (shape !== shown) {
-    const place = focus_place();
+    const place = shown.startsWith(chosen.name) ? focus_place() : -1;
     shown = shape;
     panel.replaceChildren();
     panel.classList.toggle('tall', chosen.name === 'scene');

@@ -92,6 +92,11 @@ class Browser:
             chain.key_up(holding)
         chain.perform()
 
+    def choose(self, mode):
+        """Its key, and its frame."""
+        self.press(str(1 + self.value("return state.scene.modes.indexOf(given)", mode)))
+        self.wait("return state.frame.mode === given", f"a frame of {mode}", mode)
+
     def point_of(self, x, y):
         """Offset from the middle of the canvas (which selenium counts from) of a film pixel's middle."""
         return self.value(

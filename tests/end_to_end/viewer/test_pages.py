@@ -114,8 +114,7 @@ class Pages(unittest.TestCase):
         try:
             self.browser.open(self.viewer.address)
             second.open(self.viewer.address)
-            second.press("3")
-            second.wait("return state.frame.mode === 'channel'", "a channel in the second page")
+            second.choose("channel")
             self.assertEqual(self.browser.value("return state.frame.mode"), "color")
             second.wait("return state.status.clients === 2", "two pages in the status")
             self.assertIn("2 pages", " ".join(second.texts("#status span")))
@@ -129,13 +128,11 @@ class Pages(unittest.TestCase):
         self.browser.driver.switch_to.new_window("window")
         try:
             self.browser.open(self.viewer.address)
-            self.browser.press("2")
-            self.browser.wait("return state.frame.mode === 'false'", "false colour in the second window")
+            self.browser.choose("false")
         finally:
             self.browser.driver.close()
             self.browser.driver.switch_to.window(first)
-        self.browser.press("3")
-        self.browser.wait("return state.frame.mode === 'channel'", "the first window goes on")
+        self.browser.choose("channel")
 
     def test_closed_and_opened_again(self):
         self.browser.open(self.viewer.address)
@@ -159,9 +156,9 @@ class Pages(unittest.TestCase):
             wait_until(lambda: self.browser.find("#offline").is_displayed(), "word of the server's absence")
             viewer = Viewer(self.cube, port=viewer.port)
             self.browser.wait("return state.connected", "the page has found the server")
-            self.browser.press("3")
-            self.browser.wait("return state.frame.mode === 'channel'", "a frame of the new server")
+            self.browser.choose("channel")
             self.assertFalse(self.browser.find("#offline").is_displayed())
+            self.assertEqual(self.browser.texts(".notice"), [])
         finally:
             viewer.stop()
         self.browser.driver.get("about:blank")

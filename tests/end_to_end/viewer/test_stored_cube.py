@@ -66,13 +66,20 @@ class StoredCube(unittest.TestCase):
         modes = self.browser.value("return state.scene.modes")
         self.assertEqual(modes[:1], ["color"])
         pictures = {}
-        for index, mode in enumerate(modes):
-            self.browser.press(str(index + 1))
-            self.wait_for_mode(mode)
+        for mode in modes:
+            self.browser.choose(mode)
             scalar = self.browser.value("return state.frame.low !== undefined && state.frame.low !== null")
             self.assertEqual(self.browser.find("#colorbar").is_displayed(), scalar, mode)
             pictures[mode] = self.browser.picture()
         self.assertEqual(len(set(pictures.values())), len(modes), pictures)
+
+    def test_a_camera_s_response_becomes_a_mode(self):
+        table = self.path / "camera.csv"
+        table.write_text("wavelength_nm,red,green,blue\n400,0,0,1\n500,0,1,1\n600,1,1,0\n700,1,0,0\n")
+        self.browser.find("#tab input[type=file]").send_keys(str(table))
+        self.wait_for_mode("response:camera")
+        self.assertIn("camera", self.browser.texts("#tab .modes button"))
+        self.assertEqual(self.browser.find("#tab .modes [aria-checked=true]").text, "camera")
 
     def test_a_click_plots_the_pixel_of_the_file(self):
         for x, y in [(10, 40), (SIZE - 1, 0)]:
@@ -109,8 +116,7 @@ class StoredCube(unittest.TestCase):
         self.assertEqual(self.browser.value("return state.pins.length"), 1)
 
     def test_a_channel_is_painted_by_the_map_between_the_bounds(self):
-        self.browser.press("3")
-        self.wait_for_mode("channel")
+        self.browser.choose("channel")
         high = max(self.cube.at(x, y, 9) for x in range(SIZE) for y in range(SIZE)) / 4
         self.browser.value(
             """const {set_view} = await import('/state.js');
@@ -149,8 +155,7 @@ class StoredCube(unittest.TestCase):
         self.assertGreater(len(self.browser.texts("#plot .dygraph-axis-label-y")), 1)
 
     def test_pixel_values_at_high_zoom(self):
-        self.browser.press("3")
-        self.wait_for_mode("channel")
+        self.browser.choose("channel")
         self.browser.value("const {zoom} = await import('/image.js'); zoom(12);")
         self.browser.wait("return state.values", "values of pixels")
 

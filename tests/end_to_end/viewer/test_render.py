@@ -1,0 +1,210 @@
+"""A scene that is rendered while it is looked at: refinement, camera, materials, settings, pausing, saving."""
+import pathlib
+import tempfile
+import unittest
+
+from browser import ActionChains, Browser, Keys
+from program import BOX, Cube, Viewer, wait_until
+
+CHANNELS = 16
+SIZE = 64
+
+
+class Render(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory(prefix="kiloband-viewer-")
+        cls.saved = pathlib.Path(cls.folder.name)
+        cls.viewer = Viewer(BOX, "-D", f"res={SIZE}", "-D", f"bands=400:700:{CHANNELS}", "--output-dir", cls.saved)
+        cls.browser = Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        status = cls.viewer.stop()
+        cls.folder.cleanup()
+        assert status == 0, f"kiloband view has ended with {status}"
+
+    def setUp(self):
+        self.browser.open(self.viewer.address)
+        self.start_afresh()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints(), [])
+
+    def start_afresh(self):
+        """The scene file's camera and spectra, rendering."""
+        revision = self.browser.value(
+            """const {post} = await import('/api.js');
+            for (const id of Object.keys(state.edited ?? {})) await post('/api/spectrum', {id, set: {reset: true}});
+            await post('/api/camera', {reset: true});
+            await post('/api/control', {action: 'resume'});
+            return (await (await fetch('/api/scene')).json()).revision;""")
+        self.browser.wait("return state.frame.revision >= given", "the scene file's camera", revision)
+        self.wait_for_samples(2)
+
+    def samples(self):
+        return self.browser.value("return state.frame.samples")
+
+    def revision(self):
+        return self.browser.value("return state.frame.revision")
+
+    def wait_for_samples(self, least):
+        self.browser.wait("return state.frame.samples >= given && state.frame.width === state.frame.full_width", f"{least} samples", least)
+
+    def wait_for_revision_after(self, revision):
+        self.browser.wait("return state.frame.revision > given", f"a restart after revision {revision}", revision)
+
+    def pause(self):
+        self.browser.press(Keys.SPACE)
+        self.browser.wait("return state.status.state === 'paused'", "the pause")
+
+    def spectrum(self, x, y):
+        """What the plot holds once it belongs to the newest frame."""
+        self.browser.wait("return state.curves_of && state.curves_of.frame === state.status.frame", "spectra of the newest frame")
+        return self.browser.value("return state.curves.find((curve) => curve.select === given)", f"{x},{y}")
+
+    def open_tab(self, name):
+        self.browser.find(f"#tab-{name}").click()
+
+    def test_refines(self):
+        first, before = self.browser.value("return [state.frame.frame, state.frame.samples]")
+        self.wait_for_samples(before + 5)
+        self.assertGreater(self.browser.value("return state.frame.frame"), first)
+        self.assertEqual(self.browser.texts("#status .state"), ["Rendering"])
+        self.browser.wait("return state.status.error > 0", "an error, from the second replicate on")
+        text = " ".join(self.browser.texts("#status span"))
+        for part in ("samples per pixel", "paths/s", "frames/s", "error"):
+            self.assertIn(part, text)
+
+    def test_the_plot_holds_what_is_saved(self):
+        self.browser.click(20, 50)
+        self.browser.click(50, 30)
+        self.browser.drag((10, 40), (14, 44), holding=Keys.SHIFT)
+        self.wait_for_samples(16)
+        self.pause()
+        shown = {(x, y): self.spectrum(x, y)["mean"] for x, y in [(20, 50), (50, 30)]}
+        region = self.browser.value("return state.curves.find((curve) => curve.select === '10,40,14,44')")
+        self.open_tab("save")
+        name = self.browser.find("#tab input[type=text]")
+        name.clear()
+        name.send_keys("seen")
+        self.browser.find("#tab [data-value=envi]").click()
+        self.browser.find("#tab .primary").click()
+        wait_until(lambda: any("seen.hdr" in text for text in self.browser.texts(".files li")), "the saved file")
+        cube = Cube(self.saved / "seen.hdr")
+        for (x, y), values in shown.items():
+            for band in range(CHANNELS):
+                self.assertAlmostEqual(values[band], cube.at(x, y, band), delta=2e-6 * max(values))
+        self.assertEqual(region["pixels"], 25)
+        for value, true in zip(region["mean"], cube.mean(10, 40, 14, 44)):
+            self.assertAlmostEqual(value, true, delta=2e-6 * max(region["mean"]))
+
+    def test_modes_do_not_restart(self):
+        revision, samples = self.revision(), self.samples()
+        pictures = set()
+        modes = self.browser.value("return state.scene.modes")
+        for mode in modes:
+            self.browser.choose(mode)
+            pictures.add(self.browser.picture())
+        self.assertEqual(len(pictures), len(modes))
+        self.assertEqual(self.revision(), revision)
+        self.assertGreaterEqual(self.samples(), samples)
+
+    def test_orbit_restarts_and_reset_returns(self):
+        self.wait_for_samples(8)
+        self.pause()
+        before, revision = self.browser.picture(), self.revision()
+        start = self.browser.value("return state.scene.camera.origin")
+        self.browser.press(Keys.SPACE, "o")
+        self.browser.drag_away(120, 40)
+        self.wait_for_revision_after(revision)
+        self.wait_for_samples(1)
+        moved = self.browser.wait("return state.scene.camera.origin[0] !== given[0] && state.scene.camera.origin", "the moved camera", start)
+        self.assertNotEqual(moved, start)
+        self.assertNotEqual(self.browser.picture(), before)
+        distance = lambda point, pivot: sum((a - b) ** 2 for a, b in zip(point, pivot)) ** 0.5
+        pivot = self.browser.value("return state.scene.camera.pivot")
+        self.assertAlmostEqual(distance(moved, pivot), distance(start, pivot), delta=1e-4)
+        self.browser.press(Keys.HOME)
+        self.browser.wait("return String(state.scene.camera.origin) === String(given)", "the camera of the scene file", start)
+
+    def test_keys_fly(self):
+        start = self.browser.value("return state.scene.camera.origin")
+        ActionChains(self.browser.driver).key_down("w").perform()
+        try:
+            self.browser.wait("return Math.hypot(...state.camera.origin.map((v, i) => v - given[i])) > 0.05", "flying", start)
+        finally:
+            ActionChains(self.browser.driver).key_up("w").perform()
+        self.browser.wait("return String(state.scene.camera.origin) === String(state.camera.origin)", "the server's camera")
+        x, y, z = (a - b for a, b in zip(self.browser.value("return state.camera.origin"), start))
+        self.assertAlmostEqual(abs(x) + abs(y), 0, delta=1e-6)
+        self.assertGreater(z, 0.05)
+
+    def test_an_edited_reflectance_restarts(self):
+        self.browser.click(32, 58)
+        self.wait_for_samples(16)
+        before = self.browser.wait("return state.curves[0]", "the floor's spectrum")["mean"]
+        revision = self.revision()
+        self.open_tab("scene")
+        white = next(s["id"] for s in self.browser.value("return state.scene.spectra") if "white" in s["owner"])
+        self.browser.find(f"[data-spectrum={white}]").click()
+        field = self.browser.find(".editor input.number")
+        field.send_keys("0.05", Keys.ENTER)
+        self.wait_for_revision_after(revision)
+        self.wait_for_samples(16)
+        after = self.browser.wait("return state.curves_of.revision > given && state.curves[0]", "the dark floor's", revision)["mean"]
+        self.assertLess(sum(after), 0.3 * sum(before))
+        self.browser.find(".editor .alone button").click()
+        self.browser.wait("return !Object.values(state.edited).some(Boolean)", "the scene file's reflectance")
+
+    def test_other_channels(self):
+        revision = self.revision()
+        self.open_tab("render")
+        fields = self.browser.driver.find_elements("css selector", "#tab input.number")
+        fields[2].clear()
+        fields[2].send_keys("8", Keys.ENTER)
+        self.wait_for_revision_after(revision)
+        self.browser.wait("return state.scene.channels.length === 8 && state.frame.samples > 0", "eight channels")
+        self.browser.click(20, 50)
+        self.browser.wait("return state.curves.length && state.curves[0].mean.length === 8", "a curve of eight")
+        revision = self.revision()
+        self.browser.value("const {post} = await import('/api.js'); await post('/api/settings', {bands: given});", f"400:700:{CHANNELS}")
+        self.wait_for_revision_after(revision)
+        self.browser.wait("return state.scene.channels.length === given", "all channels", CHANNELS)
+
+    def test_refused_settings_are_told(self):
+        self.open_tab("render")
+        fields = self.browser.driver.find_elements("css selector", "#tab input.number")
+        fields[0].clear()
+        fields[0].send_keys("900", Keys.ENTER)
+        wait_until(lambda: self.browser.texts(".notice.error"), "the server's refusal")
+        self.assertEqual(self.browser.value("return state.scene.channels.length"), CHANNELS)
+        self.browser.press(Keys.ESCAPE)
+        self.browser.driver.get_log("browser")  # Chromium notes the refused request
+
+    def test_goes_on_while_no_page_is_open(self):
+        samples = self.samples()
+        self.browser.driver.get("about:blank")
+        self.browser.open(self.viewer.address)
+        self.wait_for_samples(samples + 1)
+        self.assertGreater(self.browser.value("return state.frame.samples"), samples)
+
+    def test_pause_stops_the_samples(self):
+        self.pause()
+        samples = self.browser.value("return state.status.samples")
+        events = self.browser.value(
+            """const source = new EventSource('/api/events');
+            const seen = [];
+            await new Promise((done) => source.addEventListener('status', (event) => {
+              if (seen.push(JSON.parse(event.data).samples) === 3) done();
+            }));
+            source.close();
+            return seen;""")
+        self.assertEqual(set(events), {samples})
+        self.browser.press(Keys.SPACE)
+        self.browser.wait("return state.status.samples > given", "more samples", samples)
+
+
+if __name__ == "__main__":
+    unittest.main()
