@@ -22,7 +22,8 @@ class Scene(unittest.TestCase):
 
     def test_film_and_file_names(self):
         scene = ROOT / "scenes/cornell_box/cornell_box.xml"
-        root = ElementTree.fromstring(render_mitsuba.adapted(scene, (6, 4), [(400.0, 500.0), (600.0, 700.0)]))
+        film = render_mitsuba.spectral_film((6, 4), [(400.0, 500.0), (600.0, 700.0)])
+        root = ElementTree.fromstring(render_mitsuba.adapted(scene, film))
         (film,) = root.iter("film")
         self.assertEqual(film.get("type"), "specfilm")
         self.assertEqual([e.get("value") for e in film.findall("integer")], ["6", "4"])
@@ -35,6 +36,24 @@ class Scene(unittest.TestCase):
         self.assertEqual(len(files), 12)
         for file in files:
             self.assertTrue(pathlib.Path(file).is_absolute() and pathlib.Path(file).is_file(), file)
+
+    def test_old_scenes(self):
+        """Every sensor has a film; files in <path> folders are found; what version 3.9.1 refuses of old files is gone."""
+        text = """<scene version="0.6.0"><path value="far"/>
+            <sensor type="perspective"><transform name="toWorld"><lookAt origin="0,0,1" target="0,0,0"/></transform>
+            <sampler type="independent"><integer name="dimension" value="1"/><integer name="sampleCount" value="4"/></sampler></sensor>
+            <shape type="obj"><string name="filename" value="a.obj"/></shape></scene>"""
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder).resolve() / "old.xml"
+            scene.write_text(text)
+            (scene.parent / "far").mkdir()
+            (scene.parent / "far" / "a.obj").write_text("")
+            root = ElementTree.fromstring(render_mitsuba.adapted(scene, ElementTree.Element("film", type="hdrfilm")))
+            self.assertEqual([e.get("type") for e in root.findall("sensor/film")], ["hdrfilm"])
+            self.assertEqual(len(list(root.iter("lookat"))), 1)
+            self.assertEqual([e.get("name") for e in root.iter("integer")], ["sampleCount"])
+            self.assertEqual(root.find("shape/string").get("value"), str(scene.parent / "far" / "a.obj"))
+            self.assertEqual(root.findall("path"), [])
 
     def test_scenes_have_box_filters(self):
         """Other filters treat the image's border differently in the two programs."""
