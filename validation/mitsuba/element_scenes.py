@@ -113,7 +113,7 @@ def write_meshes(folder):
     obj = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(f"vt {(x + 1) / 2} {(y + 1) / 2}\n" for x, y, z in CORNERS)
     (folder / "tent.obj").write_text(obj + "".join("f " + " ".join(f"{i + 1}/{i + 1}" for i in face) + "\n" for face in FACES))
     head = f"ply\nformat ascii 1.0\nelement vertex {len(CORNERS)}\n" + "".join(f"property float {n}\n" for n in "xyzrgb")
-    head += f"element face {len(FACES)}\nproperty list uchar int vertex_indices\nproperty float w\nend_header\n"
+    head += f"element face {len(FACES)}\nproperty list uchar int vertex_indices\nproperty float w_1\nend_header\n"
     shades = [0.3, 0.4, 0.5, 0.6, 0.7]
     body = "".join(f"{x} {y} {z} {s} {s} {s}\n" for (x, y, z), s in zip(CORNERS, shades))
     (folder / "tent.ply").write_text(head + body + "".join(f"3 {a} {b} {c} {0.2 + 0.1 * i}\n" for i, (a, b, c) in enumerate(FACES)))
