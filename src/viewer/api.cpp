@@ -149,12 +149,9 @@ Response Api::frame(const Request& request, const std::function<bool()>& gone) {
   const ViewParameters view = parse_view(request);
   const uint64_t after = parse_count(request, "after");
   const auto give_up = std::chrono::steady_clock::now() + kLongestWait;
-  while (!image_.wait_for_frame(after, kWaitStep)) {
-    if (gone() || std::chrono::steady_clock::now() > give_up) return {204, "", "", {}};
-  }
   Plane plane;
   json facts;
-  image_.read([&](const ImageView& seen) {
+  const auto look = [&](const ImageView& seen) {
     plane = make_plane(seen.pixels, view, responses_, image_.threads());
     const Legend legend = legend_of(view, seen.pixels.bands());
     facts = stamp_json(seen.stamp);
@@ -164,7 +161,10 @@ Response Api::frame(const Request& request, const std::function<bool()>& gone) {
                   {"full_height", seen.full_height},
                   {"unit", legend.unit},
                   {"label", legend.label}});
-  });
+  };
+  while (!image_.read_newer(after, kWaitStep, look)) {
+    if (gone() || std::chrono::steady_clock::now() > give_up) return {204, "", "", {}};
+  }
   const Shown shown = show(plane, view);
   facts.update(shown.facts);
   Response response{200, view.exact ? "image/png" : "image/jpeg", "", {}};

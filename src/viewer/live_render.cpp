@@ -75,13 +75,16 @@ class LiveRender final : public ViewedImage, public RenderControls {
   bool wait_for_frame(uint64_t after, std::chrono::milliseconds most) override {
     return board_.wait_for_frame(after, most);
   }
+  bool read_newer(uint64_t after, std::chrono::milliseconds most,
+                  const std::function<void(const ImageView&)>& look) override {
+    const auto is_newer = [this, after] {
+      return state_.film() && state_.status().newest.frame > after && !state_.status().blank;
+    };
+    return thread_->perform_when(
+        is_newer, [this, look] { show(look); }, most);
+  }
   void read(const std::function<void(const ImageView&)>& look) override {
-    thread_->perform([&] {
-      const LiveFilm* const film = state_.film();
-      if (!film) throw InputError("there is no image yet");
-      const auto [width, height] = state_.full_size();
-      look({*film, state_.status().newest, width, height});
-    });
+    thread_->perform([&] { show(look); });
   }
   std::map<std::string, std::string> metadata() override {
     std::map<std::string, std::string> metadata;
@@ -116,6 +119,14 @@ class LiveRender final : public ViewedImage, public RenderControls {
   }
 
  private:
+  /// On the render thread.
+  void show(const std::function<void(const ImageView&)>& look) {
+    const LiveFilm* const film = state_.film();
+    if (!film) throw InputError("there is no image yet");
+    const auto [width, height] = state_.full_size();
+    look({*film, state_.status().newest, width, height});
+  }
+
   /// interrupts: what is being rendered will not be needed
   void change(const std::function<void()>& action, bool interrupts) {
     if (interrupts) interrupt_ = true;

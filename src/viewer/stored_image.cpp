@@ -88,6 +88,12 @@ class StoredImage final : public ViewedImage {
     std::this_thread::sleep_for(most);
     return false;
   }
+  bool read_newer(uint64_t after, std::chrono::milliseconds most,
+                  const std::function<void(const ImageView&)>& look) override {
+    if (!wait_for_frame(after, most)) return false;
+    read(look);
+    return true;
+  }
   void read(const std::function<void(const ImageView&)>& look) override {
     look({pixels_, stamp(), info().width, info().height});
   }

@@ -28,13 +28,43 @@ void TaskThread::perform(std::function<void()> task) {
   done.get();
 }
 
+bool TaskThread::perform_when(std::function<bool()> ready, std::function<void()> task,
+                              std::chrono::milliseconds most) {
+  const auto waiting = std::make_shared<Waiting>(Waiting{std::move(ready), Task(std::move(task))});
+  std::future<void> done = waiting->task.get_future();
+  {
+    const std::lock_guard lock(mutex_);
+    if (ending_) throw std::runtime_error("the viewer is ending");
+    waiting_.push_back(waiting);
+    asked_ = true;
+  }
+  wake_.notify_all();
+  if (done.wait_for(most) == std::future_status::timeout) {
+    const std::lock_guard lock(mutex_);
+    if (std::erase(waiting_, waiting) > 0) return false;
+  }
+  done.get();
+  return true;
+}
+
+/// With the lock held.
+void TaskThread::take_ready() {
+  asked_ = false;
+  std::erase_if(waiting_, [this](const std::shared_ptr<Waiting>& waiting) {
+    const bool ready = waiting->ready();
+    if (ready) tasks_.push_back(std::move(waiting->task));
+    return ready;
+  });
+}
+
 void TaskThread::run() {
   bool works = true;
   std::unique_lock lock(mutex_);
   for (;;) {
-    wake_.wait(lock, [&] { return works || ending_ || !tasks_.empty(); });
+    wake_.wait(lock, [&] { return works || ending_ || asked_ || !tasks_.empty(); });
+    take_ready();
     while (!tasks_.empty()) {
-      std::packaged_task<void()> task = std::move(tasks_.front());
+      Task task = std::move(tasks_.front());
       tasks_.pop_front();
       lock.unlock();
       task();

@@ -68,6 +68,10 @@ class ViewedImage {
 
   /// Waits until there is a frame with a number above `after`. False: there is none yet.
   virtual bool wait_for_frame(uint64_t after, std::chrono::milliseconds most) = 0;
+  /// Calls `look` with the image as soon as there is a frame with a number above `after`: before the next one is begun, so
+  /// that who asks in time gets every frame. False: there was none within `most`.
+  virtual bool read_newer(uint64_t after, std::chrono::milliseconds most,
+                          const std::function<void(const ImageView&)>& look) = 0;
   /// Calls `look` with the newest image, which stays as it is meanwhile.
   /// throws InputError  there is none yet; what look() throws
   virtual void read(const std::function<void(const ImageView&)>& look) = 0;

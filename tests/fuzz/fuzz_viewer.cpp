@@ -130,6 +130,12 @@ class SameThreadRender final : public ViewedImage, public RenderControls {
   bool wait_for_frame(uint64_t after, std::chrono::milliseconds) override {
     return state_.status().newest.frame > after && state_.film();
   }
+  bool read_newer(uint64_t after, std::chrono::milliseconds most,
+                  const std::function<void(const ImageView&)>& look) override {
+    if (!wait_for_frame(after, most)) return false;
+    read(look);
+    return true;
+  }
   void read(const std::function<void(const ImageView&)>& look) override {
     if (!state_.film()) throw InputError("there is no image yet");
     const auto [width, height] = state_.full_size();

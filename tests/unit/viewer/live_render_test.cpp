@@ -201,6 +201,12 @@ TEST_F(EndlessWall, PausesAndGoesOn) {
   const ViewStatus paused = image_->status();
   EXPECT_EQ(paused.state, "paused");
   EXPECT_FALSE(image_->wait_for_frame(paused.newest.frame, std::chrono::milliseconds(300)));
+  const auto nobody = [](const ImageView&) { FAIL() << "there is no newer frame"; };
+  EXPECT_FALSE(image_->read_newer(paused.newest.frame, std::chrono::milliseconds(50), nobody));
+  uint64_t seen = 0;
+  const auto look = [&seen](const ImageView& view) { seen = view.stamp.frame; };
+  EXPECT_TRUE(image_->read_newer(paused.newest.frame - 1, std::chrono::seconds(20), look));
+  EXPECT_EQ(seen, paused.newest.frame);
   image_->controls()->resume();
   EXPECT_TRUE(image_->wait_for_frame(paused.newest.frame, std::chrono::seconds(20)));
   EXPECT_EQ(image_->status().newest.revision, paused.newest.revision) << "samples are kept";
