@@ -19,9 +19,9 @@
 #include "base/text.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "src_gpu/device/device.hpp"
-#include "viewer/http_server.hpp"
-#include "viewer/live_render.hpp"
-#include "viewer/stored_image.hpp"
+#include "viewer/api/stored_image.hpp"
+#include "viewer/live/live_render.hpp"
+#include "viewer/server/http_server.hpp"
 
 namespace kiloband {
 namespace {

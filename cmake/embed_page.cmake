@@ -3,7 +3,7 @@
 # Texts are cut into raw string literals of at most 8000 bytes, below the limits of all compilers.
 set(chunk 8000)
 string(REPLACE "|" ";" files "${FILES}")
-set(text "// Made by cmake/embed_page.cmake.\n#include \"viewer/page_files.hpp\"\n\n")
+set(text "// Made by cmake/embed_page.cmake.\n#include \"viewer/api/page_files.hpp\"\n\n")
 string(APPEND text "namespace kiloband::viewer {\n\nconst std::map<std::string_view, std::string_view>& page_files() {\n")
 string(APPEND text "  static const std::map<std::string_view, std::string_view> kFiles{\n")
 foreach(entry IN LISTS files)

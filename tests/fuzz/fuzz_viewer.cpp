@@ -6,10 +6,10 @@
 #include "cube/cube_io.hpp"
 #include "scene/read/reader.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "viewer/api.hpp"
-#include "viewer/live_state.hpp"
-#include "viewer/save.hpp"
-#include "viewer/stored_image.hpp"
+#include "viewer/api/api.hpp"
+#include "viewer/api/save.hpp"
+#include "viewer/api/stored_image.hpp"
+#include "viewer/live/live_state.hpp"
 
 namespace kiloband::fuzz {
 namespace {

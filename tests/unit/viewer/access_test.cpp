@@ -1,4 +1,4 @@
-#include "viewer/access.hpp"
+#include "viewer/api/access.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/viewer/test_requests.hpp"
 #include "tests/unit/viewer/viewed_cube.hpp"
-#include "viewer/json_text.hpp"
+#include "viewer/api/json_text.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "viewer/plane.hpp"
+#include "viewer/display/plane.hpp"
 
 namespace kiloband::test {
 

@@ -1,4 +1,4 @@
-#include "viewer/brightness.hpp"
+#include "viewer/display/brightness.hpp"
 
 #include <gtest/gtest.h>
 

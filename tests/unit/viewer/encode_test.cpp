@@ -1,4 +1,4 @@
-#include "viewer/encode.hpp"
+#include "viewer/display/encode.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A running server under the hands of clients that do as they like.
-#include "viewer/http_server.hpp"
+#include "viewer/server/http_server.hpp"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

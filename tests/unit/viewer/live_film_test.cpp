@@ -1,11 +1,11 @@
-#include "viewer/live_film.hpp"
+#include "viewer/live/live_film.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "viewer/live_render.hpp"
+#include "viewer/live/live_render.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -1,5 +1,5 @@
 // A render that is looked at, on the CPU backend.
-#include "viewer/live_render.hpp"
+#include "viewer/live/live_render.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "tests/support/messages.hpp"
-#include "viewer/camera_view.hpp"
-#include "viewer/selections.hpp"
+#include "viewer/api/selections.hpp"
+#include "viewer/live/camera_view.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/picture_8bit.hpp"
+#include "viewer/display/picture_8bit.hpp"
 
 #include <gtest/gtest.h>
 

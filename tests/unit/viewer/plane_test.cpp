@@ -1,4 +1,4 @@
-#include "viewer/plane.hpp"
+#include "viewer/display/plane.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What is asked of a thread between its steps.
-#include "viewer/task_thread.hpp"
+#include "viewer/live/task_thread.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "viewer/access.hpp"
+#include "viewer/api/access.hpp"
 
 namespace kiloband::test {
 

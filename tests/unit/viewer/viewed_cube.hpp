@@ -8,8 +8,8 @@
 
 #include "cube/cube_io.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "viewer/api.hpp"
-#include "viewer/stored_image.hpp"
+#include "viewer/api/api.hpp"
+#include "viewer/api/stored_image.hpp"
 
 namespace kiloband::test {
 

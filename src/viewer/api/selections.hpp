@@ -1,0 +1,36 @@
+// Spectra of pixels and rectangles.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewer/display/plane.hpp"
+
+namespace kiloband::viewer {
+
+/// Pixels x0 .. x1, y0 .. y1 of the full image, inclusive.
+struct Selection {
+  std::string text;  // as it was asked for
+  uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+inline constexpr std::size_t kMostSelections = 16;
+
+/// "120,88;10,10,40,32": points and rectangles.
+/// throws InputError  text that is none, more than kMostSelections, pixels beyond width x height
+std::vector<Selection> parse_selections(std::string_view text, uint32_t width, uint32_t height);
+
+/// Densities (W m^-2 sr^-1 nm^-1; derived bands as they are), per band.
+struct Curve {
+  uint64_t pixels = 0;  // with a sample
+  std::vector<float> mean;
+  /// As if the errors of pixels had nothing to do with each other; NaN where variances are not known.
+  std::vector<float> standard_error;
+};
+
+/// full_width, full_height: what selections count in; an image that is reduced gives the pixel that covers them
+std::vector<Curve> read_curves(const PixelSource& pixels, const std::vector<Selection>& selections,
+                               uint32_t full_width, uint32_t full_height);
+
+}  // namespace kiloband::viewer

@@ -1,0 +1,167 @@
+#include "viewer/display/plane.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <thread>
+
+#include "base/text.hpp"
+#include "viewer/display/brightness.hpp"
+
+namespace kiloband::viewer {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+/// Deals rows to threads; work(first, end) is called once per thread.
+void deal_rows(uint32_t rows, unsigned threads, const std::function<void(uint32_t, uint32_t)>& work) {
+  const uint32_t parts = std::clamp(threads, 1u, std::max(rows, 1u));
+  std::vector<std::jthread> others;
+  for (uint32_t i = 1; i < parts; ++i) {
+    const auto first = static_cast<uint32_t>(uint64_t{rows} * i / parts);
+    const auto end = static_cast<uint32_t>(uint64_t{rows} * (i + 1) / parts);
+    others.emplace_back(work, first, end);
+  }
+  work(0, rows / parts);
+}
+
+/// A plane of one component whose pixels are functions of their bands' means.
+template <class Value>
+Plane plane_of_means(const PixelSource& source, unsigned threads, const Value& value) {
+  Plane plane{source.width(), source.height(), 1, {}};
+  plane.values.resize(std::size_t{plane.width} * plane.height);
+  const std::size_t bands = source.bands().size();
+  deal_rows(plane.height, threads, [&](uint32_t first, uint32_t end) {
+    std::vector<float> row(plane.width * bands);
+    for (uint32_t y = first; y < end; ++y) {
+      source.means(y, row);
+      for (uint32_t x = 0; x < plane.width; ++x)
+        plane.values[std::size_t{y} * plane.width + x] = static_cast<float>(value(&row[x * bands]));
+    }
+  });
+  return plane;
+}
+
+}  // namespace
+
+ThreeSums::ThreeSums(const PixelSource& source, const RgbWeights& of_integrals) {
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t k = 0; k < of_integrals.size(); ++k)
+      weights_[c].push_back(static_cast<float>(of_integrals[k][c] * source.units()[k]));
+}
+
+void ThreeSums::operator()(const float* values, float* out) const {
+  const std::size_t bands = weights_[0].size(), whole = bands / kLanes * kLanes;
+  const float *r = weights_[0].data(), *g = weights_[1].data(), *b = weights_[2].data();
+  float red[kLanes] = {}, green[kLanes] = {}, blue[kLanes] = {};
+  for (std::size_t k = 0; k < whole; k += kLanes) {
+    for (std::size_t i = 0; i < kLanes; ++i) red[i] += r[k + i] * values[k + i];
+    for (std::size_t i = 0; i < kLanes; ++i) green[i] += g[k + i] * values[k + i];
+    for (std::size_t i = 0; i < kLanes; ++i) blue[i] += b[k + i] * values[k + i];
+  }
+  for (std::size_t k = whole; k < bands; ++k) {
+    red[k - whole] += r[k] * values[k];
+    green[k - whole] += g[k] * values[k];
+    blue[k - whole] += b[k] * values[k];
+  }
+  out[0] = out[1] = out[2] = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) out[0] += red[i], out[1] += green[i], out[2] += blue[i];
+}
+
+void PixelSource::sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const {
+  const std::size_t bands = this->bands().size();
+  std::vector<float> row(width() * bands);
+  means(y, row);
+  for (std::size_t x = 0; x < width(); ++x) of_row(&row[x * bands], &out[3 * x]);
+}
+
+Plane weighted_plane(const PixelSource& source, const RgbWeights& weights, unsigned threads) {
+  Plane plane{source.width(), source.height(), 3, {}};
+  plane.values.resize(std::size_t{plane.width} * plane.height * 3);
+  const ThreeSums sums(source, weights);
+  source.prepare(sums);
+  const std::size_t row = std::size_t{plane.width} * 3;
+  deal_rows(plane.height, threads, [&](uint32_t first, uint32_t end) {
+    for (uint32_t y = first; y < end; ++y)
+      source.sums(y, sums, std::span(plane.values).subspan(y * row, row));
+  });
+  return plane;
+}
+
+Plane channel_plane(const PixelSource& source, const ChannelOf& channel, unsigned threads) {
+  const Band& band = source.bands().at(channel.band);
+  const double scale = source.units()[channel.band] / (band.derived ? 1 : band.channel.width_nm());
+  return plane_of_means(source, threads, [&](const float* means) { return means[channel.band] * scale; });
+}
+
+Plane temperature_plane(const PixelSource& source, const TemperatureOf& channel, unsigned threads) {
+  const BrightnessTemperature temperature(source.bands().at(channel.band).channel);
+  const double unit = source.units()[channel.band];
+  return plane_of_means(source, threads,
+                        [&](const float* means) { return temperature(means[channel.band] * unit); });
+}
+
+Plane error_plane(const PixelSource& source, unsigned threads) {
+  const std::size_t bands = source.bands().size();
+  Plane plane{source.width(), source.height(), 1, {}};
+  plane.values.resize(std::size_t{plane.width} * plane.height);
+  deal_rows(plane.height, threads, [&](uint32_t first, uint32_t end) {
+    std::vector<float> means(plane.width * bands), variances(plane.width * bands);
+    for (uint32_t y = first; y < end; ++y) {
+      source.means(y, means);
+      source.variances(y, variances);
+      for (uint32_t x = 0; x < plane.width; ++x) {
+        double sum = 0, error = 0;
+        for (std::size_t k = 0; k < bands; ++k) {
+          if (source.bands()[k].derived) continue;
+          sum += means[x * bands + k] * source.units()[k];
+          error += std::sqrt(variances[x * bands + k]) * source.units()[k];
+        }
+        plane.values[std::size_t{y} * plane.width + x] = sum > 0 ? static_cast<float>(error / sum) : kNothing;
+      }
+    }
+  });
+  return plane;
+}
+
+RgbWeights range_weights(const std::vector<Band>& bands, const std::array<Channel, 3>& ranges) {
+  RgbWeights weights(bands.size(), {0, 0, 0});
+  for (std::size_t c = 0; c < 3; ++c) {
+    double total = 0;
+    std::vector<double> overlaps;
+    for (const Band& band : bands) {
+      const double low = std::max(band.channel.min_nm, ranges[c].min_nm);
+      const double high = std::min(band.channel.max_nm, ranges[c].max_nm);
+      overlaps.push_back(band.derived ? 0 : std::max(0.0, high - low));
+      total += overlaps.back();
+    }
+    if (!(total > 0)) throw InputError("the range " + band_range_text(ranges[c]) + " overlaps no channel");
+    for (std::size_t k = 0; k < bands.size(); ++k)
+      if (overlaps[k] > 0)
+        weights[k][c] = static_cast<float>(overlaps[k] / total / bands[k].channel.width_nm());
+  }
+  return weights;
+}
+
+std::string band_range_text(const Channel& range) {
+  return format_number(range.min_nm) + "-" + format_number(range.max_nm) + " nm";
+}
+
+float quantile(const Plane& plane, double p, float fallback) {
+  constexpr std::size_t kMost = std::size_t{1} << 16;
+  const std::size_t pixels = plane.values.size() / plane.components, step = pixels / kMost + 1;
+  std::vector<float> finite;
+  for (std::size_t i = 0; i < pixels; i += step) {
+    const float* const pixel = &plane.values[i * plane.components];
+    const float largest = *std::max_element(pixel, pixel + plane.components);
+    if (std::isfinite(largest)) finite.push_back(largest);
+  }
+  if (finite.empty()) return fallback;
+  const auto rank =
+      finite.begin() + static_cast<std::ptrdiff_t>(std::lround(p * static_cast<double>(finite.size() - 1)));
+  std::nth_element(finite.begin(), rank, finite.end());
+  return *rank;
+}
+
+}  // namespace kiloband::viewer
