@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "scene/compile/band_set.hpp"
+#include "scene/compile/spectra/band_set.hpp"
 #include "src_cpu/geometry/texel_corners.hpp"
 
 namespace kiloband::cpu {

@@ -3,7 +3,7 @@
 //
 // The map (emitter's local frame, +Y up): u = atan2(x, -z) / 2 pi mod 1, v = acos(y) / pi, as in Mitsuba 3.
 // The emitter's to_world is a rotation or reflection (uniform scale does not matter).
-// How maps are sampled: scene/compile/envmap_sampling.hpp.
+// How maps are sampled: scene/compile/light/envmap_sampling.hpp.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/compile/band_set.hpp"
+#include "scene/compile/spectra/band_set.hpp"
 #include "shared/spectra_layout.h"
 #include "spectral/planck.hpp"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "scene/compile/band_set.hpp"
+#include "scene/compile/spectra/band_set.hpp"
 #include "src_gpu/scene/channel_cover.hpp"
 #include "src_gpu/scene/channel_lines.hpp"
 #include "src_gpu/scene/channel_row.hpp"

@@ -7,7 +7,7 @@
 
 #include "scene/compile/extent.hpp"
 #include "scene/compile/flat_scene.hpp"
-#include "scene/compile/spectrum_table_builder.hpp"
+#include "scene/compile/spectra/spectrum_table_builder.hpp"
 #include "scene/optics/coating.hpp"
 
 namespace kiloband {

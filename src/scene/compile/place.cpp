@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "scene/compile/flattener.hpp"
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 
 namespace kiloband {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "scene/compile/flattener.hpp"
-#include "scene/compile/lattice_cdf.hpp"
+#include "scene/compile/light/lattice_cdf.hpp"
 #include "scene/compile/shape_bounds.hpp"
 
 namespace kiloband {

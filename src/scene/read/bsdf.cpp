@@ -5,7 +5,7 @@
 
 #include "scene/read/context.hpp"
 #include "scene/read/ior.hpp"
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/read/principled.hpp"
 #include "scene/xml/values.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "scene/description/description.hpp"
-#include "scene/read/object.hpp"
+#include "scene/read/object/object.hpp"
 
 namespace kiloband {
 

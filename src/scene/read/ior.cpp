@@ -1,6 +1,6 @@
 #include "scene/read/ior.hpp"
 
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/xml/values.hpp"
 #include "spectral/materials/materials.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "scene/read/context.hpp"
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/xml/values.hpp"
 #include "spectral/files/number_table.hpp"
 #include "spectral/files/text_table.hpp"

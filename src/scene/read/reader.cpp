@@ -4,7 +4,7 @@
 #include <set>
 
 #include "scene/read/context.hpp"
-#include "scene/read/errors.hpp"
+#include "scene/read/object/errors.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "scene/read/context.hpp"
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "scene/read/context.hpp"
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/xml/values.hpp"
 #include "spectral/colour/colour.hpp"
 #include "spectral/colour/rgb.hpp"

@@ -1,7 +1,7 @@
 // <spectrum type=...> objects: regular, irregular, uniform, blackbody, d65, srgb,
 // and our own planck and file.
 #include "scene/read/context.hpp"
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/xml/values.hpp"
 #include "spectral/colour/colour.hpp"
 #include "spectral/colour/rgb.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "scene/read/context.hpp"
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {

@@ -6,7 +6,7 @@
 
 #include "base/temporary_folder.hpp"
 #include "base/text.hpp"
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 #include "spectral/files/spectrum_files.hpp"
 #include "spectral/materials/materials.hpp"
 #include "viewer/api/json_text.hpp"

@@ -2,7 +2,7 @@
 // which treats spheres in double.
 #include "src_cpu/light/emitter.hpp"
 
-#include "scene/compile/lattice_cdf.hpp"
+#include "scene/compile/light/lattice_cdf.hpp"
 #include "src_cpu/light/area.hpp"
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"

@@ -1,5 +1,5 @@
 // Positions and means of spectra that are given at band centres, against a plain table and brute force.
-#include "scene/compile/band_set.hpp"
+#include "scene/compile/spectra/band_set.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "scene/read/object.hpp"
+#include "scene/read/object/object.hpp"
 #include "scene/xml/values.hpp"
 #include "support.hpp"
 

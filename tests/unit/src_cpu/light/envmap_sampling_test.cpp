@@ -1,5 +1,5 @@
 // The tables behind the sampling of environment maps.
-#include "scene/compile/envmap_sampling.hpp"
+#include "scene/compile/light/envmap_sampling.hpp"
 
 #include <gtest/gtest.h>
 

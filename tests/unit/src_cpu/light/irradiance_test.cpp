@@ -4,7 +4,7 @@
 // errors, which every test asserts to be below 1 % of the result.
 #include <gtest/gtest.h>
 
-#include "scene/compile/envmap_sampling.hpp"
+#include "scene/compile/light/envmap_sampling.hpp"
 #include "src_cpu/geometry/texture_lookup.hpp"
 #include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"

@@ -1,5 +1,5 @@
 // Tables for choosing emitters and triangles: no positive weight is lost, and probabilities are exact.
-#include "scene/compile/lattice_cdf.hpp"
+#include "scene/compile/light/lattice_cdf.hpp"
 
 #include <gtest/gtest.h>
 

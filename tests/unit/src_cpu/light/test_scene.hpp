@@ -4,8 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <vector>
 
-#include "scene/compile/envmap_sampling.hpp"
 #include "scene/compile/flat_scene.hpp"
+#include "scene/compile/light/envmap_sampling.hpp"
 #include "scene/compile/shape_bounds.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"

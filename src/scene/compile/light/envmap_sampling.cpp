@@ -1,4 +1,4 @@
-#include "scene/compile/envmap_sampling.hpp"
+#include "scene/compile/light/envmap_sampling.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "scene/compile/lattice_cdf.hpp"
+#include "scene/compile/light/lattice_cdf.hpp"
 
 namespace kiloband {
 namespace {

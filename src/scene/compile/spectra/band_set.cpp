@@ -1,4 +1,4 @@
-#include "scene/compile/band_set.hpp"
+#include "scene/compile/spectra/band_set.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "scene/compile/spectrum_table_builder.hpp"
+#include "scene/compile/spectra/spectrum_table_builder.hpp"
 
 #include <fmt/format.h>
 

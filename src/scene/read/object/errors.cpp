@@ -1,4 +1,4 @@
-#include "scene/read/errors.hpp"
+#include "scene/read/object/errors.hpp"
 
 #include <algorithm>
 #include <tuple>

@@ -1,4 +1,4 @@
-#include "scene/compile/lattice_cdf.hpp"
+#include "scene/compile/light/lattice_cdf.hpp"
 
 #include <fmt/format.h>
 

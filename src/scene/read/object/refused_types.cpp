@@ -1,4 +1,4 @@
-#include "scene/read/refused_types.hpp"
+#include "scene/read/object/refused_types.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -5,9 +5,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "scene/compile/envmap_sampling.hpp"
 #include "scene/compile/flattener.hpp"
-#include "scene/compile/lattice_cdf.hpp"
+#include "scene/compile/light/envmap_sampling.hpp"
+#include "scene/compile/light/lattice_cdf.hpp"
 #include "spectral/colour/colour.hpp"
 #include "spectral/colour/rgb.hpp"
 #include "spectral/planck.hpp"

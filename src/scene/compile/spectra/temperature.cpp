@@ -74,7 +74,7 @@ uint32_t Flattener::complement_row(uint32_t row, uint32_t heat) {
   if (!is_new) return place->second;
   RegularTable table = out_.spectra[row].table;
   for (double& value : table.values) value = 1 - value;
-  // Where data are missing only guide bands can be: flatten_thermal.cpp sees to the channels.
+  // Where data are missing only guide bands can be: thermal.cpp sees to the channels.
   table.extrapolate = true;
   return place->second = emission_row(heat, table, out_.spectra[row].name + ": emissivity");
 }

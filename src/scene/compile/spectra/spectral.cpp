@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "scene/compile/band_set.hpp"
-#include "scene/compile/envmap_sampling.hpp"
 #include "scene/compile/flattener.hpp"
+#include "scene/compile/light/envmap_sampling.hpp"
+#include "scene/compile/spectra/band_set.hpp"
 
 namespace kiloband {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/read/object.hpp"
+#include "scene/read/object/object.hpp"
 
 namespace kiloband {
 

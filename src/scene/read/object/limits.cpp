@@ -1,4 +1,4 @@
-#include "scene/read/limits.hpp"
+#include "scene/read/object/limits.hpp"
 
 #include <cmath>
 

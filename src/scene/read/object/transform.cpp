@@ -4,7 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "scene/read/object.hpp"
+#include "scene/read/object/object.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {

@@ -1,8 +1,8 @@
-#include "scene/read/object.hpp"
+#include "scene/read/object/object.hpp"
 
 #include <algorithm>
 
-#include "scene/read/refused_types.hpp"
+#include "scene/read/object/refused_types.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {
