@@ -19,7 +19,7 @@
 #include "app/options/sampling_options.hpp"
 #include "app/render_statistics.hpp"
 #include "files/atomic_file.hpp"
-#include "render/checkpoint.hpp"
+#include "render/checkpoint/checkpoint.hpp"
 #include "render/scene_metadata.hpp"
 #include "render/session.hpp"
 

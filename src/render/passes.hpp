@@ -5,7 +5,7 @@
 #include <chrono>
 #include <optional>
 
-#include "render/checkpoint_keeper.hpp"
+#include "render/checkpoint/checkpoint_keeper.hpp"
 #include "render/session.hpp"
 
 namespace kiloband {

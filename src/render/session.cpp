@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "render/checkpoint.hpp"
+#include "render/checkpoint/checkpoint.hpp"
 #include "render/cube_output.hpp"
 #include "render/passes.hpp"
 

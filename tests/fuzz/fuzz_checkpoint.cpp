@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "film/spectral_film.hpp"
-#include "render/checkpoint.hpp"
-#include "render/checkpoint_reader.hpp"
+#include "render/checkpoint/checkpoint.hpp"
+#include "render/checkpoint/checkpoint_reader.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace kiloband::fuzz {

@@ -3,7 +3,7 @@
 
 #include "app/options/option_values.hpp"
 #include "cube/cube_text.hpp"
-#include "cube/exr_names.hpp"
+#include "cube/exr/exr_names.hpp"
 #include "post/convert.hpp"
 #include "scene/image/channels.hpp"
 #include "scene/image/format.hpp"

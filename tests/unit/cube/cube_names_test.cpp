@@ -4,7 +4,7 @@
 #include <set>
 
 #include "cube/cube_text.hpp"
-#include "cube/exr_names.hpp"
+#include "cube/exr/exr_names.hpp"
 #include "cube_support.hpp"
 
 namespace kiloband {

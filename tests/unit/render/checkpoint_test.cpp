@@ -1,5 +1,5 @@
 // Checkpoints: what they keep, and what they refuse.
-#include "render/checkpoint.hpp"
+#include "render/checkpoint/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // What the fingerprint of a render sees.
-#include "render/fingerprint.hpp"
+#include "render/checkpoint/fingerprint.hpp"
 
 #include "spectral/channel_knots.hpp"
 #include "tests/unit/render/session_fixture.hpp"

@@ -1,5 +1,5 @@
 // Interrupted and resumed, extended and timed renders have the bits of one that was rendered at one go.
-#include "render/checkpoint.hpp"
+#include "render/checkpoint/checkpoint.hpp"
 #include "tests/unit/render/session_fixture.hpp"
 
 namespace kiloband {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "film/spectral_film.hpp"
-#include "render/fingerprint.hpp"
+#include "render/checkpoint/fingerprint.hpp"
 
 namespace kiloband {
 

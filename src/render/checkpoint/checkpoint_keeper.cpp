@@ -1,8 +1,8 @@
-#include "render/checkpoint_keeper.hpp"
+#include "render/checkpoint/checkpoint_keeper.hpp"
 
 #include <fmt/core.h>
 
-#include "render/checkpoint.hpp"
+#include "render/checkpoint/checkpoint.hpp"
 
 namespace kiloband {
 

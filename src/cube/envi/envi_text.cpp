@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "cube/cube_text.hpp"
-#include "cube/envi_header.hpp"
+#include "cube/envi/envi_header.hpp"
 
 namespace kiloband {
 namespace {

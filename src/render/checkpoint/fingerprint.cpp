@@ -1,4 +1,4 @@
-#include "render/fingerprint.hpp"
+#include "render/checkpoint/fingerprint.hpp"
 
 #include "base/hash.hpp"
 #include "spectral/channel_knots.hpp"

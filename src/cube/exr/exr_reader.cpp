@@ -6,9 +6,9 @@
 #include <algorithm>
 
 #include "cube/cube_layout.hpp"
-#include "cube/exr_layout.hpp"
-#include "cube/exr_scan.hpp"
-#include "cube/exr_stream.hpp"
+#include "cube/exr/exr_layout.hpp"
+#include "cube/exr/exr_scan.hpp"
+#include "cube/exr/exr_stream.hpp"
 #include "files/input_file.hpp"
 
 namespace kiloband {

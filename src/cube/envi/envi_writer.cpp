@@ -6,7 +6,7 @@
 #include "cube/band_planes.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
-#include "cube/envi_header.hpp"
+#include "cube/envi/envi_header.hpp"
 #include "files/atomic_file.hpp"
 #include "files/file_set.hpp"
 #include "files/input_file.hpp"
@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "files are written in the machine's byte order");
 
 constexpr std::size_t kBandsAtOnce = kPlaneTile;  // one cache line of a pixel
-constexpr std::size_t kBufferBytes = 8u << 20;    // at most, unless a single row needs more
+constexpr std::size_t kWriteBytes = 8u << 20;     // at most, unless a single row needs more
 
 /// One data file with its header: values, variances or auxiliary planes.
 class EnviPart {
@@ -39,7 +39,7 @@ class EnviPart {
   template <class Change>
   void write_rows(uint32_t y0, uint32_t rows, std::span<const float> values, Change change) {
     const std::size_t bytes_per_row = kBandsAtOnce * width_ * sizeof(float);
-    const auto rows_at_once = static_cast<uint32_t>(std::max<std::size_t>(1, kBufferBytes / bytes_per_row));
+    const auto rows_at_once = static_cast<uint32_t>(std::max<std::size_t>(1, kWriteBytes / bytes_per_row));
     for (uint32_t y = 0; y < rows; y += rows_at_once)
       for (std::size_t first = 0; first < bands_; first += kBandsAtOnce)
         write_block(y0, y, std::min(rows_at_once, rows - y), first, values, change);

@@ -1,4 +1,4 @@
-#include "render/checkpoint_reader.hpp"
+#include "render/checkpoint/checkpoint_reader.hpp"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "cube/exr_stream.hpp"
+#include "cube/exr/exr_stream.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/hash.hpp"
-#include "render/checkpoint.hpp"
-#include "render/checkpoint_source.hpp"
+#include "render/checkpoint/checkpoint.hpp"
+#include "render/checkpoint/checkpoint_source.hpp"
 
 namespace kiloband {
 

@@ -1,4 +1,4 @@
-#include "cube/exr_names.hpp"
+#include "cube/exr/exr_names.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "render/checkpoint.hpp"
+#include "render/checkpoint/checkpoint.hpp"
 
 #include <fmt/core.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "files/atomic_file.hpp"
-#include "render/checkpoint_reader.hpp"
+#include "render/checkpoint/checkpoint_reader.hpp"
 
 namespace kiloband {
 namespace {

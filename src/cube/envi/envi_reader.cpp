@@ -7,7 +7,7 @@
 
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
-#include "cube/envi_header.hpp"
+#include "cube/envi/envi_header.hpp"
 #include "files/input_file.hpp"
 
 namespace kiloband {

@@ -1,4 +1,4 @@
-#include "render/checkpoint_source.hpp"
+#include "render/checkpoint/checkpoint_source.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -9,8 +9,8 @@
 
 #include "cube/band_planes.hpp"
 #include "cube/cube_layout.hpp"
-#include "cube/exr_layout.hpp"
-#include "cube/exr_stream.hpp"
+#include "cube/exr/exr_layout.hpp"
+#include "cube/exr/exr_stream.hpp"
 #include "files/atomic_file.hpp"
 #include "files/file_set.hpp"
 

@@ -1,6 +1,6 @@
 // The grammar of ENVI headers is small but loose: keys in any case, lists over many lines,
 // ';' before comments.
-#include "cube/envi_header.hpp"
+#include "cube/envi/envi_header.hpp"
 
 #include <algorithm>
 #include <array>

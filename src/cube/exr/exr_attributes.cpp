@@ -9,8 +9,8 @@
 
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
-#include "cube/exr_layout.hpp"
-#include "cube/exr_names.hpp"
+#include "cube/exr/exr_layout.hpp"
+#include "cube/exr/exr_names.hpp"
 
 namespace kiloband {
 namespace {

@@ -1,4 +1,4 @@
-#include "cube/exr_scan.hpp"
+#include "cube/exr/exr_scan.hpp"
 
 #include <OpenEXR/ImfAttribute.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -14,7 +14,7 @@
 #include "base/error.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
-#include "cube/exr_stream.hpp"
+#include "cube/exr/exr_stream.hpp"
 
 namespace kiloband {
 namespace {

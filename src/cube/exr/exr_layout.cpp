@@ -1,5 +1,5 @@
 // Reading side of exr_layout.hpp.
-#include "cube/exr_layout.hpp"
+#include "cube/exr/exr_layout.hpp"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -10,7 +10,7 @@
 
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
-#include "cube/exr_names.hpp"
+#include "cube/exr/exr_names.hpp"
 
 namespace kiloband {
 namespace {
