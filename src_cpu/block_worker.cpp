@@ -46,6 +46,7 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
   sums_.assign(block.pixels() * evaluator_.stride(), 0.0f);
   folded_.clear();
   counts_.assign(block.pixels(), 0);
+  use_own_rows(block.pixels());
   add_samples(block, range, stop, events);
   finish_means(block.pixels());
   return {block_index, range.replicate, counts_, sums_, evaluator_.stride(), factors_};
@@ -57,10 +58,48 @@ void BlockWorker::go_on(SpectralFilm& film, uint32_t block_index, const SampleRa
   film.open_replicate(range.replicate, block_index);
   if (film.attempted(range.replicate, block_index) != range.first)
     throw std::logic_error("BlockWorker: the samples do not follow those that the film has");
+  const bool in_place = range.count == 1 && !folds_within(range);
+  const uint32_t done = in_place ? add_in_place(film, block, range, stop, events)
+                                 : add_to_copies(film, block, range, stop, events);
+  film.set_attempted(range.replicate, block_index, range.first + done);
+}
+
+/// What is added to once is not copied: its way through the memory is most of what it costs.
+uint32_t BlockWorker::add_in_place(SpectralFilm& film, const PixelRect& block, const SampleRange& range,
+                                   const std::atomic<bool>& stop, const SampleEvents& events) {
+  const std::size_t channels = film.options().channels;
+  rows_.clear();
+  counts_.clear();
+  folded_.clear();
+  packed_ = true;
+  const auto sums_of_row = [&](uint32_t y) {
+    return film.open_sums(range.replicate, film.pixel_index(block, std::size_t{y} * block.width),
+                          block.width);
+  };
+  for (uint32_t y = 0; y < block.height; ++y) {
+    const OpenSums sums = sums_of_row(y);
+    for (uint32_t x = 0; x < block.width; ++x) rows_.push_back(&sums.values[x * channels]);
+    counts_.insert(counts_.end(), sums.counts.begin(), sums.counts.end());
+  }
+  const uint32_t done = add_samples(block, range, stop, events);
+  for (uint32_t y = 0; y < block.height; ++y)
+    std::copy_n(&counts_[std::size_t{y} * block.width], block.width, sums_of_row(y).counts.begin());
+  return done;
+}
+
+uint32_t BlockWorker::add_to_copies(SpectralFilm& film, const PixelRect& block, const SampleRange& range,
+                                    const std::atomic<bool>& stop, const SampleEvents& events) {
   take_sums(film, block, range);
+  use_own_rows(block.pixels());
   const uint32_t done = add_samples(block, range, stop, events);
   put_sums(film, block, range.replicate);
-  film.set_attempted(range.replicate, block_index, range.first + done);
+  return done;
+}
+
+void BlockWorker::use_own_rows(std::size_t pixels) {
+  rows_.clear();
+  for (std::size_t p = 0; p < pixels; ++p) rows_.push_back(&sums_[p * evaluator_.stride()]);
+  packed_ = false;
 }
 
 /// Adds the range's samples to the sums. Returns how many.
@@ -151,12 +190,12 @@ void BlockWorker::add_sample(const PixelRect& block, const SampleId& id) {
   set_mu(block, id);
   tracer_.trace(block, id, mu_, paths_, invalid_);
   if (settings_.wavelengths == WavelengthMode::kShared) {
-    evaluator_.add_shared(paths_, mu_.front(), sums_);
+    evaluator_.add_shared(paths_, mu_.front(), {rows_, packed_});
     return;
   }
   path_mu_.clear();
   for (const SavedPath& path : paths_.paths) path_mu_.push_back(mu_[path.pixel]);
-  evaluator_.add_per_path(paths_, path_mu_, sums_);
+  evaluator_.add_per_path(paths_, path_mu_, {rows_, packed_});
 }
 
 std::vector<TracedPath> BlockWorker::trace(const PixelRect& block, const SampleId& id) {

@@ -49,6 +49,11 @@ class BlockWorker {
   std::vector<Columns> columns_of_film() const;
   uint32_t add_samples(const PixelRect& block, const SampleRange& range, const std::atomic<bool>& stop,
                        const SampleEvents& events);
+  uint32_t add_in_place(SpectralFilm& film, const PixelRect& block, const SampleRange& range,
+                        const std::atomic<bool>& stop, const SampleEvents& events);
+  uint32_t add_to_copies(SpectralFilm& film, const PixelRect& block, const SampleRange& range,
+                         const std::atomic<bool>& stop, const SampleEvents& events);
+  void use_own_rows(std::size_t pixels);
   void take_sums(const SpectralFilm& film, const PixelRect& block, const SampleRange& range);
   void put_sums(SpectralFilm& film, const PixelRect& block, uint32_t replicate) const;
   void set_mu(const PixelRect& block, const SampleId& id);
@@ -65,6 +70,8 @@ class BlockWorker {
   std::vector<float> mu_, path_mu_;
   std::vector<float> sums_;     // [pixel][stride], at most kFoldInterval samples: open sums
   std::vector<double> folded_;  // the samples before those, closed sums; empty until needed
+  std::vector<float*> rows_;    // what samples are added to: rows of sums_ or of the film
+  bool packed_ = false;         // SumRows
   std::vector<float> factors_;  // [pixel]: means are these times the sums
   std::vector<uint32_t> counts_, invalid_;
 };

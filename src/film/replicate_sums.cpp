@@ -84,6 +84,20 @@ PixelSumsView ReplicateSums::at(std::size_t slot, std::size_t pixel) const {
   return {sums.count, sums.open, sums.closed};
 }
 
+OpenSums ReplicateSums::open(std::size_t slot, std::size_t pixel, std::size_t pixels) {
+  if (slot >= shape_.slots || pixel + pixels > shape_.pixels)
+    throw std::logic_error("ReplicateSums::open: no such replicate or pixels");
+  const std::size_t unit = slot * shape_.pixels + pixel;
+  return {std::span(counts_).subspan(unit, pixels),
+          open_.values().subspan(unit * shape_.channels, pixels * shape_.channels)};
+}
+
+OpenSumsView ReplicateSums::open(std::size_t slot, std::size_t pixel, std::size_t pixels) const {
+  const OpenSums sums =
+      const_cast<ReplicateSums*>(this)->open(slot, pixel, pixels);  // nothing is written, either
+  return {sums.counts, sums.values};
+}
+
 std::size_t ReplicateSums::bytes_per_value(const SumRule& rule, uint32_t most_samples) {
   return sizeof(float) + (needs_closed(rule, most_samples) ? sizeof(ClosedSum) : 0);
 }

@@ -51,6 +51,16 @@ struct PixelSumsView {
   std::span<const ClosedSum> closed;
 };
 
+/// Open sums of pixels that follow each other.
+struct OpenSums {
+  std::span<uint32_t> counts;  // [pixel]
+  std::span<float> values;     // [pixel][channel]
+};
+struct OpenSumsView {
+  std::span<const uint32_t> counts;
+  std::span<const float> values;
+};
+
 /// mean[channel] of `attempted` samples of which sums.count are valid; 0 where there are none.
 void mean_of_sums(const SumRule& rule, uint32_t attempted, const PixelSumsView& sums, std::span<float> mean);
 
@@ -68,6 +78,8 @@ class ReplicateSums {
 
   PixelSums at(std::size_t slot, std::size_t pixel);
   PixelSumsView at(std::size_t slot, std::size_t pixel) const;
+  OpenSums open(std::size_t slot, std::size_t pixel, std::size_t pixels);
+  OpenSumsView open(std::size_t slot, std::size_t pixel, std::size_t pixels) const;
   const SumRule& rule() const { return rule_; }
   /// No pixel has a sample; what its sums hold is for the caller to clear.
   void forget_counts() { counts_.assign(counts_.size(), 0); }

@@ -86,6 +86,9 @@ class SpectralFilm {
   /// pixel: index in the rectangle, see pixel_index()
   PixelSums pixel_sums(uint32_t replicate, std::size_t pixel);
   PixelSumsView pixel_sums(uint32_t replicate, std::size_t pixel) const;
+  /// Of pixels of one row of the rectangle.
+  OpenSums open_sums(uint32_t replicate, std::size_t pixel, std::size_t pixels);
+  OpenSumsView open_sums(uint32_t replicate, std::size_t pixel, std::size_t pixels) const;
   std::size_t pixel_index(const PixelRect& block, std::size_t pixel_in_block) const;
   /// To be called once the sums have all samples before this one.
   void set_attempted(uint32_t replicate, uint32_t block, uint32_t attempted);

@@ -60,6 +60,16 @@ PixelSumsView SpectralFilm::pixel_sums(uint32_t replicate, std::size_t pixel) co
   return std::as_const(sums_->values).at(options_.held ? replicate : 0, pixel);
 }
 
+OpenSums SpectralFilm::open_sums(uint32_t replicate, std::size_t pixel, std::size_t pixels) {
+  require_sums();
+  return sums_->values.open(options_.held ? replicate : 0, pixel, pixels);
+}
+
+OpenSumsView SpectralFilm::open_sums(uint32_t replicate, std::size_t pixel, std::size_t pixels) const {
+  require_sums();
+  return std::as_const(sums_->values).open(options_.held ? replicate : 0, pixel, pixels);
+}
+
 void SpectralFilm::set_attempted(uint32_t replicate, uint32_t block, uint32_t attempted) {
   require_sums();
   sums_->attempted.at(options_.held ? replicate : 0).at(block) = attempted;

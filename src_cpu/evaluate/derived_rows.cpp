@@ -5,7 +5,7 @@
 namespace kiloband::cpu {
 
 DerivedRows::DerivedRows(const FlatScene& scene, const DerivedChannels& derived,
-                         const EvaluatorKernels& kernels, std::size_t film_offset)
+                         const EvaluatorKernels& kernels)
     : scene_(scene), derived_(derived), kernels_(kernels) {
   for (const RegularTable& response : derived.responses) rows_.push_back(make_row(response));
   for (const Channel& channel : scene.channels) {
@@ -18,7 +18,6 @@ DerivedRows::DerivedRows(const FlatScene& scene, const DerivedChannels& derived,
   inverse_cover_.assign(pad_channels(scene.channels.size()), 1.0f);
   accumulators_ = aligned_zeros<float>(rows_.size() * kMaxLanes);
   make_plan();
-  plan_.offset = film_offset;
 }
 
 DerivedRows::Row DerivedRows::make_row(const RegularTable& response) const {
@@ -56,7 +55,7 @@ void DerivedRows::make_plan() {
     }
   }
   group_first_.push_back(static_cast<uint32_t>(entries_.size()));
-  plan_ = {rows_.size(), group_first_.data(), entries_.data(), accumulators_.get(), 0};
+  plan_ = {rows_.size(), group_first_.data(), entries_.data(), accumulators_.get()};
 }
 
 void DerivedRows::count_cover(const double* lambda_nm) {

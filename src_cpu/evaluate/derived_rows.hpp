@@ -12,8 +12,7 @@ namespace kiloband::cpu {
 /// of channels with min_nm <= lambda_k < max_nm.
 class DerivedRows {
  public:
-  DerivedRows(const FlatScene& scene, const DerivedChannels& derived, const EvaluatorKernels& kernels,
-              std::size_t film_offset);
+  DerivedRows(const FlatScene& scene, const DerivedChannels& derived, const EvaluatorKernels& kernels);
 
   std::size_t count() const { return rows_.size(); }
   /// Largest channel_scale of the covered channels, or 1.

@@ -30,16 +30,22 @@ struct Evaluator::Impl {
         has_textures(!scene.textures.empty()),
         derived_offset(pad_channels(scene.channels.size())),
         spectra(scene, kernels),
-        derived_rows(scene, derived, kernels, derived_offset),
+        derived_rows(scene, derived, kernels),
         builder(scene, kernels) {
     const std::size_t groups = (derived_offset + pad_channels(derived_rows.count())) / kRowPadding;
     stride = (groups | 1) * kRowPadding;
   }
 
-  float* film_row(const SavedPath& path, std::span<float> sums) const {
-    const std::size_t first = path.pixel * stride;
-    if (first + stride > sums.size()) throw std::logic_error("saved path: pixel beyond the sums");
-    return sums.data() + first;
+  static float* row_of(const SavedPath& path, const SumRows& rows) {
+    if (path.pixel >= rows.pixels.size()) throw std::logic_error("saved path: pixel beyond the sums");
+    return rows.pixels[path.pixel];
+  }
+
+  SumRows rows_in(std::span<float> sums) {
+    following_rows.clear();
+    for (std::size_t first = 0; first + stride <= sums.size(); first += stride)
+      following_rows.push_back(&sums[first]);
+    return {following_rows, false};
   }
 
   std::span<const KbPathVertex> entries_of(const PathBuffer& paths, std::size_t p) const {
@@ -52,15 +58,17 @@ struct Evaluator::Impl {
   /// One path at the offset of `spectra`, all channels: with blocks of channels as the outer loop over
   /// resolved paths, 0.084 instead of 0.066 ns per channel and vertex were measured
   /// (AVX-512, K = 512, 1024 pixels).
-  void add(const PathBuffer& paths, std::size_t p, std::span<float> sums) {
+  void add(const PathBuffer& paths, std::size_t p, const SumRows& rows) {
     const std::span<const KbPathVertex> entries = entries_of(paths, p);
     if (entries.empty()) return;
     if (has_textures && p + kFetchAhead < paths.paths.size())
       builder.fetch_texels(entries_of(paths, p + kFetchAhead));
     PathProgram program = builder.build(entries, spectra);
     program.derived = derived_rows.plan(spectra);
-    if (p + 1 < paths.paths.size()) program.next_film = film_row(paths.paths[p + 1], sums);
-    evaluate_path(program, film_row(paths.paths[p], sums));
+    program.derived_offset = rows.packed ? program.channels : derived_offset;
+    program.film_channels = rows.packed ? program.channels : derived_offset;
+    if (p + 1 < paths.paths.size()) program.next_film = row_of(paths.paths[p + 1], rows);
+    evaluate_path(program, row_of(paths.paths[p], rows));
   }
 
   const DerivedChannels derived;
@@ -71,6 +79,7 @@ struct Evaluator::Impl {
   DenseSpectra spectra;
   DerivedRows derived_rows;
   ProgramBuilder builder;
+  std::vector<float*> following_rows;
 };
 
 Evaluator::Evaluator(const FlatScene& scene, const DerivedChannels& derived, Isa isa)
@@ -88,18 +97,26 @@ double Evaluator::derived_scale(std::size_t d) const {
   return impl_->derived_rows.scale(d);
 }
 
-void Evaluator::add_shared(const PathBuffer& paths, double mu, std::span<float> sums) {
+void Evaluator::add_shared(const PathBuffer& paths, double mu, const SumRows& rows) {
   // Rows of the same offset are kept from call to call.
   if (impl_->spectra.fast() || impl_->spectra.mu() != mu) impl_->spectra.begin(mu, false);
-  for (std::size_t p = 0; p < paths.paths.size(); ++p) impl_->add(paths, p, sums);
+  for (std::size_t p = 0; p < paths.paths.size(); ++p) impl_->add(paths, p, rows);
 }
 
-void Evaluator::add_per_path(const PathBuffer& paths, std::span<const float> mu, std::span<float> sums) {
+void Evaluator::add_per_path(const PathBuffer& paths, std::span<const float> mu, const SumRows& rows) {
   if (mu.size() != paths.paths.size()) throw std::logic_error("add_per_path: one offset per path is needed");
   for (std::size_t p = 0; p < paths.paths.size(); ++p) {
     impl_->spectra.begin(mu[p], true);
-    impl_->add(paths, p, sums);
+    impl_->add(paths, p, rows);
   }
+}
+
+void Evaluator::add_shared(const PathBuffer& paths, double mu, std::span<float> sums) {
+  add_shared(paths, mu, impl_->rows_in(sums));
+}
+
+void Evaluator::add_per_path(const PathBuffer& paths, std::span<const float> mu, std::span<float> sums) {
+  add_per_path(paths, mu, impl_->rows_in(sums));
 }
 
 }  // namespace kiloband::cpu

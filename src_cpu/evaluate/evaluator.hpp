@@ -13,6 +13,14 @@
 
 namespace kiloband::cpu {
 
+/// Where the sums of a block's pixels stand: a row each.
+struct SumRows {
+  std::span<float* const> pixels;
+  /// Rows of a film: derived channels follow the channels at once, and nothing behind them is touched. Else stride()
+  /// floats, derived channels at derived_offset(), and padding receives zeros: faster where a row is added to often.
+  bool packed = false;
+};
+
 /// Evaluates saved paths of one thread; owns scratch memory, so one per thread. `scene` must outlive it.
 ///
 /// A path's product of reflectances, light and radiance stay in registers over all its vertices, for 4
@@ -40,11 +48,14 @@ class Evaluator {
   /// response covers (1 if none); what channel_scale is to a channel.
   double derived_scale(std::size_t d) const;
 
-  /// Adds every path's channel values to sums[path.pixel * stride() + k], all paths at the wavelength offset
-  /// mu (`shared`). mu in [0, 1]. Padding receives zeros. Fastest if `sums` is aligned to 64 bytes.
-  /// throws std::logic_error  a path refers to what the scene or `sums` does not have
-  void add_shared(const PathBuffer& paths, double mu, std::span<float> sums);
+  /// Adds every path's channel values to its pixel's row, all paths at the wavelength offset
+  /// mu (`shared`). mu in [0, 1].
+  /// throws std::logic_error  a path refers to what the scene or `rows` does not have
+  void add_shared(const PathBuffer& paths, double mu, const SumRows& rows);
   /// The same with an offset of its own for each path (`per-path`); mu has one entry per path.
+  void add_per_path(const PathBuffer& paths, std::span<const float> mu, const SumRows& rows);
+  /// Rows that follow each other: sums[path.pixel * stride() + k]. Fastest if `sums` is aligned to 64 bytes.
+  void add_shared(const PathBuffer& paths, double mu, std::span<float> sums);
   void add_per_path(const PathBuffer& paths, std::span<const float> mu, std::span<float> sums);
 
  private:

@@ -187,6 +187,13 @@ HWY_INLINE void run_steps(Block<V>& block, const PathProgram& path, std::size_t 
   }
 }
 
+/// What is behind belongs to another pixel, which another thread may add to.
+HWY_INLINE void add_part(Floats radiance, std::size_t count, float* film) {
+  alignas(64) float values[kLanes];
+  hn::Store(radiance, kTag, values);
+  for (std::size_t i = 0; i < count; ++i) film[i] += values[i];
+}
+
 /// Channels [k, k + V * kLanes) of the path.
 template <std::size_t V>
 HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* film) {
@@ -202,15 +209,18 @@ HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* fi
   if (path.light) block.close(path.light, k);
   if (path.derived) block.derive(*path.derived, k);
   block.each([&](auto i) HWY_ATTR {
-    float* place = film + k + i * kLanes;
-    hn::StoreU(hn::Add(hn::LoadU(kTag, place), block.radiance[i]), kTag, place);
+    const std::size_t first = k + i * kLanes;
+    if (first + kLanes <= path.film_channels)
+      hn::StoreU(hn::Add(hn::LoadU(kTag, film + first), block.radiance[i]), kTag, film + first);
+    else if (first < path.film_channels)
+      add_part(block.radiance[i], path.film_channels - first, film + first);
   });
 }
 
-void finish_derived(const DerivedPlan& plan, float* film) {
+void finish_derived(const DerivedPlan& plan, float* derived) {
   for (std::size_t d = 0; d < plan.count; ++d) {
     float* accumulator = plan.accumulators + d * kMaxLanes;
-    film[plan.offset + d] += hn::GetLane(hn::SumOfLanes(kTag, hn::Load(kTag, accumulator)));
+    derived[d] += hn::GetLane(hn::SumOfLanes(kTag, hn::Load(kTag, accumulator)));
     hn::Store(hn::Zero(kTag), kTag, accumulator);
   }
 }
@@ -222,14 +232,16 @@ void evaluate_path(const PathProgram& path, float* film) {
   }
   // The rest with as few vectors as do; rows are padded.
   const std::size_t rest = path.channels - k;
-  if (rest > 2 * kLanes) {
+  if (rest > 3 * kLanes) {
     evaluate_block<kBlockVectors>(path, k, film);
+  } else if (rest > 2 * kLanes) {
+    evaluate_block<3>(path, k, film);
   } else if (rest > kLanes) {
     evaluate_block<2>(path, k, film);
   } else if (rest > 0) {
     evaluate_block<1>(path, k, film);
   }
-  if (path.derived) finish_derived(*path.derived, film);
+  if (path.derived) finish_derived(*path.derived, film + path.derived_offset);
 }
 
 inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, sample_exact, weighted_sum,

@@ -102,7 +102,6 @@ struct DerivedPlan {
   const uint32_t* group_first = nullptr;  // entries of group g: group_first[g] .. group_first[g + 1]
   const Entry* entries = nullptr;
   float* accumulators = nullptr;  // count * kMaxLanes floats, aligned
-  std::size_t offset = 0;         // of derived channels in the film row
 };
 
 struct PathProgram {
@@ -113,6 +112,8 @@ struct PathProgram {
   const double* texture_lambda = nullptr;  // padded, nm
   const DerivedPlan* derived = nullptr;    // null: none
   bool gas = false;                        // has vertices of gas
+  std::size_t film_channels = 0;           // of the film's row that may be written: `channels`, or padded
+  std::size_t derived_offset = 0;          // of derived channels in the film's row
   const float* next_film = nullptr;        // row of the following path, to be fetched ahead; never read
 };
 
@@ -134,7 +135,7 @@ struct DoubleTable {
 
 /// The kernels of one instruction set.
 struct EvaluatorKernels {
-  /// Adds the path's channel values to film[0 .. channels) and its derived ones to film[offset ..).
+  /// Adds the path's channel values to film[0 .. channels) and its derived ones to film[derived_offset ..).
   void (*evaluate_path)(const PathProgram& path, float* film);
   /// out[i] = table(lambda_nm[i]) for i < count rounded up to kMaxLanes; positions in double.
   void (*sample_table)(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out);

@@ -98,6 +98,33 @@ TEST_P(Invariants, SumsAccumulateAndPaddingStaysZero) {
   for (std::size_t i = 0; i < once.size(); ++i) ASSERT_EQ(once[i], reversed[(39 - i / 192) * 192 + i % 192]);
 }
 
+/// Rows of a film: the same values, derived channels behind the channels, and nothing is touched beyond.
+TEST_P(Invariants, PackedRowsGetTheBitsOfPaddedOnes) {
+  constexpr float kUntouched = -7;
+  for (const std::size_t channels : {1, 7, 8, 37, 65, 100, 131}) {
+    std::mt19937 random(11);
+    const FlatScene scene = make_scene(make_channels(channels, Layout::kRegular, random), random);
+    const PathBuffer paths = make_paths(scene, 40, random);
+    const DerivedChannels derived = make_responses();
+    Evaluator evaluator(scene, derived, GetParam());
+    const std::size_t used = channels + derived.names.size(), stride = used + 64;
+    std::vector<float> packed(40 * stride, kUntouched), padded(40 * evaluator.stride(), 0.0f);
+    std::vector<float*> rows;
+    for (std::size_t p = 0; p < 40; ++p) {
+      rows.push_back(&packed[p * stride]);
+      std::fill_n(rows.back(), used, 0.0f);
+    }
+    evaluator.add_shared(paths, 0.25, {rows, true});
+    evaluator.add_shared(paths, 0.25, padded);
+    for (std::size_t i = 0; i < packed.size(); ++i) {
+      const std::size_t pixel = i / stride, column = i % stride;
+      const std::size_t there = column < channels ? column : evaluator.derived_offset() + column - channels;
+      ASSERT_EQ(packed[i], column < used ? padded[pixel * evaluator.stride() + there] : kUntouched)
+          << channels << ' ' << pixel << ' ' << column;
+    }
+  }
+}
+
 TEST_P(Invariants, InvalidWeightsStayInTheirPixel) {
   std::mt19937 random(8);
   const FlatScene scene = make_scene(make_channels(40, Layout::kRegular, random), random);
