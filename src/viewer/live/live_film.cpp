@@ -125,16 +125,17 @@ void LiveFilm::sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) c
   const auto kept = std::ranges::find_if(closed_, [&](const ClosedSums& c) { return c.sums == of_row; });
   if (!plain || kept == closed_.end()) return PixelSource::sums(y, of_row, out);
   update_closed(y, *kept);
+  const std::size_t first = std::size_t{y} * width(), channels = bands_.size();
+  const OpenSumsView open = film_.open_sums(0, first, width());
   for (uint32_t x = 0; x < width(); ++x) {
-    const std::size_t pixel = std::size_t{y} * width() + x;
-    const PixelSumsView open = film_.pixel_sums(0, pixel);
     float* const to = &out[3 * std::size_t{x}];
-    const double count = static_cast<double>(film_.samples(x, y)) + open.count;
+    const double closed = kept->samples[first + x], count = closed + open.counts[x];
     float of_open[3] = {};
-    if (open.count > 0) of_row(open.open.data(), of_open);
-    const auto a = static_cast<float>(static_cast<double>(film_.samples(x, y)) / count);
+    if (open.counts[x] > 0) of_row(&open.values[x * channels], of_open);
+    const auto a = static_cast<float>(closed / count);
     for (std::size_t c = 0; c < 3; ++c)
-      to[c] = count > 0 ? a * kept->values[3 * pixel + c] + of_open[c] / static_cast<float>(count) : kNothing;
+      to[c] = count > 0 ? a * kept->values[3 * (first + x) + c] + of_open[c] / static_cast<float>(count)
+                        : kNothing;
   }
 }
 
