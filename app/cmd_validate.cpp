@@ -1,7 +1,6 @@
 // kiloband validate [CASE]...: the statistical validation suite (validation/README.md), with a report.
 #include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,13 +10,14 @@
 
 #include "app/commands.hpp"
 #include "app/console/messages.hpp"
+#include "app/console/run_progress.hpp"
 #include "app/console/standard_output.hpp"
 #include "app/console/stop_signals.hpp"
+#include "app/report_page.hpp"
 #include "base/error.hpp"
 #include "scenes/generator/scenes.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "src_gpu/device/device.hpp"
-#include "validation/suite/child_process.hpp"
 #include "validation/suite/results.hpp"
 
 namespace kiloband {
@@ -72,32 +72,6 @@ void generate_scenes(const SuiteSettings& settings) {
   }
 }
 
-/// A line that is overwritten on a terminal, lines at whole tenths elsewhere.
-class RunProgress {
- public:
-  explicit RunProgress(bool enabled) : enabled_(enabled), terminal_(isatty(2)) {}
-
-  void begin(const std::string& name) {
-    name_ = name;
-    if (enabled_ && !terminal_) tell("{:3.0f} %  {}\n", 100 * fraction_, name_);
-  }
-  void update(double fraction) {
-    fraction_ = fraction;
-    if (!enabled_ || !terminal_) return;
-    constexpr int kWidth = 30;
-    const int filled = static_cast<int>(kWidth * fraction);
-    tell("\r[{:#<{}}{:.<{}}] {:3.0f} %  {:<44.44}", "", filled, "", kWidth - filled, 100 * fraction, name_);
-  }
-  void end() const {
-    if (enabled_ && terminal_) tell("\n");
-  }
-
- private:
-  bool enabled_, terminal_;
-  double fraction_ = 0;
-  std::string name_;
-};
-
 const char* word_of(bool passed, bool interrupted) {
   return !passed ? "FAILED" : interrupted ? "stopped" : "passed";
 }
@@ -149,22 +123,6 @@ void print_verdict(const SuiteResult& result) {
          made, result.comparisons, result.seconds, kRunRate);
 }
 
-/// The HTML page: by a Python script with matplotlib. Without them the results stand for themselves.
-void make_report(const ValidateOptions& options) {
-  const fs::path script = fs::absolute(options.scenes) / "validation/report/report.py";
-  for (const char* python : {"python3", "/usr/bin/python3"}) {
-    if (run_child({python, "-c", "import matplotlib, numpy"}, {}, {}).code != 0) continue;
-    const ChildEnd end = run_child({python, script.string(), fs::absolute(options.output).string()}, {}, {});
-    tell("{}{}", end.out, end.err);
-    if (end.code == 0) return;
-    break;
-  }
-  tell(
-      "note: no report.html (needs python3 with matplotlib): validation/report/report.py makes it from "
-      "{}/results.json\n",
-      options.output);
-}
-
 /// The independent renderer is optional, unless a name asks for it.
 std::optional<MitsubaDriver> mitsuba_of(const ValidateOptions& options) {
   auto driver = find_mitsuba({.root = options.scenes}, options.names, effort_of(options));
@@ -211,7 +169,7 @@ int validate(const ValidateOptions& options) {
   progress.end();
   write_results(options.output, result, record);
   print_verdict(result);
-  if (!options.no_report) make_report(options);
+  if (!options.no_report) make_report_page(options.scenes, "report.py", options.output, "results.json");
   if (result.interrupted) return kInterrupted;
   return result.passed() ? kDone : kFailed;
 }

@@ -32,7 +32,7 @@ void check_command(const std::map<std::string, Command>& commands, int argc, cha
   if (argc < 2 || argv[1][0] == '-' || commands.contains(argv[1])) return;
   throw InputError(fmt::format(
       "unknown command '{}': must be render, info, convert, sensor, compare, sky, devices, trace, "
-      "validate or view (see kiloband --help)",
+      "validate, bench or view (see kiloband --help)",
       argv[1]));
 }
 
@@ -62,6 +62,7 @@ int run(int argc, char** argv) {
   commands["convert"] = add_convert(program);
   commands["sensor"] = add_sensor(program);
   commands["compare"] = add_compare(program);
+  commands["bench"] = add_bench(program);
   commands["devices"] = add_devices(program);
   commands["view"] = add_view(program);
   commands["sky"] = add_sky(program);

@@ -1,0 +1,139 @@
+"""The page of `kiloband bench`: figures, numbers, commands, escaping, missing parts."""
+
+import copy
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+REPORT = pathlib.Path(__file__).resolve().parents[4] / "validation" / "report"
+sys.path.insert(0, str(REPORT))
+
+import speed_data  # noqa: E402
+import speed_plots  # noqa: E402
+import speed_report  # noqa: E402
+
+
+def record(case, quantity, value, **fields):
+    own = {"case": case, "scene": "box<1>", "backend": "cpu", "quantity": quantity, "value": value, "error": 0.1}
+    return own | {"repetitions": 3, "error_kind": "half range", "command": "kiloband render a&b.xml"} | fields
+
+
+def small_results():
+    records = []
+    for k, pt, batch in ((8, 2e6, 2.5e6), (64, 1e6, 2.25e6)):
+        records.append(record("channels", "paths_per_second", pt, backend="opencl", method="pt", channels=k))
+        records.append(record("channels", "paths_per_second", batch, backend="opencl", method="dpept-batch", channels=k))
+        records.append(record("channels", "speed_up_over_pt", batch / pt, backend="opencl", method="dpept-batch", channels=k))
+    for samples in (16, 64):
+        way = {"wavelengths": "shared", "sampler": "sobol", "samples": samples, "replicates": 1}
+        records.append(record("error", "seconds", samples / 100, **way))
+        records.append(record("error", "relative_error", 0.8 / samples, series="pixel", **way))
+        records.append(record("error", "efficiency", samples * 2, series="pixel", **way))
+    missing = {"backend": "mitsuba", "method": "llvm_ad_spectral", "note": "not there: <no module>", "scene": None}
+    records.append(record("peers", "paths_per_second", None, **missing))
+    machine = {"processor": "Some <CPU>", "threads": 2, "isa": "avx2", "version": "kiloband 9.8.7", "date": "2025-02-03"}
+    names = [{"name": name, "complete": True, "failure": None, "load_before": 0.25} for name in ("channels", "error", "peers")]
+    return {
+        "format": "kiloband bench 1",
+        "machine": machine | {"opencl": None, "commit": "abc", "memory_bytes": 2**33, "load_average": 0.5},
+        "quick": True,
+        "seed": 4,
+        "seconds": 61.0,
+        "interrupted": False,
+        "cases": names,
+        "records": records,
+    }
+
+
+def page_of(results):
+    with tempfile.TemporaryDirectory() as folder:
+        directory = pathlib.Path(folder)
+        (directory / "bench.json").write_text(json.dumps(results), encoding="utf-8")
+        return speed_report.report_html(directory)
+
+
+def plain(html):
+    return re.sub(r"<[^>]*>", "", html)
+
+
+class Page(unittest.TestCase):
+    def test_figures_numbers_and_commands(self):
+        page = page_of(small_results())
+        self.assertEqual(page.count('<figure class="wide">'), 4)  # paths, speed-up, error of pixels, efficiency
+        for part in (
+            "Repeats it: kiloband bench channels --quick --seed 4 -o DIR",
+            "Load average before it: 0.25.",
+            "4 numbers and their commands",
+            "kiloband render a&amp;b.xml",
+            "2.25",
+            "Some &lt;CPU&gt;, 2 threads, avx2",
+            "kiloband 9.8.7, commit abc",
+            "8.0 GiB",
+            "no device",
+            "± is the half range",
+            "Mitsuba llvm_ad_spectral: not there: &lt;no module&gt;",
+            "A quick run",
+        ):
+            self.assertIn(part, plain(page))
+        self.assertNotIn("<CPU>", page)
+        self.assertNotIn("box<1>", page)
+
+    def test_only_what_was_measured(self):
+        results = small_results()
+        results["records"] = speed_data.pick(results["records"], case="channels")
+        results["quick"] = False
+        page = page_of(results)
+        self.assertIn('<h2 id="channels">', page)
+        self.assertNotIn('<h2 id="error">', page)
+        self.assertNotIn("A quick run", page)
+        self.assertIn("kiloband bench channels --seed 4 -o DIR", page)
+
+    def test_failures_and_interruptions_are_told(self):
+        results = small_results()
+        results["cases"][1]["failure"] = "the <device> was lost"
+        results["interrupted"] = True
+        page = page_of(results)
+        self.assertIn('<div class="failure">the &lt;device&gt; was lost</div>', page)
+        self.assertIn("Interrupted", page)
+
+    def test_an_empty_run_has_a_page(self):
+        page = page_of({"format": "kiloband bench 1"})
+        self.assertIn("Speed of kiloband", page)
+        self.assertNotIn("<figure", page)
+
+    def test_no_page_of_something_else(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for text in ("{", '{"format": "kiloband validation 1"}', "[]"):
+                (pathlib.Path(folder) / "bench.json").write_text(text)
+                end = subprocess.run([sys.executable, REPORT / "speed_report.py", folder], capture_output=True, text=True)
+                self.assertEqual(end.returncode, 1)
+                self.assertTrue(end.stderr.startswith("speed_report.py: "), end.stderr)
+                self.assertFalse((pathlib.Path(folder) / "report.html").exists())
+
+
+class Curves(unittest.TestCase):
+    def test_error_against_time_joins_records(self):
+        from speed_sections import error_curves
+
+        curves = error_curves(small_results()["records"], "box<1>", "pixel")
+        self.assertEqual(curves, {"CPU shared sobol": [(0.16, 0.05, 0.1), (0.64, 0.0125, 0.1)]})
+
+    def test_numbers_that_are_missing_are_left_out(self):
+        records = copy.deepcopy(small_results()["records"])
+        records[0]["value"] = None
+        found = speed_data.lines(speed_data.pick(records, quantity="paths_per_second"), "channels", speed_data.way_label)
+        self.assertEqual(found["OpenCL pt"], [(64, 1e6, 0.1)])
+
+    def test_ticks(self):
+        self.assertEqual(speed_plots.tick_text(300.0), "300")
+        self.assertEqual(speed_plots.tick_text(0.002), "0.002")
+        self.assertEqual(speed_plots.tick_text(1e6), "$10^{6}$")
+        self.assertEqual(speed_plots.tick_text(1.5e-5), r"$1.5\cdot10^{-5}$")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,73 @@
+// Records as CSV and JSON, the list of cases.
+#include "validation/speed/record.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "validation/speed/bench.hpp"
+
+namespace kiloband::speed {
+namespace {
+
+Record small_record() {
+  Record record;
+  record.group = "channels";
+  record.setup.scene = "box";
+  record.setup.backend = "cpu";
+  record.setup.channels = 8;
+  record.quantity = "paths_per_second", record.unit = "1/s";
+  record.value = 1234567.25, record.error = 0.5;
+  record.error_kind = "half range";
+  record.repetitions = 3;
+  record.note = "a \"note\", with commas";
+  record.command = "kiloband render box.xml";
+  return record;
+}
+
+TEST(SpeedRecord, Csv) {
+  EXPECT_EQ(
+      to_csv({small_record(), Record{}}),
+      "case,scene,backend,method,wavelengths,sampler,dispersion,channels,part,width,height,pool,depth,replicates,samples,"
+      "series,channel_nm,quantity,value,error,unit,error_kind,repetitions,note,command\n"
+      "channels,box,cpu,,,,,8,,,,,,,,,,paths_per_second,1234567.25,0.5,1/s,half range,3,"
+      "\"a \"\"note\"\", with commas\",kiloband render box.xml\n"
+      ",,,,,,,,,,,,,,,,,,,,,,,,\n");
+}
+
+TEST(SpeedRecord, JsonLeavesOutWhatDoesNotApply) {
+  EXPECT_EQ(to_json(small_record()).dump(),
+            R"({"case":"channels","scene":"box","backend":"cpu","channels":8,"quantity":"paths_per_second",)"
+            R"("value":1234567.25,"error":0.5,"unit":"1/s","error_kind":"half range","repetitions":3,)"
+            R"("note":"a \"note\", with commas","command":"kiloband render box.xml"})");
+  EXPECT_EQ(to_json(Record{}).dump(), R"({"value":null,"error":null})");
+}
+
+TEST(SpeedCases, ByName) {
+  EXPECT_EQ(chosen_cases({}).size(), cases().size());
+  const auto chosen = chosen_cases({"peers", "channels"});
+  ASSERT_EQ(chosen.size(), 2u);
+  EXPECT_EQ(chosen[0].name, "channels") << "they run in their own order";
+  EXPECT_THROW(chosen_cases({"chanels"}), InputError);
+}
+
+/// A case that fails leaves what the others measured, and says why it did.
+TEST(SpeedCases, AFailureIsTheCasesOwn) {
+  const Case good{"good", "", 1, 1, [](Bench& bench) { bench.add(small_record()); }};
+  const Case bad{"bad", "", 1, 1, [](Bench& bench) {
+                   bench.add(small_record());
+                   throw DeviceError("it broke");
+                 }};
+  std::vector<std::string> begun;
+  const RunOutcome run =
+      run_cases({bad, good}, {}, {}, [&](const std::string& name) { begun.push_back(name); });
+  EXPECT_EQ(begun, (std::vector<std::string>{"bad", "good"}));
+  ASSERT_EQ(run.cases.size(), 2u);
+  EXPECT_EQ(run.cases[0].failure, "it broke");
+  EXPECT_EQ(run.cases[0].records.size(), 1u);
+  EXPECT_FALSE(run.cases[0].complete);
+  EXPECT_TRUE(run.cases[1].complete);
+  EXPECT_TRUE(run.failed());
+}
+
+}  // namespace
+}  // namespace kiloband::speed

@@ -1,0 +1,98 @@
+// Error against time, for every backend, method, wavelength mode and sampler, against one reference per scene.
+#include <fmt/format.h>
+
+#include "validation/speed/errors.hpp"
+
+namespace kiloband::speed {
+namespace {
+
+/// One curve.
+struct Way {
+  BackendName name;
+  const char *wavelengths, *sampler;
+  uint32_t replicates;
+};
+
+/// The default of `kiloband render` (16 replicates) beside one; others have one, what convergence asks for.
+std::vector<Way> ways_of(const Bench& bench) {
+  std::vector<Way> ways{{bench_backends(bench.settings()).front(), "shared", "sobol", 16}};
+  for (const BackendName& name : bench_backends(bench.settings())) {
+    ways.push_back({name, "shared", "sobol", 1});
+    if (bench.quick() && name.backend != "cpu") continue;
+    ways.push_back({name, "shared", "independent", 1});
+    ways.push_back({name, "per-path", "sobol", 1});
+    ways.push_back({name, "per-path", "independent", 1});
+  }
+  return ways;
+}
+
+Setup setup_of_way(const Bench& bench, const SceneFile& scene, const Way& way) {
+  Setup setup;
+  setup.scene = scene.name, setup.backend = way.name.backend, setup.method = way.name.method;
+  setup.wavelengths = way.wavelengths, setup.sampler = way.sampler;
+  setup.channels = bench.pick(8u, 32u);
+  setup.width = setup.height = 64;
+  setup.replicates = way.replicates;
+  return setup;
+}
+
+void measure_way(Bench& bench, const SceneFile& scene, const Way& way, const Reference& reference) {
+  Setup setup = setup_of_way(bench, scene, way);
+  const uint32_t repetitions = bench.pick(4u, 6u);
+  Subject subject = make_subject(bench.settings(), setup, load(scene, setup), repetitions * setup.replicates,
+                                 bench.settings().seed);
+  time_samples(subject, 1, bench.watch());  // compiles kernels
+  const std::vector<uint64_t> few{16, 64}, many{16, 64, 256, 1024};
+  for (const uint64_t samples : bench.quick() ? few : many) {
+    setup.samples = samples;
+    if (samples < 2 * setup.replicates) continue;  // render would take fewer
+    const Repetitions images = repeat(subject, setup, repetitions, bench.watch());
+    if (bench.stopped()) return;
+    Record record;
+    record.group = "error";
+    record.setup = setup;
+    record.command = render_command(bench.settings(), scene, setup, bench.settings().seed);
+    add_errors(bench, record, images, reference);
+  }
+}
+
+void add_reference(Bench& bench, const Setup& setup, const Reference& reference) {
+  Repetitions none{reference.image.width, reference.image.height, reference.image.channels, {}, {}};
+  for (const ScaleErrors& errors : errors_of(none, reference)) {
+    Record record;
+    record.group = "error";
+    record.setup = setup;
+    record.setup.backend = "cpu", record.setup.wavelengths = "shared", record.setup.sampler = "sobol";
+    record.setup.method.clear();
+    record.setup.replicates = reference.image.replicates;
+    record.setup.samples = reference.samples;
+    record.series = errors.scale;
+    record.quantity = "reference_error";
+    record.value = root_of({errors.reference, 0}).value;
+    record.note = reference.reused ? "found in the folder of results" : "rendered in this run";
+    record.command = reference.command;
+    bench.add(record);
+  }
+}
+
+}  // namespace
+
+void run_error(Bench& bench) {
+  std::vector<SceneFile> scenes = bench_scenes(bench.settings());
+  if (bench.quick()) scenes.resize(1);
+  const std::vector<Way> ways = ways_of(bench);
+  double done = 0;
+  for (const SceneFile& scene : scenes) {
+    const Setup setup = setup_of_way(bench, scene, ways.front());
+    const Reference reference = reference_of(bench, scene, setup, bench.pick(2048u, 32768u));
+    if (bench.stopped()) return;
+    add_reference(bench, setup, reference);
+    for (const Way& way : ways) {
+      measure_way(bench, scene, way, reference);
+      if (bench.stopped()) return;
+      bench.progress(++done / static_cast<double>(scenes.size() * ways.size()));
+    }
+  }
+}
+
+}  // namespace kiloband::speed
