@@ -54,6 +54,8 @@ class GroupRenderer {
   /// open: with sums that are gone on with.
   uint64_t group_pixels(uint64_t pixels, bool open);
   SumRule sum_rule() const;
+  /// Of the pool that is there; 0: none was needed yet.
+  uint32_t pool_slots() const { return plan_ ? plan_->pool.slots : 0; }
 
   /// Renders range.count samples of every pixel (fewer if stop becomes true). At most group_pixels() of them.
   /// The pixels of a block stand together. on_samples gets the pixel samples done.

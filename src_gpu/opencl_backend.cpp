@@ -161,6 +161,7 @@ void Renderer::retreat(const DeviceOutOfMemory& refusal) {
 BackendStatistics Renderer::statistics() const {
   BackendStatistics done = done_;
   if (state_) done.device_memory_bytes = std::max(done.device_memory_bytes, state_->memory.peak());
+  if (groups_) done.pool_slots = groups_->pool_slots();
   done.kernel_seconds = context_.kernel_seconds();
   done.kernel_launches = context_.kernel_launches();
   return done;

@@ -59,6 +59,7 @@ struct BackendStatistics {
   std::map<std::string, double> kernel_seconds;     // on the device, by kernel
   std::map<std::string, uint64_t> kernel_launches;  // how many took these seconds
   uint64_t device_memory_bytes = 0;                 // peak, beside the host's
+  uint32_t pool_slots = 0;            // paths in flight that the device has room for, as it last rendered
   double longest_launch_seconds = 0;  // of a kernel, measured on the device: display drivers kill long ones
   uint32_t device_losses = 0;         // how often the device was lost and set up again
 };

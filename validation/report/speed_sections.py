@@ -202,4 +202,103 @@ def missing_peers(records):
     return f"<ul>{items}</ul>" if items else ""
 
 
-SECTIONS = [channels, error, peers]
+def pool(results):
+    records = pick(results["records"], case="pool")
+    body = ""
+    for quantity, y_label in (
+        ("paths_per_second", "paths per second"),
+        ("paths_in_flight", "paths that the pool has room for"),
+        ("device_memory", "device memory / byte"),
+    ):
+        shown = pick(records, quantity=quantity)
+        titles = {f"K = {k}": lines(pick(shown, channels=k), "pool", backend_label) for k in distinct(shown, "channels")}
+        body += figure(speed_plots.panels(titles, "paths of the pool, asked for", y_label), POOL_CAPTIONS[quantity], shown, quantity)
+    text = (
+        "The pool of the OpenCL backend, 256² to 2048² paths. pt keeps two numbers per channel for every path of the pool; where that does not fit into "
+        "the memory that the device may use (<code>--device-memory</code>, 4GiB is the paper's card) the pool becomes smaller, or the image is rendered in groups of pixels."
+    )
+    return section(results, "pool", "Sizes of the pool", text, body)
+
+
+POOL_CAPTIONS = {
+    "paths_per_second": "Medians of rounds.",
+    "paths_in_flight": "Below the diagonal: not all of the pool that was asked for had room, or the image had no more paths to give it.",
+    "device_memory": "The most that was allocated on the device: pool, film, scene, spectra.",
+}
+
+
+def memory(results):
+    records = pick(results["records"], case="memory")
+    body = ""
+    for series, x, x_label in (("channels", "channels", "channels K"), ("depth", "depth", "longest path (--max-depth)")):
+        measured = pick(records, series=series, quantity="device_memory")
+        formula = pick(records, series=series, quantity="formula_of_paths")
+        resident = pick(records, series=series, quantity="resident_memory")
+        titles = {
+            "on the device, measured": lines(measured, x, backend_label),
+            "paths of the pool, by formula": lines(formula, x, backend_label),
+            "CPU: resident memory of a process": lines(resident, x, backend_label),
+        }
+        svg = speed_plots.panels(titles, x_label, "byte", columns=3)
+        body += figure(svg, MEMORY_CAPTIONS[series], measured + formula + resident, f"memory against {series}")
+    text = "Memory against K and depth (figures 4 and 7 of the DPEPT paper). What is measured has the film, the scene and its spectra in it, the formula only the paths."
+    return section(results, "memory", "Memory", text, body)
+
+
+MEMORY_CAPTIONS = {
+    "channels": "At depth 6: what pt keeps of a path grows with K, what dpept keeps does not.",
+    "depth": "At 64 channels: what dpept keeps grows with the vertices of a path; the formula counts longest paths in flight, the backend has room for all paths of a round, of the length that it meets.",
+}
+
+
+def refraction(results):
+    records = pick(results["records"], case="refraction")
+    body = ""
+    shown = pick(records, quantity="relative_error")
+    titles = {f"error of a {scale}": lines(pick(shown, series=scale), "samples", dispersion_label) for scale in ("pixel", "tile")}
+    body += figure(speed_plots.panels(titles, "samples per pixel", "relative error"), "", shown, "error against samples")
+    gain = pick(records, quantity="efficiency", series="pixel")
+    svg = speed_plots.panels({"pixels": lines(gain, "samples", dispersion_label)}, "samples per pixel", "1 / (error² × seconds), 1/s")
+    body += figure(svg, "What a second buys: spectral MIS takes more time per path.", gain, "efficiency")
+    channel = pick(records, quantity="channel_error", series="pixel")
+    most = max((r.get("samples", 0) for r in channel), default=0)
+    channel = [r for r in channel if r.get("samples") == most]
+    svg = speed_plots.panels({f"{most} samples per pixel": lines(channel, "channel_nm", dispersion_label)}, "wavelength / nm", "relative error of a pixel")
+    body += figure(svg, "Error of each channel.", channel, "error of each channel")
+    text = "A ball of rough flint glass at 64 wavelengths: where a path goes on with one of its channels (degrade, figure 3 of the DPEPT paper) and where it keeps all (spectral MIS)."
+    return section(results, "refraction", "Refraction", text, body)
+
+
+def dispersion_label(record):
+    return {"mis": "spectral MIS", "degrade": "degradation"}.get(record.get("dispersion"), "")
+
+
+def split(results):
+    records = pick(results["records"], case="split")
+    shown = pick(records, quantity="efficiency", series="pixel")
+    body = best_splits(pick(records, quantity="gain_of_best_split"))
+    svg = speed_plots.panels(by_scene(shown, "part", channels_label), "channels that a path carries", "1 / (error² × seconds), 1/s")
+    body += figure(svg, "The rightmost point of each curve is no split. Bars: one standard error.", shown, "efficiency of splits")
+    text = (
+        "Should a path carry all channels? K channels are rendered in ranges of neighbours, each by paths of its own, as many paths in all: "
+        "1/(error² × seconds) of pixels against how many channels a path carries."
+    )
+    return section(results, "split", "Paths that carry a part of the channels", text, body)
+
+
+def channels_label(record):
+    return f"K = {record.get('channels')}"
+
+
+def best_splits(records):
+    rows = [
+        markup.row(
+            [markup.text(r.get("scene")), markup.text(r.get("channels")), markup.text(r.get("part")), markup.number(r.get("value"), 3), markup.number(r.get("error"), 2)],
+            numeric=(1, 2, 3, 4),
+        )
+        for r in records
+    ]
+    return markup.table(["scene", "K", "best: channels of a path", "efficiency over no split", "± standard error"], rows, numeric=(1, 2, 3, 4))
+
+
+SECTIONS = [channels, pool, memory, refraction, error, peers, split]

@@ -52,7 +52,7 @@ void measure_way(Bench& bench, const SceneFile& scene, const Way& way, const Ref
     record.group = "error";
     record.setup = setup;
     record.command = render_command(bench.settings(), scene, setup, bench.settings().seed);
-    add_errors(bench, record, images, reference);
+    add_errors(bench, record, images, reference, true);
   }
 }
 

@@ -65,7 +65,7 @@ Rated rate(Bench& bench, const Setup& setup, const std::string& command, const R
   const MeanDifference means = compare_means(images, reference);
   if (means.differ) record.note = "the means differ from the reference's: the errors contain that";
   add_number(bench, record, "mean_difference", "", {means.relative, means.error});
-  add_errors(bench, record, images, reference);
+  add_errors(bench, record, images, reference, false);
   const Estimate efficiency =
       efficiency_of(errors_of(images, reference).front().square, mean_of(images.seconds));
   return {setup, efficiency, median_of(rates), command};

@@ -184,7 +184,7 @@ MeanDifference compare_means(const Repetitions& repetitions, const Reference& re
 }
 
 void add_errors(Bench& bench, const Record& common, const Repetitions& repetitions,
-                const Reference& reference) {
+                const Reference& reference, bool channels) {
   if (repetitions.images.empty()) return;
   Record record = common;
   record.error_kind = "standard error";
@@ -200,7 +200,7 @@ void add_errors(Bench& bench, const Record& common, const Repetitions& repetitio
     record.note = note_of(errors);
     add("relative_error", "", root_of(errors.square));
     add("efficiency", "1/s", efficiency_of(errors.square, seconds));
-    if (errors.scale == "image") continue;
+    if (errors.scale == "image" || !channels) continue;
     for (std::size_t c = 0; c < errors.channels.size(); ++c) {
       record.channel_nm = reference.centres_nm[c];
       add("channel_error", "", root_of(errors.channels[c]));

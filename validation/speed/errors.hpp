@@ -50,9 +50,9 @@ struct MeanDifference {
 };
 MeanDifference compare_means(const Repetitions& repetitions, const Reference& reference);
 
-/// Adds what is known of errors: per scale the error, the efficiency, and per channel the error; of a setup and its seconds.
-/// record: what all have in common
-void add_errors(Bench& bench, const Record& record, const Repetitions& repetitions,
-                const Reference& reference);
+/// Adds what is known of errors: seconds, and per scale the error and the efficiency.
+/// common: what all records have in common; channels: also the error of each channel, of pixels and tiles
+void add_errors(Bench& bench, const Record& common, const Repetitions& repetitions,
+                const Reference& reference, bool channels);
 
 }  // namespace kiloband::speed

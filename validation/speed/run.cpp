@@ -54,9 +54,13 @@ bool RunOutcome::failed() const {
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> kCases{
-      {"channels", "paths and frames per second against the number of channels", 14, 480, run_channels},
-      {"error", "error against time: backends, methods, wavelength modes, samplers", 12, 420, run_error},
-      {"peers", "Mitsuba 3: paths per second, time to equal error", 12, 600, run_peers},
+      {"channels", "paths and frames per second against the number of channels", 14, 400, run_channels},
+      {"pool", "sizes of the OpenCL pool: speed, and what fits into memory", 6, 240, run_pool},
+      {"memory", "memory against channels and depth, measured", 5, 60, run_memory},
+      {"refraction", "degradation against spectral MIS at 64 wavelengths", 3, 90, run_refraction},
+      {"error", "error against time: backends, methods, wavelength modes, samplers", 12, 600, run_error},
+      {"peers", "Mitsuba 3: paths per second, time to equal error", 10, 500, run_peers},
+      {"split", "paths that carry a part of the channels", 3, 300, run_split},
   };
   return kCases;
 }
