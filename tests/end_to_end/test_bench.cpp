@@ -29,7 +29,8 @@ TEST(Bench, NamesItsCases) {
   const TemporaryFolder folder;
   const Outcome outcome = bench(folder, {"--list"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* name : {"channels ", "error ", "peers "})
+  for (const char* name :
+       {"channels ", "pool ", "memory ", "refraction ", "error ", "stages ", "peers ", "split "})
     EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
   EXPECT_FALSE(std::filesystem::exists(folder / "bench_results"));
 }

@@ -23,9 +23,8 @@
 
 #include "film/spectral_film.hpp"
 #include "scene/read/reader.hpp"
-#include "src_gpu/device/kernel.hpp"
-#include "src_gpu/device/program.hpp"
 #include "src_gpu/opencl_backend.hpp"
+#include "validation/speed/device_limits.hpp"
 
 namespace kiloband {
 namespace {
@@ -50,34 +49,6 @@ double seconds_now() {
 double median(std::vector<double> values) {
   std::ranges::sort(values);
   return values[values.size() / 2];
-}
-
-/// Bytes per second of a = b + s c over three arrays of `bytes` in all.
-double triad_bandwidth(opencl::DeviceContext& context, uint64_t bytes) {
-  const opencl::SourceMap source{
-      {"kernels/triad.cl",
-       "__kernel void triad(__global float16* restrict a, __global const float16* restrict b,\n"
-       "  __global const float16* restrict c, uint repeats, uint items) {\n"
-       "  for (uint r = 0; r < repeats; ++r)\n"
-       "    for (uint i = get_global_id(0); i < items; i += get_global_size(0))\n"
-       "      a[i] = b[i] + 3.0f * c[i];\n}\n"}};
-  opencl::Kernel kernel = opencl::build_program(context, source, "kernels/triad.cl", {}).kernel("triad");
-  opencl::DeviceMemory memory(context, uint64_t{1} << 33);
-  const uint64_t items = std::max<uint64_t>(bytes / 3 / 64, 64);
-  const auto floats = items * 16;
-  const std::vector<float> ones(floats, 1.0f);
-  opencl::DeviceBuffer<float> a = memory.upload("a", ones), b = memory.upload("b", ones),
-                              c = memory.upload("c", ones);
-  const uint64_t threads =
-      std::min<uint64_t>(items, context.device().type == opencl::DeviceType::kCpu ? 64 : 1u << 18);
-  const auto repeats = static_cast<uint32_t>(std::max<uint64_t>((uint64_t{1} << 29) / (items * 192), 1));
-  kernel.set(a, b, c, repeats, static_cast<uint32_t>(items));
-  double best = 0;
-  for (int i = 0; i < 5; ++i) {
-    const double seconds = kernel.launch_timed(threads);
-    best = std::max(best, static_cast<double>(items) * 192 * repeats / seconds);
-  }
-  return best;
 }
 
 double kernel_sum(const std::map<std::string, double>& seconds, std::initializer_list<const char*> names) {
@@ -150,7 +121,7 @@ nlohmann::json row(opencl::DeviceContext& context, const Settings& settings, uin
   const Timing path = measure(scene, settings, opencl::Method::kDpeptPath);
   const Timing batch = measure(scene, settings, opencl::Method::kDpeptBatch);
   const double padded = (channels + 15) / 16 * 16;
-  const double triad = triad_bandwidth(context, static_cast<uint64_t>(8 * padded * settings.pool));
+  const double triad = speed::triad_bandwidth(context, static_cast<uint64_t>(8 * padded * settings.pool));
   const auto ns = [&](const Timing& t) { return t.evaluation / (t.vertices * channels) * 1e9; };
   const double bandwidth = 16 * padded * pt.vertices / pt.evaluation;
   nlohmann::json r;
@@ -191,7 +162,7 @@ int run(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
 
   opencl::DeviceContext context(opencl::select_device(settings.device), {.profiling = true});
-  const double cache = triad_bandwidth(context, 3 * 8192);
+  const double cache = speed::triad_bandwidth(context, 3 * 8192);
   nlohmann::json json;
   json["device"] = context.device().name;
   json["driver"] = context.device().driver_version;

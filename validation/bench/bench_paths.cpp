@@ -18,6 +18,7 @@
 
 #include "scene/read/reader.hpp"
 #include "src_cpu/block_worker.hpp"
+#include "validation/speed/bare_rays.hpp"
 
 namespace kiloband {
 
@@ -51,36 +52,16 @@ SceneDescription read_bench_scene(const std::string& name) {
   return read_scene_text(kConferenceScene, name, data_directory());
 }
 
-/// A scene made ready once.
-struct Bench {
-  std::shared_ptr<const FlatScene> compiled;
-  std::unique_ptr<EmbreeScene> embree;
-  std::vector<TriangleRecord> records;
-  std::vector<LightTriangle> lights;
-  TracerScene tracer;
-  std::vector<PixelRect> blocks;
-
-  Bench(const std::string& name, std::size_t channels) {
-    const SceneDescription scene = read_bench_scene(name);
-    compiled = compile_scene(scene, {parse_channels("400:700:" + std::to_string(channels)), {}, {}});
-    const FlatScene& flat = *compiled;
-    embree = std::make_unique<EmbreeScene>(flat, "avx512", 1);
-    records = make_triangle_records(flat);
-    lights = make_light_triangles(flat);
-    tracer = {&flat, embree.get(), records, lights};
-    blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
-  }
-};
+using Bench = speed::BareScene;
 
 Bench& bench_of(const std::string& name, std::size_t channels) {
   static std::map<std::pair<std::string, std::size_t>, std::unique_ptr<Bench>> cache;
   auto& bench = cache[{name, channels}];
-  if (!bench) bench = std::make_unique<Bench>(name, channels);
+  if (!bench) {
+    const ChannelList list = parse_channels("400:700:" + std::to_string(channels));
+    bench = std::make_unique<Bench>(compile_scene(read_bench_scene(name), {list, {}, {}}));
+  }
   return *bench;
-}
-
-std::size_t pixels_of(const Bench& bench) {
-  return std::size_t{bench.compiled->film.crop_width} * bench.compiled->film.crop_height;
 }
 
 void count_paths(benchmark::State& state, std::size_t paths_per_iteration) {
@@ -103,147 +84,22 @@ void generate(benchmark::State& state, const std::string& name, SamplerType samp
     }
     benchmark::DoNotOptimize(paths.entries.data());
   }
-  count_paths(state, pixels_of(bench) * kSamples);
+  count_paths(state, bench.pixels() * kSamples);
   state.counters["rays_per_path"] =
       static_cast<double>(tracer.rays()) /
-      (static_cast<double>(state.iterations()) * static_cast<double>(pixels_of(bench) * kSamples));
-}
-
-/// The recorded rays of all blocks in path order.
-struct BareRays {
-  std::vector<TraceRay> closest;
-  std::vector<ShadowRay> shadow;
-  std::vector<uint32_t> order;  // index << 1 | is_shadow
-};
-
-void append_in_path_order(const Recording& recording, BareRays& rays) {
-  std::vector<std::pair<uint32_t, uint32_t>> keyed;  // (path, order code)
-  const auto closest_base = static_cast<uint32_t>(rays.closest.size());
-  const auto shadow_base = static_cast<uint32_t>(rays.shadow.size());
-  rays.closest.insert(rays.closest.end(), recording.closest.begin(), recording.closest.end());
-  rays.shadow.insert(rays.shadow.end(), recording.shadow.begin(), recording.shadow.end());
-  for (uint32_t i = 0; i < recording.closest.size(); ++i)
-    keyed.push_back({recording.closest_path[i], (closest_base + i) << 1});
-  for (uint32_t i = 0; i < recording.shadow.size(); ++i)
-    keyed.push_back({recording.shadow_path[i], (shadow_base + i) << 1 | 1});
-  std::ranges::stable_sort(keyed, {}, &std::pair<uint32_t, uint32_t>::first);
-  for (const auto& [path, code] : keyed) rays.order.push_back(code);
-}
-
-/// The bare loop: copies each recorded ray (Embree answers in place) and asks for it.
-std::size_t query_all(const EmbreeScene& embree, const BareRays& rays) {
-  std::size_t hits = 0;
-  for (const uint32_t code : rays.order) {
-    if (code & 1) {
-      ShadowRay ray = rays.shadow[code >> 1];
-      embree.occlusions({&ray, 1});
-      hits += ray.occluded();
-    } else {
-      TraceRay ray = rays.closest[code >> 1];
-      embree.closest_hits({&ray, 1}, false);
-      hits += ray.shape != KB_NONE;
-    }
-  }
-  return hits;
-}
-
-/// The rays of one sample of every block.
-/// use(recording): called for each
-template <class Use>
-void record_rays(const Bench& bench, const Use& use) {
-  SamplingSettings settings;
-  settings.sampler = SamplerType::kIndependent;
-  settings.replicates = 1;
-  PathTracer tracer(bench.tracer, settings, path_kernels(resolve_isa(Isa::kAuto)));
-  PathBuffer paths;
-  std::vector<uint32_t> invalid;
-  const float mu[1] = {0.5f};
-  for (const PixelRect& block : bench.blocks) {
-    Recording recording;
-    tracer.record_into(&recording);
-    tracer.trace(block, {0, 0, 0}, mu, paths, invalid);
-    use(recording);
-  }
+      (static_cast<double>(state.iterations()) * static_cast<double>(bench.pixels() * kSamples));
 }
 
 void bare(benchmark::State& state, const std::string& name) {
-  Bench& bench = bench_of(name, 8);
-  BareRays rays;
-  record_rays(bench, [&](const Recording& recording) { append_in_path_order(recording, rays); });
-  for (auto _ : state) benchmark::DoNotOptimize(query_all(*bench.embree, rays));
-  count_paths(state, pixels_of(bench));
-}
-
-/// The rays that a wave traced at once, in the order of their paths, or sorted.
-struct BareQueue {
-  std::vector<float> columns[8];  // of the queue that traces them
-  bool shadow = false, camera = false;
-
-  /// first .. end of `rays`, whose paths are `path`.
-  template <class Ray>
-  BareQueue(const std::vector<Ray>& rays, const std::vector<uint32_t>& path, std::size_t first,
-            std::size_t end, const RayGrid* grid)
-      : shadow(std::is_same_v<Ray, ShadowRay>), camera(!shadow && first == 0) {
-    std::vector<std::size_t> order(end - first);
-    std::iota(order.begin(), order.end(), first);
-    std::ranges::sort(order, {}, [&](std::size_t i) { return path[i]; });
-    const auto queue = std::make_unique<RayQueue>(), sorted = std::make_unique<RayQueue>();
-    for (const std::size_t i : order) {
-      const Ray& ray = rays[i];
-      const uint32_t n = queue->count++;
-      queue->ox[n] = ray.ox, queue->oy[n] = ray.oy, queue->oz[n] = ray.oz, queue->t_min[n] = ray.t_min;
-      queue->dx[n] = ray.dx, queue->dy[n] = ray.dy, queue->dz[n] = ray.dz, queue->t_max[n] = ray.t_max;
-    }
-    const bool sorts = grid && !camera;
-    if (sorts) sort_rays(*queue, *grid, *sorted);
-    const RayQueue& from = sorts ? *sorted : *queue;
-    const float* arrays[8] = {from.ox, from.oy, from.oz, from.dx, from.dy, from.dz, from.t_max, from.t_min};
-    for (int c = 0; c < 8; ++c) columns[c].assign(arrays[c], arrays[c] + from.count);
-  }
-
-  template <class Queue>
-  void load(Queue& queue) const {
-    queue.count = static_cast<uint32_t>(columns[0].size());
-    float* arrays[7] = {queue.ox, queue.oy, queue.oz, queue.dx, queue.dy, queue.dz, queue.t_max};
-    for (int c = 0; c < 7; ++c) std::ranges::copy(columns[c], arrays[c]);
-    if constexpr (requires { queue.t_min; }) std::ranges::copy(columns[7], queue.t_min);
-  }
-};
-
-template <class Ray>
-void append_queues(const std::vector<Ray>& rays, const std::vector<uint32_t>& path,
-                   const std::vector<std::size_t>& ends, const RayGrid* grid,
-                   std::vector<BareQueue>& queues) {
-  std::size_t first = 0;
-  for (const std::size_t end : ends) {
-    if (end > first) queues.emplace_back(rays, path, first, end, grid);
-    first = end;
-  }
+  const speed::BareSingles rays(bench_of(name, 8));
+  for (auto _ : state) benchmark::DoNotOptimize(rays.query());
+  count_paths(state, bench_of(name, 8).pixels());
 }
 
 void bare_packets(benchmark::State& state, const std::string& name, bool sorted) {
-  Bench& bench = bench_of(name, 8);
-  const RayGrid* grid = sorted ? &bench.embree->grid() : nullptr;
-  std::vector<BareQueue> queues;
-  record_rays(bench, [&](const Recording& r) {
-    append_queues(r.closest, r.closest_path, r.closest_ends, grid, queues);
-    append_queues(r.shadow, r.shadow_path, r.shadow_ends, grid, queues);
-  });
-  const auto rays = std::make_unique<RayQueue>();
-  const auto shadows = std::make_unique<ShadowQueue>();
-  for (auto _ : state) {
-    for (const BareQueue& queue : queues) {
-      const RayPackets packets = sorted || queue.camera ? RayPackets::kCoherent : RayPackets::kIncoherent;
-      if (queue.shadow) {
-        queue.load(*shadows);
-        bench.embree->occlusions(*shadows, packets);
-      } else {
-        queue.load(*rays);
-        bench.embree->closest_hits(*rays, packets);
-      }
-    }
-  }
-  count_paths(state, pixels_of(bench));
+  const speed::BarePackets rays(bench_of(name, 8), sorted);
+  for (auto _ : state) rays.query();
+  count_paths(state, bench_of(name, 8).pixels());
 }
 
 void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) {
@@ -285,7 +141,7 @@ void frames(benchmark::State& state) {
   };
   while (sample < 70) render_frame();  // there are closed sums then
   for (auto _ : state) render_frame();
-  count_paths(state, pixels_of(bench));
+  count_paths(state, bench.pixels());
 }
 
 void register_all() {

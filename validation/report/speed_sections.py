@@ -301,4 +301,63 @@ def best_splits(records):
     return markup.table(["scene", "K", "best: channels of a path", "efficiency over no split", "± standard error"], rows, numeric=(1, 2, 3, 4))
 
 
-SECTIONS = [channels, pool, memory, refraction, error, peers, split]
+def stages(results):
+    records = pick(results["records"], case="stages")
+    shown = pick(records, quantity="time_per_path")
+    body = ""
+    for scene in distinct(shown, "scene"):
+        for backend, caption in STAGE_CAPTIONS.items():
+            own = pick(shown, scene=scene, backend=backend)
+            titles = {f"{scene}, {name}": stage_lines(pick_backend(own, name)) for name in distinct_backends(own)}
+            svg = speed_plots.panels(titles, "channels K", "ns per path", columns=3)
+            body += figure(svg, caption, own, f"time by stage, {backend}")
+    fractions = [r for r in records if str(r.get("quantity")).startswith("fraction_of")]
+    limits = [r for r in records if r not in fractions and r not in shown]
+    if fractions:
+        svg = speed_plots.panels(by_scene(fractions, "channels", fraction_label), "channels K", "part of the limit", reference=1)
+        body += figure(svg, FRACTIONS, fractions + limits, "part of the limit that is attained")
+    text = "Time by stage, and what part of its limit a stage attains."
+    return section(results, "stages", "Stages and their limits", text, body)
+
+
+STAGE_CAPTIONS = {
+    "cpu": "One thread. A stage takes the difference to the one before: rays, shading, evaluation with the film.",
+    "opencl": "All of the device, by profiling events; small kernels (film, rows of spectra, pool) are added up.",
+}
+EVALUATION = ("pt_update", "dpept_path", "dpept_batch")
+SMALL = ("film_clear", "film_finish", "resample_rows", "reset_pool", "compact")
+
+
+def stage_lines(records):
+    """Kernels that do the same job in every method have one name; the small ones of a K are one point."""
+    found, small = {}, {}
+    for label, points in lines(records, "channels", lambda r: r.get("series")).items():
+        if label in SMALL:
+            for k, value, _ in points:
+                small[k] = small.get(k, 0) + value
+        else:
+            found["evaluation" if label in EVALUATION else label] = points
+    if small:
+        found["small kernels"] = [(k, value, 0.0) for k, value in sorted(small.items())]
+    return found
+
+
+FRACTIONS = (
+    "CPU: the time of bare Embree packets with the same rays over that of path generation, and of the whole render. OpenCL's evaluation: pt's bytes "
+    "against a triad's bandwidth over as many bytes as the pool's state, dpept's operations against multiply-adds in registers."
+)
+
+
+def fraction_label(record):
+    return f"{backend_label(record)}: {record.get('series')}, {str(record.get('quantity')).replace('_', ' ')}"
+
+
+def distinct_backends(records):
+    return list(dict.fromkeys(backend_label(r) for r in records))
+
+
+def pick_backend(records, label):
+    return [r for r in records if backend_label(r) == label]
+
+
+SECTIONS = [channels, pool, memory, refraction, error, stages, peers, split]

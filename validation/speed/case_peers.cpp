@@ -109,7 +109,7 @@ void add_missing(Bench& bench, const Peer& peer) {
   setup.backend = peer.backend, setup.method = peer.variant;
   Record record = record_for(setup, bench_command(bench.settings(), "peers"));
   record.quantity = "paths_per_second", record.unit = "1/s";
-  record.note = "not there: " + peer.why;
+  record.note = "not measured: " + peer.why;
   bench.add(record);
 }
 

@@ -1,4 +1,4 @@
-// Other renderers, found at run time: Mitsuba 3 (validation/mitsuba/time_mitsuba.py) and Raysect.
+// Other renderers, found at run time: Mitsuba 3 (validation/mitsuba/time_mitsuba.py); Raysect is only looked for.
 #pragma once
 
 #include <optional>

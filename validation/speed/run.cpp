@@ -59,7 +59,8 @@ const std::vector<Case>& cases() {
       {"memory", "memory against channels and depth, measured", 5, 60, run_memory},
       {"refraction", "degradation against spectral MIS at 64 wavelengths", 3, 90, run_refraction},
       {"error", "error against time: backends, methods, wavelength modes, samplers", 12, 600, run_error},
-      {"peers", "Mitsuba 3: paths per second, time to equal error", 10, 500, run_peers},
+      {"stages", "time by stage, and the attained part of its limit", 6, 120, run_stages},
+      {"peers", "other renderers: paths per second, time to equal error", 10, 500, run_peers},
       {"split", "paths that carry a part of the channels", 3, 300, run_split},
   };
   return kCases;

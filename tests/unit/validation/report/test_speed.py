@@ -33,7 +33,7 @@ def small_results():
         records.append(record("error", "seconds", samples / 100, **way))
         records.append(record("error", "relative_error", 0.8 / samples, series="pixel", **way))
         records.append(record("error", "efficiency", samples * 2, series="pixel", **way))
-    missing = {"backend": "mitsuba", "method": "llvm_ad_spectral", "note": "not there: <no module>", "scene": None}
+    missing = {"backend": "mitsuba", "method": "llvm_ad_spectral", "note": "not measured: <no module>", "scene": None}
     records.append(record("peers", "paths_per_second", None, **missing))
     machine = {"processor": "Some <CPU>", "threads": 2, "isa": "avx2", "version": "kiloband 9.8.7", "date": "2025-02-03"}
     names = [{"name": name, "complete": True, "failure": None, "load_before": 0.25} for name in ("channels", "error", "peers")]
@@ -75,7 +75,7 @@ class Page(unittest.TestCase):
             "8.0 GiB",
             "no device",
             "± is the half range",
-            "Mitsuba llvm_ad_spectral: not there: &lt;no module&gt;",
+            "Mitsuba llvm_ad_spectral: not measured: &lt;no module&gt;",
             "A quick run",
         ):
             self.assertIn(part, plain(page))
@@ -121,6 +121,15 @@ class Curves(unittest.TestCase):
 
         curves = error_curves(small_results()["records"], "box<1>", "pixel")
         self.assertEqual(curves, {"CPU shared sobol": [(0.16, 0.05, 0.1), (0.64, 0.0125, 0.1)]})
+
+    def test_small_kernels_are_added_up(self):
+        from speed_sections import stage_lines
+
+        found = {"channels": 8, "error": None}
+        kernels = {"pt_update": 5.0, "film_clear": 1.0, "compact": 0.25, "shade": 7.0}
+        records = [record("stages", "time_per_path", value, series=name) | found for name, value in kernels.items()]
+        expected = {"evaluation": [(8, 5.0, 0.0)], "shade": [(8, 7.0, 0.0)], "small kernels": [(8, 1.25, 0.0)]}
+        self.assertEqual(stage_lines(records), expected)
 
     def test_numbers_that_are_missing_are_left_out(self):
         records = copy.deepcopy(small_results()["records"])
