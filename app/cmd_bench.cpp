@@ -1,6 +1,7 @@
 // kiloband bench [CASE]...: speed, and speed against error (docs/bench.md).
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -60,6 +61,17 @@ speed::Settings settings_of(const BenchOptions& options) {
   return settings;
 }
 
+/// Options that nothing would read.
+void check_applies(const BenchOptions& options, const speed::Settings& settings,
+                   const std::vector<speed::Case>& cases) {
+  if (options.device && !settings.opencl())
+    throw InputError("--device: no OpenCL backend takes part (--backends)");
+  const bool pool = std::ranges::any_of(cases, [](const speed::Case& c) { return c.name == "pool"; });
+  if (options.device_memory && !(pool && settings.opencl()))
+    throw InputError(
+        "--device-memory: is read by the case pool on an OpenCL device, which does not take part");
+}
+
 int list_cases(const std::vector<speed::Case>& cases) {
   for (const speed::Case& c : cases) answer("{:<11} {}\n", c.name, c.what);
   return kDone;
@@ -80,6 +92,7 @@ int bench(const BenchOptions& options) {
   const std::vector<speed::Case> cases = speed::chosen_cases(options.names);
   if (options.list) return list_cases(cases);
   const speed::Settings settings = settings_of(options);
+  check_applies(options, settings, cases);
   speed::prepare_folder(options.output);
   const auto machine = speed::machine_json(settings, "kiloband " KILOBAND_VERSION);
   catch_stop_signals();

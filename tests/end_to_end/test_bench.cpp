@@ -42,6 +42,9 @@ TEST(Bench, SpeedAgainstChannels) {
   const auto results = read_json(folder, "out/bench.json");
   EXPECT_EQ(results["interrupted"], false);
   EXPECT_TRUE(results["machine"]["processor"].is_string());
+  const std::string command = results["cases"][0]["command"];
+  EXPECT_TRUE(command.starts_with("kiloband bench channels --quick --seed 1 ")) << command;
+  EXPECT_TRUE(command.ends_with(" --backends cpu -o DIR")) << command;
   std::set<std::string> quantities;
   std::set<int> channels;
   for (const auto& record : results["records"]) {
@@ -100,6 +103,11 @@ TEST(Bench, WrongInput) {
   Outcome outcome = bench(folder, {"chanels"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err.substr(0, 49), "kiloband: no case 'chanels': there are channels, ") << outcome.err;
+  outcome = bench(folder, {"channels", "--device-memory", "4GiB", "-o", "out"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(
+      outcome.err,
+      "kiloband: --device-memory: is read by the case pool on an OpenCL device, which does not take part\n");
   outcome = bench(folder, {"channels", "-o", "file"});
   EXPECT_EQ(outcome.code, 3);
   EXPECT_EQ(outcome.err.substr(0, 16), "kiloband: file: ") << outcome.err;

@@ -67,7 +67,7 @@ def draw_lines(axes, found, labels):
         axes.errorbar(x, y, yerr=(low, error), label=label, markersize=4, linewidth=1.2, elinewidth=0.9, capsize=2, **style)
 
 
-def panels(found_by_title, x_label, y_label, columns=2, reference=None):
+def panels(found_by_title, x_label, y_label, columns=2, reference=None, x_scale="log"):
     """One panel for each title: {title: {label: points}}; all with the same axes' names. None without a point.
 
     reference: a horizontal line at this value
@@ -87,8 +87,9 @@ def panels(found_by_title, x_label, y_label, columns=2, reference=None):
         draw_lines(axes, found, labels)
         if reference is not None:
             axes.axhline(reference, color="#1d2530", linewidth=0.9, linestyle=(0, (5, 3)), zorder=1)
-        axes.set(xscale="log", yscale="log", title=title, xlabel=x_label, ylabel=y_label)
-        label_ticks(axes.xaxis)
+        axes.set(xscale=x_scale, yscale="log", title=title, xlabel=x_label, ylabel=y_label)
+        if x_scale == "log":
+            label_ticks(axes.xaxis)
         label_ticks(axes.yaxis)
     for axes in list(grid.flat)[len(found_by_title) :]:
         axes.set_visible(False)

@@ -23,14 +23,8 @@ def figure(svg, caption, records, name):
     return markup.plot(svg, caption, name) + numbers(records)
 
 
-def command_of(results, case):
-    """The command line that runs a case again."""
-    words = ["kiloband bench", case]
-    if results.get("quick"):
-        words.append("--quick")
-    if results.get("seed") is not None:
-        words.append(f"--seed {results['seed']}")
-    return " ".join(words + ["-o DIR"])
+def case_field(results, case, field):
+    return next((c.get(field) for c in results["cases"] if c.get("name") == case), None)
 
 
 def command(text):
@@ -60,14 +54,14 @@ def cell(value):
 
 def section(results, case, title, text, body):
     """A case with its heading and command; nothing where it has no figure."""
-    failure = next((c.get("failure") for c in results["cases"] if c.get("name") == case), None)
+    failure = case_field(results, case, "failure")
     if failure:
         body = f'<div class="failure">{markup.text(failure)}</div>' + body
     if not body:
         return ""
-    load = next((c.get("load_before") for c in results["cases"] if c.get("name") == case), None)
+    load = case_field(results, case, "load_before")
     note = f'<p class="soft">Load average before it: {markup.number(load, 2)}.</p>' if markup.is_number(load) else ""
-    return f'<h2 id="{case}">{title}</h2><p>{text}</p>{command(command_of(results, case))}{note}{body}'
+    return f'<h2 id="{case}">{title}</h2><p>{text}</p>{command(case_field(results, case, "command"))}{note}{body}'
 
 
 def by_scene(records, x, label):
@@ -156,7 +150,7 @@ def channel_errors(records):
     shown = pick(records, quantity="channel_error", series="pixel")
     most = max((r.get("samples", 0) for r in shown), default=0)
     shown = [r for r in shown if r.get("samples") == most]
-    svg = speed_plots.panels(by_scene(shown, "channel_nm", way_label), "wavelength / nm", "relative error of a pixel")
+    svg = speed_plots.panels(by_scene(shown, "channel_nm", way_label), "wavelength / nm", "relative error of a pixel", x_scale="linear")
     return figure(svg, f"Error of each channel at {most} samples per pixel.", shown, "error of each channel")
 
 
@@ -263,7 +257,7 @@ def refraction(results):
     channel = pick(records, quantity="channel_error", series="pixel")
     most = max((r.get("samples", 0) for r in channel), default=0)
     channel = [r for r in channel if r.get("samples") == most]
-    svg = speed_plots.panels({f"{most} samples per pixel": lines(channel, "channel_nm", dispersion_label)}, "wavelength / nm", "relative error of a pixel")
+    svg = speed_plots.panels({f"{most} samples per pixel": lines(channel, "channel_nm", dispersion_label)}, "wavelength / nm", "relative error of a pixel", x_scale="linear")
     body += figure(svg, "Error of each channel.", channel, "error of each channel")
     text = "A ball of rough flint glass at 64 wavelengths: where a path goes on with one of its channels (degrade, figure 3 of the DPEPT paper) and where it keeps all (spectral MIS)."
     return section(results, "refraction", "Refraction", text, body)

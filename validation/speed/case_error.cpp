@@ -42,7 +42,7 @@ void measure_way(Bench& bench, const SceneFile& scene, const Way& way, const Ref
   Subject subject = make_subject(bench.settings(), setup, load(scene, setup), repetitions * setup.replicates,
                                  bench.settings().seed);
   time_samples(subject, 1, bench.watch());  // compiles kernels
-  const std::vector<uint64_t> few{16, 64}, many{16, 64, 256, 1024};
+  const std::vector<uint64_t> few{8, 32}, many{16, 64, 256, 1024};
   for (const uint64_t samples : bench.quick() ? few : many) {
     setup.samples = samples;
     if (samples < 2 * setup.replicates) continue;  // render would take fewer
@@ -84,7 +84,7 @@ void run_error(Bench& bench) {
   double done = 0;
   for (const SceneFile& scene : scenes) {
     const Setup setup = setup_of_way(bench, scene, ways.front());
-    const Reference reference = reference_of(bench, scene, setup, bench.pick(2048u, 32768u));
+    const Reference reference = reference_of(bench, scene, setup, bench.pick(1024u, 32768u));
     if (bench.stopped()) return;
     add_reference(bench, setup, reference);
     for (const Way& way : ways) {

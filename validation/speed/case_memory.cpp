@@ -77,7 +77,8 @@ void measure_process(Bench& bench, const SceneFile& scene, const Setup& setup, c
   const auto json = nlohmann::json::parse(stream);
   add_bytes(bench, setup, series, "resident_memory", json.at("peak_memory_bytes").get<double>(),
             render_command(bench.settings(), scene, setup, 0, " --stats stats.json"));
-  fs::remove_all(folder, error);
+  for (const char* name : {"stats.json", "image.hdr", "image.img"}) fs::remove(folder / name, error);
+  fs::remove(folder, error);  // if nothing else is in it
 }
 
 void measure(Bench& bench, const SceneFile& scene, Setup setup, const char* series) {

@@ -73,6 +73,15 @@ std::vector<std::string> command_words(const Settings& settings, const Peer& pee
   return words;
 }
 
+/// And the folder, if nothing else is in it.
+void remove_images(const fs::path& stem, uint32_t rounds) {
+  std::error_code none;
+  for (uint32_t r = 0; r < rounds; ++r)
+    for (const char* extension : {"hdr", "img"})
+      fs::remove(fmt::format("{}.r{:02d}.{}", stem.string(), r, extension), none);
+  fs::remove(stem.parent_path(), none);
+}
+
 std::vector<float> read_image(const fs::path& file, const Setup& setup) {
   const auto cube = open_cube(file);
   const CubeInfo& info = cube->info();
@@ -115,7 +124,7 @@ PeerTiming time_peer(const Bench& bench, const Peer& peer, const SceneFile& scen
     for (std::size_t r = 0; r < timing.images.seconds.size(); ++r)
       timing.images.images.push_back(read_image(fmt::format("{}.r{:02d}.hdr", stem.string(), r), setup));
   }
-  fs::remove_all(folder, error);
+  remove_images(stem, rounds);
   return timing;
 }
 

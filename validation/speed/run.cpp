@@ -7,6 +7,7 @@
 #include "files/atomic_file.hpp"
 #include "files/output_target.hpp"
 #include "validation/speed/bench.hpp"
+#include "validation/speed/subject.hpp"
 
 namespace kiloband::speed {
 namespace fs = std::filesystem;
@@ -31,9 +32,10 @@ CaseOutcome outcome_of(const Case& c, const Settings& settings, const Watch& wat
   return outcome;
 }
 
-ordered_json json_of(const CaseOutcome& c) {
+ordered_json json_of(const CaseOutcome& c, const Settings& settings) {
   ordered_json j;
   j["name"] = c.name;
+  j["command"] = bench_command(settings, c.name);
   j["complete"] = c.complete;
   j["failure"] = c.failure.empty() ? ordered_json() : ordered_json(c.failure);
   j["seconds"] = c.seconds;
@@ -125,7 +127,7 @@ void write_results(const fs::path& folder, const RunOutcome& run, const Settings
   json["records"] = ordered_json::array();
   std::vector<Record> all;
   for (const CaseOutcome& c : run.cases) {
-    json["cases"].push_back(json_of(c));
+    json["cases"].push_back(json_of(c, settings));
     for (const Record& record : c.records) {
       json["records"].push_back(to_json(record));
       all.push_back(record);

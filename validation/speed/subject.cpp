@@ -162,7 +162,8 @@ std::string bench_command(const Settings& settings, const std::string& name) {
   if (settings.device) text += " --device " + *settings.device;
   if (settings.backends.size() < kAllBackends)
     text += fmt::format(" --backends {}", fmt::join(settings.backends, ","));
-  if (settings.device_memory) text += fmt::format(" --device-memory {}", *settings.device_memory);
+  if (settings.device_memory && name == "pool")
+    text += fmt::format(" --device-memory {}", *settings.device_memory);
   return text + " -o DIR";
 }
 
