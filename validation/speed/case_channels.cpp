@@ -35,8 +35,8 @@ std::vector<Contender> make_contenders(Bench& bench, const SceneFile& scene, uin
     if (bench.stopped()) break;
     Setup setup = setup_of(bench, scene, name, channels);
     Subject subject = make_subject(bench.settings(), setup, load(scene, setup), 1, bench.settings().seed);
-    setup.samples = samples_for(subject, bench.pick(0.05, 0.3), 256, bench.watch());
-    const auto frames = static_cast<uint32_t>(std::min<uint64_t>(setup.samples, bench.pick(4u, 16u)));
+    setup.samples = samples_for(subject, bench.pick(0.05, 0.2), 256, bench.watch());
+    const auto frames = static_cast<uint32_t>(std::min<uint64_t>(setup.samples, bench.pick(4u, 8u)));
     contenders.push_back({setup, std::move(subject), frames, {}, {}});
   }
   return contenders;

@@ -38,12 +38,15 @@ Setup setup_of_way(const Bench& bench, const SceneFile& scene, const Way& way) {
 
 void measure_way(Bench& bench, const SceneFile& scene, const Way& way, const Reference& reference) {
   Setup setup = setup_of_way(bench, scene, way);
-  const uint32_t repetitions = bench.pick(4u, 6u);
+  const uint32_t repetitions = bench.pick(4u, 5u);
   Subject subject = make_subject(bench.settings(), setup, load(scene, setup), repetitions * setup.replicates,
                                  bench.settings().seed);
   time_samples(subject, 1, bench.watch());  // compiles kernels
   const std::vector<uint64_t> few{8, 32}, many{16, 64, 256, 1024};
+  const bool cpu =
+      setup.backend == "cpu";  // the others make the same images: that they are slower shows before 1024
   for (const uint64_t samples : bench.quick() ? few : many) {
+    if (!cpu && samples > 256) break;
     setup.samples = samples;
     if (samples < 2 * setup.replicates) continue;  // render would take fewer
     const Repetitions images = repeat(subject, setup, repetitions, bench.watch());
@@ -84,7 +87,7 @@ void run_error(Bench& bench) {
   double done = 0;
   for (const SceneFile& scene : scenes) {
     const Setup setup = setup_of_way(bench, scene, ways.front());
-    const Reference reference = reference_of(bench, scene, setup, bench.pick(1024u, 32768u));
+    const Reference reference = reference_of(bench, scene, setup, bench.pick(1024u, 16384u));
     if (bench.stopped()) return;
     add_reference(bench, setup, reference);
     for (const Way& way : ways) {

@@ -50,7 +50,7 @@ void run_pool(Bench& bench) {
     setup.scene = scene.name, setup.wavelengths = "shared", setup.sampler = "sobol";
     setup.channels = channels;
     setup.width = setup.height = bench.pick(256u, 1024u);
-    setup.replicates = 1, setup.samples = bench.pick(2u, 4u);
+    setup.replicates = 1, setup.samples = 2;
     const auto compiled = load(scene, setup);
     for (const BackendName& name : bench_backends(bench.settings())) {
       if (name.backend != "opencl") continue;

@@ -11,7 +11,7 @@ void run_refraction(Bench& bench) {
   setup.channels = 64;
   setup.width = setup.height = 64;
   setup.replicates = 1;
-  const Reference reference = reference_of(bench, scene, setup, bench.pick(512u, 32768u));
+  const Reference reference = reference_of(bench, scene, setup, bench.pick(512u, 16384u));
   const std::vector<uint64_t> few{4, 16}, many{1, 4, 16, 64, 256, 1024};
   const auto& counts = bench.quick() ? few : many;
   const uint32_t repetitions = bench.pick(3u, 6u);

@@ -74,8 +74,8 @@ void measure_splits(Bench& bench, const SceneFile& scene, uint32_t channels) {
   setup.width = setup.height = 64;
   setup.replicates = 1;
   setup.samples = std::max(64u, channels / 2);
-  const Reference reference = reference_of(bench, scene, setup, bench.pick(1024u, 16384u));
-  const uint32_t repetitions = bench.pick(3u, 6u);
+  const Reference reference = reference_of(bench, scene, setup, bench.pick(1024u, 8192u));
+  const uint32_t repetitions = bench.pick(3u, 4u);
   std::vector<RatedSplit> rated;
   for (uint32_t part = channels; part >= kNarrowest; part /= bench.pick(4u, 2u)) {
     setup.part = part;
@@ -92,7 +92,7 @@ void measure_splits(Bench& bench, const SceneFile& scene, uint32_t channels) {
 
 void run_split(Bench& bench) {
   std::vector<SceneFile> scenes = bench_scenes(bench.settings());
-  scenes.resize(bench.pick(std::size_t{1}, std::min<std::size_t>(scenes.size(), 5)));
+  scenes.resize(bench.pick(std::size_t{1}, std::size_t{3}));
   const std::vector<uint32_t> few{16}, many{16, 64, 512};
   const auto& counts = bench.quick() ? few : many;
   double done = 0;

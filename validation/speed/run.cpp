@@ -56,14 +56,14 @@ bool RunOutcome::failed() const {
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> kCases{
-      {"channels", "paths and frames per second against the number of channels", 14, 400, run_channels},
-      {"pool", "sizes of the OpenCL pool: speed, and what fits into memory", 6, 240, run_pool},
-      {"memory", "memory against channels and depth, measured", 5, 60, run_memory},
-      {"refraction", "degradation against spectral MIS at 64 wavelengths", 3, 90, run_refraction},
-      {"error", "error against time: backends, methods, wavelength modes, samplers", 12, 600, run_error},
-      {"stages", "time by stage, and the attained part of its limit", 6, 120, run_stages},
-      {"peers", "other renderers: paths per second, time to equal error", 10, 500, run_peers},
-      {"split", "paths that carry a part of the channels", 3, 300, run_split},
+      {"channels", "paths and frames per second against the number of channels", 7, 600, run_channels},
+      {"pool", "sizes of the OpenCL pool: speed, and what fits into memory", 6, 150, run_pool},
+      {"memory", "memory against channels and depth, measured", 4, 60, run_memory},
+      {"refraction", "degradation against spectral MIS at 64 wavelengths", 4, 150, run_refraction},
+      {"error", "error against time: backends, methods, wavelength modes, samplers", 5, 600, run_error},
+      {"stages", "time by stage, and the attained part of its limit", 7, 180, run_stages},
+      {"peers", "other renderers: paths per second, time to equal error", 5, 250, run_peers},
+      {"split", "paths that carry a part of the channels", 4, 240, run_split},
   };
   return kCases;
 }
