@@ -119,7 +119,8 @@ void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
   film_variance_.resize(settings_.variance ? width_ * channels : 0);
   film.row(y, film_mean_, film_variance_);
   for (uint32_t x = 0; x < width_; ++x)
-    add_pixel(film.samples(x, y), film_mean_.data() + x * channels, film_variance_.data() + x * channels,
+    add_pixel(film.samples(x, y), film_mean_.data() + x * channels,
+              settings_.variance ? film_variance_.data() + x * channels : nullptr,
               std::size_t{rows_} * width_ + x);
   ++rows_;
 }

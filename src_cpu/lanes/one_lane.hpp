@@ -238,8 +238,11 @@ KB_INLINE U as_words(F a) {
 KB_INLINE F to_floats(U a) {
   return static_cast<float>(static_cast<int32_t>(a.v));
 }
-/// Towards zero, as a signed number in two's complement; of floats below 2^31 in magnitude.
+/// Towards zero, as a signed number in two's complement. What is not below 2^31 in magnitude, NaN too, is the largest or least by its
+/// sign, as in vectors.
 KB_INLINE U to_words(F a) {
+  constexpr float kBeyond = 2147483648.0f;
+  if (!(a.v > -kBeyond && a.v < kBeyond)) return std::signbit(a.v) ? 0x80000000u : 0x7fffffffu;
   return static_cast<uint32_t>(static_cast<int32_t>(a.v));
 }
 

@@ -142,6 +142,8 @@ TEST(LightLanes, EveryKindInOneVector) {
     emitter.beam_width = static_cast<float>(number / 4);
     emitter.one_minus_cos = 0.01f, emitter.scale = 17;
   }
+  scene.triangles.push_back(0);  // what is spare in a compiled scene, since lanes read four numbers of three
+  scene.positions.push_back({});
   scene.environment = 6;
   scene.emitter_cdf = {0};
   for (KbEmitter& emitter : scene.emitters) {
