@@ -93,7 +93,7 @@ void print_memory(const FlatScene& scene, std::size_t derived, uint64_t samples)
   const double pixels = static_cast<double>(scene.film.crop_width) * scene.film.crop_height;
   const std::size_t channels = scene.channels.size() + derived;
   const auto film = [&](bool variance) {
-    FilmOptions options{channels, 16, variance, false};
+    FilmOptions options{channels, variance ? 16u : 1u, variance, false};
     if (replicates_in_parts(samples, options.replicates)) {
       options.sums = SumRule{};  // the CPU's
       options.most_samples = static_cast<uint32_t>(ReplicatePlan::deal(samples, options.replicates).size(0));

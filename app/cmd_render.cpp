@@ -38,7 +38,12 @@ struct RenderOptions {
   bool variance = false, keep_replicates = false, resume = false, quiet = false;
 };
 
-constexpr uint32_t kReplicates = 16;  // unless --replicates says otherwise
+constexpr uint32_t kReplicates = 16;  // for error bars, unless --replicates says otherwise
+
+/// Where nobody asks for error bars all samples of a pixel are one set: sobol converges faster (docs/error_bars.md).
+uint32_t default_replicates(const RenderOptions& options) {
+  return options.variance || options.keep_replicates || options.target_error ? kReplicates : 1;
+}
 
 /// The scene is not needed for these; reading it may take long.
 OutputFiles output_files(const RenderOptions& options) {
@@ -74,11 +79,11 @@ void report_replicates(const RenderOptions& options, const SessionSettings& sett
   if (options.target_error && replicates < 2)
     throw InputError(fmt::format(
         "--target-error needs error bars: --spp {} makes 1 replicate, at least 4 are needed", samples));
-  if (options.variance && replicates < 2) {
+  if (default_replicates(options) >= 2 && replicates < 2) {
     warn(sink, {},
-         fmt::format("--variance: {} samples per pixel make 1 replicate: no error bars (the variance "
-                     "is NaN); at least 4 are needed",
-                     samples));
+         fmt::format("{}: {} samples per pixel make 1 replicate: no error bars{}; at least 4 are needed",
+                     options.variance ? "--variance" : "--keep-replicates", samples,
+                     options.variance ? " (the variance is NaN)" : ""));
   } else if (options.replicates) {
     note(sink, {},
          fmt::format("--replicates {}: {} samples per pixel make {} of at least 2 samples",
@@ -98,8 +103,15 @@ StopRule stop_rule(const RenderOptions& options, const SceneDescription& scene) 
 /// Those of the checkpoint that is gone on with: more samples than before might be dealt to more replicates.
 uint32_t wanted_replicates(const RenderOptions& options) {
   if (options.replicates) return *options.replicates;
-  if (!options.resume) return kReplicates;
-  return checkpoint_replicates(*options.checkpoint).value_or(kReplicates);
+  const uint32_t usual = default_replicates(options);
+  if (!options.resume) return usual;
+  const uint32_t begun = checkpoint_replicates(*options.checkpoint).value_or(usual);
+  if (begun >= 2 || usual < 2) return begun;
+  const char* const what = options.target_error ? "--target-error"
+                           : options.variance   ? "--variance"
+                                                : "--keep-replicates";
+  throw InputError(
+      fmt::format("{}: checkpoint {} has 1 replicate, and so no error bars", what, *options.checkpoint));
 }
 
 /// What the options say; what is stated of the render comes with `stating`.
@@ -162,8 +174,6 @@ void print_summary(const RenderReport& report, const Backend& backend, double se
   tell("{} paths in {:.2f} s ({:.2f} Mpaths/s on {}, {}); set-up {:.2f} s, output {:.2f} s\n", paths,
        report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, info.name,
        info.isa, setup_seconds, report.output_seconds);
-  if (report.replicates < 2)
-    tell("1 replicate (fewer than 4 samples per pixel or --replicates 1): no error bars\n");
   if (report.errors.worst) tell("{}\n", describe_errors(report));
   for (const auto& file : report.written) tell("wrote {}\n", file.string());
 }
@@ -288,7 +298,8 @@ void add_sampling_options(CLI::App& command, RenderOptions& o) {
                      "render until the relative error of the worst channel is below: 1%");
   command
       .add_option("--replicates", o.replicates,
-                  "independent replicates that error bars come from (default: 16)")
+                  "independent replicates that error bars come from (default: 16 with --variance, "
+                  "--keep-replicates or --target-error, else 1)")
       ->check(CLI::Range(1, 4096));
 }
 

@@ -21,7 +21,7 @@ struct TraceOptions {
   SceneOptions scene;
   BackendOptions backend;
   std::string pixel;
-  uint32_t sample = 0, replicates = 16;
+  uint32_t sample = 0, replicates = 1;
   SamplingOptions sampling;
 };
 

@@ -44,7 +44,7 @@ TEST(Messages, ExtendedRendersKeepTheirReplicates) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_program(folder, quiet_render("scene.xml", arguments));
   };
-  ASSERT_EQ(run("16", {}).code, 0);
+  ASSERT_EQ(run("16", {"--variance"}).code, 0);
   EXPECT_EQ(read_cube(folder / "a.hdr").info.replicates, 8u);
   const Outcome extended = run("64", {"--resume"});
   EXPECT_EQ(extended.code, 0) << extended.err;
@@ -54,6 +54,28 @@ TEST(Messages, ExtendedRendersKeepTheirReplicates) {
   EXPECT_EQ(other.code, 2);
   EXPECT_EQ(other.err,
             "kiloband: checkpoint c belongs to another render: it has 8 replicates, this one 16\n");
+}
+
+/// What was begun as one set of samples cannot get error bars later.
+TEST(Messages, ExtendedRendersOfOneReplicateHaveNoErrorBars) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  const auto run = [&](const std::string& spp, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--spp", spp, "-o", "a.hdr", "--checkpoint", "c"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(folder, quiet_render("scene.xml", arguments));
+  };
+  ASSERT_EQ(run("16", {}).code, 0);
+  for (const std::vector<std::string>& wish : std::vector<std::vector<std::string>>{
+           {"--variance"}, {"--keep-replicates"}, {"--target-error", "1%"}}) {
+    std::vector<std::string> more{"--resume"};
+    more.insert(more.end(), wish.begin(), wish.end());
+    const Outcome outcome = run("64", more);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err,
+              "kiloband: " + wish.front() + ": checkpoint c has 1 replicate, and so no error bars\n");
+  }
+  EXPECT_EQ(run("64", {"--resume"}).code, 0);
 }
 
 TEST(Messages, FewSamplesLeaveFewerReplicates) {
@@ -74,6 +96,9 @@ TEST(Messages, FewSamplesLeaveFewerReplicates) {
       "are needed\n";
   EXPECT_EQ(said(true, {"--variance", "--spp", "3"}), warning);
   EXPECT_EQ(said(true, {"--variance", "--spp", "4"}), "");
+  EXPECT_EQ(
+      said(true, {"--keep-replicates", "--spp", "3"}),
+      "warning: --keep-replicates: 3 samples per pixel make 1 replicate: no error bars; at least 4 are needed\n");
   // Fewer than were asked for: a note; the default is not something that was asked for.
   const std::string note = "note: --replicates 16: 8 samples per pixel make 4 of at least 2 samples\n";
   expect_text(said(false, {"--spp", "8", "--replicates", "16"}), note);

@@ -67,6 +67,29 @@ TEST(RenderOptions, SizeKeepsTheFieldOfViewsAxis) {
   EXPECT_EQ(pixels_of_the_square(folder, "y", "8x16"), 8u * 8);
 }
 
+/// Samples are dealt to replicates where error bars are wanted alone: sobol pays for them.
+TEST(RenderOptions, OneReplicateUnlessErrorBarsAreWanted) {
+  const TemporaryFolder folder;
+  const auto render = [&](const std::string& output, const std::vector<std::string>& more) {
+    std::vector<std::string> options{"--size", "16x16",   "--bands", "400:700:4", "--spp",
+                                     "32",     "--stats", "a.json",  "-o",        output};
+    options.insert(options.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(folder, quiet_render(cornell_box(), options));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return read_json(folder, "a.json")["replicates"].get<int>();
+  };
+  EXPECT_EQ(render("a.hdr", {}), 1);
+  EXPECT_EQ(render("b.hdr", {"--replicates", "1"}), 1);
+  EXPECT_EQ(folder.read("a.img"), folder.read("b.img"));
+  EXPECT_EQ(render("c.hdr", {"--replicates", "16"}), 16);
+  EXPECT_NE(folder.read("a.img"), folder.read("c.img"));
+  for (const std::vector<std::string>& wish : std::vector<std::vector<std::string>>{
+           {"--variance"}, {"--keep-replicates"}, {"--target-error", "0.001%"}}) {
+    EXPECT_EQ(render("d.hdr", wish), 16) << wish.front();
+    EXPECT_EQ(folder.read("d.img"), folder.read("c.img")) << wish.front();
+  }
+}
+
 TEST(RenderOptions, TimeStops) {
   const TemporaryFolder folder;
   const Outcome outcome = run_program(
