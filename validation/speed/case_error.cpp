@@ -13,9 +13,13 @@ struct Way {
   uint32_t replicates;
 };
 
-/// The default of `kiloband render` (16 replicates) beside one; others have one, what convergence asks for.
+/// The replicates that error bars come from (16 unless `kiloband render` is told otherwise) beside one, which all others have.
 std::vector<Way> ways_of(const Bench& bench) {
-  std::vector<Way> ways{{bench_backends(bench.settings()).front(), "shared", "sobol", 16}};
+  std::vector<Way> ways;
+  for (const uint32_t replicates : {4u, 8u, 16u}) {
+    if (bench.quick() && replicates < 16) continue;
+    ways.push_back({bench_backends(bench.settings()).front(), "shared", "sobol", replicates});
+  }
   for (const BackendName& name : bench_backends(bench.settings())) {
     ways.push_back({name, "shared", "sobol", 1});
     if (bench.quick() && name.backend != "cpu") continue;
