@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cube/cube_layout.hpp"
@@ -32,8 +33,14 @@ const char* to_string(SamplerType sampler) {
   return sampler == SamplerType::kSobol ? "sobol" : "independent";
 }
 
+/// Not getrusage(): its ru_maxrss goes on from the program that started this one (Linux, execve), however large that was.
 uint64_t peak_memory_bytes() {
-  rusage usage{};
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    const std::string label = "VmHWM:";
+    if (line.starts_with(label)) return std::stoull(line.substr(label.size())) * 1024;
+  }
+  rusage usage{};  // without /proc
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }

@@ -226,6 +226,16 @@ TEST(Outputs, StatisticsHaveTheNamesOfTheContract) {
   EXPECT_EQ(stats["ended_by"], "spp");
 }
 
+/// Not that of the program that starts it, which here is larger.
+TEST(Outputs, PeakMemoryIsTheProgramsOwn) {
+  if (kAddressSanitizer || kThreadSanitizer) GTEST_SKIP() << "sanitizers have memory of their own";
+  constexpr std::size_t kLarge = std::size_t{600} << 20;
+  const std::vector<char> large(kLarge, 1);
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_program(folder, small_box({"-o", "box.hdr", "--stats", "s.json"})).code, 0);
+  EXPECT_LT(read_json(folder, "s.json")["peak_memory_bytes"].get<uint64_t>(), kLarge / 2) << large.back();
+}
+
 TEST(Outputs, DefaultNameIsTheScenesStem) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_program(folder, small_box({})).code, 0);
