@@ -13,6 +13,7 @@ REPORT = pathlib.Path(__file__).resolve().parents[4] / "validation" / "report"
 sys.path.insert(0, str(REPORT))
 
 import speed_data  # noqa: E402
+import speed_pictures  # noqa: E402
 import speed_plots  # noqa: E402
 import speed_report  # noqa: E402
 
@@ -113,6 +114,33 @@ class Page(unittest.TestCase):
                 self.assertEqual(end.returncode, 1)
                 self.assertTrue(end.stderr.startswith("speed_report.py: "), end.stderr)
                 self.assertFalse((pathlib.Path(folder) / "report.html").exists())
+
+
+class Pictures(unittest.TestCase):
+    """The plots of the README."""
+
+    def write(self, results, out):
+        directory = pathlib.Path(out)
+        (directory / "bench.json").write_text(json.dumps(results), encoding="utf-8")
+        command = [sys.executable, str(REPORT / "speed_pictures.py"), out, out]
+        return subprocess.run(command, capture_output=True, text=True)
+
+    def test_both_show_what_was_measured(self):
+        results = small_results()
+        for k in (8, 31):
+            fields = {"series": "mitsuba llvm_ad_spectral", "sampler": "sobol", "channels": k}
+            results["records"].append(record("peers", "equal_error_speed", 20.0 * k, **fields))
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.write(results, folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for name, text in (("equal_error_speed", "times sooner"), ("error_against_time", "seconds per image")):
+                self.assertIn(text, (pathlib.Path(folder) / f"{name}.svg").read_text(encoding="utf-8"))
+
+    def test_a_run_without_peers_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.write(small_results(), folder)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn("nothing of what equal_error_speed.svg shows", done.stderr)
 
 
 class Curves(unittest.TestCase):
