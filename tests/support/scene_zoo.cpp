@@ -204,6 +204,26 @@ Text instances() {
                   step("scale", "x='-1.2' y='1.2' z='1.2'") + turn("z", "40") + translate("-0.5 0.6 0.2"));
 }
 
+/// What files store otherwise and means the same: merged shapes, strips, surfaces split at creases, mixtures.
+Text stored_otherwise() {
+  const Text mixture = bsdf("mixturebsdf", text("weights", "0.5, 0.2, 0.1") + diffuse("450:0.8, 650:0.2") +
+                                               bsdf("plastic") + metal("conductor"));
+  return "<shape type='merge'>" + ball("-0.5 0.4 -0.2", "0.3", mixture) +
+         ball("0.3 0.5 0", "0.2", diffuse("0.3") + lamp("450:3, 650:5")) + "</shape>" +
+         mesh("gem.obj", scale("0.4") + translate("0.5 -0.5 0.2"),
+              real("max_smooth_angle", "30") + diffuse("0.7")) +
+         shape("ply", scale("0.4") + translate("-0.4 -0.5 0.1"),
+               text("filename", "strip.ply") + bsdf("plastic"));
+}
+
+/// One ray, to a ball of glass among others.
+Text meter() {
+  return object(
+      "sensor", "radiancemeter",
+      "<point name='origin' x='0.1' y='0.2' z='4.3'/><vector name='direction' x='-0.5' y='0.15' z='-4.5'/>" +
+          film(size(1, 1), "box"));
+}
+
 /// Walls of mirrors, a mirroring ball between them.
 Text mirrors() {
   const Text mirror = bsdf("conductor", spectrum("specular_reflectance", "450:0.95, 650:0.9"));
@@ -313,6 +333,9 @@ std::vector<ZooScene> make_scenes() {
        scene(5, perspective(small_film("box")) + lit_room + instances() +
                     gas("atmosphere", "450:0.1, 650:0.4") + delta_lights()),
        kCurved},
+      {"stored_otherwise",
+       scene(6, perspective(small_film("tent")) + lit_room + stored_otherwise() + sky("0.3")), kCurved},
+      {"meter", scene(8, meter() + lit_room + glasses() + sky("0.5")), kCurved},
       {"named_materials", scene(8, perspective(small_film("gaussian")) + lit_room + named_materials()),
        kCurved},
       {"gases", scene(8, thinlens(small_film("tent")) + lit_room + gases() + delta_lights() + sky("0.5")),

@@ -82,6 +82,11 @@ const char* const kTintedPly =
     "-1 1 0 0.8 0.7 0.1 0.2\n1 1 0.1 0.3 0.9 0.8 0.4\n"
     "3 0 1 2 200 40 40\n3 1 3 2 40 200 60\n3 2 3 4 80 60 220\n3 3 5 4 128 128 128\n";
 
+/// The same strip, as a strip.
+const char* const kStripPly =
+    "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
+    "property list int int vertex_indices\nend_header\n-1 -1 0\n1 -1 0.2\n-1 0 0.3\n1 0 0\n-1 1 0\n1 1 0.1\n6 0 1 2 3 4 5\n";
+
 /// Nodes of a plume, 4 x 3 x 5: temperature and scale.
 std::string plume_nodes() {
   std::string text;
@@ -104,6 +109,7 @@ ZooFolder::ZooFolder() {
   write("above_one.pfm", pfm_image(2, 2, 1, {1, 1.3f, 1.7f, 2.5f}));
   write("hot.ply", kHotPly);
   write("tinted.ply", kTintedPly);
+  write("strip.ply", kStripPly);
   write("gem.obj", kGem);
   write("prism.obj", kPrism);
   write("plume.txt", plume_nodes());
@@ -111,7 +117,10 @@ ZooFolder::ZooFolder() {
 }
 
 FlatScene ZooFolder::flatten(const ZooScene& scene, const std::string& bands) const {
-  const SceneDescription description = read_scene_text(scene.xml, scene.name + ".xml", path(), {});
+  SceneDescription description = read_scene_text(scene.xml, scene.name + ".xml", path(), {});
+  Film& film = description.sensor.film;
+  if (film.width == 1)
+    film.width = film.height = film.crop_width = film.crop_height = 32;  // a meter: more of its rays
   return *compile_scene(description, {parse_channels(bands), parse_channels(kZooBands), {}});
 }
 

@@ -47,6 +47,8 @@ std::string concerned_case(const faults::PlantedFault& fault) {
                                                               {"lenses", "stress/lens_and_glass"},
                                                               {"constant_sky", "stress/lens_and_glass"},
                                                               {"mitchell", "stress/glade"},
+                                                              {"meter", "analytic/meter"},
+                                                              {"stored_otherwise", "analytic/merged"},
                                                               {"bumps", "stress/glade"},
                                                               {"instances", "stress/glade"},
                                                               {"suns", "stress/glade"},

@@ -48,6 +48,15 @@ constexpr PlantedFault kFaults[] = {
      kMeans},
     {KB_PLANTED_FILTER_SIGN, "filter-sign", kBoth, "paths have no sign where the reconstruction filter is negative",
      "mitchell, catmullrom or lanczos filter", "mitchell", kMeans},
+    {KB_PLANTED_METER_CONE, "meter-cone", kShared, "radiance meters see a cone of one degree", "radiancemeter", "meter", kTheory},
+    // ---- what is read
+    {KB_PLANTED_MERGE_LAST, "merge-last", kShared, "the last of merged shapes is left out", "merge", "stored_otherwise", kTheory},
+    {KB_PLANTED_STRIP_WINDING, "strip-winding", kShared, "every second triangle of a strip shows its back",
+     "PLY file with triangle strips", "stored_otherwise", kTheory},
+    {KB_PLANTED_CREASES_SMOOTH, "creases-smooth", kShared, "normals are smoothed over creases", "max_smooth_angle",
+     "stored_otherwise", kTheory},
+    {KB_PLANTED_MIXTURE_WEIGHTS, "mixture-weights", kShared, "weights of mixtures are in the reverse order", "mixturebsdf",
+     "stored_otherwise", kTheory},
     // ---- paths
     {KB_PLANTED_DEPTH_SHORT, "depth-short", kBoth, "the last bounce is missing", "max_depth", "diffuse_room", kMeans},
     {KB_PLANTED_ROULETTE, "roulette", kBoth, "survivors of Russian roulette are not weighted up", "rr_depth below max_depth",

@@ -33,7 +33,7 @@ std::vector<Case> analytic_cases(const fs::path& folder) {
     const std::string stem = entry.path().stem().string();
     cases.push_back({"analytic/" + stem,
                      first_comment_line(entry.path()),
-                     {entry.path(), {}, "", 8, 8},
+                     {entry.path(), {}, ""},
                      {64, 1024, 8192},
                      Effort::kQuick,
                      true});
