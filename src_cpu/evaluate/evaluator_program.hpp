@@ -8,7 +8,7 @@
 #include "src_cpu/evaluate/dense_spectra.hpp"
 #include "src_cpu/evaluate/spectral_textures.hpp"
 #include "src_cpu/evaluate/step_writer.hpp"
-#include "src_cpu/geometry/texel_corners.hpp"
+#include "src_cpu/geometry/texture/texel_corners.hpp"
 #include "src_cpu/path/path_buffer.hpp"
 
 namespace kiloband::cpu {

@@ -7,8 +7,8 @@
 #include "shared/warp.h"
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
-#include "src_cpu/geometry/texel_corners.hpp"
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texel_corners.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 
 namespace kiloband::cpu {
 namespace {

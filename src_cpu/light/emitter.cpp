@@ -1,7 +1,7 @@
 #include "src_cpu/light/emitter.hpp"
 
 #include "src_cpu/geometry/ray_offset.hpp"
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "src_cpu/lanes/one_lane_glm.hpp"
 #include "src_cpu/light/area.hpp"
 // After the lanes that it is to be compiled for.

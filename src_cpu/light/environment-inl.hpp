@@ -8,7 +8,7 @@
 #define KILOBAND_ENVIRONMENT_INL
 #endif
 
-#include "src_cpu/geometry/texture-inl.hpp"
+#include "src_cpu/geometry/texture/texture-inl.hpp"
 #include "src_cpu/lanes/lane_sampler-inl.hpp"
 #include "src_cpu/light/area-inl.hpp"
 

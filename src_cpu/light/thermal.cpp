@@ -6,7 +6,7 @@
 
 #include "shared/material_tables.h"
 #include "shared/thermal.h"
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "src_cpu/lanes/one_lane.hpp"
 #include "src_cpu/light/area.hpp"
 // After the lanes that it is to be compiled for.

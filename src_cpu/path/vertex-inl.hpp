@@ -11,7 +11,7 @@
 #include <cstring>
 
 #include "shared/estimator.h"
-#include "src_cpu/geometry/texture-inl.hpp"
+#include "src_cpu/geometry/texture/texture-inl.hpp"
 #include "src_cpu/path/wave.hpp"
 
 KB_BEFORE_LANES;

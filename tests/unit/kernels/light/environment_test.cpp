@@ -2,7 +2,7 @@
 // poles and the seam.
 #include "src_cpu/light/environment.hpp"
 
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "src_cpu/light/emitter.hpp"
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"

@@ -1,7 +1,7 @@
-// Texture addressing on the device against src_cpu/geometry/texture_lookup.cpp, which computes in double.
+// Texture addressing on the device against src_cpu/geometry/texture/texture_lookup.cpp, which computes in double.
 #include <limits>
 
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "support.hpp"
 
 namespace kiloband::test {

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"

@@ -1,5 +1,5 @@
 // Texture addressing against a plain reference in double precision.
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // Texture lookups one at a time: texture-inl.hpp for one lane, and what lanes do not need.
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 
 #include <algorithm>
 
 #include "src_cpu/lanes/one_lane_glm.hpp"
 // After the lanes that it is to be compiled for.
-#include "src_cpu/geometry/texture-inl.hpp"
+#include "src_cpu/geometry/texture/texture-inl.hpp"
 
 namespace kiloband::cpu {
 namespace {

@@ -8,8 +8,8 @@
 #define KILOBAND_TEXTURE_INL
 #endif
 
-#include "src_cpu/geometry/texture_lookup-inl.hpp"
-#include "src_cpu/geometry/texture_lookup.hpp"
+#include "src_cpu/geometry/texture/texture_lookup-inl.hpp"
+#include "src_cpu/geometry/texture/texture_lookup.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
