@@ -11,7 +11,7 @@
 
 #include "tests/statistical/analytic/dispersive_glass.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
-#include "tests/statistical/analytic/gas_scenes.hpp"
+#include "tests/statistical/analytic/gas/gas_scenes.hpp"
 
 namespace kiloband::test {
 namespace {

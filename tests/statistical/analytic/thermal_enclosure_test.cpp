@@ -10,7 +10,7 @@
 
 #include "spectral/planck.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
-#include "tests/statistical/analytic/gas_scenes.hpp"
+#include "tests/statistical/analytic/gas/gas_scenes.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -1,8 +1,8 @@
 // Which gas a ray is in: boundaries, nested and overlapping shapes, glass bodies, atmospheres and escaping
 // rays, cameras in gas. Coefficients are flat, so that nothing is random:
 // optical depths are exact to rounding.
-#include "gas_scenes.hpp"
 #include "spectral/planck.hpp"
+#include "tests/statistical/analytic/gas/gas_scenes.hpp"
 #include "tests/support/messages.hpp"
 
 namespace kiloband::test {

@@ -11,8 +11,8 @@
 #include <functional>
 #include <sstream>
 
-#include "gas_scenes.hpp"
 #include "spectral/planck.hpp"
+#include "tests/statistical/analytic/gas/gas_scenes.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -11,8 +11,8 @@
 // wavelength, since nothing else is random in most of these scenes.
 #include <algorithm>
 
-#include "gas_scenes.hpp"
 #include "spectral/planck.hpp"
+#include "tests/statistical/analytic/gas/gas_scenes.hpp"
 
 namespace kiloband::test {
 namespace {

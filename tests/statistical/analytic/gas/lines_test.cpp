@@ -2,9 +2,9 @@
 // public data are present. Channels wider and narrower than the lines. Error rate: 1e-4 for the whole
 // program; detectable bias with each test.
 #include "base/diagnostics.hpp"
-#include "gas_scenes.hpp"
 #include "spectral/files/spectrum_files.hpp"
 #include "spectral/planck.hpp"
+#include "tests/statistical/analytic/gas/gas_scenes.hpp"
 #include "tests/support/data_folder.hpp"
 
 namespace kiloband::test {
