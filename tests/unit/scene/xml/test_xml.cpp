@@ -1,7 +1,7 @@
 // Includes, defaults, $names, references, old versions.
 #include <gtest/gtest.h>
 
-#include "support.hpp"
+#include "tests/unit/scene/read/support.hpp"
 
 namespace kiloband::test {
 namespace {

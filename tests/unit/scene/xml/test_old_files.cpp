@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "support.hpp"
+#include "tests/unit/scene/read/support.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/xml/document.hpp"
-#include "support.hpp"
+#include "tests/unit/scene/read/support.hpp"
 
 namespace kiloband::test {
 namespace {

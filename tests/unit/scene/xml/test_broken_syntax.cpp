@@ -1,7 +1,7 @@
 // Broken scenes with the exact message and position: XML, includes, parameters, references, plain values.
 #include <gtest/gtest.h>
 
-#include "support.hpp"
+#include "tests/unit/scene/read/support.hpp"
 
 namespace kiloband::test {
 namespace {
