@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/end_to_end/support/wrong_input.hpp"
+#include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
 namespace kiloband::test {
 namespace {

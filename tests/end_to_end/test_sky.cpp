@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "sky/clear_sky.hpp"
-#include "tests/end_to_end/support/wrong_input.hpp"
+#include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
 namespace kiloband::test {
 namespace {

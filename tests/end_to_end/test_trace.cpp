@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tests/end_to_end/support/wrong_input.hpp"
+#include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
 namespace kiloband::test {
 namespace {

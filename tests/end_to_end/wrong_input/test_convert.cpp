@@ -1,7 +1,7 @@
 // Wrong command lines and damaged cubes of `convert`.
 #include <gtest/gtest.h>
 
-#include "tests/end_to_end/support/wrong_input.hpp"
+#include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/end_to_end/support/wrong_input.hpp"
+#include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
 #include <gtest/gtest.h>
 

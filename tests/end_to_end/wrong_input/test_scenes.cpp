@@ -2,7 +2,7 @@
 // what is said of it, is tested with the readers (tests/unit/scene, tests/unit/spectral).
 #include <gtest/gtest.h>
 
-#include "tests/end_to_end/support/wrong_input.hpp"
+#include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -1,7 +1,7 @@
 // Wrong command lines of `sensor` and of signatures.
 #include <gtest/gtest.h>
 
-#include "tests/end_to_end/support/wrong_input.hpp"
+#include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
 namespace kiloband::test {
 namespace {
