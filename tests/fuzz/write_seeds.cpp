@@ -7,7 +7,7 @@
 
 #include "post/camera_geometry.hpp"
 #include "tests/fuzz/fuzz_checkpoint.hpp"
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 #include "tests/unit/cube/cube_support.hpp"
 #include "tests/unit/scene/mesh/binary.hpp"
 

@@ -21,7 +21,7 @@ struct PlantedFault {
   uint32_t where;                // of Where
   std::string_view description;  // what is done wrongly
   std::string_view needs;        // what a scene must have for it to matter
-  std::string_view zoo_scene;    // of tests/support/scene_zoo where it shows
+  std::string_view zoo_scene;    // of tests/support/zoo where it shows
   std::string_view caught_by;    // what should notice it
 };
 

@@ -11,7 +11,7 @@
 
 #include "tests/end_to_end/support/program.hpp"
 #include "tests/support/sanitizer.hpp"
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -8,7 +8,7 @@
 #include "film/spectral_film.hpp"
 #include "render/backend.hpp"
 #include "src_gpu/opencl_backend.hpp"
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 #include "validation/suite/rendering.hpp"
 
 namespace kiloband::test {

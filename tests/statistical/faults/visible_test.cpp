@@ -9,7 +9,7 @@
 #include <string>
 
 #include "tests/statistical/backends/backend_images.hpp"
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 #include "validation/faults/selection.hpp"
 #include "validation/faults/table.hpp"
 

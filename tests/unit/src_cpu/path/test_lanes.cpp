@@ -6,7 +6,7 @@
 
 #include "src_cpu/path/camera.hpp"
 #include "src_cpu/path/path_tracer.hpp"
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -11,7 +11,7 @@
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/ray_order.hpp"
 #include "src_cpu/lanes/isa.hpp"
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 
 namespace kiloband::test {
 namespace {

@@ -8,7 +8,7 @@
 #include "shared/planted_faults.h"
 #include "tests/support/messages.hpp"
 #include "tests/support/opencl_syntax.hpp"
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 #include "validation/faults/selection.hpp"
 #include "validation/faults/table.hpp"
 

@@ -1,12 +1,12 @@
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 
 #include <stdexcept>
 
-#include "tests/support/scene_gas_text.hpp"
-#include "tests/support/scene_lamp_text.hpp"
-#include "tests/support/scene_room_text.hpp"
-#include "tests/support/scene_surface_text.hpp"
 #include "tests/support/scene_text.hpp"
+#include "tests/support/zoo/scene_gas_text.hpp"
+#include "tests/support/zoo/scene_lamp_text.hpp"
+#include "tests/support/zoo/scene_room_text.hpp"
+#include "tests/support/zoo/scene_surface_text.hpp"
 
 namespace kiloband::test {
 namespace {

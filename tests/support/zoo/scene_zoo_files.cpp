@@ -2,7 +2,7 @@
 #include "scene/read/reader.hpp"
 #include "tests/support/cube_files.hpp"
 #include "tests/support/picture_files.hpp"
-#include "tests/support/scene_zoo.hpp"
+#include "tests/support/zoo/scene_zoo.hpp"
 
 namespace kiloband::test {
 namespace {
