@@ -3,10 +3,11 @@
 // Theirs and ours are held against one reference, which is ours; so the means are compared first, and a peer whose means differ
 // says so, for its errors then contain that difference. Efficiency does not depend on the number of samples for
 // independent samples; with Sobol points, whose error falls faster, it is that of the stated number.
+#include "validation/speed/peers.hpp"
+
 #include <fmt/format.h>
 
 #include "validation/speed/errors.hpp"
-#include "validation/speed/peers.hpp"
 
 namespace kiloband::speed {
 namespace {
