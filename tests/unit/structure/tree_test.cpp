@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "tests/unit/structure/source_tree.hpp"
@@ -25,6 +26,20 @@ TEST(Tree, FilesStayShort) {
     if (is_table(file.path)) continue;
     EXPECT_LE(std::count(file.text.begin(), file.text.end(), '\n'), kMaxLines) << file.path;
   }
+}
+
+/// A room is read as a whole: what it holds is seen at a glance. Folders within it are rooms of their own.
+TEST(Tree, RoomsStaySmall) {
+  constexpr std::size_t kMaxFiles = 25;
+  static const std::set<std::string> kCode{".cpp", ".hpp", ".h", ".cl", ".clh", ".py", ".js"};
+  std::map<std::string, std::set<std::string>> rooms;
+  for (const SourceFile& file :
+       read_files({"src", "src_cpu", "src_gpu", "kernels", "app", "scenes", "tests", "validation"})) {
+    const std::filesystem::path path = file.path;
+    if (kCode.contains(path.extension().string())) rooms[path.parent_path().string()].insert(file.path);
+  }
+  for (const auto& [room, files] : rooms) EXPECT_LE(files.size(), kMaxFiles) << room;
+  EXPECT_GT(rooms.size(), 80u) << "the scan of rooms has lost its way";
 }
 
 std::vector<SourceFile> all_files() {
