@@ -2,10 +2,10 @@
 
 namespace kiloband::test {
 
-std::string box_sensor(const Crop& c) {
+std::string box_sensor(const std::string& film_text) {
   return object("sensor", "perspective",
-                real("fov", 39) + to_world(lookat("0, 0, 3.8", "0, 0, 0")) +
-                    film(size(c.full, c.full) + crop(c.x, c.y, c.width, c.height)));
+                real("fov", 39) + text("fov_axis", "larger") + to_world(lookat("0, 0, 3.8", "0, 0, 0")) +
+                    film(film_text));
 }
 
 std::string box_walls() {

@@ -9,13 +9,8 @@ namespace kiloband::test {
 
 using namespace scene_text;
 
-/// The part of the film that is rendered. full: edge of the whole film, pixels.
-struct Crop {
-  int full, x, y, width, height;
-};
-
-/// The sensor in front of the box.
-std::string box_sensor(const Crop& crop);
+/// The sensor in front of the box: all of the opening along the film's longer side. film_text: what scene_text::film() takes
+std::string box_sensor(const std::string& film_text);
 /// Five walls (red left, green right) with spectra from 400 to 780 nm.
 std::string box_walls();
 /// The light below the ceiling. radiance: points "nm:value, ..."

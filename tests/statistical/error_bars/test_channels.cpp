@@ -20,7 +20,6 @@
 namespace kiloband::test {
 namespace {
 
-constexpr Crop kCrop{64, 20, 20, 24, 24};
 constexpr const char* kSpikes = "400:1, 450:4, 470:0.5, 552:3, 560:8, 568:3, 640:1, 700:5";
 
 /// Spectra of every kind, coupled with direction (conductor) or not, and lights of two colours.
@@ -43,7 +42,7 @@ std::string spectral_parts() {
 
 RenderSpec base_spec(const std::string& parts, const std::string& bands) {
   RenderSpec spec;
-  spec.xml = scene(5, box_sensor(kCrop) + parts);
+  spec.xml = scene(5, box_sensor(size(64, 64) + crop(20, 20, 24, 24)) + parts);
   spec.bands = bands;
   spec.spp = 8;
   spec.sampling.replicates = 4;
