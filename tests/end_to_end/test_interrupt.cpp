@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/end_to_end/support/program.hpp"
+#include "tests/support/sanitizer.hpp"
 #include "tests/support/special_files.hpp"
 
 namespace kiloband::test {
@@ -14,6 +15,8 @@ namespace {
 
 /// The signals are caught from the moment when this is printed.
 constexpr const char* kRendering = "backend cpu";
+/// Seconds in which a few samples are rendered; threads that are watched take twenty times as long.
+constexpr double kSomeSamples = kThreadSanitizer ? 10 : 0.5;
 
 std::size_t pixels_of_nan(const Cube& cube) {
   std::size_t count = 0;
@@ -38,7 +41,8 @@ Outcome interrupted_box(const TemporaryFolder& folder, int signal, const std::ve
                                      "400:700:3", "-o",          "a.exr",     "-o",    "a.hdr",
                                      "--stats",   "a.json",      "--variance"};
   arguments.insert(arguments.end(), more.begin(), more.end());
-  return run_program(folder, arguments, {.signal = signal, .after_text = kRendering, .after_seconds = 0.4});
+  return run_program(folder, arguments,
+                     {.signal = signal, .after_text = kRendering, .after_seconds = kSomeSamples});
 }
 
 TEST(Interrupt, FilesAreCompleteWithFewerSamples) {
@@ -90,7 +94,7 @@ TEST(Interrupt, StreamedRender) {
   folder.write("scene.xml", streamed_scene());
   const Outcome outcome =
       run_program(folder, {"render", "scene.xml", "--spp", "100000", "-o", "a.hdr", "--stats", "a.json"},
-                  {.signal = SIGINT, .after_text = kRendering, .after_seconds = 0.5});
+                  {.signal = SIGINT, .after_text = kRendering, .after_seconds = kSomeSamples});
   EXPECT_EQ(outcome.code, 130) << outcome.err;
   EXPECT_EQ(folder.list(), (std::vector<std::string>{"a.hdr", "a.img", "a.json", "scene.xml"}));
   const nlohmann::json stats = read_json(folder, "a.json");
