@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# What a GPU's assembler says of the kernels, without a GPU: registers, stack, spills, warps, instructions, as a Markdown table.
+# usage: scripts/gpu_static.sh [SET...]     SET: diffuse (diffuse surfaces, area lights; the default), textured (with conductors,
+# dielectrics, plastics, bitmaps, environment map)
+# Needs clang-14, llvm-14, libclc-14, and ptxas (12 or later) and nvdisasm in PATH; no build and no test needs it. ARCH=sm_90.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+llvm=/usr/lib/llvm-14/bin libclc=/usr/lib/clc/nvptx64--nvidiacl.bc arch=${ARCH:-sm_90}
+missing=()
+for tool in clang-14 ptxas nvdisasm "$llvm"/{llvm-nm,llvm-link,opt,llc}; do
+  command -v "$tool" > /dev/null || missing+=("$tool")
+done
+[ -r "$libclc" ] || missing+=("$libclc")
+if [ ${#missing[@]} -gt 0 ]; then echo "gpu_static: missing: ${missing[*]}" >&2; exit 1; fi
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# The defines of a feature set; every feature is named in kernels/base/scene.clh.
+defines_of() {
+  case $1 in
+    diffuse | textured)
+      sed -nE 's/^#define (KB_HAS_\w+) 1$/\1/p' kernels/base/scene.clh | while read -r feature; do
+        case $1.$feature in
+          *.KB_HAS_DIFFUSE | *.KB_HAS_AREA_LIGHT) echo "-D$feature=1" ;;
+          textured.*_CONDUCTOR | textured.*_DIELECTRIC | textured.*_PLASTIC | textured.*_BITMAP | textured.*_ENVMAP_LIGHT)
+            echo "-D$feature=1" ;;
+          *) echo "-D$feature=0" ;;
+        esac
+      done
+      echo "-DKB_SPECIALISED -DKB_BVH_STACK=$([ "$1" = diffuse ] && echo 16 || echo 48)" ;;
+    *) echo "gpu_static: no feature set '$1'" >&2; return 1 ;;
+  esac
+}
+
+# assemble NAME FILE DEFINES...: NAME.cubin and ptxas's report NAME.txt
+assemble() {
+  local out=$folder/$1 file=$2 kernels
+  shift 2
+  clang-14 -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -target nvptx64-unknown-nvcl -DFP_FAST_FMAF=1 \
+    -cl-fp32-correctly-rounded-divide-sqrt -Dcl_clang_storage_class_specifiers -Ikernels -Isrc -I. "$@" -O3 \
+    -Xclang -disable-llvm-passes -Xclang -target-cpu -Xclang sm_75 -Xclang -target-feature -Xclang +ptx75 \
+    -emit-llvm -c -o "$out.bc" "$file"
+  kernels=$("$llvm/llvm-nm" --defined-only "$out.bc" | awk '$2 == "T" { print $3 }' | paste -sd,)
+  "$llvm/llvm-link" -o "$out.linked.bc" "$out.bc" --only-needed "$libclc" 2> /dev/null
+  "$llvm/opt" -internalize -internalize-public-api-list="$kernels" -nvvm-reflect -O3 -mtriple=nvptx64-nvidia-nvcl \
+    -mcpu=sm_80 -o "$out.opt.bc" "$out.linked.bc"
+  "$llvm/llc" -O3 -mtriple=nvptx64-nvidia-nvcl -mcpu=sm_75 -mattr=+ptx75 -o "$out.ptx" "$out.opt.bc"
+  ptxas -v -arch="$arch" -o "$out.cubin" "$out.ptx" > "$out.txt" 2>&1 || { cat "$out.txt" >&2; return 1; }
+}
+
+# row SET TAG FILE DEFINES...
+row() {
+  local set=$1 tag=$2 file=$3 name=$1.$2
+  shift 3
+  assemble "$name" "$file" "$@"
+  nvdisasm -c "$folder/$name.cubin" > "$folder/$name.sass"
+  python3 scripts/gpu_static.py "$set" "$tag" "$folder/$name.txt" "$folder/$name.sass"
+}
+
+[ $# -gt 0 ] || set -- diffuse
+echo "| set | program | kernel | registers | stack | spills | warps | instructions |" \
+  "load 4 | load 8 | load 16 | store 4 | store 8 | store 16 | local | constant | FMA | branch |"
+echo "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"
+for set in "$@"; do
+  defines=$(defines_of "$set")
+  # As a GPU is given 512 channels (evaluation_shape): 4 per item; shared wavelengths, no derived channels.
+  evaluation="-DKB_WIDTH=4 -DKB_VECTORS=1 -DKB_DERIVED=0 -DKB_PIXELS=1 -DKB_PER_PATH=0"
+  # shellcheck disable=SC2086
+  {
+    row "$set" paths kernels/path/paths.cl $defines
+    row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation | grep -v dpept_path
+    row "$set" path kernels/evaluate/evaluate.cl $defines $evaluation -DKB_FILM_TRANSPOSED=1 | grep dpept_path
+    row "$set" pt kernels/evaluate/pt.cl $defines $evaluation -DKB_METHOD_PT=1
+  }
+done
