@@ -85,7 +85,7 @@ json LiveState::scene_json() const {
              {"camera", camera_json(sensor_, distance_, scene_size_)},
              {"choices", choices_json(options_.backends.choices)},
              {"spectra", edits_.list(options_.scene, hull(channels_))}};
-  const BackendInfo info = backend_ ? backend_->info() : BackendInfo{};
+  const BackendInfo info = is_ready() ? backend_->info() : BackendInfo{};
   scene["settings"] = {{"backend", settings_.backend},
                        {"device", info.device},
                        {"method", settings_.method},

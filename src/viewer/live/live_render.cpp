@@ -140,9 +140,9 @@ class LiveRender final : public ViewedImage, public RenderControls {
   }
 
   bool step() {
-    const bool was_ready = state_.film() != nullptr;
+    const bool was_ready = state_.is_ready();
     const bool works = state_.work();
-    if (!was_ready && state_.film()) board_.set_scene(state_.scene_json());
+    if (!was_ready && state_.is_ready()) board_.set_scene(state_.scene_json());
     publish();
     return works;
   }

@@ -24,6 +24,8 @@ class LiveState {
 
   /// Null: nothing was compiled.
   const LiveFilm* film() const { return film_; }
+  /// Whether scene, backend and film are those of the settings; else work() makes them next.
+  bool is_ready() const { return scene_ && film_; }
   std::pair<uint32_t, uint32_t> full_size() const;
   const ViewStatus& status() const { return status_; }
   nlohmann::json scene_json() const;

@@ -50,9 +50,11 @@ function band_rows(settings) {
 
 function backend_rows(settings) {
   const backends = state.scene.choices?.backends ?? [];
-  // A device of OpenCL has an index among them; the CPU is one.
-  const is_used = (b) => b.name === settings.backend && (b.device === settings.device || b.index === null);
-  const at = Math.max(0, backends.findIndex(is_used));
+  // Which device it is is known once the scene is compiled for it.
+  const of_backend = (b) => b.name === settings.backend;
+  const is_used = (b) => of_backend(b) && b.device === settings.device;
+  const found = backends.findIndex(is_used);
+  const at = Math.max(0, found < 0 ? backends.findIndex(of_backend) : found);
   const kinds = {cpu: 'CPU', opencl: 'OpenCL'};
   const list = backends.map((b, i) => [i, `${kinds[b.name] ?? b.name}: ${b.device}`]);
   const pick = (chosen) => {

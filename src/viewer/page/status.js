@@ -34,6 +34,9 @@ function samples_text({samples, target_samples}) {
   return `${count(samples)}${of} samples per pixel`;
 }
 
+/** What renders; a CPU has one method. */
+const backend_text = ({backend, method}) => (backend === 'opencl' ? `OpenCL, ${method}` : 'CPU');
+
 function parts_of(status) {
   const live = status.state === 'rendering';
   const parts = [];
@@ -45,6 +48,7 @@ function parts_of(status) {
           ['frames', `${number(status.frames_per_second, 3)} frames/s`]);
   }
   if (status.error !== null && status.error !== undefined) parts.push(['error', `error ${percent(status.error)}`]);
+  if (state.scene?.settings) parts.push(['backend', backend_text(state.scene.settings)]);
   if (status.memory_bytes) parts.push(['memory', bytes(status.memory_bytes)]);
   if (status.clients > 1) parts.push(['clients', `${status.clients} pages`]);
   return parts;

@@ -1,4 +1,4 @@
-"""Chromium without a screen. What the page shows is read from its own modules and its canvas."""
+"""Chromium without a screen (firefox.py: Firefox). What the page shows is read from its own modules and its canvas."""
 import os
 import shutil
 import tempfile
@@ -9,19 +9,18 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import Select
 
 from program import wait_until
 
 ARGUMENTS = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu", "--hide-scrollbars",
              "--no-first-run", "--disable-background-networking", "--force-device-scale-factor=1"]
-# Modules are loaded once per page, so these are the page's own.
 EVALUATE = """
-const done = arguments[arguments.length - 1];
-(async () => {
+async (given) => {
   const {state} = await import('/state.js');
-  return await (async (given) => { %s })(arguments[0]);
-})().then(done).catch((error) => done({failed: String(error)}));
-"""
+  return await (async (given) => { %s })(given);
+}"""
+ANSWER = "(arguments[0]).then(arguments[1]).catch((error) => arguments[1]({failed: String(error)}));"
 PICTURE = """
 const canvas = document.getElementById('image');
 const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -29,7 +28,18 @@ const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.h
 
 
 class Browser:
+    @staticmethod
+    def in_page(function):
+        """Source that runs a function among the page's own modules, which are loaded once per page."""
+        return f"({function})"
+
     def __init__(self, width=1280, height=800, dark=False, downloads=None):
+        self.driver = self._start(width, height, downloads)
+        self.driver.set_script_timeout(60)
+        self.resize(width, height)
+        self.colour_scheme(dark)
+
+    def _start(self, width, height, downloads):
         self.folder = tempfile.mkdtemp(prefix="kiloband-browser-")
         options = Options()
         options.binary_location = os.environ.get("KILOBAND_CHROMIUM", "/usr/bin/chromium")
@@ -39,10 +49,7 @@ class Browser:
         if downloads:
             options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
         driver = Service(os.environ.get("KILOBAND_CHROMEDRIVER", "/usr/bin/chromedriver"))
-        self.driver = webdriver.Chrome(service=driver, options=options)
-        self.driver.set_script_timeout(60)
-        self.resize(width, height)
-        self.colour_scheme(dark)
+        return webdriver.Chrome(service=driver, options=options)
 
     def close(self):
         self.driver.quit()
@@ -66,7 +73,7 @@ class Browser:
 
     def value(self, code, given=None):
         """What the statements return; `state` is the page's."""
-        answer = self.driver.execute_async_script(EVALUATE % code, given)
+        answer = self.driver.execute_async_script(self.in_page(EVALUATE % code) + ANSWER, given)
         if isinstance(answer, dict) and "failed" in answer:
             raise AssertionError(answer["failed"])
         return answer
@@ -76,6 +83,12 @@ class Browser:
 
     def find(self, selector):
         return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def find_all(self, selector):
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def choose_option(self, selector, value, which=0):
+        Select(self.find_all(selector)[which]).select_by_value(value)
 
     def texts(self, selector):
         return self.driver.execute_script(
@@ -147,10 +160,17 @@ class Browser:
             }
             return hash;""")
 
+    def allow_clipboard(self, address):
+        permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"]
+        self.driver.execute_cdp_cmd("Browser.grantPermissions", {"origin": address.rstrip("/"), "permissions": permissions})
+
+    def noted_errors(self):
+        """What the browser's log has of them since it was last asked."""
+        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
+
     def complaints(self):
         """Errors of the page: in the browser's log, and shown over the image."""
-        severe = [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
-        return severe + self.texts(".notice.error")
+        return self.noted_errors() + self.texts(".notice.error")
 
     def screenshot(self, name):
         """Kept where KILOBAND_SCREENSHOTS says; None otherwise."""

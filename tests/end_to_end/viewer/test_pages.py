@@ -162,7 +162,7 @@ class Pages(unittest.TestCase):
         finally:
             viewer.stop()
         self.browser.driver.get("about:blank")
-        self.browser.driver.get_log("browser")  # refused connections
+        self.browser.noted_errors()  # refused connections
 
 
 if __name__ == "__main__":

@@ -1,72 +1,12 @@
 """A scene that is rendered while it is looked at: refinement, camera, materials, settings, pausing, saving."""
-import pathlib
-import tempfile
 import unittest
 
-from browser import ActionChains, Browser, Keys
-from program import BOX, Cube, Viewer, wait_until
-
-CHANNELS = 16
-SIZE = 64
+from browser import ActionChains, Keys
+from program import wait_until
+from rendered_page import CHANNELS, RenderedPage
 
 
-class Render(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory(prefix="kiloband-viewer-")
-        cls.saved = pathlib.Path(cls.folder.name)
-        cls.viewer = Viewer(BOX, "-D", f"res={SIZE}", "-D", f"bands=400:700:{CHANNELS}", "--output-dir", cls.saved)
-        cls.browser = Browser()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-        status = cls.viewer.stop()
-        cls.folder.cleanup()
-        assert status == 0, f"kiloband view has ended with {status}"
-
-    def setUp(self):
-        self.browser.open(self.viewer.address)
-        self.start_afresh()
-
-    def tearDown(self):
-        self.assertEqual(self.browser.complaints(), [])
-
-    def start_afresh(self):
-        """The scene file's camera and spectra, rendering."""
-        revision = self.browser.value(
-            """const {post} = await import('/api.js');
-            for (const id of Object.keys(state.edited ?? {})) await post('/api/spectrum', {id, set: {reset: true}});
-            await post('/api/camera', {reset: true});
-            await post('/api/control', {action: 'resume'});
-            return (await (await fetch('/api/scene')).json()).revision;""")
-        self.browser.wait("return state.frame.revision >= given", "the scene file's camera", revision)
-        self.wait_for_samples(2)
-
-    def samples(self):
-        return self.browser.value("return state.frame.samples")
-
-    def revision(self):
-        return self.browser.value("return state.frame.revision")
-
-    def wait_for_samples(self, least):
-        self.browser.wait("return state.frame.samples >= given && state.frame.width === state.frame.full_width", f"{least} samples", least)
-
-    def wait_for_revision_after(self, revision):
-        self.browser.wait("return state.frame.revision > given", f"a restart after revision {revision}", revision)
-
-    def pause(self):
-        self.browser.press(Keys.SPACE)
-        self.browser.wait("return state.status.state === 'paused'", "the pause")
-
-    def spectrum(self, x, y):
-        """What the plot holds once it belongs to the newest frame."""
-        self.browser.wait("return state.curves_of && state.curves_of.frame === state.status.frame", "spectra of the newest frame")
-        return self.browser.value("return state.curves.find((curve) => curve.select === given)", f"{x},{y}")
-
-    def open_tab(self, name):
-        self.browser.find(f"#tab-{name}").click()
-
+class Render(RenderedPage):
     def test_refines(self):
         first, before = self.browser.value("return [state.frame.frame, state.frame.samples]")
         self.wait_for_samples(before + 5)
@@ -84,15 +24,8 @@ class Render(unittest.TestCase):
         self.wait_for_samples(16)
         self.pause()
         shown = {(x, y): self.spectrum(x, y)["mean"] for x, y in [(20, 50), (50, 30)]}
-        region = self.browser.value("return state.curves.find((curve) => curve.select === '10,40,14,44')")
-        self.open_tab("save")
-        name = self.browser.find("#tab input[type=text]")
-        name.clear()
-        name.send_keys("seen")
-        self.browser.find("#tab [data-value=envi]").click()
-        self.browser.find("#tab .primary").click()
-        wait_until(lambda: any("seen.hdr" in text for text in self.browser.texts(".files li")), "the saved file")
-        cube = Cube(self.saved / "seen.hdr")
+        region = self.browser.wait("return state.curves.find((curve) => curve.select === '10,40,14,44')", "the rectangle's spectrum")
+        cube = self.save("seen")
         for (x, y), values in shown.items():
             for band in range(CHANNELS):
                 self.assertAlmostEqual(values[band], cube.at(x, y, band), delta=2e-6 * max(values))
@@ -173,6 +106,43 @@ class Render(unittest.TestCase):
         self.wait_for_revision_after(revision)
         self.browser.wait("return state.scene.channels.length === given", "all channels", CHANNELS)
 
+    def test_other_backends_show_the_same(self):
+        """The page's choice of a device and each of its methods; the status says which."""
+        self.browser.drag((10, 52), (40, 60), holding=Keys.SHIFT)
+        self.open_tab("render")
+        before, sums = self.settings(), {}
+        devices = [option.text for option in self.browser.find_all("#tab select option")]
+        opencl = next(str(i) for i, text in enumerate(devices) if text.startswith("OpenCL: "))
+        for method in ("dpept-batch", "dpept-path", "pt"):
+            revision = self.revision()
+            if self.settings()["backend"] == "cpu":
+                self.browser.choose_option("#tab select", opencl)
+            else:
+                self.browser.choose_option("#tab select", method, which=1)
+            self.wait_for_revision_after(revision)
+            self.wait_for_samples(64)
+            self.assertEqual([self.settings()[name] for name in ("backend", "method")], ["opencl", method])
+            self.assertEqual(self.browser.texts("#status .backend"), [f"OpenCL, {method}"])
+            line = self.browser.value("const {scrollWidth, clientWidth} = document.getElementById('status'); return [scrollWidth, clientWidth]")
+            self.assertLessEqual(*line)
+            self.browser.screenshot(f"backend_{method}")
+            sums[method] = self.floor_after(revision)
+        revision = self.revision()
+        self.browser.choose_option("#tab select", "0")
+        self.wait_for_revision_after(revision)
+        self.wait_for_samples(64)
+        self.assertEqual(self.settings(), before)
+        self.assertEqual(self.browser.texts("#status .backend"), ["CPU"])
+        for method, value in sums.items():
+            self.assertAlmostEqual(value, self.floor_after(revision), delta=0.1 * value, msg=method)
+
+    def settings(self):
+        return self.browser.value("return state.scene.settings")
+
+    def floor_after(self, revision):
+        """Sum of the pinned rectangle's channels."""
+        return sum(self.browser.wait("return state.curves_of?.revision > given && state.curves[0]", "its spectrum", revision)["mean"])
+
     def test_refused_settings_are_told(self):
         self.open_tab("render")
         fields = self.browser.driver.find_elements("css selector", "#tab input.number")
@@ -181,7 +151,7 @@ class Render(unittest.TestCase):
         wait_until(lambda: self.browser.texts(".notice.error"), "the server's refusal")
         self.assertEqual(self.browser.value("return state.scene.channels.length"), CHANNELS)
         self.browser.press(Keys.ESCAPE)
-        self.browser.driver.get_log("browser")  # Chromium notes the refused request
+        self.browser.noted_errors()  # Chromium notes the refused request
 
     def test_goes_on_while_no_page_is_open(self):
         samples = self.samples()

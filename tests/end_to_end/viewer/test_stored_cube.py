@@ -14,6 +14,8 @@ SIZE = 48
 
 
 class StoredCube(unittest.TestCase):
+    browser_type = Browser
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory(prefix="kiloband-viewer-")
@@ -25,7 +27,7 @@ class StoredCube(unittest.TestCase):
         cls.saved = cls.path / "saved"
         cls.saved.mkdir()
         cls.viewer = Viewer(cls.path / "box.hdr", "--output-dir", cls.saved)
-        cls.browser = Browser(downloads=cls.path)
+        cls.browser = cls.browser_type(downloads=cls.path)
 
     @classmethod
     def tearDownClass(cls):
@@ -191,7 +193,7 @@ class StoredCube(unittest.TestCase):
         self.assertIn("../x", shown[0])
         self.browser.press(Keys.ESCAPE)
         self.assertEqual(self.browser.texts(".notice.error"), [])
-        self.browser.driver.get_log("browser")  # Chromium notes the refused request
+        self.browser.noted_errors()  # Chromium notes the refused request
 
 
 if __name__ == "__main__":
