@@ -22,6 +22,7 @@ async (given) => {
 }"""
 ANSWER = "(arguments[0]).then(arguments[1]).catch((error) => arguments[1]({failed: String(error)}));"
 PICTURE = """
+await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));  // frames are painted in the next one
 const canvas = document.getElementById('image');
 const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
 """
