@@ -10,7 +10,9 @@ find_package(Boost REQUIRED)  # boost::math: distributions
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
 find_package(nlohmann_json REQUIRED)
-find_package(libjpeg-turbo REQUIRED)  # the viewer's frames
+if(KILOBAND_VIEWER OR KILOBAND_FUZZ)
+  find_package(libjpeg-turbo REQUIRED)  # the viewer's frames
+endif()
 if(KILOBAND_FUZZ)  # files are read without backends and without the program
   return()
 endif()
@@ -20,7 +22,9 @@ find_package(OpenCL REQUIRED)
 find_package(OpenCLHeaders REQUIRED)
 find_package(OpenCLHeadersCpp REQUIRED)
 find_package(CLI11 REQUIRED)
-pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+if(KILOBAND_VIEWER)
+  pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+endif()
 if(KILOBAND_TESTS)
   find_package(GTest REQUIRED)
 endif()
