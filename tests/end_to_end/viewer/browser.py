@@ -67,8 +67,8 @@ class Browser:
     def open(self, address, forget=True):
         """With `forget` as on a first visit."""
         self.driver.get(address)
-        if forget:
-            self.driver.execute_script("localStorage.clear()")
+        if forget:  # for good: what the page is about to keep, too
+            self.driver.execute_script("localStorage.clear(); Storage.prototype.setItem = () => {};")
             self.driver.get(address)
         self.wait("return state.frame && state.status && state.scene", "the first frame")
 

@@ -143,8 +143,7 @@ class StoredCube(unittest.TestCase):
             (self.cube.low[3] + self.cube.high[3]) / 2)
         chain = ActionChains(self.browser.driver, duration=0)
         chain.move_to_element_with_offset(self.browser.find("#plot"), offset, 0).click().perform()
-        self.wait_for_mode("channel")
-        self.assertEqual(self.browser.value("return state.view.channel"), 3)
+        self.browser.wait("return state.frame.mode === 'channel' && state.frame.parameters.channel === '3'", "channel 3")
 
     def test_axes_change(self):
         self.browser.click(24, 40)
