@@ -89,12 +89,13 @@ class StoredCube(unittest.TestCase):
             shown = self.curve(f"{x},{y}")
             self.assert_spectrum(shown["mean"], self.cube.spectrum(x, y))
             self.assert_spectrum(shown["standard_error"], self.standard_errors(x, y))
-        plotted = self.browser.value(
+        plotted = self.browser.wait(
             """const {the_graph, curves_shown} = await import('/plot.js');
             const column = 1 + curves_shown().findIndex(({selection}) => selection.key === given);
             const graph = the_graph();
+            if (column === 0 || !Array.isArray(graph.getValue(0, column))) return null;
             return Array.from({length: graph.numRows()},
-                              (_, row) => [graph.getValue(row, 0), ...graph.getValue(row, column)]);""", "10,40")
+                              (_, row) => [graph.getValue(row, 0), ...graph.getValue(row, column)]);""", "the drawn curve", "10,40")
         shown = self.curve("10,40")
         for row, (nm, low, mean, high) in enumerate(plotted):
             self.assertAlmostEqual(nm, (self.cube.low[row] + self.cube.high[row]) / 2, places=6)
