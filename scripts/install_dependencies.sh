@@ -12,9 +12,9 @@ build=(g++ cmake ninja-build pkg-config git ca-certificates
   opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev)
 # libclang-rt-dev: libFuzzer and the sanitizers of clang; libomp-dev: OpenMP that ThreadSanitizer can follow (GCC's looks like
 # data races to it); llvm: names of functions in their reports; patch: plants faults (scripts/plant_faults.sh); python3-selenium,
-# chromium, chromium-driver, firefox-esr: the page of `kiloband view` in browsers (tests/end_to_end/viewer).
+# chromium, chromium-driver: the page of `kiloband view` in a browser (tests/end_to_end/viewer).
 tests=(libgtest-dev libbenchmark-dev clang clang-format clang-tidy libclang-rt-dev libomp-dev llvm pocl-opencl-icd oclgrind gdal-bin python3-matplotlib
-  patch python3-selenium chromium chromium-driver firefox-esr)
+  patch python3-selenium chromium chromium-driver)
 
 packages=("${build[@]}")
 case "${1:-test}" in

@@ -13,9 +13,9 @@ class Render(RenderedPage):
         self.assertGreater(self.browser.value("return state.frame.frame"), first)
         self.assertEqual(self.browser.texts("#status .state"), ["Rendering"])
         self.browser.wait("return state.status.error > 0", "an error, from the second replicate on")
-        text = " ".join(self.browser.texts("#status span"))
+        shown = lambda: " ".join(self.browser.texts("#status span"))
         for part in ("samples per pixel", "paths/s", "frames/s", "error"):
-            self.assertIn(part, text)
+            wait_until(lambda: part in shown(), f"{part} in the status line")
 
     def test_the_plot_holds_what_is_saved(self):
         self.browser.click(20, 50)

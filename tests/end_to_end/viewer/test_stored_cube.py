@@ -164,6 +164,7 @@ class StoredCube(unittest.TestCase):
     def test_csv_has_the_curves(self):
         self.browser.click(10, 40)
         self.curve("10,40")
+        wait_until(self.browser.find("#export-csv").is_displayed, "the button")
         self.browser.find("#export-csv").click()
         file = self.path / "box_spectra.csv"
         wait_until(lambda: file.exists() and file.stat().st_size > 0, "the CSV file")
