@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/compare_input.hpp"
-#include "app/compare_report.hpp"
+#include "app/compare/compare_input.hpp"
+#include "app/compare/compare_report.hpp"
 #include "app/console/messages.hpp"
 #include "app/console/output_files.hpp"
 #include "app/console/standard_output.hpp"

@@ -1,4 +1,4 @@
-#include "app/compare_report.hpp"
+#include "app/compare/compare_report.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "app/compare_input.hpp"
+#include "app/compare/compare_input.hpp"
 
 #include <fmt/format.h>
 
