@@ -209,4 +209,15 @@ void add_errors(Bench& bench, const Record& common, const Repetitions& repetitio
   }
 }
 
+void measure_errors(Bench& bench, const char* group, const SceneFile& scene, Subject& subject,
+                    const Setup& setup, uint32_t repetitions, const Reference& reference) {
+  const Repetitions images = repeat(subject, setup, repetitions, bench.watch());
+  if (bench.stopped()) return;
+  Record record;
+  record.group = group;
+  record.setup = setup;
+  record.command = render_command(bench.settings(), scene, setup, bench.settings().seed);
+  add_errors(bench, record, images, reference, true);
+}
+
 }  // namespace kiloband::speed

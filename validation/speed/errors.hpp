@@ -55,4 +55,10 @@ MeanDifference compare_means(const Repetitions& repetitions, const Reference& re
 void add_errors(Bench& bench, const Record& common, const Repetitions& repetitions,
                 const Reference& reference, bool channels);
 
+/// Renders independently randomised images as the setup says and adds their errors, of each channel too, to the case
+/// `group`; nothing where the run was stopped.
+/// subject  made for at least repetitions * setup.replicates replicates
+void measure_errors(Bench& bench, const char* group, const SceneFile& scene, Subject& subject,
+                    const Setup& setup, uint32_t repetitions, const Reference& reference);
+
 }  // namespace kiloband::speed

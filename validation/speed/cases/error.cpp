@@ -53,13 +53,8 @@ void measure_way(Bench& bench, const SceneFile& scene, const Way& way, const Ref
     if (!cpu && samples > 256) break;
     setup.samples = samples;
     if (samples < 2 * setup.replicates) continue;  // render would take fewer
-    const Repetitions images = repeat(subject, setup, repetitions, bench.watch());
+    measure_errors(bench, "error", scene, subject, setup, repetitions, reference);
     if (bench.stopped()) return;
-    Record record;
-    record.group = "error";
-    record.setup = setup;
-    record.command = render_command(bench.settings(), scene, setup, bench.settings().seed);
-    add_errors(bench, record, images, reference, true);
   }
 }
 

@@ -23,13 +23,8 @@ void run_refraction(Bench& bench) {
     for (const uint64_t samples : counts) {
       if (bench.stopped()) return;
       setup.samples = samples;
-      const Repetitions images = repeat(subject, setup, repetitions, bench.watch());
+      measure_errors(bench, "refraction", scene, subject, setup, repetitions, reference);
       if (bench.stopped()) return;
-      Record record;
-      record.group = "refraction";
-      record.setup = setup;
-      record.command = render_command(bench.settings(), scene, setup, bench.settings().seed);
-      add_errors(bench, record, images, reference, true);
       bench.progress(++done / (2.0 * static_cast<double>(counts.size())));
     }
   }
