@@ -55,6 +55,11 @@ void SceneOptions::add_to(CLI::App& command) {
   command.add_option("--size", size, "WxH: image size in pixels");
   command.add_option("--max-depth", max_depth, "longest path (1: emission only, -1: unlimited)")
       ->check(CLI::Range(-1, 1 << 30));
+  command
+      .add_option("--light-selection", light_selection,
+                  "how lights are chosen: power, tree (by distance and orientation too), or auto, the tree "
+                  "for many")
+      ->check(CLI::IsMember({"auto", "power", "tree"}));
 }
 
 void check_scene_file(const std::filesystem::path& file) {
@@ -80,6 +85,11 @@ void warn_of_other_units(const ChannelList& channels, const DiagnosticSink& sink
            range.min_nm, range.max_nm));
 }
 
+LightSelection light_selection_of(const std::string& name) {
+  if (name == "power") return LightSelection::kPower;
+  return name == "tree" ? LightSelection::kTree : LightSelection::kAutomatic;
+}
+
 LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) {
   ReadOptions read;
   std::set<std::string> defined;
@@ -93,6 +103,7 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) 
   LoadedScene loaded;
   loaded.description = read_scene(options.scene, read);
   if (options.max_depth) loaded.description.integrator.max_depth = *options.max_depth;
+  loaded.description.integrator.light_selection = light_selection_of(options.light_selection);
   Film& film = loaded.description.sensor.film;
   if (options.bands || options.bands_file) {
     loaded.channels = options.bands ? parse_channels_option("--bands", *options.bands)

@@ -19,6 +19,7 @@ struct SceneOptions {
   std::vector<std::string> defines;
   std::optional<std::string> bands, bands_file, guide_bands, size;
   std::optional<int> max_depth;
+  std::string light_selection = "auto";
 
   void add_to(CLI::App& command);
 };

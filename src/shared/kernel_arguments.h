@@ -37,7 +37,10 @@
   X(scene, IN, kb_u32, triangles) SEP         /* three vertices each */                                          \
   X(scene, IN, float, area_cdf) SEP                                                                              \
   X(scene, IN, KbEmitter, emitters) SEP                                                                          \
-  X(scene, IN, float, emitter_cdf) SEP        /* emitters + 1 */                                                 \
+  X(scene, IN, float, emitter_cdf) SEP        /* emitters + 1, with a light tree + 2: FlatScene */               \
+  X(scene, IN, KbLightNode, light_nodes) SEP  /* light_tree.h; empty without a tree, as the next two */          \
+  X(scene, IN, KbTreeLight, tree_lights) SEP                                                                     \
+  X(scene, IN, kb_u32, first_tree_light) SEP  /* by emitter */                                                   \
   X(scene, IN, float, envmap_marginal) SEP    /* rows + 1 */                                                     \
   X(scene, IN, float, envmap_rows) SEP        /* rows of columns + 1 */                                          \
   X(scene, IN, KbMedium, media) SEP                                                                              \

@@ -44,8 +44,10 @@ typedef struct {
   kb_u32 gas;                           /* 1: the scene has media or null boundaries */
   kb_u32 instances;                     /* 1: the scene has instances */
   kb_u32 first_sun;                     /* the emitters from here on are suns; emitter_count: none is */
+  kb_u32 light_tree;                    /* 1: the scene has one (light_tree.h) */
+  kb_u32 reserved[3];
 } KbSceneConstants;
-KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 192, scene_constants_size);
+KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 208, scene_constants_size);
 
 /* ---- ray tracing -------------------------------------------------------------------------------------- */
 /* A primitive of the acceleration structure: a triangle of a mesh (corners), a whole analytic shape, or an instance of

@@ -119,22 +119,40 @@ KB_INLINE LitTriangle make_lit_triangle(const FlatScene& scene, U shape_flags, F
   return lit;
 }
 
-/// Triangles are chosen with the steps that lattice_cdf() gave them, which is their part of the area only up
-/// to 2^-24. The density is 1 / area of the mesh, as for hits, whose triangle is unknown, so that MIS weights
-/// sum to 1; `factor` is that density over the real one, probability of the triangle / its area.
-/// record  of an emitting mesh in active lanes
-KB_INLINE AreaSample sample_mesh(const Lights& lights, const ShapeHead& record, V3 point, F u_triangle, F u,
-                                 F v, bool need_uv, M active) {
-  const FlatScene& scene = lights.scene;
+/// A triangle of an emitting mesh that points are sampled on.
+struct MeshTriangle {
+  U number;    // in the mesh
+  F area;      // m^2, by which the density of its points goes
+  M by_table;  // chosen by its mesh's table; else by the light tree
+};
+/// Without a light tree triangles are chosen with the steps that lattice_cdf() gave them, which is their part of the area
+/// only up to 2^-24. The density is 1 / area of the mesh, as for hits, so that MIS weights sum to 1;
+/// AreaSample::factor is that density over the real one, probability of the triangle / its area.
+/// The light tree knows the probability of each triangle.
+/// triangle  the tree's choice, KB_NONE: none; area: of it
+KB_INLINE MeshTriangle choose_triangle(const FlatScene& scene, const ShapeHead& record, F u, U triangle,
+                                       F area, M active) {
+  const M by_table = triangle == U(KB_NONE);
+  MeshTriangle chosen{triangle, select(by_table, record.area, area), by_table};
+  if (!any(active & by_table)) return chosen;
   const U first = select(active, record.first_cdf, U(0u));
   const U count = select(active, record.triangle_count, U(1u));
+  chosen.number = select(by_table, find_interval(scene.area_cdf.data(), first, count, u), triangle);
+  return chosen;
+}
+
+/// record  of an emitting mesh in active lanes
+KB_INLINE AreaSample sample_mesh(const Lights& lights, const ShapeHead& record, const MeshTriangle& chosen,
+                                 V3 point, F u, F v, bool need_uv, M active) {
+  const FlatScene& scene = lights.scene;
+  const U first = select(active, record.first_cdf, U(0u));
   const U flags = record.flags;
-  const F area = record.area;
   AreaSample sample;
-  sample.triangle = find_interval(scene.area_cdf.data(), first, count, u_triangle);
-  const LitTriangle lit = lights.triangles ? gather_lit_triangle(lights.triangles, first + sample.triangle)
-                                           : make_lit_triangle(scene, flags, area, record.first_triangle,
-                                                               first, sample.triangle, active);
+  sample.triangle = select(active, chosen.number, U(0u));
+  const LitTriangle lit = lights.triangles
+                              ? gather_lit_triangle(lights.triangles, first + sample.triangle)
+                              : make_lit_triangle(scene, flags, record.area, record.first_triangle, first,
+                                                  sample.triangle, active);
   const Triangle& t = lit.t;
   U index[3] = {U(0u), U(0u), U(0u)};
   if (any(active & has_bits(flags, KB_SHAPE_HAS_NORMALS | KB_SHAPE_HAS_UVS)))
@@ -148,9 +166,9 @@ KB_INLINE AreaSample sample_mesh(const Lights& lights, const ShapeHead& record, 
   const V3 to_light = sample.position - point;
   const F distance = length(to_light);
   sample.normal = lit_side(flags, to_light, distance, lit.normal, shading_normal);
-  sample.pdf = select(active, area_to_solid_angle(to_light, distance, sample.normal, area), F(0));
+  sample.pdf = select(active, area_to_solid_angle(to_light, distance, sample.normal, chosen.area), F(0));
   sample.direction = to_light * (F(1) / distance);
-  sample.factor = lit.factor;
+  sample.factor = select(chosen.by_table, lit.factor, F(1));
   sample.uv = sample.barycentric;  // Mitsuba: barycentric coordinates
   const M has_uvs = active & has_bits(flags, KB_SHAPE_HAS_UVS);
   V3 tangent = lit.normal;

@@ -34,10 +34,13 @@ void finish_by_area(AreaLightSample& sample, const KbShape& shape, glm::vec3 poi
   if (sample.pdf > 0) sample.direction = to_light * (1 / distance);
 }
 
-AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, glm::vec3 point, float u_triangle,
-                            glm::vec2 u, bool need_uv) {
-  const one_lane::AreaSample one = one_lane::sample_mesh(
-      {scene}, one_lane::shared_shape(shape), to_lane(point), u_triangle, u.x, u.y, need_uv, {true});
+AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, const TriangleChoice& choice,
+                            glm::vec3 point, glm::vec2 u, bool need_uv) {
+  const one_lane::ShapeHead record = one_lane::shared_shape(shape);
+  const one_lane::MeshTriangle chosen =
+      one_lane::choose_triangle(scene, record, choice.u, choice.tree, choice.area, {true});
+  const one_lane::AreaSample one =
+      one_lane::sample_mesh({scene}, record, chosen, to_lane(point), u.x, u.y, need_uv, {true});
   AreaLightSample sample;
   sample.pdf = one.pdf.v;
   sample.factor = one.factor.v;
@@ -151,21 +154,21 @@ float sphere_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit
   return glm::dot(outward, way) <= 0 ? cone_density(view.one_minus_cos()) : 0;
 }
 
-AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,
-                                  float u_triangle, glm::vec2 u, bool need_uv) {
+AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, const TriangleChoice& choice,
+                                  glm::vec3 point, glm::vec2 u, bool need_uv) {
   if (shape.type == KB_SHAPE_MESH) {
     if (shape.first_cdf == KB_NONE) return {};
-    return sample_mesh(scene, shape, point, u_triangle, u, need_uv);
+    return sample_mesh(scene, shape, choice, point, u, need_uv);
   }
   return shape.type == KB_SHAPE_SPHERE ? sample_sphere(shape, point, u, need_uv)
                                        : sample_by_area(shape, point, u, need_uv);
 }
 
-float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin) {
+float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin, float area) {
   if (shape.type == KB_SHAPE_SPHERE) return sphere_light_density(shape, origin, hit.point);
   if (shape.type == KB_SHAPE_MESH && shape.first_cdf == KB_NONE) return 0;
-  return one_lane::area_density(shape.flags, shape.area, to_lane(hit.geometric_normal),
-                                to_lane(hit.shading_normal), to_lane(hit.point - origin))
+  return one_lane::area_density(shape.flags, area, to_lane(hit.geometric_normal), to_lane(hit.shading_normal),
+                                to_lane(hit.point - origin))
       .v;
 }
 

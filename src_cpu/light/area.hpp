@@ -35,12 +35,19 @@ struct AreaLightSample {
   glm::vec2 barycentric{0};
 };
 
-AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, glm::vec3 point,
-                                  float u_triangle, glm::vec2 u, bool need_uv);
+/// How the triangle of a mesh is chosen.
+struct TriangleChoice {
+  float u;        // by the mesh's table with this number ...
+  uint32_t tree;  // ... unless the light tree has chosen this one: KB_NONE: it has not;
+  float area;     // of it, m^2
+};
+AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, const TriangleChoice& choice,
+                                  glm::vec3 point, glm::vec2 u, bool need_uv);
 
 /// The same density for a given hit of the shape; 0 where sample_area_light() cannot give it.
-/// Arguments as area_light_pdf().
-float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin);
+/// area  of what points are chosen on: the shape, or the triangle that the light tree chooses, m^2
+/// The other arguments as area_light_pdf().
+float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin, float area);
 
 /// Of spheres: for a point of the surface.
 float sphere_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point);

@@ -23,18 +23,20 @@ EmittedRadiance radiance_of(const one_lane::Resolved& r) {
 
 }  // namespace
 
-LightSample sample_shape_light(const FlatScene& scene, const KbEmitter& emitter, glm::vec3 point,
+LightSample sample_shape_light(const FlatScene& scene, const SelectedLight& selected, glm::vec3 point,
                                float u_triangle, glm::vec2 u) {
+  const KbEmitter& emitter = scene.emitters[selected.emitter];
   const KbShape& shape = scene.shapes[emitter.shape];
   const bool thermal = emitter.type == KB_EMITTER_THERMAL;
   const bool textured = !thermal && (emitter.ref & KB_REF_KIND_MASK) != KB_REF_SPECTRUM;
-  const AreaLightSample on_light = sample_area_light(scene, shape, point, u_triangle, u, textured);
+  const AreaLightSample on_light =
+      sample_area_light(scene, shape, {u_triangle, selected.triangle, selected.area}, point, u, textured);
   LightSample sample;
   if (!(on_light.pdf > 0)) return sample;
   sample.direction = on_light.direction;
   sample.target = offset_ray_origin(on_light.position, on_light.normal,
                                     target_offset(on_light.offset, on_light.position - point));
-  sample.pdf = on_light.pdf * emitter.select_pdf;
+  sample.pdf = on_light.pdf * selected.probability;
   sample.factor = on_light.factor;
   if (!thermal) {
     sample.radiance = radiance_of(scene, emitter.ref, on_light.uv);
@@ -46,14 +48,14 @@ LightSample sample_shape_light(const FlatScene& scene, const KbEmitter& emitter,
 }
 
 LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position) {
-  const auto count = static_cast<uint32_t>(scene.emitters.size());
-  if (count == 0) return {};
-  const uint32_t index = count == 1 ? 0 : find_interval(scene.emitter_cdf.data(), count, u_select.x);
-  const KbEmitter& emitter = scene.emitters[index];
-  if (emitter.type == KB_EMITTER_THERMAL)
-    return sample_shape_light(scene, emitter, point, u_select.y, u_position);
-  const one_lane::Light light = one_lane::sample_lights(
-      {scene}, to_lane(point), {u_select.x, u_select.y, u_position.x, u_position.y}, {true});
+  if (scene.emitters.empty()) return {};
+  const one_lane::F4 u{u_select.x, u_select.y, u_position.x, u_position.y};
+  const one_lane::ChosenLight chosen = one_lane::choose_light(scene, to_lane(point), u, {true});
+  if (chosen.head.type.v == KB_EMITTER_THERMAL)
+    return sample_shape_light(scene,
+                              {chosen.emitter.v, chosen.head.select_pdf.v, chosen.triangle.v, chosen.area.v},
+                              point, u_select.y, u_position);
+  const one_lane::Light light = one_lane::sample_chosen({scene}, chosen, to_lane(point), u, {true});
   LightSample sample;
   sample.direction = to_glm(light.direction);
   sample.target = to_glm(light.target);
@@ -73,8 +75,12 @@ SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on) {
 float area_light_pdf(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 origin) {
   const KbShape& record = scene.shapes[hit.shape];
   if (record.emitter == KB_NONE) return 0;
-  const float select_pdf = scene.emitters[record.emitter].select_pdf;
-  return select_pdf > 0 ? select_pdf * area_light_density(record, hit, origin) : 0;
+  one_lane::Hit lane{};
+  lane.shape = hit.shape;
+  const one_lane::HitLight chosen =
+      one_lane::chosen_as_light(scene, lane, record.emitter, hit.triangle, to_lane(origin), {true});
+  const float probability = chosen.probability.v;
+  return probability > 0 ? probability * area_light_density(record, hit, origin, chosen.area.v) : 0;
 }
 
 float environment_pdf(const FlatScene& scene, glm::vec3 direction) {

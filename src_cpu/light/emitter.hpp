@@ -41,14 +41,21 @@ struct LightSample {
   ThermalPoint on;       // if thermal
 };
 
-/// Selects an emitter by FlatScene::emitter_cdf (u_select.x), a triangle of a mesh (u_select.y), a point or
-/// direction on it (u_position). Spheres are sampled over the cone that they subtend from outside, over their
+/// Selects an emitter by FlatScene::emitter_cdf (u_select.x) and a triangle of a mesh (u_select.y), or both by the light
+/// tree if there is one (shared/light_tree.h), then a point or direction on it (u_position). Spheres are sampled over the cone that they subtend from outside, over their
 /// area from inside; other shapes over their area; environment maps by their texels; constant environments
 /// over the sphere; suns over their discs. Points that a one-sided area light does not shine to give pdf 0.
 LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position);
 
+/// An emitter that has been selected.
+struct SelectedLight {
+  uint32_t emitter;
+  float probability;
+  uint32_t triangle;  // of a mesh, by the light tree; KB_NONE: not yet
+  float area;         // of the triangle, m^2
+};
 /// The same of an area light or a thermal one that has been selected. Lanes (light-inl.hpp) sample meshes themselves.
-LightSample sample_shape_light(const FlatScene& scene, const KbEmitter& emitter, glm::vec3 point,
+LightSample sample_shape_light(const FlatScene& scene, const SelectedLight& selected, glm::vec3 point,
                                float u_triangle, glm::vec2 u);
 
 /// The surface that a thermal light's sample lies on; apart from the sample, which most lights do without.

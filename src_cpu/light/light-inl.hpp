@@ -12,6 +12,7 @@
 #include "src_cpu/light/delta-inl.hpp"
 #include "src_cpu/light/emitter.hpp"
 #include "src_cpu/light/environment-inl.hpp"
+#include "src_cpu/light/light_tree-inl.hpp"
 #include "src_cpu/light/sun-inl.hpp"
 
 KB_BEFORE_LANES;
@@ -53,18 +54,54 @@ KB_INLINE EmitterHead gather_emitter(const FlatScene& scene, U emitter) {
   return {words[0], words[1], words[2], as_floats(words[3])};
 }
 
+/// What next-event estimation has chosen: an emitter and, of a mesh in the light tree, a triangle.
+struct ChosenLight {
+  U emitter;
+  EmitterHead head;  // select_pdf: the probability of this choice
+  U triangle;        // KB_NONE: not chosen yet
+  F area;            // of the triangle, m^2
+};
+
+/// By the tree, or one of the emitters that it does not have.
+KB_INLINE ChosenLight choose_by_tree(const FlatScene& scene, V3 point, const F4& u, M active) {
+  const M in_tree = active & (u.x < F(scene.emitter_cdf[1]));
+  const auto entries = static_cast<uint32_t>(scene.emitter_cdf.size() - 1);
+  const U entry = find_interval(scene.emitter_cdf.data(), U(0u), U(entries), u.x);
+  U emitter = select(in_tree | (entry == U(0u)), U(0u), entry - U(1u));
+  ChosenTreeLight chosen{U(0u), F(0)};
+  U words[4] = {U(0u), U(KB_NONE), U(0u), U(0u)};
+  if (any(in_tree)) {
+    chosen = choose_tree_light(scene, point, u.x, u.y, in_tree);
+    Addresses(scene.tree_lights.data(), select(in_tree, chosen.light, U(0u))).load(0, words);
+    emitter = select(in_tree, words[0], emitter);
+  }
+  EmitterHead head = gather_emitter(scene, emitter);
+  head.select_pdf = select(in_tree, chosen.probability, head.select_pdf);
+  return {emitter, head, select(in_tree, words[1], U(KB_NONE)), as_floats(words[3])};
+}
+
+/// u: selection, triangle, position
+KB_INLINE ChosenLight choose_light(const FlatScene& scene, V3 point, const F4& u, M active) {
+  if (scene.features.light_tree) return choose_by_tree(scene, point, u, active);
+  const auto emitters = static_cast<uint32_t>(scene.emitters.size());
+  U emitter(0u);
+  if (emitters > 1) emitter = find_interval(scene.emitter_cdf.data(), U(0u), U(emitters), u.x);
+  return {emitter, gather_emitter(scene, emitter), U(KB_NONE), F(0)};
+}
+
 /// Area lights on meshes. record: of their shapes
-KB_INLINE Light sample_mesh_light(const Lights& lights, const EmitterHead& emitter, const ShapeHead& record,
+KB_INLINE Light sample_mesh_light(const Lights& lights, const ChosenLight& chosen, const ShapeHead& record,
                                   V3 point, const F4& u, M active) {
   const FlatScene& scene = lights.scene;
-  const U ref = emitter.ref;
+  const U ref = chosen.head.ref;
   const bool textured = any(active & has_bits(ref, KB_REF_KIND_MASK));
-  const AreaSample on_light = sample_mesh(lights, record, point, u.y, u.z, u.w, textured, active);
+  const MeshTriangle triangle = choose_triangle(scene, record, u.y, chosen.triangle, chosen.area, active);
+  const AreaSample on_light = sample_mesh(lights, record, triangle, point, u.z, u.w, textured, active);
   Light light;
   light.direction = on_light.direction;
   light.target =
       on_light.position + on_light.normal * target_offset(on_light.offset, on_light.position - point);
-  light.pdf = on_light.pdf * emitter.select_pdf;
+  light.pdf = on_light.pdf * chosen.head.select_pdf;
   light.factor = on_light.factor;
   light.infinite = light.delta = no_lanes();
   light.radiance = resolve(scene, ref, {on_light.uv, on_light.triangle, on_light.barycentric},
@@ -97,8 +134,8 @@ KB_INLINE Light sample_suns(const FlatScene& scene, U emitter, const F4& u, M ac
 }
 
 /// Points, spots, projectors and directional lights.
-/// type  of the emitters
-KB_INLINE Light sample_delta_lights(const FlatScene& scene, U emitter, U type, V3 point, M active) {
+KB_INLINE Light sample_delta_lights(const FlatScene& scene, const ChosenLight& chosen, V3 point, M active) {
+  const U emitter = chosen.emitter, type = chosen.head.type;
   const M infinite = active & (type == U(KB_EMITTER_DIRECTIONAL)), near = active & !infinite;
   DeltaSample sample{no_vector(), no_vector(), F(0), {F(0), F(0)}};
   if (any(near))
@@ -109,21 +146,19 @@ KB_INLINE Light sample_delta_lights(const FlatScene& scene, U emitter, U type, V
     sample = {select(infinite, far.direction, sample.direction), select(infinite, far.target, sample.target),
               select(infinite, far.factor, sample.factor), sample.uv};
   }
-  const KbEmitter* emitters = scene.emitters.data();
   const M lit = active & (sample.factor > F(0));
-  const U ref = KB_GATHER_WORD(emitters, KbEmitter, ref, emitter);
   return {sample.direction,
           sample.target,
-          select(lit, KB_GATHER_FLOAT(emitters, KbEmitter, select_pdf, emitter), F(0)),
+          select(lit, chosen.head.select_pdf, F(0)),
           sample.factor,
           infinite,
           active,
-          resolve(scene, ref, place_at(sample.uv), lit)};
+          resolve(scene, chosen.head.ref, place_at(sample.uv), lit)};
 }
 
 /// Area lights on shapes of other kinds.
-inline void sample_shape_lights(const FlatScene& scene, U emitter, V3 point, const F4& u, M active,
-                                Light& light) {
+inline void sample_shape_lights(const FlatScene& scene, const ChosenLight& chosen, V3 point, const F4& u,
+                                M active, Light& light) {
   V3Array direction(light.direction), target(light.target);
   FloatArray pdf(light.pdf), factor(light.factor), fx(light.radiance.sample.fx), fy(light.radiance.sample.fy);
   WordArray row(light.radiance.row), texture(light.radiance.sample.texture), xy(light.radiance.sample.xy);
@@ -131,10 +166,10 @@ inline void sample_shape_lights(const FlatScene& scene, U emitter, V3 point, con
   WordArray infinite(words(light.infinite)), delta(words(light.delta)),
       textured(words(light.radiance.textured));
   const V3Array at(point);
-  const FloatArray u1(u.y), u2(u.z), u3(u.w);
-  const WordArray emitters(emitter);
+  const FloatArray u1(u.y), u2(u.z), u3(u.w), probability(chosen.head.select_pdf), area(chosen.area);
+  const WordArray emitters(chosen.emitter), triangle(chosen.triangle);
   each_lane(active, [&](uint32_t i) KB_LAMBDA {
-    const LightSample one = sample_shape_light(scene, scene.emitters[emitters[i]],
+    const LightSample one = sample_shape_light(scene, {emitters[i], probability[i], triangle[i], area[i]},
                                                {at.x[i], at.y[i], at.z[i]}, u1[i], {u2[i], u3[i]});
     direction.x[i] = one.direction.x, direction.y[i] = one.direction.y, direction.z[i] = one.direction.z;
     target.x[i] = one.target.x, target.y[i] = one.target.y, target.z[i] = one.target.z;
@@ -155,54 +190,80 @@ inline void sample_shape_lights(const FlatScene& scene, U emitter, V3 point, con
            {row, has_bits(textured, 1u), {texture, xy, fx, fy}}};
 }
 
-/// sample_light() of emitter.hpp, without thermally emitting shapes. u: selection, triangle, position.
-KB_INLINE Light sample_lights(const Lights& lights, V3 point, const F4& u, M active) {
+/// Samples of what has been chosen.
+KB_INLINE Light sample_chosen(const Lights& lights, const ChosenLight& chosen, V3 point, const F4& u,
+                              M active) {
   const FlatScene& scene = lights.scene;
-  const auto emitters = static_cast<uint32_t>(scene.emitters.size());
-  U emitter(0u);
-  if (emitters > 1) emitter = find_interval(scene.emitter_cdf.data(), U(0u), U(emitters), u.x);
-  const EmitterHead head = gather_emitter(scene, emitter);
+  const EmitterHead& head = chosen.head;
   const U type = head.type;
   const M on_shape = active & (type == U(KB_EMITTER_AREA));
-  const M sky = active & (emitter == U(scene.environment));
+  const M sky = active & (chosen.emitter == U(scene.environment));
   Light light{no_vector(), no_vector(), F(0), F(0), no_lanes(), no_lanes(), resolved_row(U(0u))};
   M mesh = on_shape;
   if (any(on_shape)) {
-    const ShapeHead record = emitters == 1 ? shared_shape(scene.shapes[scene.emitters[0].shape])
-                                           : gather_shape(scene, select(on_shape, head.shape, U(0u)));
+    const ShapeHead record = scene.emitters.size() == 1
+                                 ? shared_shape(scene.shapes[scene.emitters[0].shape])
+                                 : gather_shape(scene, select(on_shape, head.shape, U(0u)));
     mesh = on_shape & (record.type == U(KB_SHAPE_MESH)) & (record.first_cdf != U(KB_NONE));
-    if (any(mesh)) light = sample_mesh_light(lights, head, record, point, u, mesh);
+    if (any(mesh)) light = sample_mesh_light(lights, chosen, record, point, u, mesh);
   }
   if (any(sky)) light = select(sky, sample_environment(scene, u, sky), light);
   const M delta = active & ((type == U(KB_EMITTER_POINT)) | (type == U(KB_EMITTER_SPOT)) |
                             (type == U(KB_EMITTER_DIRECTIONAL)) | (type == U(KB_EMITTER_PROJECTOR)));
-  if (any(delta)) light = select(delta, sample_delta_lights(scene, emitter, type, point, delta), light);
+  if (any(delta)) light = select(delta, sample_delta_lights(scene, chosen, point, delta), light);
   const M sun = active & (type == U(KB_EMITTER_SUN));
-  if (any(sun)) light = select(sun, sample_suns(scene, emitter, u, sun), light);
+  if (any(sun)) light = select(sun, sample_suns(scene, chosen.emitter, u, sun), light);
   const M others = active & !mesh & !sky & !delta & !sun;
-  if (any(others)) sample_shape_lights(scene, emitter, point, u, others, light);
+  if (any(others)) sample_shape_lights(scene, chosen, point, u, others, light);
   return light;
 }
 
-/// area_light_pdf() of emitter.hpp: the density of hits, for active lanes, whose shape has an emitter.
-KB_INLINE F area_light_pdf(const FlatScene& scene, const Hit& hit, U emitter, V3 origin, M active) {
+/// sample_light() of emitter.hpp, without thermally emitting shapes. u: selection, triangle, position.
+KB_INLINE Light sample_lights(const Lights& lights, V3 point, const F4& u, M active) {
+  return sample_chosen(lights, choose_light(lights.scene, point, u, active), point, u, active);
+}
+
+/// With which probability sample_lights() chooses what was hit, and the area [m^2] by which its points are chosen.
+struct HitLight {
+  F probability, area;
+};
+KB_INLINE HitLight chosen_as_light(const FlatScene& scene, const Hit& hit, U emitter, U triangle, V3 origin,
+                                   M active) {
   const KbShape* shapes = scene.shapes.data();
-  const F select_pdf = KB_GATHER_FLOAT(scene.emitters.data(), KbEmitter, select_pdf, emitter);
+  if (!scene.features.light_tree)
+    return {KB_GATHER_FLOAT(scene.emitters.data(), KbEmitter, select_pdf, emitter),
+            KB_GATHER_FLOAT(shapes, KbShape, area, hit.shape)};
+  const M mesh = KB_GATHER_WORD(shapes, KbShape, type, hit.shape) == U(KB_SHAPE_MESH);
+  const U light = gather(scene.first_tree_light.data(), emitter) + select(mesh & active, triangle, U(0u));
+  U words[4];
+  Addresses(scene.tree_lights.data(), select(active, light, U(0u))).load(0, words);
+  const M in_tree = active & (words[2] != U(KB_NONE));
+  return {tree_probability(scene, origin, select(in_tree, words[2], U(0u)), in_tree), as_floats(words[3])};
+}
+
+/// area_light_pdf() of emitter.hpp: the density of hits, for active lanes, whose shape has an emitter.
+/// triangle  of the mesh that was hit
+KB_INLINE F area_light_pdf(const FlatScene& scene, const Hit& hit, U emitter, U triangle, V3 origin,
+                           M active) {
+  const KbShape* shapes = scene.shapes.data();
+  const HitLight chosen = chosen_as_light(scene, hit, emitter, triangle, origin, active);
   const U type = KB_GATHER_WORD(shapes, KbShape, type, hit.shape);
   const M sampled =
       !((type == U(KB_SHAPE_MESH)) & (KB_GATHER_WORD(shapes, KbShape, first_cdf, hit.shape) == U(KB_NONE)));
-  F density = area_density(hit.shape_flags, KB_GATHER_FLOAT(shapes, KbShape, area, hit.shape),
-                           hit.geometric_normal, hit.shading_normal, hit.point - origin);
-  density = select(active & sampled & (select_pdf > F(0)), select_pdf * density, F(0));
-  const M sphere = active & (type == U(KB_SHAPE_SPHERE)) & (select_pdf > F(0));
+  F density = area_density(hit.shape_flags, chosen.area, hit.geometric_normal, hit.shading_normal,
+                           hit.point - origin);
+  const M chosen_at_all = active & (chosen.probability > F(0));
+  density = select(chosen_at_all & sampled, chosen.probability * density, F(0));
+  const M sphere = chosen_at_all & (type == U(KB_SHAPE_SPHERE));
   if (!any(sphere)) return density;
   FloatArray result(density);
-  const FloatArray chosen(select_pdf);
+  const FloatArray probability(chosen.probability);
   const V3Array point(hit.point), from(origin);
   const WordArray shape(hit.shape);
   each_lane(sphere, [&](uint32_t i) KB_LAMBDA {
-    result[i] = chosen[i] * sphere_light_density(scene.shapes[shape[i]], {from.x[i], from.y[i], from.z[i]},
-                                                 {point.x[i], point.y[i], point.z[i]});
+    result[i] =
+        probability[i] * sphere_light_density(scene.shapes[shape[i]], {from.x[i], from.y[i], from.z[i]},
+                                              {point.x[i], point.y[i], point.z[i]});
   });
   return result;
 }

@@ -60,7 +60,8 @@ KB_INLINE void add_emission(Shading& s, M hit) {
   const M weighted = emits & !s.previous_delta();
   F weight(1);
   if (any(weighted)) {
-    const F pdf = area_light_pdf(scene, s.hit, index, s.previous_point(), weighted);
+    const U triangle = load(s.wave.rays().primitive + s.first);
+    const F pdf = area_light_pdf(scene, s.hit, index, triangle, s.previous_point(), weighted);
     weight = select(weighted, power_heuristic(s.previous_pdf(), pdf), F(1));
   }
   s.vertex.set(emits, KB_VERTEX_EMIT);

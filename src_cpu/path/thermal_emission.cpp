@@ -56,7 +56,8 @@ bool add_thermal_emission(Shading& s) {
   if (!(emitted.weight > 0)) return true;
   F weight = emitted.weight;
   if (light && !s.previous_delta().v) {
-    const F pdf = area_light_pdf(scene, s.hit, U(shape.emitter), s.previous_point(), {true});
+    const U triangle = s.wave.rays().primitive[s.first];
+    const F pdf = area_light_pdf(scene, s.hit, U(shape.emitter), triangle, s.previous_point(), {true});
     weight = weight * power_heuristic(s.previous_pdf(), pdf);
   }
   s.vertex.set({true}, KB_VERTEX_EMIT);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "shared/kernel_arguments.h"
+#include "shared/light_tree.h"
 #include "shared/pipeline.h"
 #include "shared/records.h"
 #include "shared/spectra_layout.h"

@@ -40,6 +40,7 @@ inline KbSceneConstants scene_constants(const FlatScene& scene) {
   std::ranges::copy(scene.camera_media, c.camera_media);
   c.gas = scene.features.gas ? 1 : 0;
   c.instances = scene.features.instances ? 1 : 0;
+  c.light_tree = scene.features.light_tree ? 1 : 0;
   if (scene.camera.filter == KB_FILTER_GAUSSIAN)
     c.filter_ratio = scene.camera.filter_radius / scene.camera.filter_stddev;
   return c;
@@ -70,6 +71,9 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .area_cdf = up("area distribution", scene.area_cdf),
           .emitters = up("emitters", scene.emitters),
           .emitter_cdf = up("emitter distribution", scene.emitter_cdf),
+          .light_nodes = up("light tree", scene.light_nodes),
+          .tree_lights = up("lights of the tree", scene.tree_lights),
+          .first_tree_light = up("lights of emitters", scene.first_tree_light),
           .envmap_marginal = up("environment rows", scene.envmap.marginal_cdf),
           .envmap_rows = up("environment distribution", scene.envmap.row_cdf),
           .media = up("media", scene.media),

@@ -49,6 +49,7 @@ std::string concerned_case(const faults::PlantedFault& fault) {
                                                               {"mitchell", "stress/glade"},
                                                               {"meter", "analytic/meter"},
                                                               {"stored_otherwise", "analytic/merged"},
+                                                              {"many_lights", "analytic/many_lights"},
                                                               {"bumps", "stress/glade"},
                                                               {"instances", "stress/glade"},
                                                               {"suns", "stress/glade"},

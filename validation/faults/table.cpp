@@ -90,6 +90,8 @@ constexpr PlantedFault kFaults[] = {
     {KB_PLANTED_MIS_SELECTION, "mis-selection", kBoth,
      "MIS weights of BSDF samples forget that lights are chosen: they do not sum to 1", "two area lights", "glowing_shapes",
      kMeans},
+    {KB_PLANTED_TREE_AT_HITS, "tree-at-hits", kBoth,
+     "lights are chosen by the light tree, but MIS weights of BSDF samples count with their power", "16 lights", "many_lights", kMeans},
     {KB_PLANTED_SUN_MISSED, "sun-missed", kBoth, "rays that escape do not meet suns, but MIS of light samples counts on it",
      "directional light with an angular_radius", "suns", kMeans},
     {KB_PLANTED_PICTURE_MIRRORED, "picture-mirrored", kBoth, "pictures of spots and projectors are mirrored from left to right",

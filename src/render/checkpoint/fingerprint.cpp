@@ -89,6 +89,8 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   hash.add_all(scene.triangles);
   hash.add_all(scene.emitters);
   hash.add_all(scene.emitter_cdf);
+  hash.add_all(scene.light_nodes);
+  hash.add_all(scene.tree_lights);
   add_gas(hash, scene);
   hash.add_value(scene.origin);
   hash.add_value(scene.camera);

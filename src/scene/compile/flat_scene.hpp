@@ -9,6 +9,7 @@
 
 #include "scene/compile/scene_features.hpp"
 #include "scene/description/description.hpp"
+#include "shared/light_tree.h"
 #include "shared/pipeline.h"
 #include "shared/records.h"
 #include "shared/thermal.h"
@@ -108,7 +109,12 @@ struct FlatScene {
 
   std::vector<KbEmitter> emitters;
   std::vector<std::string> emitter_names;  // an area light's is its shape's; empty: without id
-  std::vector<float> emitter_cdf;          // emitters + 1 entries, 0 to 1, see lattice_cdf.hpp
+  /// What selects an emitter: emitters + 1 entries, 0 to 1, see lattice_cdf.hpp. With a light tree its share comes first, that
+  /// of all its emitters, which have none of their own: emitters + 2 entries.
+  std::vector<float> emitter_cdf;
+  std::vector<KbLightNode> light_nodes;    // the light tree; empty: lights are chosen by power alone
+  std::vector<KbTreeLight> tree_lights;    // in the order of the emitters and of the triangles of meshes
+  std::vector<uint32_t> first_tree_light;  // by emitter; empty without a tree
   uint32_t environment = KB_NONE;          // emitter index of the constant or envmap emitter
   uint32_t first_sun = KB_NONE;            // the emitters from here on are KB_EMITTER_SUN; KB_NONE: none is
   EnvmapSampling envmap;

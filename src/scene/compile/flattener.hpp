@@ -190,6 +190,11 @@ class Flattener {
   // emitters.cpp
   KbEmitter make_emitter(const Emitter& emitter);
   void select_emitters();
+  void select_with_tree(std::vector<double> shares);
+  // tree_lights.cpp
+  std::size_t tree_light_count() const;
+  bool wants_light_tree() const;
+  double add_light_tree(std::vector<double>& shares);
   void set_channel_scales();
 
   // camera.cpp

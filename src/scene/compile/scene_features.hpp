@@ -34,6 +34,7 @@ namespace kiloband {
   X(DELTA_LIGHT, delta_light, "delta light")                                                          \
   X(SUN, sun, "sun")                                       /* directional with an angular radius */   \
   X(PROJECTED_LIGHT, projected_light, "projected picture") /* of spots and projectors */              \
+  X(LIGHT_TREE, light_tree, "light tree")                  /* many lights */                          \
   X(ANALYTIC_SHAPES, analytic_shapes, "analytic shapes")                                              \
   X(INSTANCES, instances, "instances")                                                                \
   X(THERMAL, thermal, "thermal emission")                      /* surfaces emit by Kirchhoff's law */ \

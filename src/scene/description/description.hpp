@@ -360,10 +360,18 @@ struct Sensor {
   uint64_t sample_count = 4;
 };
 
+/// How next-event estimation chooses lights.
+enum class LightSelection {
+  kAutomatic,  // by the light tree where it pays: from 16 lights on, triangles counted
+  kPower,      // by their power
+  kTree        // by the light tree (shared/light_tree.h), if there are two lights for it
+};
+
 struct Integrator {
   int max_depth = -1;  // -1: unlimited; 1: emission only
   int rr_depth = 5;
   bool hide_emitters = false;
+  LightSelection light_selection = LightSelection::kAutomatic;
 };
 
 /// What the scene's integrators add to the image.

@@ -99,6 +99,28 @@ Light rectangle(const std::string& name, double a, double b, double tilt, const 
       polygon_irradiance(corners)};
 }
 
+/// The large rectangle below in 9 x 9 parts, which the light tree chooses among: near ones and far ones.
+Light tiles() {
+  Light whole = rectangle("large near rectangle of tiles", 0.9, 0.9, 0, {0.4, 0.4, 0.1});
+  whole.shape.clear();
+  for (int i = 0; i < 81; ++i)
+    whole.shape += rectangle("", 0.1, 0.1, 0, {-0.4 + 0.2 * (i % 9), 0.4, -0.7 + 0.2 * (i / 9)}).shape;
+  return whole;
+}
+
+/// Spheres in 44 directions, from 0.5 to 1.7 m away; none before another or before the camera.
+Light swarm() {
+  Light all{"swarm", "", 0};
+  for (int i = 0; i < 44; ++i) {
+    const double up = 0.15 + 0.018 * i, away = 0.5 + 0.15 * (i % 9), across = std::sqrt(1 - up * up);
+    const Light one =
+        sphere("", {away * across * std::cos(2.4 * i), away * up, away * across * std::sin(2.4 * i)}, 0.03);
+    all.shape += one.shape;
+    all.irradiance += one.irradiance;
+  }
+  return all;
+}
+
 std::vector<Light> lights() {
   return {sphere("sphere overhead", {0, 2, 0}, 0.5),
           sphere("sphere aside", {1.5, 1.2, -0.8}, 0.7),
@@ -110,7 +132,9 @@ std::vector<Light> lights() {
           rectangle("rectangle overhead", 0.5, 0.3, 0, {0, 1, 0}),
           rectangle("rectangle aside", 0.5, 0.3, 0, {1.2, 0.8, -0.7}),
           rectangle("tilted rectangle", 0.4, 0.6, -35, {-1, 1.1, 0.4}),
-          rectangle("large near rectangle", 3, 2, 0, {0.4, 0.4, 0.1})};
+          rectangle("large near rectangle", 3, 2, 0, {0.4, 0.4, 0.1}),
+          tiles(),
+          swarm()};
 }
 
 /// The camera's ray ends at the origin from a direction in which no light of lights() stands.

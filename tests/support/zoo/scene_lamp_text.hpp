@@ -38,6 +38,27 @@ inline Text projected_lights() {
                        bitmap("value", "grey.pgm", "repeat", "nearest", scale("2")) + "</spectrum>");
 }
 
+/// Enough of them for a light tree: balls and disks, high and low, a spot that looks up, a hot pane.
+inline Text small_lamps() {
+  Text lamps = rectangle(scale("0.08") + turn("y", "60") + translate("-0.8 0.1 0.5"),
+                         diffuse("0.2") + thermal("2600")) +
+               emitter("spot", real("cutoff_angle", "110") + spectrum("intensity", "450:0.1, 650:0.3") +
+                                   to_world(lookat("0.7, -0.8, 0.6", "0.2, 0.6, -0.2")));
+  for (int i = 0; i < 28; ++i) {
+    const Text place = std::to_string(-0.75 + 0.25 * (i % 7)) + " " +
+                       std::to_string(0.85 - 0.3 * (i / 7) - 0.02 * (i % 3)) + " " +
+                       std::to_string(0.6 - 0.17 * (i % 5));
+    const Text light = diffuse("0.1") + lamp(i % 3 == 0   ? "450:9, 650:3"
+                                             : i % 3 == 1 ? "450:2, 650:25"
+                                                          : "6");
+    lamps +=
+        i % 2 == 0
+            ? ball(place, "0.02", light)
+            : shape("disk", scale("0.03") + turn("x", std::to_string(40 + 30 * i)) + translate(place), light);
+  }
+  return lamps;
+}
+
 /// One of a moderate radius, two narrow ones of which one lies within it, seen by all kinds of surfaces.
 inline Text suns() {
   const auto sun = [](const Text& direction, const Text& degrees, const Text& irradiance) {

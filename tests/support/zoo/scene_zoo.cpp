@@ -335,6 +335,10 @@ std::vector<ZooScene> make_scenes() {
        kCurved},
       {"stored_otherwise",
        scene(6, perspective(small_film("tent")) + lit_room + stored_otherwise() + sky("0.3")), kCurved},
+      {"many_lights",
+       scene(5, perspective(small_film("gaussian")) + room() + boxes() + small_lamps() + glowing_shapes() +
+                    delta_lights() + sky("0.1")),
+       kCurved},
       {"meter", scene(8, meter() + lit_room + glasses() + sky("0.5")), kCurved},
       {"named_materials", scene(8, perspective(small_film("gaussian")) + lit_room + named_materials()),
        kCurved},

@@ -253,9 +253,24 @@ void Flattener::select_emitters() {
   for (double& vote : votes) {
     vote = sum > 0 ? (1 - kUniformSelection) * vote / sum + kUniformSelection * uniform : uniform;
   }
+  if (wants_light_tree()) {
+    select_with_tree(votes);
+    return;
+  }
   out_.emitter_cdf = lattice_cdf(votes);
   for (std::size_t i = 0; i < count; ++i) {
     out_.emitters[i].select_pdf = out_.emitter_cdf[i + 1] - out_.emitter_cdf[i];  // exact
+  }
+}
+
+/// shares: of the emitters, their sum 1.
+void Flattener::select_with_tree(std::vector<double> shares) {
+  for (std::size_t i = 0; i < shares.size(); ++i) out_.emitters[i].select_pdf = static_cast<float>(shares[i]);
+  const double tree = add_light_tree(shares);
+  shares.insert(shares.begin(), tree);
+  out_.emitter_cdf = lattice_cdf(shares);
+  for (std::size_t i = 0; i + 1 < shares.size(); ++i) {
+    if (shares[i + 1] > 0) out_.emitters[i].select_pdf = out_.emitter_cdf[i + 2] - out_.emitter_cdf[i + 1];
   }
 }
 

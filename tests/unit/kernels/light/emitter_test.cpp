@@ -60,7 +60,7 @@ std::vector<ItemIn> points_around(glm::dvec3 centre, double distance, std::size_
 /// 1 / (distance from the light's plane) and the distance cubed.
 double conditioning(const FlatScene& scene, const ItemIn& item) {
   const AreaLightSample sample =
-      sample_area_light(scene, scene.shapes[0], get3(item, 0), item.f[4], get2(item, 5), false);
+      sample_area_light(scene, scene.shapes[0], {item.f[4], KB_NONE, 0}, get3(item, 0), get2(item, 5), false);
   const glm::dvec3 way = glm::dvec3(sample.position) - glm::dvec3(get3(item, 0));
   return 5e-7 / std::fabs(glm::dot(way, glm::dvec3(sample.normal))) + 2e-6 / glm::length(way);
 }

@@ -78,6 +78,7 @@ TEST(EmitterSelection, DimEmittersAmongManyAreSelected) {
   SceneDescription scene;
   scene.emitters.assign(1'000'000, point_light(1e-20));
   scene.emitters[7] = point_light(1);
+  scene.integrator.light_selection = LightSelection::kPower;
   const FlatScene flat = *compile_scene(scene, {parse_channels("400:700:1"), {}, {}});
   double sum = 0;
   for (std::size_t i = 0; i < flat.emitters.size(); ++i) {
@@ -109,11 +110,11 @@ TEST(MeshLight, DensityOverFactorIsTheRealOne) {
   ASSERT_EQ(scene.area_cdf[1], 1 - 0x1p-24f);
   const glm::vec3 below(5, 0, 0);
   const AreaLightSample small =
-      sample_area_light(scene, scene.shapes[0], below, 1 - 0x1p-24f, {0.5f, 0.5f}, false);
+      sample_area_light(scene, scene.shapes[0], {1 - 0x1p-24f, KB_NONE, 0}, below, {0.5f, 0.5f}, false);
   EXPECT_NEAR(small.pdf / small.factor * small_area / 0x1p-24 / 4, 1, 1e-6);  // distance 2, cosine 1
   EXPECT_NEAR(small.pdf * scene.shapes[0].area / 4, 1, 1e-6);
   const AreaLightSample large =
-      sample_area_light(scene, scene.shapes[0], {0, 0, 0}, 0.5f, {0.5f, 0.5f}, false);
+      sample_area_light(scene, scene.shapes[0], {0.5f, KB_NONE, 0}, {0, 0, 0}, {0.5f, 0.5f}, false);
   const double distance2 = glm::dot(large.position, large.position);
   const double cosine = 2 / std::sqrt(distance2);
   EXPECT_NEAR(large.pdf / large.factor * cosine / distance2 / (1 - 0x1p-24), 1, 1e-6);
