@@ -136,11 +136,11 @@ KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) c
 
 /// The round's pixels, with the number of their block within the round.
 void GroupRenderer::fill_pixels(std::span<const ImagePixel> pixels, KbRound& round) {
-  round_pixels_.assign(round.padded_pixels, KbRoundPixel{0, 0, 0});
+  round_pixels_.assign(round.padded_pixels, KbRoundPixel{});
   uint32_t block = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (i > 0 && !same_block(pixels[i - 1], pixels[i])) ++block;
-    round_pixels_[i] = {pixels[i].x, pixels[i].y, block};
+    round_pixels_[i] = {pixels[i].x, pixels[i].y, block, 0};
   }
   round.blocks = block + 1;
 }

@@ -8,7 +8,7 @@
 #include "evaluate/path_spectra.clh"
 
 __kernel void resample_rows(KB_EVALUATION_PARAMS) {
-  __global const KbSpectraLayout* layout = spectra_layout;
+  __constant KbSpectraLayout* layout = spectra_layout;
   const kb_u32 vectors = layout->stride / KB_WIDTH;
   const size_t i = get_global_id(0);
   if (i >= (size_t)pool_round->blocks * pool_round->samples * layout->rows * vectors) return;

@@ -32,7 +32,7 @@ __kernel void film_close(KB_FILM_PARAMS) {
 }
 
 /* Where value i of packed[pixel][K + D] stands in the film. */
-static inline size_t place_of_packed(__global const KbSpectraLayout* layout, const Film* film, size_t i) {
+static inline size_t place_of_packed(__constant KbSpectraLayout* layout, const Film* film, size_t i) {
   const kb_u32 values = layout->channels + layout->derived, value = (kb_u32)(i % values);
   const kb_u32 column = value < layout->channels ? value : layout->stride + (value - layout->channels);
   return film_place(film, film->first + i / values, column);

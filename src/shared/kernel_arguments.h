@@ -4,7 +4,8 @@
 // To add a buffer: a line here, and where the host fills the group (src_gpu/scene/device_scene.cpp for the scene), which
 // does not compile without it. Nothing is counted or numbered by hand.
 //
-//   X(group, kind, type, name)   IN: a buffer of `type` that kernels only read, OUT: one that some write, VALUE: a scalar
+//   X(group, kind, type, name)   IN: a buffer of `type` that kernels only read, OUT: one that some write, VALUE: a scalar;
+//                                SAME: read at the same address by all work-items, in constant memory
 //   SEP                          what stands between two arguments; KB_COMMA in lists of parameters, else empty
 //
 // Kernels know an argument as group_name (scene_materials); a kernel's groups are named in the lists at the end.
@@ -17,7 +18,7 @@
 
 /* The compiled scene (FlatScene). */
 #define KB_SCENE_ARGUMENTS(X, SEP)                                                                               \
-  X(scene, IN, KbSceneConstants, constants) SEP                                                                  \
+  X(scene, SAME, KbSceneConstants, constants) SEP                                                                \
   X(scene, IN, KbMaterial, materials) SEP                                                                        \
   X(scene, IN, KbBump, bumps) SEP             /* by material */                                                  \
   X(scene, IN, KbRoughness, roughness) SEP    /* by material */                                                  \
@@ -49,11 +50,12 @@
   X(scene, IN, float, filter_cells) SEP       /* tabulated filter: film/signed_filter.hpp */ \
   X(scene, IN, KbFloat2, filter_table) SEP    /* gaussian filter: nodes (value, slope per piece), 1025 of them */ \
   X(scene, IN, float, channel_bins) SEP       /* [spectrum][KB_CHANNEL_BINS]; only with dispersion */            \
+  X(scene, IN, kb_u32, sobol) SEP             /* kb_sobol_table */                                               \
   X(scene, IN, KbThermal, thermals)           /* tables and field_offset: into tables */
 
 /* The scene's spectra, tabulated over mu (ChannelTables). */
 #define KB_SPECTRA_ARGUMENTS(X, SEP)                                                                             \
-  X(spectra, IN, KbSpectraLayout, layout) SEP                                                                    \
+  X(spectra, SAME, KbSpectraLayout, layout) SEP                                                                  \
   X(spectra, IN, float, nodes) SEP                                                                               \
   X(spectra, IN, KbChannelTable, tables) SEP  /* by row */                                                       \
   X(spectra, IN, kb_u32, material_rows) SEP   /* by material: its first row of optical constants, or KB_NONE */  \
@@ -67,7 +69,7 @@
 
 /* A round, the paths in flight and what they leave behind. */
 #define KB_POOL_ARGUMENTS(X, SEP)                                                                                \
-  X(pool, IN, KbRound, round) SEP                                                                                \
+  X(pool, SAME, KbRound, round) SEP                                                                              \
   X(pool, IN, KbRoundPixel, pixels) SEP                                                                          \
   X(pool, IN, float, shared_mu) SEP           /* [block][sample] of the round; not read with per-path wavelengths */ \
   X(pool, OUT, KbPathState, states) SEP       /* by slot, as what follows */                                     \
@@ -107,7 +109,7 @@
 
 /* Work on whole films: packed[pixel][K + D] are `pixels` pixels from film_first on. */
 #define KB_PACKING_ARGUMENTS(X, SEP)                                                                             \
-  X(packing, IN, KbSpectraLayout, layout) SEP                                                                    \
+  X(packing, SAME, KbSpectraLayout, layout) SEP                                                                  \
   X(packing, OUT, float, open) SEP            /* sums of a chunk of samples that goes on */                      \
   X(packing, OUT, float, values) SEP          /* the array that is packed or unpacked: sum, compensation or open */ \
   X(packing, OUT, float, packed) SEP                                                                             \

@@ -19,7 +19,6 @@ typedef ushort kb_u16;
 #define KB_REVERSAL_FN KB_FN
 #endif
 #define KB_GLOBAL __global
-#define KB_CONSTANT __constant
 #define KB_TABLE __constant /* an array of constants at file scope */
 #define KB_STATIC_ASSERT(condition, name) typedef char kb_assert_##name[(condition) ? 1 : -1]
 #define kb_sqrt(x) sqrt(x)
@@ -38,7 +37,7 @@ typedef ushort kb_u16;
 /* Four u32 in one register, for local variables only: + - * & | ^ << >> work by element, with a scalar too. */
 typedef uint4 kb_u32x4;
 #define kb_u32x4_of(a, b, c, d) ((uint4)(a, b, c, d))
-#define kb_u32x4_load(table, index) vload4(index, table)
+#define kb_u32x4_load(table, index) (((KB_GLOBAL const uint4*)(table))[index]) /* aligned to 16 bytes */
 #define kb_u32x4_x(v) ((v).x)
 #define kb_u32x4_y(v) ((v).y)
 #define kb_u32x4_z(v) ((v).z)
@@ -57,7 +56,6 @@ typedef uint16_t kb_u16;
 #define KB_FN static inline
 #define KB_REVERSAL_FN KB_FN
 #define KB_GLOBAL
-#define KB_CONSTANT
 #define KB_TABLE alignas(64) inline constexpr
 #define KB_STATIC_ASSERT(condition, name) static_assert(condition, #name)
 #define kb_sqrt(x) std::sqrt(x)
@@ -99,13 +97,16 @@ KB_FN kb_u32x4 kb_u32x4_load(const kb_u32* table, kb_u32 index) {
 
 #endif
 
+/* What devices read and write as whole vectors begins at a multiple of their size. */
+#define KB_ALIGNED(bytes) __attribute__((aligned(bytes)))
+
 #define KB_PI 3.14159265358979323846f
 #define KB_INV_PI 0.31830988618379067154f
 #define KB_ONE_MINUS_EPSILON 0.99999994f
 
 typedef struct {
   float x, y;
-} KbFloat2;
+} KB_ALIGNED(8) KbFloat2;
 
 typedef struct {
   float x, y, z;
@@ -113,7 +114,7 @@ typedef struct {
 
 typedef struct {
   float x, y, z, w;
-} KbFloat4;
+} KB_ALIGNED(16) KbFloat4;
 
 KB_STATIC_ASSERT(sizeof(KbFloat2) == 8, float2_size);
 KB_STATIC_ASSERT(sizeof(KbFloat3) == 12, float3_size);

@@ -34,7 +34,7 @@ typedef struct {
   float radius2; /* m^2 */
   kb_u32 right;  /* the right child; KB_NONE: a leaf */
   kb_u32 light;  /* a leaf's, else KB_NONE */
-} KbLightNode;
+} KB_ALIGNED(16) KbLightNode;
 KB_STATIC_ASSERT(sizeof(KbLightNode) == 48, light_node_size);
 
 typedef struct {
@@ -42,7 +42,7 @@ typedef struct {
   kb_u32 triangle; /* in the mesh; 0 of others */
   kb_u32 leaf;     /* node; KB_NONE: without area, never chosen */
   float area;      /* m^2, of shapes and triangles */
-} KbTreeLight;
+} KB_ALIGNED(16) KbTreeLight;
 KB_STATIC_ASSERT(sizeof(KbTreeLight) == 16, tree_light_size);
 
 #endif

@@ -96,7 +96,7 @@ typedef struct {
   float emit_weight;
   float nee0, nee1;
   float scatter0, scatter1;
-} KbPathVertex;
+} KB_ALIGNED(16) KbPathVertex;
 KB_STATIC_ASSERT(sizeof(KbPathVertex) == 32, path_vertex_size);
 
 /* A bilinear lookup: texels (x0, y0) (x1, y0) (x0, y1) (x1, y1) after wrapping, weights from fx and fy in [0,1].
@@ -105,13 +105,13 @@ typedef struct {
   kb_u32 texture;
   kb_u32 xy; /* x0 | y0 << 16 */
   float fx, fy;
-} KbTextureSample;
+} KB_ALIGNED(16) KbTextureSample;
 KB_STATIC_ASSERT(sizeof(KbTextureSample) == 16, texture_sample_size);
 
 typedef struct {
   float column;        /* m */
   float temperature_k; /* at the far end */
-} KbPlumeCell;
+} KB_ALIGNED(8) KbPlumeCell;
 KB_STATIC_ASSERT(sizeof(KbPlumeCell) == 8, plume_cell_size);
 
 /* 32-byte entries that follow the vertex. */

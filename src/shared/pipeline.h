@@ -46,7 +46,7 @@ typedef struct {
   kb_u32 first_sun;                     /* the emitters from here on are suns; emitter_count: none is */
   kb_u32 light_tree;                    /* 1: the scene has one (light_tree.h) */
   kb_u32 reserved[3];
-} KbSceneConstants;
+} KB_ALIGNED(16) KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 208, scene_constants_size);
 
 /* ---- ray tracing -------------------------------------------------------------------------------------- */
@@ -58,7 +58,7 @@ typedef struct {
   kb_u32 shape;     /* in groups: number within the group; instance: its first shape */
   kb_u32 primitive; /* triangle within the shape; 0 for analytic shapes; instance: root of the group's tree */
   kb_u32 analytic;  /* KbShapeType of the shape: 0 is a mesh's triangle; or KB_PRIMITIVE_INSTANCE */
-} KbPrimitive;
+} KB_ALIGNED(16) KbPrimitive;
 KB_STATIC_ASSERT(sizeof(KbPrimitive) == 48, primitive_size);
 
 /* An inner node: the boxes of its children, grown by one unit in the last place, plane by plane for SIMD.
@@ -70,13 +70,14 @@ KB_STATIC_ASSERT(sizeof(KbPrimitive) == 48, primitive_size);
 typedef struct {
   float plane[6][KB_BVH_WIDTH]; /* low x, y, z, high x, y, z */
   kb_u32 child[KB_BVH_WIDTH];   /* an inner node's index, or KB_BVH_LEAF_OF(first primitive, count) */
-} KbBvhNode;
+  kb_u32 reserved[4];           /* so that a node lies in one line of 128 bytes */
+} KB_ALIGNED(16) KbBvhNode;
 #define KB_BVH_IS_LEAF 0x80000000u
 #define KB_BVH_NO_CHILD 0xffffffffu /* reads as a leaf, but has no primitives */
 #define KB_BVH_LEAF_OF(first, count) (KB_BVH_IS_LEAF | ((count)-1u) << 28 | (first))
 #define KB_BVH_LEAF_FIRST(leaf) ((leaf)&0x0fffffffu)
 #define KB_BVH_LEAF_COUNT(leaf) ((leaf) == KB_BVH_NO_CHILD ? 0u : (((leaf) >> 28) & 7u) + 1u)
-KB_STATIC_ASSERT(sizeof(KbBvhNode) == 28 * KB_BVH_WIDTH, bvh_node_size);
+KB_STATIC_ASSERT(sizeof(KbBvhNode) == 128, bvh_node_size);
 
 /* A closest-hit query; hits lie in (t_min, t_max). `previous` is what multiple importance sampling needs of
    the vertex the ray comes from. */
@@ -87,14 +88,14 @@ typedef struct {
   float t_max;
   float previous_point[3];
   float previous_pdf; /* solid angle, of the BSDF sample */
-} KbRay;
+} KB_ALIGNED(16) KbRay;
 KB_STATIC_ASSERT(sizeof(KbRay) == 48, ray_size);
 
 typedef struct {
   float t;
   float u, v;       /* barycentric coordinates of a mesh hit: of the second and third corner */
   kb_u32 primitive; /* index of a KbPrimitive, or KB_NONE: a miss */
-} KbHit;
+} KB_ALIGNED(16) KbHit;
 KB_STATIC_ASSERT(sizeof(KbHit) == 16, hit_size);
 
 /* An occlusion query over (0, t_max); t_max < 0: there is none. */
@@ -103,7 +104,7 @@ typedef struct {
   float t_max;
   float direction[3];
   kb_u32 vertex; /* arena entry whose KB_VERTEX_NEE goes if something is in between */
-} KbShadowRay;
+} KB_ALIGNED(16) KbShadowRay;
 KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 
 /* ---- path state --------------------------------------------------------------------------------------- */
@@ -122,7 +123,7 @@ KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 typedef struct {
   float carried[KB_CHANNEL_BINS];
   float heroes[KB_MAX_HEROES];
-} KbDispersionState;
+} KB_ALIGNED(16) KbDispersionState;
 KB_STATIC_ASSERT(sizeof(KbDispersionState) == 96, dispersion_state_size);
 
 typedef struct {
@@ -134,7 +135,7 @@ typedef struct {
   kb_u32 chunk;    /* of the arena, being filled */
   kb_u32 length;   /* arena entries of this path so far */
   kb_u32 lit;      /* arena entries up to and with the last vertex that has light */
-} KbPathState;
+} KB_ALIGNED(16) KbPathState;
 KB_STATIC_ASSERT(sizeof(KbPathState) == 32, path_state_size);
 
 /* In scenes with gas: where a path is. */
@@ -155,15 +156,16 @@ KB_STATIC_ASSERT(sizeof(KbGasState) == 36, gas_state_size);
 typedef struct {
   kb_u32 x, y;  /* in the full film */
   kb_u32 block; /* within the round: pixels of a block share mu */
-} KbRoundPixel;
-KB_STATIC_ASSERT(sizeof(KbRoundPixel) == 12, round_pixel_size);
+  kb_u32 reserved;
+} KB_ALIGNED(16) KbRoundPixel;
+KB_STATIC_ASSERT(sizeof(KbRoundPixel) == 16, round_pixel_size);
 
 /* A saved path: arena entries from `chunk` on; count 0: nothing that contributes. */
 #define KB_SAVED_INVALID 0xffffffffu
 typedef struct {
   kb_u32 chunk;
   kb_u32 count; /* entries, or KB_SAVED_INVALID */
-} KbSavedPath;
+} KB_ALIGNED(8) KbSavedPath;
 KB_STATIC_ASSERT(sizeof(KbSavedPath) == 8, saved_path_size);
 
 #define KB_WAVELENGTHS_SHARED 0u
@@ -199,7 +201,7 @@ KB_STATIC_ASSERT(sizeof(KbAuxiliary) == 24, auxiliary_size);
 /* What a slot has done in a round. */
 typedef struct {
   kb_u32 rays, vertices;
-} KbTally;
+} KB_ALIGNED(8) KbTally;
 KB_STATIC_ASSERT(sizeof(KbTally) == 8, tally_size);
 
 /* ---- faults: kernels write, the host reads ------------------------------------------------------------ */
@@ -217,7 +219,7 @@ typedef struct {
   kb_u32 invalid; /* paths that leave the mean */
   kb_u32 reserved[3];
   kb_u32 invalid_jobs[KB_LISTED_INVALID]; /* the first of them, in no order */
-} KbFaults;
+} KB_ALIGNED(16) KbFaults;
 KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
 
 /* ---- spectra ------------------------------------------------------------------------------------------
@@ -227,7 +229,7 @@ KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
 typedef struct {
   kb_u32 first;
   kb_u32 cells; /* at least 1; 0: a gas's row, kernels/evaluate/spectral_row.clh has its layout */
-} KbChannelTable;
+} KB_ALIGNED(8) KbChannelTable;
 KB_STATIC_ASSERT(sizeof(KbChannelTable) == 8, channel_table_size);
 
 #endif

@@ -58,7 +58,7 @@ typedef struct {
   float bound_a;         /* upper bound of ref_a over guide and rendered channels */
   float bound_b;         /* the same of ref_b; principled: 1, of what is white */
   kb_u32 table;          /* where its tables begin in those of the scene (material_tables.h), or KB_NONE */
-} KbMaterial;
+} KB_ALIGNED(16) KbMaterial;
 KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 
 #define KB_BUMP_FLIP \
@@ -70,13 +70,13 @@ KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 typedef struct {
   kb_u32 texture; /* KB_TEXTURE_NORMALS, or heights in m; KB_NONE: nothing */
   kb_u32 flags;   /* KB_BUMP_* */
-} KbBump;
+} KB_ALIGNED(8) KbBump;
 KB_STATIC_ASSERT(sizeof(KbBump) == 8, bump_size);
 
 /* Roughness that varies over the surface of a material: bitmap references, or KB_NONE for its own. */
 typedef struct {
   kb_u32 alpha_u_ref, alpha_v_ref;
-} KbRoughness;
+} KB_ALIGNED(8) KbRoughness;
 KB_STATIC_ASSERT(sizeof(KbRoughness) == 8, roughness_size);
 
 #define KB_SURFACE_TRANSMISSIVE 1u /* one material, both sides, not flipped */
@@ -98,7 +98,7 @@ typedef struct {
   kb_u32 weight_ref;                  /* of the second: bitmap reference, or KB_NONE for the constant */
   float weight;
   kb_u32 reserved;
-} KbSurface;
+} KB_ALIGNED(16) KbSurface;
 KB_STATIC_ASSERT(sizeof(KbSurface) == 48, surface_size);
 
 /* ---- textures --------------------------------------------------------------------------------------------------
@@ -135,13 +135,13 @@ typedef struct {
   kb_u32 values;         /* spectral texels: floats of one */
   kb_u32 first_row;      /* KB_TEXTURE_BANDS: the band set; KB_TEXTURE_WEIGHTS: row of the first spectrum */
   kb_u32 first_value;    /* spectral texels: where they begin on a device, in units of KB_VALUE_UNIT floats */
-} KbTexture;
+} KB_ALIGNED(16) KbTexture;
 KB_STATIC_ASSERT(sizeof(KbTexture) == 64, texture_size);
 
 typedef struct {
   kb_u32 ref0, ref1; /* named spectra */
   float to_uv[6];
-} KbCheckerboard;
+} KB_ALIGNED(16) KbCheckerboard;
 KB_STATIC_ASSERT(sizeof(KbCheckerboard) == 32, checkerboard_size);
 
 /* ---- shapes ----------------------------------------------------------------------------------------------------- */
@@ -173,7 +173,7 @@ typedef struct {
   float area;         /* m^2 */
   float to_world[12]; /* row-major 3x4 */
   float to_object[12];
-} KbShape;
+} KB_ALIGNED(16) KbShape;
 KB_STATIC_ASSERT(sizeof(KbShape) == 128, shape_size);
 
 /* ---- emitters --------------------------------------------------------------------------------------------------- */
@@ -204,7 +204,7 @@ typedef struct {
   float to_world[12]; /* point, spot: position in the last column; directional, sun: local +Z = propagation */
   /* spot with a picture, projector: x and y scaled so that the picture's borders are at x, y = +-z */
   float to_object[12];
-} KbEmitter;
+} KB_ALIGNED(16) KbEmitter;
 KB_STATIC_ASSERT(sizeof(KbEmitter) == 128, emitter_size);
 
 /* ---- media ------------------------------------------------------------------------------------------------------
@@ -232,7 +232,7 @@ typedef struct {
   float second[KB_PLUME_LADDER]; /* plume: hc / (k lambda reference_k) at the wavelengths that cells follow */
   kb_u32 reserved[2];
   float to_local[12]; /* world to the jet's coordinates, or to node numbers */
-} KbMedium;
+} KB_ALIGNED(16) KbMedium;
 KB_STATIC_ASSERT(sizeof(KbMedium) == 128, medium_size);
 
 /* ---- camera ----------------------------------------------------------------------------------------------------- */

@@ -54,6 +54,7 @@ typedef struct {
   kb_u32 pixel, sample;
   kb_u32 reversed_index; /* sobol: bit-reversed index_in_replicate */
   kb_u32 key0, key1;     /* sobol: of (seed, replicate, pixel) */
+  KB_GLOBAL const kb_u32* table; /* kb_sobol_table */
 } KbSamplerKey;
 
 /* The root of the keys of one use of one seed. */
@@ -64,9 +65,10 @@ KB_FN kb_u64 kb_domain_key(kb_u64 seed, kb_u64 domain) {
 /* pixel               y * width + x of the FULL film, whatever is cropped or tiled
    sample              index among all samples of the pixel
    replicate           and index_in_replicate: where the sample was dealt to; not read by the independent
-                       sampler */
+                       sampler
+   table               kb_sobol_table */
 KB_FN KbSamplerKey kb_sampler_key(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 replicate,
-                                  kb_u32 index_in_replicate) {
+                                  kb_u32 index_in_replicate, KB_GLOBAL const kb_u32* table) {
   const kb_u64 key = kb_hash_pair(kb_domain_key(seed, KB_DOMAIN_SOBOL), replicate, pixel);
   KbSamplerKey k;
   k.seed = seed;
@@ -76,6 +78,7 @@ KB_FN KbSamplerKey kb_sampler_key(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_
   k.reversed_index = kb_reverse_bits(index_in_replicate);
   k.key0 = kb_low32(key);
   k.key1 = kb_high32(key);
+  k.table = table;
   return k;
 }
 
@@ -83,7 +86,7 @@ KB_FN KbSamplerKey kb_sampler_key(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_
 KB_FN KbFloat4 kb_sampler_block(KbSamplerKey key, kb_u32 block) {
   if (key.sampler == KB_SAMPLER_INDEPENDENT)
     return kb_philox_floats(key.seed, key.pixel, key.sample, block, KB_STREAM_BLOCKS);
-  return kb_unit_float4(kb_sobol_block(key.reversed_index, key.key0, key.key1, block));
+  return kb_unit_float4(kb_sobol_block(key.table, key.reversed_index, key.key0, key.key1, block));
 }
 
 /* Wavelength offset of one path (per-path wavelengths). sobol: a scrambled van der Corput point, so that the

@@ -7,13 +7,13 @@
 //
 // Everything is done on bit-reversed numbers, where the hash is plain arithmetic. The table (sobol_table.h)
 // maps a reversed index to the reversed Sobol point, so an index is reversed once
-// and the four results once, together.
+// and the four results once, together. It is handed in: devices have it in global memory, since constant memory is read one
+// address at a time.
 #ifndef KILOBAND_SHARED_SOBOL_H
 #define KILOBAND_SHARED_SOBOL_H
 
 #include "shared/hash.h"
 #include "shared/lang.h"
-#include "shared/sobol_table.h"
 
 /* Nested uniform scrambling of bit-reversed x. A bit of the result depends on that bit and lower ones of x: a
    bijection that maps elementary intervals to elementary intervals. */
@@ -34,23 +34,23 @@ KB_FN kb_u32x4 kb_owen_reversed4(kb_u32x4 x, kb_u32x4 seed) {
   return x ^ (x * 0x53a22864u);
 }
 
-/* The first four Sobol dimensions, bit-reversed, of the point whose bit-reversed index is given. */
-KB_FN kb_u32x4 kb_sobol_reversed(kb_u32 reversed_index) {
+/* The first four Sobol dimensions, bit-reversed, of the point whose bit-reversed index is given. table: kb_sobol_table */
+KB_FN kb_u32x4 kb_sobol_reversed(KB_GLOBAL const kb_u32* table, kb_u32 reversed_index) {
   const kb_u32 y = reversed_index;
-  return kb_u32x4_load(kb_sobol_table, y & 0xffu) ^ kb_u32x4_load(kb_sobol_table, 256u + ((y >> 8) & 0xffu)) ^
-         kb_u32x4_load(kb_sobol_table, 512u + ((y >> 16) & 0xffu)) ^
-         kb_u32x4_load(kb_sobol_table, 768u + (y >> 24));
+  return kb_u32x4_load(table, y & 0xffu) ^ kb_u32x4_load(table, 256u + ((y >> 8) & 0xffu)) ^
+         kb_u32x4_load(table, 512u + ((y >> 16) & 0xffu)) ^ kb_u32x4_load(table, 768u + (y >> 24));
 }
 
 /* Point `index` of block `block`: 4 u32 that are 2^32 times the coordinates.
    reversed_index  kb_reverse_bits(index), the same for all blocks of a path
    key0, key1      two words that name the point set (seed, replicate, pixel) */
-KB_FN kb_u32x4 kb_sobol_block(kb_u32 reversed_index, kb_u32 key0, kb_u32 key1, kb_u32 block) {
+KB_FN kb_u32x4 kb_sobol_block(KB_GLOBAL const kb_u32* table, kb_u32 reversed_index, kb_u32 key0, kb_u32 key1,
+                              kb_u32 block) {
   /* Five seeds: the shuffle's and the four dimensions'. x of kb_mix32 differs for every (block, seed). */
   const kb_u32 base = key0 + 5u * block * KB_GOLDEN_32;
   const kb_u32x4 step = kb_u32x4_of(KB_GOLDEN_32, 2u * KB_GOLDEN_32, 3u * KB_GOLDEN_32, 4u * KB_GOLDEN_32);
   const kb_u32 shuffled = kb_owen_reversed(reversed_index, kb_mix32(base, key1));
-  return kb_reverse_bits4(kb_owen_reversed4(kb_sobol_reversed(shuffled), kb_mix32x4(step + base, key1)));
+  return kb_reverse_bits4(kb_owen_reversed4(kb_sobol_reversed(table, shuffled), kb_mix32x4(step + base, key1)));
 }
 
 /* Point `index` of the van der Corput sequence, Owen-scrambled; not shuffled: any 2^m points from a multiple

@@ -10,6 +10,7 @@
 #endif
 
 #include "shared/sampler.h"
+#include "shared/sobol_table.h"
 #include "src_cpu/lanes/lane_math-inl.hpp"
 #include "src_cpu/lanes/vector3-inl.hpp"
 
@@ -66,7 +67,7 @@ struct SobolPoint {
 };
 #ifdef KB_ONE_LANE
 KB_INLINE SobolPoint sobol_reversed(U reversed_index) {
-  const kb_u32x4 point = kb_sobol_reversed(reversed_index.v);
+  const kb_u32x4 point = kb_sobol_reversed(kb_sobol_table, reversed_index.v);
   return {{point[0], point[1], point[2], point[3]}};
 }
 #else

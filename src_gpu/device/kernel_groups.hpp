@@ -27,6 +27,7 @@ class BufferRef {
 };
 
 #define KB_HOST_FIELD_IN(type, name) Buffer<type> name;
+#define KB_HOST_FIELD_SAME(type, name) Buffer<type> name;
 #define KB_HOST_FIELD_OUT(type, name) Buffer<type> name;
 #define KB_HOST_FIELD_VALUE(type, name) type name;
 #define KB_HOST_FIELD(group, kind, type, name) KB_HOST_FIELD_##kind(type, name)

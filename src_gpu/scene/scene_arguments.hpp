@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "film/filter_table.hpp"
 #include "scene/compile/flat_scene.hpp"
 #include "shared/pipeline.h"
+#include "shared/sobol_table.h"
 #include "src_gpu/device/kernel_groups.hpp"
 
 namespace kiloband::opencl {
@@ -82,6 +84,7 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .filter_cells = up("filter cells", scene.filter_cells),
           .filter_table = up("filter table", filter_nodes(scene.camera)),
           .channel_bins = up("reflectances by channel bins", scene.channel_bins),
+          .sobol = up("Sobol points", std::vector<uint32_t>(std::begin(kb_sobol_table), std::end(kb_sobol_table))),
           .thermals = up("thermal emission", scene.thermals)};
 }
 

@@ -9,9 +9,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 #include <vector>
 
+#include "shared/sobol_table.h"
 #include "tests/support/opencl_probe.hpp"
 #include "tests/unit/shared/opencl_probe.h"
 
@@ -22,8 +24,8 @@ constexpr kb_u32 kItems = 1 << 14;
 
 const char* const kSource = R"(
 #include "tests/unit/shared/opencl_probe.h"
-__kernel void probe(__global uint* exact, __global float* close) {
-  kb_probe_item((uint)get_global_id(0), exact, close);
+__kernel void probe(__global const uint* table, __global uint* exact, __global float* close) {
+  kb_probe_item((uint)get_global_id(0), table, exact, close);
 }
 )";
 
@@ -34,7 +36,7 @@ struct Results {
 
 Results host_results() {
   Results r;
-  for (kb_u32 i = 0; i < kItems; ++i) kb_probe_item(i, r.exact.data(), r.close.data());
+  for (kb_u32 i = 0; i < kItems; ++i) kb_probe_item(i, kb_sobol_table, r.exact.data(), r.close.data());
   return r;
 }
 
@@ -43,8 +45,10 @@ Results device_results() {
   OpenclProbe probe(kSource, "-cl-fp32-correctly-rounded-divide-sqrt -Werror");
   EXPECT_TRUE(probe.device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT);
   const Results r;
+  const cl::Buffer table =
+      probe.upload(std::vector<kb_u32>(std::begin(kb_sobol_table), std::end(kb_sobol_table)));
   const cl::Buffer exact = probe.upload(r.exact), close = probe.upload(r.close);
-  probe.run("probe", kItems, exact, close);
+  probe.run("probe", kItems, table, exact, close);
   return {probe.download<kb_u32>(exact, r.exact.size()), probe.download<float>(close, r.close.size())};
 }
 

@@ -11,7 +11,7 @@
 #define KB_PROBE_EXACT 22 /* words an item, to be equal bit for bit */
 #define KB_PROBE_CLOSE 6  /* floats an item, to be equal within a few ulp */
 
-KB_FN void kb_probe_random(kb_u32 i, KB_GLOBAL kb_u32* out) {
+KB_FN void kb_probe_random(kb_u32 i, KB_GLOBAL const kb_u32* table, KB_GLOBAL kb_u32* out) {
   const KbPhilox4 counter = {i, i * 7u, i * i, 3u};
   const KbPhiloxKey key = {i ^ 0xa5a5a5a5u, ~i};
   const KbPhilox4 r = kb_philox4x32(counter, key);
@@ -19,15 +19,15 @@ KB_FN void kb_probe_random(kb_u32 i, KB_GLOBAL kb_u32* out) {
   out[1] = r.y;
   out[2] = r.z;
   out[3] = r.w;
-  const kb_u32x4 s = kb_sobol_block(kb_reverse_bits(i), i * 3u, i * 5u, i & 31u);
+  const kb_u32x4 s = kb_sobol_block(table, kb_reverse_bits(i), i * 3u, i * 5u, i & 31u);
   out[4] = kb_u32x4_x(s);
   out[5] = kb_u32x4_y(s);
   out[6] = kb_u32x4_z(s);
   out[7] = kb_u32x4_w(s);
   const KbFloat4 a =
-      kb_sampler_block(kb_sampler_key(KB_SAMPLER_INDEPENDENT, 0x123456789abcdeful, i, 5u, 1u, 2u), i & 7u);
+      kb_sampler_block(kb_sampler_key(KB_SAMPLER_INDEPENDENT, 0x123456789abcdeful, i, 5u, 1u, 2u, table), i & 7u);
   const KbFloat4 b =
-      kb_sampler_block(kb_sampler_key(KB_SAMPLER_SOBOL, 0x123456789abcdeful, i, 5u, 1u, i >> 3), i & 7u);
+      kb_sampler_block(kb_sampler_key(KB_SAMPLER_SOBOL, 0x123456789abcdeful, i, 5u, 1u, i >> 3, table), i & 7u);
   out[8] = kb_as_u32(a.x);
   out[9] = kb_as_u32(a.w);
   out[10] = kb_as_u32(b.x);
@@ -62,9 +62,10 @@ KB_FN void kb_probe_functions(KbFloat4 u, KB_GLOBAL float* out) {
   out[5] = kb_erf_inv(2.0f * u.y - 1.0f);
 }
 
-KB_FN void kb_probe_item(kb_u32 i, KB_GLOBAL kb_u32* exact, KB_GLOBAL float* close) {
+/* table: kb_sobol_table */
+KB_FN void kb_probe_item(kb_u32 i, KB_GLOBAL const kb_u32* table, KB_GLOBAL kb_u32* exact, KB_GLOBAL float* close) {
   const KbFloat4 u = kb_philox_floats(42ul, i, 0u, 0u, 0u);
-  kb_probe_random(i, exact + i * KB_PROBE_EXACT);
+  kb_probe_random(i, table, exact + i * KB_PROBE_EXACT);
   kb_probe_arithmetic(u, exact + i * KB_PROBE_EXACT + 16);
   kb_probe_functions(u, close + i * KB_PROBE_CLOSE);
 }

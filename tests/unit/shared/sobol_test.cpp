@@ -1,6 +1,7 @@
 // Owen-scrambled Sobol points: the table against the direction numbers,
 // stratification, unbiasedness, independence.
 #include "shared/sobol.h"
+#include "shared/sobol_table.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ Point to_point(kb_u32x4 x) {
 }
 
 Point scrambled_point(uint32_t index, uint32_t key0, uint32_t key1, uint32_t block) {
-  return to_point(kb_sobol_block(kb_reverse_bits(index), key0, key1, block));
+  return to_point(kb_sobol_block(kb_sobol_table, kb_reverse_bits(index), key0, key1, block));
 }
 
 // Direction numbers by the recurrence of Joe and Kuo: s = degree, a = inner coefficients of the primitive
@@ -86,7 +87,7 @@ TEST(Sobol, TableMatchesTheDirectionNumbers) {
   for (uint32_t i = 0; i < 1000; ++i) reversed.push_back(kb_mix32(i, 1));
   for (const uint32_t r : reversed) {
     const Point expected = plain_sobol(kb_reverse_bits(r));
-    const Point x = to_point(kb_sobol_reversed(r));
+    const Point x = to_point(kb_sobol_reversed(kb_sobol_table, r));
     for (int d = 0; d < 4; ++d) ASSERT_EQ(kb_reverse_bits(x[d]), expected[d]) << r << ' ' << d;
   }
 }

@@ -11,6 +11,7 @@
 
 #include "lane_functions.hpp"
 #include "shared/sampler.h"
+#include "shared/sobol_table.h"
 #include "shared/warp.h"
 
 namespace kiloband::test {
@@ -229,6 +230,7 @@ TEST(LaneSampler, RandomNumbersAreThoseOfTheSharedSampler) {
     ASSERT_TRUE(u.x == philox[0][i] && u.y == philox[1][i] && u.z == philox[2][i] && u.w == philox[3][i])
         << i;
     key.sampler = KB_SAMPLER_SOBOL;
+    key.table = kb_sobol_table;
     key.reversed_index = first;
     key.key0 = second;
     key.key1 = second ^ 0x9e3779b9u;
@@ -242,7 +244,7 @@ TEST(LaneSampler, KeysAreThoseOfTheSharedSampler) {
   const Arrays keys = apply_one_lane("sampler_keys", {pixels});
   for (std::size_t i = 0; i < kCount; ++i) {
     const KbSamplerKey key =
-        kb_sampler_key(KB_SAMPLER_SOBOL, 0xfedcba9876543210ull, kb_as_u32(pixels[i]), 5, 3, 11);
+        kb_sampler_key(KB_SAMPLER_SOBOL, 0xfedcba9876543210ull, kb_as_u32(pixels[i]), 5, 3, 11, kb_sobol_table);
     const kb_u32 expected[] = {key.pixel, key.sample, key.reversed_index, key.key0, key.key1};
     for (std::size_t k = 0; k < 5; ++k) ASSERT_EQ(kb_as_u32(keys[k][i]), expected[k]) << k << " " << i;
   }
