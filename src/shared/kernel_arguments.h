@@ -32,10 +32,10 @@
   X(scene, IN, float, texel_values) SEP       /* of spectral textures, each at its first_value */                \
   X(scene, IN, float, texel_bounds) SEP                                                                          \
   X(scene, IN, float, spectrum_bounds) SEP    /* by row */                                                       \
-  X(scene, IN, KbFloat3, normals) SEP         /* by vertex; KB_SHAPE_HAS_NORMALS */                              \
+  X(scene, IN, KbFloat4, normals) SEP         /* by vertex, as x, y, z, 0; KB_SHAPE_HAS_NORMALS */               \
   X(scene, IN, KbFloat2, uvs) SEP             /* by vertex; KB_SHAPE_HAS_UVS */                                  \
-  X(scene, IN, KbFloat3, positions) SEP                                                                          \
-  X(scene, IN, kb_u32, triangles) SEP         /* three vertices each */                                          \
+  X(scene, IN, KbFloat4, positions) SEP       /* by vertex, as x, y, z, 0 */                                     \
+  X(scene, IN, KbTriangle, triangles) SEP                                                                        \
   X(scene, IN, float, area_cdf) SEP                                                                              \
   X(scene, IN, KbEmitter, emitters) SEP                                                                          \
   X(scene, IN, float, emitter_cdf) SEP        /* emitters + 1, with a light tree + 2: FlatScene */               \

@@ -79,6 +79,13 @@ typedef struct {
 #define KB_BVH_LEAF_COUNT(leaf) ((leaf) == KB_BVH_NO_CHILD ? 0u : (((leaf) >> 28) & 7u) + 1u)
 KB_STATIC_ASSERT(sizeof(KbBvhNode) == 128, bvh_node_size);
 
+/* A triangle's vertices as devices have them: beside the 12 bytes of three indices 4 more, so that they come in one piece. */
+typedef struct {
+  kb_u32 vertex[3];
+  kb_u32 reserved;
+} KB_ALIGNED(16) KbTriangle;
+KB_STATIC_ASSERT(sizeof(KbTriangle) == 16, triangle_size);
+
 /* A closest-hit query; hits lie in (t_min, t_max). `previous` is what multiple importance sampling needs of
    the vertex the ray comes from. */
 typedef struct {

@@ -52,8 +52,8 @@ typedef struct {
   kb_u64 seed;
   kb_u32 sampler; /* KB_SAMPLER_* */
   kb_u32 pixel, sample;
-  kb_u32 reversed_index; /* sobol: bit-reversed index_in_replicate */
-  kb_u32 key0, key1;     /* sobol: of (seed, replicate, pixel) */
+  kb_u32 reversed_index;         /* sobol: bit-reversed index_in_replicate */
+  kb_u32 key0, key1;             /* sobol: of (seed, replicate, pixel) */
   KB_GLOBAL const kb_u32* table; /* kb_sobol_table */
 } KbSamplerKey;
 

@@ -50,7 +50,8 @@ KB_FN kb_u32x4 kb_sobol_block(KB_GLOBAL const kb_u32* table, kb_u32 reversed_ind
   const kb_u32 base = key0 + 5u * block * KB_GOLDEN_32;
   const kb_u32x4 step = kb_u32x4_of(KB_GOLDEN_32, 2u * KB_GOLDEN_32, 3u * KB_GOLDEN_32, 4u * KB_GOLDEN_32);
   const kb_u32 shuffled = kb_owen_reversed(reversed_index, kb_mix32(base, key1));
-  return kb_reverse_bits4(kb_owen_reversed4(kb_sobol_reversed(table, shuffled), kb_mix32x4(step + base, key1)));
+  return kb_reverse_bits4(
+      kb_owen_reversed4(kb_sobol_reversed(table, shuffled), kb_mix32x4(step + base, key1)));
 }
 
 /* Point `index` of the van der Corput sequence, Owen-scrambled; not shuffled: any 2^m points from a multiple

@@ -25,6 +25,22 @@ inline std::vector<float> bounds_of_rows(const FlatScene& scene) {
   return bounds;
 }
 
+/// (x, y, z, 0)
+inline std::vector<KbFloat4> with_fourth(const std::vector<KbFloat3>& values) {
+  std::vector<KbFloat4> padded(values.size());
+  std::ranges::transform(values, padded.begin(), [](const KbFloat3& v) {
+    return KbFloat4{v.x, v.y, v.z, 0};
+  });
+  return padded;
+}
+
+inline std::vector<KbTriangle> device_triangles(const FlatScene& scene) {
+  std::vector<KbTriangle> triangles(scene.triangles.size() / 3);
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    triangles[i] = {{scene.triangles[3 * i], scene.triangles[3 * i + 1], scene.triangles[3 * i + 2]}, 0};
+  return triangles;
+}
+
 inline KbSceneConstants scene_constants(const FlatScene& scene) {
   KbSceneConstants c{};
   c.camera = scene.camera;
@@ -66,10 +82,10 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .texel_values = {},
           .texel_bounds = up("texel bounds", scene.texel_bounds),
           .spectrum_bounds = up("spectrum bounds", bounds_of_rows(scene)),
-          .normals = up("normals", scene.normals),
+          .normals = up("normals", with_fourth(scene.normals)),
           .uvs = up("texture coordinates", scene.uvs),
-          .positions = up("positions", scene.positions),
-          .triangles = up("triangles", scene.triangles),
+          .positions = up("positions", with_fourth(scene.positions)),
+          .triangles = up("triangles", device_triangles(scene)),
           .area_cdf = up("area distribution", scene.area_cdf),
           .emitters = up("emitters", scene.emitters),
           .emitter_cdf = up("emitter distribution", scene.emitter_cdf),
@@ -84,7 +100,8 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .filter_cells = up("filter cells", scene.filter_cells),
           .filter_table = up("filter table", filter_nodes(scene.camera)),
           .channel_bins = up("reflectances by channel bins", scene.channel_bins),
-          .sobol = up("Sobol points", std::vector<uint32_t>(std::begin(kb_sobol_table), std::end(kb_sobol_table))),
+          .sobol =
+              up("Sobol points", std::vector<uint32_t>(std::begin(kb_sobol_table), std::end(kb_sobol_table))),
           .thermals = up("thermal emission", scene.thermals)};
 }
 

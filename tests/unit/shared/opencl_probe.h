@@ -24,10 +24,10 @@ KB_FN void kb_probe_random(kb_u32 i, KB_GLOBAL const kb_u32* table, KB_GLOBAL kb
   out[5] = kb_u32x4_y(s);
   out[6] = kb_u32x4_z(s);
   out[7] = kb_u32x4_w(s);
-  const KbFloat4 a =
-      kb_sampler_block(kb_sampler_key(KB_SAMPLER_INDEPENDENT, 0x123456789abcdeful, i, 5u, 1u, 2u, table), i & 7u);
-  const KbFloat4 b =
-      kb_sampler_block(kb_sampler_key(KB_SAMPLER_SOBOL, 0x123456789abcdeful, i, 5u, 1u, i >> 3, table), i & 7u);
+  const KbFloat4 a = kb_sampler_block(
+      kb_sampler_key(KB_SAMPLER_INDEPENDENT, 0x123456789abcdeful, i, 5u, 1u, 2u, table), i & 7u);
+  const KbFloat4 b = kb_sampler_block(
+      kb_sampler_key(KB_SAMPLER_SOBOL, 0x123456789abcdeful, i, 5u, 1u, i >> 3, table), i & 7u);
   out[8] = kb_as_u32(a.x);
   out[9] = kb_as_u32(a.w);
   out[10] = kb_as_u32(b.x);
@@ -63,7 +63,8 @@ KB_FN void kb_probe_functions(KbFloat4 u, KB_GLOBAL float* out) {
 }
 
 /* table: kb_sobol_table */
-KB_FN void kb_probe_item(kb_u32 i, KB_GLOBAL const kb_u32* table, KB_GLOBAL kb_u32* exact, KB_GLOBAL float* close) {
+KB_FN void kb_probe_item(kb_u32 i, KB_GLOBAL const kb_u32* table, KB_GLOBAL kb_u32* exact,
+                         KB_GLOBAL float* close) {
   const KbFloat4 u = kb_philox_floats(42ul, i, 0u, 0u, 0u);
   kb_probe_random(i, table, exact + i * KB_PROBE_EXACT);
   kb_probe_arithmetic(u, exact + i * KB_PROBE_EXACT + 16);

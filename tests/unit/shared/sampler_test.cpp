@@ -1,6 +1,5 @@
 // The map of random dimensions.
 #include "shared/sampler.h"
-#include "shared/sobol_table.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "shared/sobol_table.h"
 #include "tests/support/chi_square.hpp"
 
 namespace kiloband::test {
@@ -21,8 +21,8 @@ bool same(const KbFloat4& a, const KbFloat4& b) {
 
 KbFloat4 sample_block(uint32_t sampler, uint64_t seed, uint32_t pixel, uint32_t sample, uint32_t replicate,
                       uint32_t index_in_replicate, uint32_t block) {
-  return kb_sampler_block(kb_sampler_key(sampler, seed, pixel, sample, replicate, index_in_replicate, kb_sobol_table),
-                          block);
+  return kb_sampler_block(
+      kb_sampler_key(sampler, seed, pixel, sample, replicate, index_in_replicate, kb_sobol_table), block);
 }
 
 TEST(Sampler, BlocksOfABounce) {

@@ -1,7 +1,6 @@
 // Owen-scrambled Sobol points: the table against the direction numbers,
 // stratification, unbiasedness, independence.
 #include "shared/sobol.h"
-#include "shared/sobol_table.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "shared/sobol_table.h"
 #include "tests/support/chi_square.hpp"
 
 namespace kiloband::test {
