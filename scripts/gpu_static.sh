@@ -66,11 +66,11 @@ echo "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"
 for set in "$@"; do
   defines=$(defines_of "$set")
   # As a GPU is given 512 channels (evaluation_shape): 4 per item; shared wavelengths, no derived channels.
-  evaluation="-DKB_WIDTH=4 -DKB_VECTORS=1 -DKB_DERIVED=0 -DKB_PIXELS=1 -DKB_PER_PATH=0"
+  evaluation="-DKB_WIDTH=4 -DKB_VECTORS=${VECTORS:-1} -DKB_DERIVED=0 -DKB_PIXELS=1 -DKB_PER_PATH=0"
   # shellcheck disable=SC2086
   {
     row "$set" paths kernels/path/paths.cl $defines
-    row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation | grep -v dpept_path
+    row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation -DKB_STAGED=1
     row "$set" path kernels/evaluate/evaluate.cl $defines $evaluation -DKB_FILM_TRANSPOSED=1 | grep dpept_path
     row "$set" pt kernels/evaluate/pt.cl $defines $evaluation -DKB_METHOD_PT=1
   }

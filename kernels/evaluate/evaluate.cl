@@ -14,6 +14,7 @@
 #include "evaluate/evaluate.clh"
 #include "film/film.clh"
 #include "evaluate/evaluate_tile.clh"
+#include "evaluate/stage.clh"
 
 /* Notes the work-item's part of the derived channels of a tile; `more` adds to what is there. */
 static inline void keep_derived(__global float* partial, const TileSums* sums, kb_u32 first_pixel, kb_u32 end_pixel,
@@ -35,21 +36,36 @@ __kernel void dpept_batch(KB_EVALUATION_PARAMS) {
   KB_FILM_INIT(film, spectra_layout->film_columns);
   const kb_u32 items = (kb_u32)get_local_size(0), item = (kb_u32)get_local_id(0), pixels = pool_round->pixels;
   const kb_u32 vectors = vector_count(&evaluation);
+#if KB_STAGED
+  __local uint4 entries[2 * KB_STAGE_ENTRIES];
+  __local PathCursor cursors[KB_SAMPLES_IN_REGISTERS];
+  __local kb_u32 staged[KB_SAMPLES_IN_REGISTERS];
+  const Stage stage = {entries, cursors, staged};
+#endif
   TileSums sums;
   for (kb_u32 d = 0u; d < KB_PIXELS * KB_DERIVED; ++d) sums.derived[d] = 0.0f;
   for (kb_u32 pixel = (kb_u32)get_group_id(0) * KB_PIXELS; pixel < pixels;
        pixel += (kb_u32)get_num_groups(0) * KB_PIXELS) {
     const kb_u32 end = min(pixel + KB_PIXELS, pixels);
+#if KB_STAGED
+    /* Work-items without channels come along: all meet at barriers. */
+    for (kb_u32 first = 0u; first < vectors; first += items * KB_VECTORS) {
+      evaluate_staged(&evaluation, pool_saved, &film, pixel, first + item, items, &stage, &sums);
+      keep_derived(evaluation_partial, &sums, pixel, end, first != 0u);
+    }
+#else
     if (item >= vectors) keep_derived(evaluation_partial, &sums, pixel, end, false); /* a work-item without channels */
     for (kb_u32 first = item; first < vectors; first += items * KB_VECTORS) {
       evaluate_tile(&evaluation, pool_saved, &film, pixel, end, first, items, &sums);
       keep_derived(evaluation_partial, &sums, pixel, end, first != item);
     }
+#endif
     for (kb_u32 p = pixel; p < end && item == 0u; ++p)
       film_counts[film_first + p] += valid_samples(&evaluation, pool_saved, p);
   }
 }
 
+#if !KB_STAGED
 __kernel void dpept_path(KB_EVALUATION_PARAMS) {
   KB_EVALUATION_INIT(evaluation);
   KB_FILM_INIT(film, spectra_layout->film_columns);
@@ -64,6 +80,7 @@ __kernel void dpept_path(KB_EVALUATION_PARAMS) {
   }
   film_counts[film_first + pixel] += valid_samples(&evaluation, pool_saved, pixel);
 }
+#endif
 
 /* The work-items' parts of derived channels, in order. */
 __kernel void derived_add(KB_EVALUATION_PARAMS) {

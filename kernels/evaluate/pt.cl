@@ -50,7 +50,7 @@ static inline void update_slot(const Evaluation* e, const Film* film, const KbPa
     place_batch(&batch, first, items, vectors);
     start_batch(&batch);
     if (!fresh) load_batch(&batch, tau + (size_t)slot * spectra.stride, radiance + (size_t)slot * spectra.stride);
-    run_vertices(&spectra, slot * KB_CHUNK_ENTRIES, state->length, &batch);
+    run_vertices(&spectra, e->arena, slot * KB_CHUNK_ENTRIES, state->length, &batch);
     if (!ended) {
       store_batch(&batch, tau + (size_t)slot * spectra.stride, radiance + (size_t)slot * spectra.stride);
     } else if (!(state->flags & KB_PATH_INVALID)) {

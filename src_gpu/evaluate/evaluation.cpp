@@ -59,10 +59,12 @@ uint64_t pixels_of_means(const KbSpectraLayout& layout, uint64_t film_pixels) {
 
 std::vector<std::string> EvaluationShape::defines(uint32_t derived) const {
   std::vector<std::string> d{
-      "KB_WIDTH=" + std::to_string(width), "KB_VECTORS=" + std::to_string(vectors),
+      "KB_WIDTH=" + std::to_string(width),
+      "KB_VECTORS=" + std::to_string(vectors),
       "KB_DERIVED=" + std::to_string(derived),
       "KB_PIXELS=" + std::to_string(method == Method::kDpeptBatch ? units_per_group : 1),
-      std::string("KB_PER_PATH=") + (shared_wavelengths ? "0" : "1")};
+      std::string("KB_PER_PATH=") + (shared_wavelengths ? "0" : "1"),
+      std::string("KB_STAGED=") + (staged ? "1" : "0")};
   if (film_transposed) d.emplace_back("KB_FILM_TRANSPOSED=1");
   return d;
 }
@@ -82,6 +84,7 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
     return shape;
   }
   shape.film_transposed = method == Method::kDpeptPath;
+  shape.staged = method == Method::kDpeptBatch;
   shape.width = channels >= 512 ? 4 : channels >= 128 ? 2 : 1;
   shape.vectors = 1;
   const uint64_t most = std::min<uint64_t>(device.max_work_group_size, 256);

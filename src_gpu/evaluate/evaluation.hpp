@@ -23,6 +23,8 @@ struct EvaluationShape {
   uint32_t local_size = 1;       // work-items that share a path
   uint32_t units_per_group = 1;  // pixels (dpept_batch) or slots (pt) that a work-group takes
   bool film_transposed = false;
+  bool staged =
+      false;  // dpept_batch: work-groups bring vertices to local memory (kernels/evaluate/stage.clh)
 
   std::vector<std::string> defines(uint32_t derived) const;
 };

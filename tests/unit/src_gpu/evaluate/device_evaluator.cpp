@@ -76,16 +76,17 @@ std::string EvaluatorBuild::options() const {
   return "-DKB_WIDTH=" + std::to_string(width) + " -DKB_VECTORS=" + std::to_string(vectors) +
          " -DKB_PER_PATH=" + std::to_string(per_path) + " -DKB_DERIVED=" + std::to_string(derived) +
          " -DKB_FILM_TRANSPOSED=" + std::to_string(transposed) + " -DKB_PIXELS=" + std::to_string(tile) +
+         " -DKB_STAGED=" + std::to_string(staged) + " -DKB_STAGE_ENTRIES=" + std::to_string(stage_entries) +
          " " + features;
 }
 
 // film.cl sets the width for itself, so it comes last.
 EvaluatorProgram::EvaluatorProgram(const EvaluatorBuild& b)
     : build(b),
-      probe(
-          "#include \"evaluate/evaluate.cl\"\n#include \"evaluate/pt.cl\"\n#include \"evaluate/resample.cl\"\n"
-          "#include \"film/film.cl\"\n",
-          b.options()) {}
+      probe(std::string("#include \"evaluate/evaluate.cl\"\n") +
+                (b.staged ? "" : "#include \"evaluate/pt.cl\"\n") +
+                "#include \"evaluate/resample.cl\"\n#include \"film/film.cl\"\n",
+            b.options()) {}
 
 float per_path_mu(const RoundOfPaths& round, uint32_t pixel, uint32_t sample) {
   const uint32_t index = round.first_index + sample;

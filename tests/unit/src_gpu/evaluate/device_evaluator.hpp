@@ -28,6 +28,8 @@ struct EvaluatorBuild {
   bool transposed = false;
   uint32_t tile = 1;     // KB_PIXELS
   std::string features;  // "-DKB_SPECIALISED -DKB_HAS_..."; empty: everything
+  bool staged = false;   // KB_STAGED: dpept_batch alone
+  uint32_t stage_entries = 256;
 
   std::string options() const;
 };

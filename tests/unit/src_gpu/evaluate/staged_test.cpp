@@ -1,0 +1,103 @@
+// dpept_batch with the stage (kernels/evaluate/stage.clh), as GPUs run it, against dpept_batch without, as CPU devices run it: the same
+// bits. Derived channels too: a work-item adds its channels in the same order.
+#include <numeric>
+
+#include "device_scene.hpp"
+#include "tests/unit/src_cpu/evaluate/random_gas.hpp"
+
+namespace kiloband::test {
+
+using namespace cpu;
+namespace {
+
+constexpr uint32_t kFewestEntries = 48;
+
+struct Result {
+  std::vector<float> means;
+  std::vector<uint32_t> counts;
+  bool operator==(const Result&) const = default;
+};
+
+Result evaluated(EvaluatorProgram& program, const FlatScene& scene, const opencl::ChannelTables& tables,
+                 const PathBuffer& paths, const RoundOfPaths& round, uint32_t local_size) {
+  DeviceEvaluator device(program, scene, tables, round.pixels);
+  device.load(paths, round);
+  device.batch(local_size, 5);
+  return {device.means(), device.counts()};
+}
+
+EvaluatorBuild with_stage(EvaluatorBuild build, uint32_t entries) {
+  build.staged = true;
+  build.stage_entries = entries;
+  return build;
+}
+
+class StagedEvaluation : public testing::TestWithParam<EvaluatorBuild> {};
+
+/// Textures, temperatures, dispersion; groups with fewer work-items than paths, and with items that have no channels.
+TEST_P(StagedEvaluation, SameBitsAsWithout) {
+  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), 256));
+  std::mt19937 random(41);
+  for (const std::size_t channels : {1u, 7u, 100u, 300u}) {
+    FlatScene scene = make_device_scene(channels, Layout::kRegular, random);
+    scene.features.temperature_field = true;
+    const opencl::ChannelTables tables = opencl::make_channel_tables(scene, make_responses());
+    const PathBuffer paths = make_paths(scene, 40, random);
+    const RoundOfPaths round =
+        make_round(paths, 6, 70, random);  // more samples than registers take at a time
+    for (const uint32_t local_size : {1u, 3u, 32u}) {
+      const Result expected = evaluated(without, scene, tables, paths, round, local_size);
+      EXPECT_GT(*std::ranges::max_element(expected.means), 0);
+      EXPECT_EQ(evaluated(staged, scene, tables, paths, round, local_size), expected)
+          << channels << " channels, " << local_size << " items";
+    }
+  }
+}
+
+/// Paths of hundreds of vertices on a stage of 48 entries: they come in parts, and begin where others have ended.
+TEST_P(StagedEvaluation, PathsLongerThanTheStage) {
+  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), kFewestEntries));
+  std::mt19937 random(42);
+  const FlatScene scene = make_device_scene(100, Layout::kRegular, random);
+  const opencl::ChannelTables tables = opencl::make_channel_tables(scene, make_responses());
+  PathBuffer paths = make_paths(scene, 40, random);
+  const PathBuffer parts = paths;
+  for (std::size_t p = 0; p < paths.paths.size();
+       p += 3) {  // every third path is all paths one behind the other
+    paths.paths[p].first = static_cast<uint32_t>(paths.entries.size());
+    paths.entries.insert(paths.entries.end(), parts.entries.begin(), parts.entries.end());
+    paths.paths[p].count = static_cast<uint32_t>(parts.entries.size());
+  }
+  ASSERT_GT(parts.entries.size(), 4 * kFewestEntries);
+  const RoundOfPaths round = make_round(paths, 6, 9, random);
+  EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 5),
+            evaluated(without, scene, tables, paths, round, 5));
+}
+
+/// Cells of plumes are on the stage, too.
+TEST_P(StagedEvaluation, Gas) {
+  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), kFewestEntries));
+  std::mt19937 random(43);
+  for (const std::size_t channels : {7u, 100u}) {
+    FlatScene scene = make_device_scene(channels, Layout::kRegular, random);
+    add_gas(scene, random);
+    const opencl::ChannelTables tables = opencl::make_channel_tables(scene, make_responses());
+    const PathBuffer paths = make_gas_paths(scene, 60, random);
+    const RoundOfPaths round = make_round(paths, 12, 5, random);
+    const Result expected = evaluated(without, scene, tables, paths, round, 4);
+    EXPECT_GT(*std::ranges::max_element(expected.means), 0);
+    EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 4), expected) << channels << " channels";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, StagedEvaluation,
+                         testing::Values(EvaluatorBuild{4, 1, false, 4}, EvaluatorBuild{4, 1, true, 4},
+                                         EvaluatorBuild{4, 2, false, 4}, EvaluatorBuild{1, 1, false, 4}),
+                         [](const auto& p) {
+                           return "width" + std::to_string(p.param.width) + "x" +
+                                  std::to_string(p.param.vectors) +
+                                  (p.param.per_path ? "_per_path" : "_shared");
+                         });
+
+}  // namespace
+}  // namespace kiloband::test
