@@ -103,13 +103,11 @@ RoundOutcome DeviceState::generate(const KbRound& round, std::span<const KbRound
   pool_->begin(round, pixels, mu);
   evaluation_->resample(round);
   if (method != Method::kPt) return pool_->run(round);
-  return pool_->run(round, [&](const PoolQueue& queue) { evaluation_->update(queue, film_pixel); });
+  return pool_->run(round, [&](const LaunchQueue& queue) { evaluation_->update(queue, film_pixel); });
 }
 
-double DeviceState::evaluate(const KbRound& round, uint64_t film_pixel) {
+void DeviceState::evaluate(const KbRound& round, uint64_t film_pixel) {
   if (method != Method::kPt) evaluation_->evaluate(round, film_pixel);
-  context.finish();
-  return context.take_longest(LaunchScale::kPaths);
 }
 
 void DeviceState::finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {

@@ -67,12 +67,11 @@ class DeviceState {
   void save_film(uint64_t pixels, FilmSums& sums) { evaluation_->save(pixels, sums); }
   void close_chunk(uint64_t pixels) { evaluation_->close_chunk(pixels); }
   /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's
-  /// pixels begin in the film.
+  /// pixels begin in the film. Waits, once or twice: what was enqueued before is then done, too.
   RoundOutcome generate(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu,
                         uint64_t film_pixel);
-  /// Evaluates what generate() saved.
-  /// returns the longest launch over the round's paths, seconds
-  double evaluate(const KbRound& round, uint64_t film_pixel);
+  /// Evaluates what generate() saved. Enqueued: the next generate() waits for it, or finish_film().
+  void evaluate(const KbRound& round, uint64_t film_pixel);
   /// Means [pixel][channels + derived] and valid samples.
   void finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 

@@ -10,10 +10,9 @@
 namespace kiloband::opencl {
 namespace {
 
-/// Paths in flight and paths of a round. GPUs hide latency with many (Laine et al. 2013; the peak of
-/// the DPEPT paper lies between 1024^2 and 2048^2); a CPU device keeps what a round touches in its caches.
-constexpr uint32_t kGpuSlots = 1u << 20, kCpuSlots = 1u << 13;
-constexpr uint64_t kGpuJobs = 1u << 22, kCpuJobs = 1u << 16;
+/// Paths in flight and paths of a round: a CPU device keeps what a round touches in its caches.
+constexpr uint32_t kCpuSlots = 1u << 13;
+constexpr uint64_t kCpuJobs = 1u << 16;
 constexpr uint32_t kFewestSlots = 64;
 /// What the first launches have of it: their times say how many the next ones may have.
 constexpr uint64_t kFirstPart = 16;
@@ -25,11 +24,11 @@ bool is_cpu(const DeviceState& device) {
 }
 
 uint32_t most_slots(const DeviceState& device, std::optional<uint32_t> wanted) {
-  return wanted.value_or(is_cpu(device) ? kCpuSlots : kGpuSlots);
+  return wanted.value_or(is_cpu(device) ? kCpuSlots : gpu_slots(device.memory.budget()));
 }
 
 uint64_t most_jobs(const DeviceState& device, uint32_t slots) {
-  return std::max<uint64_t>(is_cpu(device) ? kCpuJobs : kGpuJobs, slots);
+  return std::max<uint64_t>(is_cpu(device) ? kCpuJobs : gpu_jobs(device.memory.budget()), slots);
 }
 
 uint64_t round_up(uint64_t n, uint64_t multiple) {
@@ -167,6 +166,15 @@ void GroupRenderer::learn(const RoundOutcome& outcome, const KbRound& round) {
     chunks_per_path_ = std::max(1.0, outcome.chunks / paths);
 }
 
+/// The same of the evaluation that was enqueued last, and is done.
+void GroupRenderer::learn_evaluation(RunTally& tally) {
+  const double longest = device_.context.take_longest(LaunchScale::kPaths);
+  if (evaluated_paths_ > 0) paths_pace_.learn(evaluated_paths_, longest);
+  knows_paths_pace_ |= evaluated_paths_ > 0;
+  evaluated_paths_ = 0;
+  tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, longest);
+}
+
 /// A round that is too large in two: by pixels, which changes no bit of the image. A pixel alone whose
 /// samples do not fit together is split by samples; only its last bits may differ from those of a larger
 /// arena (of an open round, only those of derived channels).
@@ -202,16 +210,20 @@ void GroupRenderer::render_part(std::span<const ImagePixel> pixels, uint64_t at,
     return split(pixels, at, number, samples, open, tally);
   fill_mu(round);
   const RoundOutcome outcome = device_.generate(round, round_pixels_, mu_, at);
+  learn_evaluation(tally);
   learn(outcome, round);
   tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, outcome.longest_launch_seconds);
   if (outcome.arena_full) return split(pixels, at, number, samples, open, tally);
   note_invalid(outcome, round, tally);
   tally.rays += outcome.rays;
   tally.vertices += outcome.vertices;
-  const double longest = device_.evaluate(round, at);
-  paths_pace_.learn(number * samples.count, longest);
-  tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, longest);
-  tally.paths += number * samples.count;
+  device_.evaluate(round, at);
+  evaluated_paths_ = number * samples.count;
+  tally.paths += evaluated_paths_;
+  ++tally.rounds;
+  if (knows_paths_pace_ || device_.method == Method::kPt) return;
+  device_.context.finish();  // the first one says how many paths the second may have
+  learn_evaluation(tally);
 }
 
 /// Pixels of the next round: what the pool holds and launches have time for. The method pt has no launch over
@@ -254,6 +266,7 @@ GroupResult GroupRenderer::render(std::span<const ImagePixel> pixels, const Samp
   } else {
     device_.finish_film(pixels.size(), result.means, result.counts);
   }
+  learn_evaluation(tally);
   tally.longest_launch_seconds =
       std::max(tally.longest_launch_seconds, device_.context.take_longest(LaunchScale::kOther));
   return result;

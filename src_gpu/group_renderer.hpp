@@ -19,7 +19,7 @@ namespace kiloband::opencl {
 
 /// What a run of rounds did.
 struct RunTally {
-  uint64_t rays = 0, vertices = 0, paths = 0;
+  uint64_t rays = 0, vertices = 0, paths = 0, rounds = 0;
   uint64_t invalid = 0;
   std::vector<InvalidSample> invalid_samples;  // the first of them
   double longest_launch_seconds = 0;           // of all kernels
@@ -85,6 +85,7 @@ class GroupRenderer {
              bool open, RunTally& tally);
   void note_invalid(const RoundOutcome& outcome, const KbRound& round, RunTally& tally) const;
   void learn(const RoundOutcome& outcome, const KbRound& round);
+  void learn_evaluation(RunTally& tally);
 
   DeviceState& device_;
   SamplingSettings settings_;
@@ -95,7 +96,9 @@ class GroupRenderer {
   uint32_t round_samples_;
   uint32_t most_slots_;
   LaunchPace slots_pace_, paths_pace_;
-  double chunks_per_path_ = 3;  // measured
+  double chunks_per_path_ = 3;    // measured
+  uint64_t evaluated_paths_ = 0;  // by the evaluation that was enqueued last
+  bool knows_paths_pace_ = false;
   std::vector<KbRoundPixel> round_pixels_;
   std::vector<float> mu_;
 };

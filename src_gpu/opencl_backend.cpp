@@ -163,6 +163,7 @@ BackendStatistics Renderer::statistics() const {
   if (state_) done.device_memory_bytes = std::max(done.device_memory_bytes, state_->memory.peak());
   if (groups_) done.pool_slots = groups_->pool_slots();
   done.kernel_seconds = context_.kernel_seconds();
+  done.device_waits = context_.waits();
   done.kernel_launches = context_.kernel_launches();
   return done;
 }
@@ -171,6 +172,7 @@ void Renderer::count(const RunTally& tally) {
   done_.rays += tally.rays;
   done_.vertices += tally.vertices;
   done_.paths += tally.paths;
+  done_.device_rounds += tally.rounds;
   done_.invalid_samples += tally.invalid;
   done_.longest_launch_seconds = std::max(done_.longest_launch_seconds, tally.longest_launch_seconds);
   for (const InvalidSample& sample : tally.invalid_samples) {

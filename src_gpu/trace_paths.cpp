@@ -13,12 +13,12 @@ class HitObserver {
   HitObserver(const PathPool& pool, const Bvh& bvh, std::vector<TracedPath>& traced)
       : pool_(pool), bvh_(bvh), traced_(traced) {}
 
-  void operator()(const PoolQueue& queue) const {
+  void operator()(const LaunchQueue& queue) const {
     const std::vector<KbPathState> states = pool_.buffers().states.download();
     const std::vector<KbHit> hits = pool_.buffers().hits.download();
     const std::vector<uint32_t> instances = pool_.buffers().hit_instances.download();
-    std::vector<uint32_t> slots(queue.count);
-    queue.slots.buffer().download(std::span<uint32_t>(slots));
+    std::vector<uint32_t> slots(queue.slots.length.buffer().read(0));
+    queue.slots.slots.buffer().download(std::span<uint32_t>(slots));
     for (const uint32_t slot : slots) {
       if (states[slot].flags & KB_PATH_LIVE)
         traced_.at(states[slot].job)

@@ -2,8 +2,8 @@
 // path in flight live in global memory and are updated at each bounce. Build macros: path_spectra.clh.
 //
 //   kernel      work-items
-//   pt_update   groups * local size, any number of groups, which share the queue evenly; count > 0
-//   pt_derived  count * D, after pt_update; only if there are derived channels
+//   pt_update   groups * local size, any number of groups, which share the queue evenly
+//   pt_derived  length of the queue * D, after pt_update; only if there are derived channels
 //
 // Padded pixels of the round have no film. evaluation_parts: local size of pt_update. Runs once per bounce after shadow rays, over the
 // slots of the queue: the vertices of the bounce are states[slot].length entries of the arena from chunk `slot` on;
@@ -64,8 +64,10 @@ __kernel void pt_update(KB_EVALUATION_PARAMS) {
   KB_EVALUATION_INIT(evaluation);
   KB_FILM_INIT(film, spectra_layout->film_columns);
   const kb_u32 items = (kb_u32)get_local_size(0), item = (kb_u32)get_local_id(0);
-  const kb_u32 share = (queue_count - 1u) / (kb_u32)get_num_groups(0) + 1u, begin = share * (kb_u32)get_group_id(0);
-  for (kb_u32 place = begin; place < min(begin + share, queue_count); ++place) {
+  const kb_u32 count = queue_length[0];
+  const kb_u32 share = (count + (kb_u32)get_num_groups(0) - 1u) / (kb_u32)get_num_groups(0);
+  const kb_u32 begin = share * (kb_u32)get_group_id(0);
+  for (kb_u32 place = begin; place < min(begin + share, count); ++place) {
     const kb_u32 slot = queue_slots[place];
     const KbPathState state = pool_states[slot];
     if (state.flags & KB_PATH_FINISHED) continue;
@@ -85,7 +87,7 @@ __kernel void pt_update(KB_EVALUATION_PARAMS) {
 __kernel void pt_derived(KB_EVALUATION_PARAMS) {
   const kb_u32 derived = spectra_layout->derived, parts = evaluation_parts;
   const size_t i = get_global_id(0);
-  if (i >= (size_t)queue_count * derived) return;
+  if (i >= (size_t)queue_length[0] * derived) return;
   const kb_u32 slot = queue_slots[i / derived], d = (kb_u32)(i % derived);
   const KbPathState state = pool_states[slot];
   if ((state.flags & (KB_PATH_FINISHED | KB_PATH_ENDED | KB_PATH_INVALID)) != KB_PATH_ENDED) return;

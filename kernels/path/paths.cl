@@ -5,7 +5,7 @@
 //   any_hits      shadow rays; light that is hidden leaves the vertex (shadow_walks in scenes with gas)
 // and now and then
 //   compact       slots without jobs leave the queue
-// All take KB_PATH_PARAMS and run over a queue of slots: work-item i < queue_count works on slot queue_slots[i].
+// All take KB_PATH_PARAMS and run over a queue of slots: work-item i < queue_length[0] works on slot queue_slots[i].
 #include "path/generate.clh"
 #include "path/closest_hits.clh"
 #include "path/bounce.clh"

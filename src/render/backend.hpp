@@ -61,7 +61,8 @@ struct BackendStatistics {
   uint64_t device_memory_bytes = 0;                 // peak, beside the host's
   uint32_t pool_slots = 0;            // paths in flight that the device has room for, as it last rendered
   double longest_launch_seconds = 0;  // of a kernel, measured on the device: display drivers kill long ones
-  uint32_t device_losses = 0;         // how often the device was lost and set up again
+  uint64_t device_rounds = 0, device_waits = 0;  // rounds of paths; how often the host waited for the device
+  uint32_t device_losses = 0;                    // how often the device was lost and set up again
 };
 
 /// Auxiliary values of one pixel, from the ray through its centre.

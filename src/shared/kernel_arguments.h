@@ -85,11 +85,13 @@
   X(pool, OUT, KbSavedPath, saved) SEP        /* by job */                                                       \
   X(pool, OUT, KbFaults, faults)
 
-/* The slots that a launch works on: work-item i < count takes slots[i]. packed: the queue that `compact` fills. */
+/* The slots that a launch works on: work-item i < length[0] takes slots[i]. packed: the queue that `compact` fills. The length is
+   the device's: launches have as many work-items as the host knows to be enough. */
 #define KB_QUEUE_ARGUMENTS(X, SEP)                                                                               \
   X(queue, OUT, kb_u32, slots) SEP                                                                               \
+  X(queue, OUT, kb_u32, length) SEP                                                                              \
   X(queue, OUT, kb_u32, packed) SEP                                                                              \
-  X(queue, VALUE, kb_u32, count)
+  X(queue, OUT, kb_u32, packed_length)
 
 /* What evaluation writes on its way to the film. */
 #define KB_EVALUATION_ARGUMENTS(X, SEP)                                                                          \

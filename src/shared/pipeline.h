@@ -216,15 +216,18 @@ KB_STATIC_ASSERT(sizeof(KbTally) == 8, tally_size);
 #define KB_FAULT_STACK_OVERFLOW 2u /* a traversal needs more stack than the measured depth: our bug */
 #define KB_FAULT_BAD_INDEX 4u      /* a record refers to what does not exist: our bug */
 
-#define KB_LISTED_INVALID 24u
+/* Slots whose tallies a work-item adds up. */
+#define KB_TALLY_SLOTS 64u
+
+#define KB_LISTED_INVALID 22u
 
 typedef struct {
-  kb_u32 code;    /* KB_FAULT_* bits */
-  kb_u32 slot;    /* of one that raised it */
-  kb_u32 chunks;  /* arena chunks asked for */
-  kb_u32 active;  /* slots that are not finished, after the last compaction */
-  kb_u32 invalid; /* paths that leave the mean */
-  kb_u32 reserved[3];
+  kb_u32 code;                 /* KB_FAULT_* bits */
+  kb_u32 slot;                 /* of one that raised it */
+  kb_u32 chunks;               /* arena chunks asked for */
+  kb_u32 invalid;              /* paths that leave the mean */
+  kb_u32 rays[2], vertices[2]; /* of the round, as far as they are added: low and high word */
+  kb_u32 reserved[2];
   kb_u32 invalid_jobs[KB_LISTED_INVALID]; /* the first of them, in no order */
 } KB_ALIGNED(16) KbFaults;
 KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);

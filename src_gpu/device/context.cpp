@@ -44,6 +44,7 @@ void DeviceContext::rebuild() {
 }
 
 void DeviceContext::finish() {
+  count_wait();
   checked(site(Phase::kRun), [&] { queue_.finish(); });
 }
 

@@ -33,7 +33,9 @@ class DeviceContext {
   /// one are useless from now on; destroying them remains valid, before or after.
   void rebuild();
 
-  /// Waits until everything enqueued is done.
+  /// Waits until everything enqueued is done, whatever comes of it.
+  void settle() noexcept;
+  /// The same.
   /// throws DeviceLost, DeviceOutOfMemory, DeviceError
   void finish();
   /// Hands what is enqueued to the device, without waiting.
@@ -46,6 +48,10 @@ class DeviceContext {
   cl::Device cl_device() const { return cl::Device(device_.id, true); }
   /// How often it was rebuilt.
   uint32_t generation() const { return generation_; }
+
+  /// How often the host has waited for the device: transfers and finish().
+  uint64_t waits() const { return waits_; }
+  void count_wait() { ++waits_; }
 
   /// A site for errors of this device.
   CallSite site(Phase phase, std::string subject = {}) const {
@@ -76,7 +82,6 @@ class DeviceContext {
 
  private:
   void create();
-  void settle() noexcept;
 
   DeviceInfo device_;
   ContextOptions options_;
@@ -93,6 +98,7 @@ class DeviceContext {
   std::map<std::string, double> kernel_seconds_;
   std::map<std::string, uint64_t> kernel_launches_;
   uint32_t generation_ = 0;
+  uint64_t waits_ = 0;
 };
 
 /// Seconds on the device, of a launch that is done; 0 for one that had no items.

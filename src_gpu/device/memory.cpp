@@ -101,16 +101,33 @@ CallSite RawBuffer::site() const {
   return context_->site(Phase::kRun, "buffer '" + what_ + "'");
 }
 
-void RawBuffer::write(uint64_t offset, uint64_t bytes, const void* from) {
+void RawBuffer::write(uint64_t offset, uint64_t bytes, const void* from, bool wait) {
   check_range(offset, bytes);
   if (bytes == 0) return;
-  checked(site(), [&] { context_->queue().enqueueWriteBuffer(buffer_, CL_TRUE, offset, bytes, from); });
+  if (wait) context_->count_wait();
+  checked(site(), [&] { context_->queue().enqueueWriteBuffer(buffer_, wait, offset, bytes, from); });
 }
 
-void RawBuffer::read(uint64_t offset, uint64_t bytes, void* to) const {
+void RawBuffer::read(uint64_t offset, uint64_t bytes, void* to, bool wait) const {
   check_range(offset, bytes);
   if (bytes == 0) return;
-  checked(site(), [&] { context_->queue().enqueueReadBuffer(buffer_, CL_TRUE, offset, bytes, to); });
+  if (wait) context_->count_wait();
+  checked(site(), [&] { context_->queue().enqueueReadBuffer(buffer_, wait, offset, bytes, to); });
+}
+
+cl::Event RawBuffer::read_event(uint64_t offset, uint64_t bytes, void* to) const {
+  check_range(offset, bytes);
+  cl::Event event;
+  checked(site(), [&] {
+    context_->queue().enqueueReadBuffer(buffer_, CL_FALSE, offset, bytes, to, nullptr, &event);
+    context_->queue().flush();
+  });
+  return event;
+}
+
+void RawBuffer::wait_for(const cl::Event& event) const {
+  context_->count_wait();
+  checked(site(), [&] { event.wait(); });
 }
 
 void RawBuffer::fill(uint64_t offset, uint64_t bytes, const void* pattern, uint64_t pattern_bytes) {

@@ -44,8 +44,12 @@ class RawBuffer {
 
   void release() noexcept;
   void swap(RawBuffer& other) noexcept;
-  void write(uint64_t offset, uint64_t bytes, const void* from);
-  void read(uint64_t offset, uint64_t bytes, void* to) const;
+  /// wait: complete on return; else `from` and `to` are used until the queue has been waited for
+  void write(uint64_t offset, uint64_t bytes, const void* from, bool wait = true);
+  void read(uint64_t offset, uint64_t bytes, void* to, bool wait = true) const;
+  /// Enqueued; `to` is complete once wait_for() has returned.
+  cl::Event read_event(uint64_t offset, uint64_t bytes, void* to) const;
+  void wait_for(const cl::Event& event) const;
   /// pattern_bytes 1, 2, 4, 8 ... 128 and a divisor of bytes.
   void fill(uint64_t offset, uint64_t bytes, const void* pattern, uint64_t pattern_bytes);
 
@@ -67,8 +71,8 @@ class RawBuffer {
 }  // namespace detail
 
 /// `count` elements on the device. Moved, not copied; freed when destroyed. Contents start undefined.
-/// Transfers wait for what was enqueued before (the queue is in order) and are complete on return; fills and
-/// copies are only enqueued.
+/// Uploads and downloads wait for what was enqueued before (the queue is in order) and are complete on return; fills and what is
+/// called enqueue_... are only enqueued.
 /// throws, all transfers: DeviceLost, DeviceOutOfMemory, DeviceError;
 ///                        std::logic_error for a range beyond the end
 template <class T>
@@ -87,10 +91,22 @@ class DeviceBuffer {
   void upload(std::span<const T> values, uint64_t first = 0) {
     raw_.write(first * sizeof(T), values.size_bytes(), values.data());
   }
+  /// The same without waiting: the values stay where and as they are until the queue has been waited for.
+  void enqueue_upload(std::span<const T> values, uint64_t first = 0) {
+    raw_.write(first * sizeof(T), values.size_bytes(), values.data(), false);
+  }
+  void enqueue_download(std::span<T> values, uint64_t first = 0) const {
+    raw_.read(first * sizeof(T), values.size_bytes(), values.data(), false);
+  }
   /// Device to host, from element `first` on.
   void download(std::span<T> values, uint64_t first = 0) const {
     raw_.read(first * sizeof(T), values.size_bytes(), values.data());
   }
+  /// The same, to be waited for alone.
+  cl::Event download_event(std::span<T> values, uint64_t first = 0) const {
+    return raw_.read_event(first * sizeof(T), values.size_bytes(), values.data());
+  }
+  void wait_for(const cl::Event& event) const { raw_.wait_for(event); }
   std::vector<T> download() const {
     std::vector<T> values(count_);
     download(std::span<T>(values));

@@ -93,6 +93,12 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
   return shape;
 }
 
+uint32_t fitting_local_size(uint32_t wanted, uint64_t kernel_limit) {
+  if (wanted <= kernel_limit) return wanted;
+  return static_cast<uint32_t>(kernel_limit >= 32 ? kernel_limit / 32 * 32
+                                                  : std::max<uint64_t>(kernel_limit, 1));
+}
+
 uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open) {
   const uint64_t partial =
       shape.method == Method::kDpeptBatch ? uint64_t{shape.local_size} * layout.derived * sizeof(float) : 0;
@@ -120,6 +126,7 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
       open_(memory.allocate<float>("sums of chunks", open ? sum_.size() : 0)),
       means_(memory.allocate<float>("means", means_pixels_ * columns(layout))),
       counts_(memory.allocate<uint32_t>("sample counts", film_pixels)),
+      landing_{{context, means_.size()}, {context, means_.size()}},
       buffers_{
           .dense = memory.allocate<float>("dense spectra",
                                           pool.tables * table_bytes(layout, shape) / sizeof(float)),
@@ -140,6 +147,8 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
       pack_(film_program_.kernel("film_pack")),
       unpack_(film_program_.kernel("film_unpack")),
       main_(program_.kernel(main_kernel(shape.method))) {
+  shape_.local_size = fitting_local_size(shape.local_size, main_->max_work_group_size());
+  buffers_.parts = shape_.local_size;
   if (layout.derived > 0 && shape.method != Method::kDpeptPath)
     derived_ = program_.kernel(shape.method == Method::kPt ? "pt_derived" : "derived_add");
   if (!shape.shared_wavelengths) return;
@@ -169,7 +178,7 @@ PackingArguments::Of<BufferRef> Evaluation::packing(const DeviceBuffer<float>& v
 void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, const PathPool& pool) {
   device_layout_ = &spectra.layout;
   const auto bind_one = [&](EvaluationKernel& kernel, LaunchScale scale) {
-    kernel.set(scene, spectra, pool.buffers(), buffers_, film(0), pool.queue(0));
+    kernel.set(scene, spectra, pool.buffers(), buffers_, film(0), pool.queue().slots);
     kernel->set_scale(scale);
   };
   const LaunchScale scale = shape_.method == Method::kPt ? LaunchScale::kSlots : LaunchScale::kPaths;
@@ -208,16 +217,35 @@ void Evaluation::unpack(const std::vector<float>& packed, DeviceBuffer<float>& v
   }
 }
 
-void Evaluation::pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed) {
+/// Film pixels, packed by `kernel` from `values`, piece by piece: while one comes down the host puts the one before in its place.
+void Evaluation::download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels,
+                                 std::vector<float>& packed) {
   packed.resize(pixels * columns(layout_));
-  for (uint64_t first = 0; first < pixels; first += means_pixels_) {
+  struct Piece {
+    std::span<float> from;
+    float* to;
+    cl::Event done;
+  };
+  std::optional<Piece> before;
+  const auto put = [&](const Piece& piece) {
+    means_.wait_for(piece.done);
+    std::ranges::copy(piece.from, piece.to);
+  };
+  for (uint64_t first = 0, number = 0; first < pixels; first += means_pixels_, ++number) {
     const uint64_t some = std::min(means_pixels_, pixels - first);
-    pack_.set(film(first), packing(values, some));
-    pack_->launch(some * columns(layout_), kLocalSize);
+    kernel.set(film(first), packing(values, some));
+    kernel->launch(some * columns(layout_), kLocalSize);
+    const std::span<float> from = landing_[number % 2].values().first(some * columns(layout_));
     const DeviceBuffer<float>& device_means = means_;
-    device_means.download(
-        std::span<float>(packed).subspan(first * columns(layout_), some * columns(layout_)));
+    Piece piece{from, packed.data() + first * columns(layout_), device_means.download_event(from)};
+    if (before) put(*before);
+    before = std::move(piece);
   }
+  if (before) put(*before);
+}
+
+void Evaluation::pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed) {
+  download_packed(pack_, values, pixels, packed);
 }
 
 void Evaluation::load(const FilmSums& sums) {
@@ -255,28 +283,21 @@ void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
   (*derived_)->launch(uint64_t{round.pixels} * layout_.derived, kLocalSize);
 }
 
-void Evaluation::update(const PoolQueue& queue, uint64_t film_pixel) {
-  if (queue.count == 0) return;
-  main_.set(film(film_pixel), queue);
-  const uint64_t groups = ceil_div(queue.count, shape_.units_per_group);
+void Evaluation::update(const LaunchQueue& queue, uint64_t film_pixel) {
+  if (queue.most == 0) return;
+  main_.set(film(film_pixel), queue.slots);
+  const uint64_t groups = ceil_div(queue.most, shape_.units_per_group);
   main_->launch(groups * shape_.local_size, shape_.local_size);
   if (!derived_) return;
-  derived_->set(film(film_pixel), queue);
-  (*derived_)->launch(uint64_t{queue.count} * layout_.derived, kLocalSize);
+  derived_->set(film(film_pixel), queue.slots);
+  (*derived_)->launch(uint64_t{queue.most} * layout_.derived, kLocalSize);
 }
 
 void Evaluation::finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {
-  means.resize(pixels * columns(layout_));
+  download_packed(finish_, sum_, pixels, means);
   counts.resize(pixels);
   const DeviceBuffer<uint32_t>& device_counts = counts_;
   device_counts.download(std::span<uint32_t>(counts));
-  for (uint64_t first = 0; first < pixels; first += means_pixels_) {
-    const uint64_t some = std::min(means_pixels_, pixels - first);
-    finish_.set(film(first), packing(sum_, some));
-    finish_->launch(some * columns(layout_), kLocalSize);
-    const DeviceBuffer<float>& device_means = means_;
-    device_means.download(std::span<float>(means).subspan(first * columns(layout_), some * columns(layout_)));
-  }
 }
 
 }  // namespace kiloband::opencl

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "src_gpu/device/program.hpp"
+#include "src_gpu/evaluate/pinned_memory.hpp"
 #include "src_gpu/path/path_pool.hpp"
 #include "src_gpu/path/round_plan.hpp"
 #include "src_gpu/scene/device_scene.hpp"
@@ -31,6 +32,9 @@ struct EvaluationShape {
 
 EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool shared_wavelengths,
                                  uint32_t channels);
+
+/// Work-items of a group: no more than the compiled kernel can have, whose registers may allow fewer than the device does.
+uint32_t fitting_local_size(uint32_t wanted, uint64_t kernel_limit);
 
 /// Sums of pixels as the host keeps them, [pixel][channels + derived] (film/replicate_sums.hpp).
 struct FilmSums {
@@ -65,7 +69,7 @@ class Evaluation {
   /// dpept: the round's saved paths. Enqueued, not waited for.
   void evaluate(const KbRound& round, uint64_t film_pixel);
   /// pt: one bounce of the slots in the queue.
-  void update(const PoolQueue& queue, uint64_t film_pixel);
+  void update(const LaunchQueue& queue, uint64_t film_pixel);
   /// Means [pixel][K + D] and valid samples.
   void finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 
@@ -74,6 +78,8 @@ class Evaluation {
   PackingArguments::Of<BufferRef> packing(const DeviceBuffer<float>& values, uint64_t pixels) const;
   void unpack(const std::vector<float>& packed, DeviceBuffer<float>& values);
   void pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
+  void download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels,
+                       std::vector<float>& packed);
   uint64_t touched_pixels(uint64_t pixels) const;
 
   KbSpectraLayout layout_;
@@ -82,6 +88,7 @@ class Evaluation {
   const DeviceBuffer<KbSpectraLayout>* device_layout_ = nullptr;  // of the spectra, since bind()
   DeviceBuffer<float> sum_, compensation_, open_, means_;
   DeviceBuffer<uint32_t> counts_;
+  PinnedFloats landing_[2];  // where means come down, in turns
   EvaluationArguments::Of<DeviceBuffer> buffers_;
   Program film_program_, program_;
   std::optional<Program> resample_program_;

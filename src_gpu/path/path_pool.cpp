@@ -7,8 +7,15 @@ namespace kiloband::opencl {
 namespace {
 
 constexpr uint64_t kPoolLocalSize = 64;
-/// Iterations between two looks at the pool from the host: each look waits for the device.
+/// Iterations between two compactions of the queue. After so many the host looks whether the round is over, which waits for the
+/// device; not before it expects that, by the rounds before.
 constexpr uint32_t kIterationsPerLook = 8;
+/// So many rounds that were over when the host looked first, and it looks earlier.
+constexpr uint32_t kEarlyRounds = 8;
+
+uint64_t wide(const kb_u32 (&words)[2]) {
+  return uint64_t{words[1]} << 32 | words[0];
+}
 
 }  // namespace
 
@@ -54,88 +61,108 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
           .faults = memory.allocate<KbFaults>("faults", 1),
       },
       queue_(memory.allocate<uint32_t>("queue", size.slots)),
+      length_(memory.allocate<uint32_t>("queue", 1)),
       packed_(memory.allocate<uint32_t>("queue", size.slots)),
+      packed_length_(memory.allocate<uint32_t>("queue", 1)),
       reset_(program.kernel("reset_pool")),
       generate_(program.kernel("generate")),
       closest_(program.kernel("closest_hits")),
       shade_(program.kernel("shade")),
       any_(program.kernel(size.gas ? "shadow_walks" : "any_hits")),
-      compact_(program.kernel("compact")) {
-  for (PathKernel* kernel : {&reset_, &generate_, &closest_, &shade_, &any_, &compact_}) {
+      compact_(program.kernel("compact")),
+      tallies_(program.kernel("add_tallies")) {
+  for (PathKernel* kernel : {&reset_, &generate_, &closest_, &shade_, &any_, &compact_, &tallies_}) {
     (*kernel)->set_scale(LaunchScale::kSlots);
     kernel->set(scene, spectra, bvh, buffers_);
   }
 }
 
 void PathPool::launch(PathKernel& kernel) {
-  kernel.set(queue(count_));
-  kernel->launch(count_, kPoolLocalSize);
+  kernel.set(queue().slots);
+  kernel->launch(count_, std::min(kPoolLocalSize, kernel->max_work_group_size()));
 }
 
 void PathPool::iterate(const AfterBounce& after_bounce) {
   launch(generate_);
   launch(closest_);
-  if (on_hits_) on_hits_(queue(count_));
+  if (on_hits_) on_hits_(queue());
   launch(shade_);
   launch(any_);
-  if (after_bounce) after_bounce(queue(count_));
+  if (after_bounce) after_bounce(queue());
 }
 
-/// Drops the finished slots from the queue and waits. Returns false when the round is over or has failed.
-bool PathPool::compact() {
+/// Drops the finished slots from the queue; how many are left only the device knows.
+void PathPool::compact() {
   launch(compact_);
-  KbFaults faults = buffers_.faults.read(0);
-  throw_for_bugs(faults);
   std::swap(queue_, packed_);
-  count_ = faults.active;
-  if (faults.code & KB_FAULT_ARENA_FULL) return false;
-  faults.active = 0;
-  buffers_.faults.upload(std::span<const KbFaults>(&faults, 1));
-  return count_ > 0;
+  std::swap(length_, packed_length_);
 }
 
-void PathPool::add_tallies(uint32_t slots, RoundOutcome& outcome) const {
-  std::vector<KbTally> tallies(slots);
-  buffers_.tallies.download(std::span<KbTally>(tallies));
-  for (const KbTally& tally : tallies) {
-    outcome.rays += tally.rays;
-    outcome.vertices += tally.vertices;
-  }
+/// Waits. Returns false when the round is over or has failed.
+bool PathPool::look(RoundOutcome& outcome) {
+  tallies_.set(queue().slots);
+  tallies_->launch((round_.pool + KB_TALLY_SLOTS - 1) / KB_TALLY_SLOTS, kPoolLocalSize);
+  buffers_.faults.enqueue_download(std::span<KbFaults>(&faults_, 1));
+  count_ = length_.read(0);  // what was enqueued before is done, too
+  const KbFaults& faults = faults_;
+  throw_for_bugs(faults);
+  outcome.longest_launch_seconds =
+      std::max(outcome.longest_launch_seconds, context_.take_longest(LaunchScale::kSlots));
+  outcome.arena_full = faults.code & KB_FAULT_ARENA_FULL;
+  outcome.chunks = std::min(faults.chunks, size_.arena_chunks);
+  outcome.invalid = faults.invalid;
+  outcome.invalid_jobs.assign(faults.invalid_jobs,
+                              faults.invalid_jobs + std::min(faults.invalid, KB_LISTED_INVALID));
+  outcome.rays = wide(faults.rays);
+  outcome.vertices = wide(faults.vertices);
+  return count_ > 0 && !outcome.arena_full;
 }
 
 void PathPool::begin(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu) {
   if (round.pool > size_.slots || round.padded_pixels > size_.pixels || mu.size() > size_.tables ||
       round.arena_chunks > size_.arena_chunks)
     throw std::logic_error("path pool: the round is larger than the pool was made for");
-  buffers_.round.upload(std::span<const KbRound>(&round, 1));
-  buffers_.pixels.upload(pixels);
-  buffers_.shared_mu.upload(mu);
-  const KbFaults none{};
-  buffers_.faults.upload(std::span<const KbFaults>(&none, 1));
+  // The round before was waited for, so nothing reads these any more.
+  round_ = round;
+  pixels_.assign(pixels.begin(), pixels.end());
+  mu_.assign(mu.begin(), mu.end());
+  buffers_.round.enqueue_upload(std::span<const KbRound>(&round_, 1));
+  buffers_.pixels.enqueue_upload(pixels_);
+  buffers_.shared_mu.enqueue_upload(mu_);
+  length_.fill(round_.pool);
+}
+
+/// Iterations until the host looks first.
+uint32_t PathPool::expected_iterations(double jobs_each) const {
+  const bool known = jobs_each > 0.8 * known_jobs_ && jobs_each < 1.25 * known_jobs_;
+  return known ? known_iterations_ : kIterationsPerLook;
+}
+
+void PathPool::learn(double jobs_each, uint32_t iterations, bool at_first_look) {
+  early_rounds_ = at_first_look ? early_rounds_ + 1 : 0;
+  const bool earlier = early_rounds_ == kEarlyRounds && iterations > kIterationsPerLook;
+  if (earlier) early_rounds_ = 0;
+  known_jobs_ = jobs_each;
+  known_iterations_ = iterations - (earlier ? kIterationsPerLook : 0);
 }
 
 RoundOutcome PathPool::run(const KbRound& round, const AfterBounce& after_bounce) {
-  if (!after_bounce && uint64_t{round.samples} * round.padded_pixels > size_.jobs)
+  const uint64_t jobs = uint64_t{round.samples} * round.padded_pixels;
+  if (!after_bounce && jobs > size_.jobs)
     throw std::logic_error("path pool: the round has more paths than the pool was made for");
   count_ = round.pool;
   launch(reset_);
+  const double jobs_each = static_cast<double>(jobs) / round.pool;
+  const uint32_t expected = expected_iterations(jobs_each);
   RoundOutcome outcome;
-  bool more = true;
-  while (more) {
+  for (bool more = true; more;) {
     for (uint32_t i = 0; i < kIterationsPerLook; ++i) iterate(after_bounce);
     outcome.iterations += kIterationsPerLook;
-    more = compact();
-    outcome.longest_launch_seconds =
-        std::max(outcome.longest_launch_seconds, context_.take_longest(LaunchScale::kSlots));
+    compact();
+    if (outcome.iterations >= expected) more = look(outcome);
   }
-  const KbFaults faults = buffers_.faults.read(0);
-  outcome.arena_full = faults.code & KB_FAULT_ARENA_FULL;
-  outcome.chunks = std::min(faults.chunks, size_.arena_chunks);
-  outcome.invalid = faults.invalid;
-  outcome.invalid_jobs.assign(faults.invalid_jobs,
-                              faults.invalid_jobs + std::min(faults.invalid, KB_LISTED_INVALID));
   std::ranges::sort(outcome.invalid_jobs);
-  add_tallies(round.pool, outcome);
+  if (!outcome.arena_full) learn(jobs_each, outcome.iterations, outcome.iterations <= expected);
   return outcome;
 }
 

@@ -27,6 +27,12 @@ struct PoolSize {
 
 uint64_t path_pool_bytes(const PoolSize& size);
 
+/// Slots of a launch on the device, and how many work-items are enough for them.
+struct LaunchQueue {
+  QueueArguments::Of<BufferRef> slots;
+  uint32_t most = 0;
+};
+
 /// What a round came to.
 struct RoundOutcome {
   bool arena_full = false;  // nothing of it counts: repeat it with fewer paths
@@ -42,44 +48,58 @@ struct RoundOutcome {
 void throw_for_bugs(const KbFaults& faults);
 
 using PoolBuffers = PoolArguments::Of<DeviceBuffer>;
-using PoolQueue = QueueArguments::Of<BufferRef>;
 
 class PathPool {
  public:
   /// method_pt  the program was built with KB_METHOD_PT=1: vertices stay in a slot's own chunk for one bounce
   PathPool(DeviceContext& context, DeviceMemory& memory, const Program& program, const DeviceScene& scene,
            const DeviceBvh& bvh, const DeviceSpectra& spectra, const PoolSize& size);
+  /// Waits: the device may be reading a round that was begun.
+  ~PathPool() { context_.settle(); }
+  PathPool(const PathPool&) = delete;
+  PathPool& operator=(const PathPool&) = delete;
 
   const PoolSize& size() const { return size_; }
 
-  /// Uploads the round. pixels: [padded_pixels], those past round.pixels are not read. mu: by block and
+  /// Enqueues the round, of which copies are kept. pixels: [padded_pixels], those past round.pixels are not read. mu: by block and
   /// sample (shared wavelengths).
   void begin(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu);
   /// Runs it to its end. after_bounce (pt): called with the queue once per iteration, when shadow rays are done.
   /// throws std::logic_error  faults that are bugs of ours
   ///        DeviceLost ...
-  using AfterBounce = std::function<void(const PoolQueue& queue)>;
+  using AfterBounce = std::function<void(const LaunchQueue& queue)>;
   RoundOutcome run(const KbRound& round, const AfterBounce& after_bounce = {});
   /// Called between tracing and shading of every iteration (debugging, parity tests).
   void observe_hits(AfterBounce observer) { on_hits_ = std::move(observer); }
 
   const PoolBuffers& buffers() const { return buffers_; }
-  /// The first `count` slots in the queue.
-  PoolQueue queue(uint32_t count) const { return {.slots = queue_, .packed = packed_, .count = count}; }
+  LaunchQueue queue() const {
+    return {{.slots = queue_, .length = length_, .packed = packed_, .packed_length = packed_length_}, count_};
+  }
 
  private:
   void iterate(const AfterBounce& after_bounce);
   void launch(PathKernel& kernel);
-  bool compact();
-  void add_tallies(uint32_t slots, RoundOutcome& outcome) const;
+  void compact();
+  bool look(RoundOutcome& outcome);
+  uint32_t expected_iterations(double jobs_each) const;
+  void learn(double jobs_each, uint32_t iterations, bool at_first_look);
 
   DeviceContext& context_;
   PoolSize size_;
   PoolBuffers buffers_;
-  DeviceBuffer<uint32_t> queue_, packed_;
-  PathKernel reset_, generate_, closest_, shade_, any_, compact_;
+  DeviceBuffer<uint32_t> queue_, length_, packed_, packed_length_;
+  PathKernel reset_, generate_, closest_, shade_, any_, compact_, tallies_;
   AfterBounce on_hits_;
-  uint32_t count_ = 0;  // slots in the queue
+  uint32_t count_ = 0;  // slots in the queue, at most
+  // What the device may still be reading or writing.
+  KbRound round_{};
+  KbFaults faults_{};
+  std::vector<KbRoundPixel> pixels_;
+  std::vector<float> mu_;
+  // Of rounds before: jobs of a slot, iterations that they took; rounds that were through at the first look.
+  double known_jobs_ = 0;
+  uint32_t known_iterations_ = 0, early_rounds_ = 0;
 };
 
 }  // namespace kiloband::opencl

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace kiloband::opencl {
@@ -18,6 +19,11 @@ constexpr uint64_t kLongestPath = 100000 * 3 / KB_CHUNK_ENTRIES + 1;
 
 /// Dense spectra of a block that a round may need.
 constexpr uint64_t kTablesOfBlock = 4u << 20;
+
+/// Of a GPU. Many paths hide its latency (Laine et al. 2013; the peak of the DPEPT paper lies between 1024^2 and 2048^2), and long
+/// rounds have few beginnings and ends. Bytes: of a slot, and of a path with its vertices, as in most scenes.
+constexpr uint64_t kFewestGpuSlots = 1u << 16, kMostGpuSlots = 1u << 21, kMostGpuJobs = 1u << 24;
+constexpr uint64_t kSlotBytes = 256, kJobBytes = 512;
 
 uint64_t share(uint64_t bytes, double part) {
   return static_cast<uint64_t>(static_cast<double>(bytes) * part);
@@ -115,6 +121,16 @@ uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {
   const uint64_t most = cpu_device ? 16 : 64;
   return static_cast<uint32_t>(table_bytes > 0 ? std::clamp<uint64_t>(kTablesOfBlock / table_bytes, 1, most)
                                                : most);
+}
+
+uint32_t gpu_slots(uint64_t budget) {
+  const uint64_t fitting = std::bit_floor(std::max<uint64_t>(budget / 16 / kSlotBytes, 1));
+  return static_cast<uint32_t>(std::clamp<uint64_t>(fitting, kFewestGpuSlots, kMostGpuSlots));
+}
+
+uint64_t gpu_jobs(uint64_t budget) {
+  const uint64_t fitting = std::bit_floor(std::max<uint64_t>(share(budget, kPathShare) / kJobBytes, 1));
+  return std::clamp<uint64_t>(fitting, gpu_slots(budget), kMostGpuJobs);
 }
 
 SumRule sum_rule_of(Method method, uint32_t round_samples, bool derived) {

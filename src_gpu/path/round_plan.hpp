@@ -55,6 +55,10 @@ uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes);
 /// Samples that kernels sum in registers before they add them to the film (kernels/evaluate/evaluate_tile.clh).
 inline constexpr uint32_t kSamplesInRegisters = 32;
 
+/// Paths in flight and paths of a round that a GPU gains from and that its memory has room for, powers of two.
+uint32_t gpu_slots(uint64_t budget);
+uint64_t gpu_jobs(uint64_t budget);
+
 /// How the film is summed where rounds have at most `round_samples`: in chunks of a round, and of what
 /// registers take of it; pt adds every sample to the film at once.
 /// derived  there are derived channels, whose sums are kept for whole rounds alone

@@ -73,7 +73,10 @@ void DeviceEvaluator::pt(const PathBuffer& paths, uint32_t slots, uint32_t local
     }
     pool_.arena = probe.upload(chunks);
     pool_.states = probe.upload(states);
-    queue_ = {.slots = probe.upload(queue), .packed = {}, .count = slots};
+    queue_ = {.slots = probe.upload(queue),
+              .length = probe.upload(std::vector{slots}),
+              .packed = {},
+              .packed_length = {}};
     cl::Kernel k = evaluation_kernel("pt_update");
     run(k, std::size_t{local_size} * ((slots + 1) / 2), local_size);
     if (layout_.derived == 0) continue;
@@ -106,7 +109,10 @@ PtTiming DeviceEvaluator::time_pt(uint32_t slots, uint32_t groups, uint32_t boun
   pool_.arena = probe.upload(chunks);
   std::vector<uint32_t> order(slots);
   std::iota(order.begin(), order.end(), 0u);
-  queue_ = {.slots = probe.upload(order), .packed = {}, .count = slots};
+  queue_ = {.slots = probe.upload(order),
+            .length = probe.upload(std::vector{slots}),
+            .packed = {},
+            .packed_length = {}};
   std::vector<cl::Buffer> states;
   for (uint32_t b = 0; b < bounces; ++b) {
     std::vector<KbPathState> bounce(slots);
