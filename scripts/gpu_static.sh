@@ -34,7 +34,7 @@ defines_of() {
   esac
 }
 
-# assemble NAME FILE DEFINES...: NAME.cubin and ptxas's report NAME.txt
+# assemble NAME FILE DEFINES...  (limit: registers at most, as the host asks for): NAME.cubin and ptxas's report NAME.txt
 assemble() {
   local out=$folder/$1 file=$2 kernels
   shift 2
@@ -47,7 +47,7 @@ assemble() {
   "$llvm/opt" -internalize -internalize-public-api-list="$kernels" -nvvm-reflect -O3 -mtriple=nvptx64-nvidia-nvcl \
     -mcpu=sm_80 -o "$out.opt.bc" "$out.linked.bc"
   "$llvm/llc" -O3 -mtriple=nvptx64-nvidia-nvcl -mcpu=sm_75 -mattr=+ptx75 -o "$out.ptx" "$out.opt.bc"
-  ptxas -v -arch="$arch" -o "$out.cubin" "$out.ptx" > "$out.txt" 2>&1 || { cat "$out.txt" >&2; return 1; }
+  ptxas -v ${limit:+--maxrregcount=$limit} -arch="$arch" -o "$out.cubin" "$out.ptx" > "$out.txt" 2>&1 || { cat "$out.txt" >&2; return 1; }
 }
 
 # row SET TAG FILE DEFINES...
@@ -66,10 +66,10 @@ echo "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"
 for set in "$@"; do
   defines=$(defines_of "$set")
   # As a GPU is given 512 channels (evaluation_shape): 4 per item; shared wavelengths, no derived channels.
-  evaluation="-DKB_WIDTH=4 -DKB_VECTORS=${VECTORS:-1} -DKB_DERIVED=0 -DKB_PIXELS=1 -DKB_PER_PATH=0"
+  evaluation="-DKB_WIDTH=4 -DKB_VECTORS=1 -DKB_DERIVED=0 -DKB_PIXELS=1 -DKB_PER_PATH=0"
   # shellcheck disable=SC2086
   {
-    row "$set" paths kernels/path/paths.cl $defines
+    limit=80 row "$set" paths kernels/path/paths.cl $defines # kPathRegisters of src_gpu/device_state.cpp
     row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation -DKB_STAGED=1
     row "$set" path kernels/evaluate/evaluate.cl $defines $evaluation -DKB_FILM_TRANSPOSED=1 | grep dpept_path
     row "$set" pt kernels/evaluate/pt.cl $defines $evaluation -DKB_METHOD_PT=1

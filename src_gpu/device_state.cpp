@@ -10,6 +10,9 @@ namespace {
 
 /// Rays of a launch that cannot be measured beforehand: short on any device.
 constexpr uint32_t kAuxiliaryPixels = 1u << 15;
+/// Of the kernels of path generation: 24 warps per multiprocessor, where `shade` would take registers for 16 and have 2 % fewer
+/// instructions (validation/results/gpu_static.md).
+constexpr uint32_t kPathRegisters = 80;
 
 /// A program's chunks where they are not the usual ones.
 void add_chunk_define(std::vector<std::string>& defines, const HostScene& host, Method method) {
@@ -57,8 +60,9 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       settings_(device_settings),
       shape_(evaluation_shape(device_context.device(), method, settings_.shared_wavelengths,
                               host.spectra.layout.channels)),
-      paths_(build_program(context, "path/paths.cl",
-                           ProgramOptions{path_defines(host, settings_), settings_.program_cache})),
+      paths_(build_program(
+          context, "path/paths.cl",
+          ProgramOptions{path_defines(host, settings_), settings_.program_cache, kPathRegisters})),
       scene_(upload_scene(memory, host.scene)),
       bvh_(upload_bvh(memory, host.bvh)),
       spectra_(upload_spectra(memory, host.spectra)) {}

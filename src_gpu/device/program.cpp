@@ -11,12 +11,15 @@ namespace {
 
 /// No fast-math, ever: results are compared with the CPU's. Devices that can round divisions and roots
 /// correctly are asked to; the others may be off by 2.5 and 3 ulp (OpenCL 1.2, 7.4).
-std::string build_options(const DeviceContext& context, const std::vector<std::string>& defines) {
+std::string build_options(const DeviceContext& context, const ProgramOptions& options) {
   std::string text = "-cl-std=CL1.2";
   const cl_device_fp_config config = checked(
       context.site(Phase::kSetup), [&] { return context.cl_device().getInfo<CL_DEVICE_SINGLE_FP_CONFIG>(); });
   if (config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) text += " -cl-fp32-correctly-rounded-divide-sqrt";
-  for (const std::string& define : defines) text += " -D" + define;
+  const std::string extensions = checked(context.site(Phase::kSetup),
+                                         [&] { return context.cl_device().getInfo<CL_DEVICE_EXTENSIONS>(); });
+  text += register_option(extensions, options.most_registers);
+  for (const std::string& define : options.defines) text += " -D" + define;
   return text;
 }
 
@@ -76,6 +79,11 @@ void save_binary(DeviceContext& context, const ProgramCache& cache, const std::s
 
 }  // namespace
 
+std::string register_option(const std::string& extensions, uint32_t most) {
+  const bool known = (" " + extensions + " ").find(" cl_nv_compiler_options ") != std::string::npos;
+  return known && most > 0 ? " -cl-nv-maxrregcount=" + std::to_string(most) : "";
+}
+
 Kernel Program::kernel(const std::string& name) const {
   try {
     return Kernel(*context_, cl::Kernel(program_, name.c_str()), name);
@@ -89,7 +97,7 @@ Kernel Program::kernel(const std::string& name) const {
 Program build_program(DeviceContext& context, const SourceMap& sources, const std::string& main,
                       const ProgramOptions& options) {
   const std::string source = assemble_source(sources, main);
-  const std::string flags = build_options(context, options.defines);
+  const std::string flags = build_options(context, options);
   const std::string key = ProgramCache::key(source, flags, context.device());
   const auto known = context.programs().find(key);
   if (known != context.programs().end()) return Program(context, known->second, ProgramOrigin::kProcess);

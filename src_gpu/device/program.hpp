@@ -36,7 +36,12 @@ class Program {
 struct ProgramOptions {
   std::vector<std::string> defines;  // "KB_CHANNELS=64", "KB_SPECIALISED"
   bool disk_cache = true;
+  uint32_t most_registers = 0;  // of a work-item: register_option()
 };
+
+/// The build option by which NVIDIA's compiler keeps to `most` registers per work-item and puts what is left into memory, so that more
+/// work-items run side by side. Empty where `extensions` do not have it, or most is 0.
+std::string register_option(const std::string& extensions, uint32_t most);
 
 /// Builds kernels/`main` ("path/paths.cl") with -cl-std=CL1.2, without fast-math. Looked for first among the
 /// programs of the context, then on disk (program_cache.hpp).

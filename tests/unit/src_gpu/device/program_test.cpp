@@ -136,5 +136,15 @@ TEST_F(ProgramTest, NoFolderNoCacheNoError) {
   setenv("HOME", before.c_str(), 1);
 }
 
+/// The option of NVIDIA's compiler goes to no other: an unknown option fails the build.
+TEST(ProgramRegisters, OnlyForCompilersThatKnowTheOption) {
+  const std::string nvidia = "cl_khr_fp64 cl_nv_compiler_options cl_nv_device_attribute_query";
+  EXPECT_EQ(register_option(nvidia, 80), " -cl-nv-maxrregcount=80");
+  EXPECT_EQ(register_option("cl_nv_compiler_options", 64), " -cl-nv-maxrregcount=64");
+  EXPECT_EQ(register_option(nvidia, 0), "");
+  EXPECT_EQ(register_option("cl_khr_fp64 cl_nv_compiler_options2", 80), "");
+  EXPECT_EQ(register_option("", 80), "");
+}
+
 }  // namespace
 }  // namespace kiloband::opencl::test
