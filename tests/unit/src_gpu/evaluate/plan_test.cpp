@@ -1,6 +1,8 @@
 // Sizes that follow from the device: paths in flight and of a round, work-groups, which evaluation is built.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "src_gpu/evaluate/evaluation.hpp"
 
 namespace kiloband::test {

@@ -1,6 +1,6 @@
 // dpept_batch with the stage (kernels/evaluate/stage.clh), as GPUs run it, against dpept_batch without, as CPU devices run it: the same
 // bits. Derived channels too: a work-item adds its channels in the same order.
-#include <numeric>
+#include <algorithm>
 
 #include "device_scene.hpp"
 #include "tests/unit/src_cpu/evaluate/random_gas.hpp"
