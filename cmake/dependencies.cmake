@@ -1,6 +1,8 @@
 # Debian 12 packages; scripts/install_dependencies.sh installs them.
 find_package(OpenEXR 3 REQUIRED)
 find_package(OpenImageIO 2.4 REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
 find_package(glm REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)

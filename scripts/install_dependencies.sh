@@ -7,7 +7,7 @@ set -euo pipefail
 # libjs-dygraphs: draws the spectra in the page of `kiloband view`, which embeds it.
 # openimageio-tools: CMake's description of libopenimageio-dev insists on its programs, without depending on them.
 build=(g++ cmake ninja-build pkg-config git ca-certificates
-  libembree-dev libtbb-dev libopenexr-dev libopenimageio-dev openimageio-tools libglm-dev libpugixml-dev zlib1g-dev libyaml-cpp-dev
+  libembree-dev libtbb-dev libopenexr-dev libopenimageio-dev openimageio-tools libpng-dev libjpeg-dev libglm-dev libpugixml-dev zlib1g-dev libyaml-cpp-dev
   libcli11-dev libfmt-dev nlohmann-json3-dev libhwy-dev libcpp-httplib-dev libturbojpeg0-dev libjs-dygraphs libboost-dev libboost-math-dev
   opencl-headers opencl-clhpp-headers ocl-icd-opencl-dev)
 # libclang-rt-dev: libFuzzer and the sanitizers of clang; libomp-dev: OpenMP that ThreadSanitizer can follow (GCC's looks like

@@ -1,6 +1,5 @@
 // PictureLibrary by OpenImageIO 2.4, as a module that is loaded when it is needed. It uses nothing of kiloband but the
 // interface.
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -88,19 +87,6 @@ class OiioLibrary : public PictureLibrary {
   }
 
   void spare_threads() override { OIIO::attribute("exr_threads", -1); }
-
-  std::vector<unsigned char> png(uint32_t width, uint32_t height, const uint8_t* rgb,
-                                 std::string& error) override {
-    OIIO::Filesystem::IOVecOutput memory;
-    const auto output = OIIO::ImageOutput::create("png", &memory);
-    OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    if (output && output->open("picture.png", spec) && output->write_image(OIIO::TypeDesc::UINT8, rgb) &&
-        output->close())
-      return memory.buffer();
-    error = output ? output->geterror() : OIIO::geterror();
-    return {};
-  }
 };
 
 }  // namespace

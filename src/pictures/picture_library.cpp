@@ -2,10 +2,15 @@
 
 #include <dlfcn.h>
 
+#include <array>
 #include <filesystem>
+#include <new>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "base/error.hpp"
+#include "pictures/readers/readers.hpp"
 
 namespace kiloband {
 namespace {
@@ -30,12 +35,63 @@ PictureLibrary& load() {
   const auto entry = module ? reinterpret_cast<Entry>(dlsym(module, "kiloband_picture_library")) : nullptr;
   if (entry) return *entry();
   const char* reason = dlerror();
-  throw DeviceError("pictures cannot be read or written: " + std::string(reason ? reason : file.string()));
+  throw DeviceError(reason ? reason : file.string());
 }
+
+class Pictures : public PictureLibrary {
+ public:
+  std::unique_ptr<PictureInput> open(const std::string& format, const std::string& file,
+                                     std::string& error) override {
+    error.clear();
+    try {
+      if (auto input = open_own(format, file)) return input;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& reason) {
+      error = reason.what();
+      return nullptr;
+    }
+    return library_for(file).open(format, file, error);
+  }
+
+  void spare_threads() override { spare_ = true; }
+
+ private:
+  using Opener = std::unique_ptr<PictureInput> (*)(const std::string& file);
+
+  static std::unique_ptr<PictureInput> open_own(const std::string& format, const std::string& file) {
+    constexpr std::array<std::pair<std::string_view, Opener>, 5> kOwn = {{{"openexr", open_exr},
+                                                                          {"png", open_png},
+                                                                          {"jpeg", open_jpeg},
+                                                                          {"hdr", open_radiance},
+                                                                          {"pnm", open_pfm}}};
+    for (const auto& [name, opener] : kOwn)
+      if (name == format) return opener(file);
+    return nullptr;
+  }
+
+  PictureLibrary& library_for(const std::string& file) const {
+    try {
+      PictureLibrary& library = oiio_library();
+      if (spare_) library.spare_threads();
+      return library;
+    } catch (const DeviceError& error) {
+      throw DeviceError(file +
+                        ": this kind of picture needs OpenImageIO, which cannot be loaded: " + error.what());
+    }
+  }
+
+  bool spare_ = false;
+};
 
 }  // namespace
 
 PictureLibrary& picture_library() {
+  static Pictures library;
+  return library;
+}
+
+PictureLibrary& oiio_library() {
   static PictureLibrary& library = load();
   return library;
 }

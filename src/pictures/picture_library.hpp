@@ -1,5 +1,6 @@
-// Picture files by OpenImageIO, which is loaded when the first one is read or written: it brings some 250 shared libraries,
-// 0.2 s of every start. What is built without it has everything but pictures.
+// Picture files. EXR, PNG, JPEG, Radiance and PFM are read by the program itself (readers/); OpenImageIO, which brings some 250
+// shared libraries (0.2 s of a start), is a module that is loaded for what is left: TIFF, BMP, PNM, Targa, and EXR and JPEG files
+// whose channels are stored in an unusual way. What is built without it has everything but these.
 #pragma once
 
 #include <cstdint>
@@ -35,20 +36,25 @@ class PictureInput {
 class PictureLibrary {
  public:
   virtual ~PictureLibrary() = default;
-  /// format: the library's name of a reader, such as "png", so that no other reader sees the file. Alpha is left
+  /// format: the name of a reader, such as "png", so that no other reader sees the file. Alpha is left
   /// unassociated. Null: `error` says why, empty if there is no such reader.
   virtual std::unique_ptr<PictureInput> open(const std::string& format, const std::string& file,
                                              std::string& error) = 0;
   /// EXR files are read without threads from now on.
   virtual void spare_threads() = 0;
-  /// An sRGB PNG of rgb[y][x][3]. Empty: `error` says why.
-  virtual std::vector<unsigned char> png(uint32_t width, uint32_t height, const uint8_t* rgb,
-                                         std::string& error) = 0;
 };
 
-/// The library, loaded by the first call: from the program's folder, from ../lib/kiloband beside it, or from where it was
-/// built.
-/// throws DeviceError  it cannot be loaded
+/// The program's own readers, and OpenImageIO for what they leave to it.
+/// open() throws DeviceError  OpenImageIO is needed and cannot be loaded
 PictureLibrary& picture_library();
+
+/// OpenImageIO, loaded by the first call: from the program's folder, from ../lib/kiloband beside it, or from where it was
+/// built.
+/// throws DeviceError  it cannot be loaded: the linker's reason
+PictureLibrary& oiio_library();
+
+/// An sRGB PNG file of rgb[y][x][3].
+/// throws DeviceError  not enough memory; std::logic_error  sizes that PNG does not have
+std::string png_file(uint32_t width, uint32_t height, const uint8_t* rgb);
 
 }  // namespace kiloband

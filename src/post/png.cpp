@@ -26,10 +26,7 @@ void write_png(const std::filesystem::path& file, uint32_t width, uint32_t heigh
   if (linear_rgb.size() != std::size_t{width} * height * 3)
     throw std::logic_error("write_png: the buffer does not fit the image");
   const std::vector<uint8_t> pixels = encode_srgb(linear_rgb);
-  std::string error;
-  const std::vector<unsigned char> bytes = picture_library().png(width, height, pixels.data(), error);
-  if (bytes.empty()) throw DeviceError("cannot write '" + file.string() + "': " + error);
-  write_file_atomically(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file_atomically(file, png_file(width, height, pixels.data()));
 }
 
 }  // namespace kiloband

@@ -106,8 +106,8 @@ TEST(Messages, FewSamplesLeaveFewerReplicates) {
   EXPECT_EQ(said(false, {"--spp", "8"}).find("note:"), std::string::npos);
 }
 
-/// OpenImageIO brings some 250 libraries: a start without pictures loads none of them.
-TEST(Start, LoadsThePictureLibraryOnlyForPictures) {
+/// OpenImageIO brings some 250 libraries: only pictures that the program does not read itself load them.
+TEST(Start, LoadsOpenImageIOOnlyForItsPictures) {
   const TemporaryFolder folder;
   folder.write("scene.xml", complete_scene(""));
   Treatment traced;
@@ -118,8 +118,17 @@ TEST(Start, LoadsThePictureLibraryOnlyForPictures) {
     return outcome.err.find("libOpenImageIO") != std::string::npos;
   };
   EXPECT_FALSE(loads({"--version"}));
-  EXPECT_FALSE(loads(quiet_render("scene.xml", {"--spp", "1", "-o", "a.exr"})));
-  EXPECT_TRUE(loads(quiet_render("scene.xml", {"--spp", "1", "-o", "a.exr", "--preview", "a.png"})));
+  EXPECT_FALSE(loads(quiet_render("scene.xml", {"--spp", "1", "-o", "a.exr", "--preview", "a.png"})));
+  const auto textured = [&](const std::string& picture) {
+    folder.write("textured.xml", complete_scene(R"(<shape type="sphere"><bsdf type="diffuse">)"
+                                                R"(<texture type="bitmap" name="reflectance">)"
+                                                R"(<string name="filename" value=")" +
+                                                picture + R"("/></texture></bsdf></shape>)"));
+    return quiet_render("textured.xml", {"--spp", "1", "-o", "b.exr"});
+  };
+  EXPECT_FALSE(loads(textured("a.png")));
+  folder.write("a.ppm", "P6\n1 1\n255\nabc");
+  EXPECT_TRUE(loads(textured("a.ppm")));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 namespace kiloband {
 namespace {
 
-/// OpenImageIO's name of the reader. Choosing it ourselves keeps its other readers (video, DICOM ...)
+/// The library's name of the reader. Choosing it ourselves keeps OpenImageIO's other readers (video, DICOM ...)
 /// away from the file.
 const char* reader_name(ImageFormat format) {
   switch (format) {

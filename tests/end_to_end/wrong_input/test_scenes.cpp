@@ -35,7 +35,7 @@ TEST(WrongScene, IsRefusedByRenderAndInfo) {
       {scene_text(
            R"xml(<emitter type="envmap"><string name="filename" value="truncated.hdr"/></emitter>)xml" +
            kSensor + kSphere),
-       "broken.xml:2:55: error: ./truncated.hdr: cannot be read: Read error reading pixels on scanline 0"},
+       "broken.xml:2:55: error: ./truncated.hdr: cannot be read: the data of row 0 is damaged or truncated"},
       {leaf(R"xml(<spectrum name="reflectance" filename="word.spd"/>)xml"),
        "broken.xml:2:71: error: ./word.spd:2: 'high' is not a number"},
       {scene_text(

@@ -155,6 +155,10 @@ TEST(Dependencies, LibrariesStayBehindTheirInterfaces) {
     if (file.path != "src/pictures/oiio_module.cpp") {
       EXPECT_EQ(file.text.find("<OpenImageIO"), std::string::npos) << file.path;
     }
+    if (!starts_with(file.path, "src/pictures/")) {
+      for (const char* header : {"<png.h>", "<jpeglib.h>"})
+        EXPECT_EQ(file.text.find(header), std::string::npos) << file.path << " " << header;
+    }
   }
 }
 
