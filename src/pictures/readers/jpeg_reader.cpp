@@ -1,12 +1,12 @@
 // JPEG by libjpeg-turbo. Its errors are jumps: functions that a jump may leave hold nothing that would have to be destroyed.
-#include <jpeglib.h>
 
 #include <csetjmp>
-#include <cstdio>  // before jpeglib.h, which needs it
+#include <cstdio>
 #include <stdexcept>
 #include <vector>
 
 #include "pictures/readers/c_file.hpp"
+#include "pictures/readers/jpeg.hpp"
 #include "pictures/readers/readers.hpp"
 #include "pictures/readers/row_input.hpp"
 

@@ -6,12 +6,13 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
-#include <jpeglib.h>
 #include <png.h>
 
 #include <cstdio>
 #include <random>
 #include <stdexcept>
+
+#include "pictures/readers/jpeg.hpp"
 
 namespace kiloband::test {
 namespace {
