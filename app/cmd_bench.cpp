@@ -13,6 +13,7 @@
 #include "app/console/stop_signals.hpp"
 #include "app/options/backend_options.hpp"
 #include "app/report_page.hpp"
+#include "app/source_folder.hpp"
 #include "base/error.hpp"
 #include "src_gpu/device/device.hpp"
 #include "validation/speed/bench.hpp"
@@ -26,7 +27,7 @@ struct BenchOptions {
   std::vector<std::string> names, backends;
   bool quick = false, list = false, quiet = false, no_report = false;
   uint64_t seed = 1;
-  std::string output = "bench_results", root = KILOBAND_SOURCE_DIR, data;
+  std::string output = "bench_results", root = source_folder(), data;
   std::optional<std::string> device, device_memory;
 };
 

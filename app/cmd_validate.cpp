@@ -14,6 +14,7 @@
 #include "app/console/standard_output.hpp"
 #include "app/console/stop_signals.hpp"
 #include "app/report_page.hpp"
+#include "app/source_folder.hpp"
 #include "base/error.hpp"
 #include "scenes/generator/scenes.hpp"
 #include "src_cpu/cpu_backend.hpp"
@@ -30,7 +31,7 @@ struct ValidateOptions {
   std::vector<std::string> names, backends;
   bool quick = false, thorough = false, list = false, quiet = false, no_report = false;
   uint64_t seed = 1;
-  std::string output = "validation_results", scenes = KILOBAND_SOURCE_DIR, data;
+  std::string output = "validation_results", scenes = source_folder(), data;
 };
 
 Effort effort_of(const ValidateOptions& options) {

@@ -42,7 +42,9 @@ class OpenclProbe {
     context = cl::Context(device);
     queue = cl::CommandQueue(context, device);
     program = cl::Program(context, source);
-    const std::string root = KILOBAND_SOURCE_DIR;
+    const char* named =
+        std::getenv("KILOBAND_SOURCES");  // of a program that is away from its sources (docs/portable.md)
+    const std::string root = named ? named : KILOBAND_SOURCE_DIR;
     const std::string flags =
         "-cl-std=CL1.2 -I" + root + "/kernels -I" + root + "/src -I" + root + " " + options;
     try {
