@@ -46,7 +46,7 @@ void names(std::string_view bytes) {
   accept_or_refuse([&] { parse_error("--target-error", std::string(bytes)); });
 }
 
-/// Up to where OpenImageIO takes over.
+/// Up to where libraries take over; fuzz_pictures.cpp goes on.
 void image_header(std::string_view bytes) {
   for (const char* name : {"image.png", "image.tga"}) {
     const auto file = scratch_file(name, bytes);

@@ -33,6 +33,7 @@ constexpr std::array kTargets{
     Target{"envi_cube", envi_cube},
     Target{"spectral_image", spectral_image},
     Target{"image_header", image_header},
+    Target{"picture", picture},
     Target{"checkpoint", checkpoint},
     Target{"viewer_requests", viewer_requests},
 };

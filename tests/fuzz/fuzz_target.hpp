@@ -37,6 +37,7 @@ void exr_cube(std::string_view bytes);
 void envi_cube(std::string_view bytes);
 void spectral_image(std::string_view bytes);
 void image_header(std::string_view bytes);
+void picture(std::string_view bytes);
 void checkpoint(std::string_view bytes);
 void viewer_requests(std::string_view bytes);
 
