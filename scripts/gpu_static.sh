@@ -17,22 +17,7 @@ if [ ${#missing[@]} -gt 0 ]; then echo "gpu_static: missing: ${missing[*]}" >&2;
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# The defines of a feature set; every feature is named in kernels/base/scene.clh.
-defines_of() {
-  case $1 in
-    diffuse | textured)
-      sed -nE 's/^#define (KB_HAS_\w+) 1$/\1/p' kernels/base/scene.clh | while read -r feature; do
-        case $1.$feature in
-          *.KB_HAS_DIFFUSE | *.KB_HAS_AREA_LIGHT) echo "-D$feature=1" ;;
-          textured.*_CONDUCTOR | textured.*_DIELECTRIC | textured.*_PLASTIC | textured.*_BITMAP | textured.*_ENVMAP_LIGHT)
-            echo "-D$feature=1" ;;
-          *) echo "-D$feature=0" ;;
-        esac
-      done
-      echo "-DKB_SPECIALISED -DKB_BVH_STACK=$([ "$1" = diffuse ] && echo 16 || echo 48)" ;;
-    *) echo "gpu_static: no feature set '$1'" >&2; return 1 ;;
-  esac
-}
+. scripts/gpu_feature_sets.sh
 
 # assemble NAME FILE DEFINES...  (limit: registers at most, as the host asks for): NAME.cubin and ptxas's report NAME.txt
 assemble() {
