@@ -42,7 +42,7 @@ mount -t sysfs -o ro sysfs "$root/sys" && mounted+=("$root/sys")
 rm -rf "$root/opt/kiloband-portable" "$root/opt/out"
 tar xzf "$archive" -C "$root/opt"
 here=$root/opt/kiloband-portable
-printf 'P6\n1 1\n255\nabc' > "$here/a.ppm"
+printf 'BM' > "$here/a.bmp"
 
 inside() { chroot "$root" /usr/bin/env -i PATH=/usr/bin:/bin "$@"; }
 
@@ -53,14 +53,14 @@ echo "libraries of the program that are not the folder's:"
 grep -v '/opt/kiloband-portable/' <<< "$loaded" | awk '{ print "    " $1 }'
 
 # A picture that needs OpenImageIO is refused as the machine's fault.
-cat > "$here/ppm.xml" << 'END'
+cat > "$here/bmp.xml" << 'END'
 <scene version="3.0.0"><sensor type="perspective"/><emitter type="constant"/><shape type="sphere"><bsdf type="diffuse">
-<texture type="bitmap" name="reflectance"><string name="filename" value="a.ppm"/></texture></bsdf></shape></scene>
+<texture type="bitmap" name="reflectance"><string name="filename" value="a.bmp"/></texture></bsdf></shape></scene>
 END
 code=0
-inside /opt/kiloband-portable/kiloband render /opt/kiloband-portable/ppm.xml --spp 1 -o /tmp/a.exr || code=$?
-[ "$code" -eq 3 ] || fail "a PPM picture: exit code $code instead of 3"
-rm "$here/a.ppm" "$here/ppm.xml"
+inside /opt/kiloband-portable/kiloband render /opt/kiloband-portable/bmp.xml --spp 1 -o /tmp/a.exr || code=$?
+[ "$code" -eq 3 ] || fail "a BMP picture: exit code $code instead of 3"
+rm "$here/a.bmp" "$here/bmp.xml"
 
 code=0
 inside /opt/kiloband-portable/run_all.sh /opt/out || code=$?

@@ -60,13 +60,15 @@ class Pictures : public PictureLibrary {
   using Opener = std::unique_ptr<PictureInput> (*)(const std::string& file);
 
   static std::unique_ptr<PictureInput> open_own(const std::string& format, const std::string& file) {
-    constexpr std::array<std::pair<std::string_view, Opener>, 5> kOwn = {{{"openexr", open_exr},
+    constexpr std::array<std::pair<std::string_view, Opener>, 6> kOwn = {{{"openexr", open_exr},
                                                                           {"png", open_png},
                                                                           {"jpeg", open_jpeg},
                                                                           {"hdr", open_radiance},
-                                                                          {"pnm", open_pfm}}};
+                                                                          {"pnm", open_pfm},
+                                                                          {"pnm", open_pnm}}};
     for (const auto& [name, opener] : kOwn)
-      if (name == format) return opener(file);
+      if (name == format)
+        if (auto input = opener(file)) return input;
     return nullptr;
   }
 

@@ -1,5 +1,5 @@
-// Picture files. EXR, PNG, JPEG, Radiance and PFM are read by the program itself (readers/); OpenImageIO, which brings some 250
-// shared libraries (0.2 s of a start), is a module that is loaded for what is left: TIFF, BMP, PNM, Targa, and EXR and JPEG files
+// Picture files. EXR, PNG, JPEG, Radiance, PFM and PNM are read by the program itself (readers/); OpenImageIO, which brings some 250
+// shared libraries (0.2 s of a start), is a module that is loaded for what is left: TIFF, BMP, Targa, PNM bitmaps, and EXR and JPEG files
 // whose channels are stored in an unusual way. What is built without it has everything but these.
 #pragma once
 

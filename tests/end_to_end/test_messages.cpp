@@ -128,7 +128,11 @@ TEST(Start, LoadsOpenImageIOOnlyForItsPictures) {
   };
   EXPECT_FALSE(loads(textured("a.png")));
   folder.write("a.ppm", "P6\n1 1\n255\nabc");
-  EXPECT_TRUE(loads(textured("a.ppm")));
+  EXPECT_FALSE(loads(textured("a.ppm")));
+  std::string targa(18, '\0');  // 1 x 1 pixel of 24 bits
+  targa[2] = 2, targa[12] = targa[14] = 1, targa[16] = 24;
+  folder.write("a.tga", targa + "abc");
+  EXPECT_TRUE(loads(textured("a.tga")));
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ std::unique_ptr<PictureInput> open(const ImageFile& image) {
       case ImageFormat::kJpeg:
         return open_jpeg(image.name);
       case ImageFormat::kPnm:
-        return open_pfm(image.name);
+        if (auto input = open_pfm(image.name)) return input;
+        return open_pnm(image.name);
       default:
         return nullptr;
     }

@@ -17,7 +17,9 @@ std::unique_ptr<PictureInput> open_png(const std::string& file);
 std::unique_ptr<PictureInput> open_jpeg(const std::string& file);
 /// Radiance RGBE, run lengths of both kinds. Rows must run from the top, left to right.
 std::unique_ptr<PictureInput> open_radiance(const std::string& file);
-/// PFM. Left to others: the PNM files of whole numbers.
+/// PFM, "PF" and "Pf". Left to others: the PNM files of whole numbers.
 std::unique_ptr<PictureInput> open_pfm(const std::string& file);
+/// PNM of whole numbers, "P2", "P3", "P5" and "P6". Left to others: bitmaps and PFM.
+std::unique_ptr<PictureInput> open_pnm(const std::string& file);
 
 }  // namespace kiloband

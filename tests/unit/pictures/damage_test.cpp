@@ -74,6 +74,17 @@ TEST_F(OwnReaders, PfmThatIsDamaged) {
   EXPECT_EQ(error("pnm", "PF\n1 1\n-1\nabcd"), "read: the data is truncated");
 }
 
+TEST_F(OwnReaders, PnmThatIsDamaged) {
+  EXPECT_EQ(error("pnm", "P6\n1"), "open: the data is truncated");
+  EXPECT_EQ(error("pnm", "P6\n1 x 255\n"), "open: 'x' is not a size between 0 and 2147483647");
+  EXPECT_EQ(error("pnm", "P6\n1 1\n65536\nabc"), "open: '65536' is not a largest value between 0 and 65535");
+  EXPECT_EQ(error("pnm", "P6\n1 1\n0\nabc"), "open: the largest value is 0");
+  EXPECT_EQ(error("pnm", "P6\n1 2\n255\nabcde"), "read: the data is truncated");
+  EXPECT_EQ(error("pnm", "P5\n1 1\n96\na"), "read: the value 97 is above the largest, 96");
+  EXPECT_EQ(error("pnm", "P2\n2 1\n9\n9 10"), "read: '10' is not a value between 0 and 9");
+  EXPECT_EQ(error("pnm", "P2\n2 1\n9\n9 # 1\n"), "read: the data is truncated");
+}
+
 TEST_F(OwnReaders, PngJpegAndExrThatAreDamaged) {
   const std::vector<uint8_t> rgb(40 * 30 * 3, 77);
   std::string png = png_file(40, 30, rgb.data());
