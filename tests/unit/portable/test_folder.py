@@ -70,6 +70,14 @@ class Folder(unittest.TestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertIn(f"{self.folder}/share/kiloband: no folder scenes/analytic there", refused.stderr)
 
+    def test_scenes_need_no_picture_module(self):
+        for name in ("metals_and_lamps", "glade"):
+            scene = self.folder / "share/kiloband/validation/scenes" / f"{name}.xml"
+            read = run(str(self.folder / "kiloband"), "info", str(scene), env={**os.environ, "LD_DEBUG": "files"})
+            self.assertEqual(read.returncode, 0, read.stdout)
+            self.assertIn("libOpenCL", read.stderr)
+            self.assertNotIn("libOpenImageIO", read.stderr)
+
     def test_licences_travel(self):
         names = {file.name for file in (self.folder / "licences").iterdir() if file.stat().st_size > 0}
         self.assertLessEqual({"kiloband", "libembree3-3", "libopenexr-3-1-30", "libjpeg62-turbo", "libpng16-16", "libstdc++6",
