@@ -26,10 +26,12 @@ std::vector<std::string> evaluation_defines(const HostScene& host, const DeviceS
   return defines;
 }
 
-std::vector<std::string> path_defines(const HostScene& host, const DeviceSettings& settings) {
+std::vector<std::string> path_defines(const DeviceInfo& device, const HostScene& host,
+                                      const DeviceSettings& settings) {
   std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
   // In steps of 8: scenes whose trees differ a little share a program.
   defines.push_back("KB_BVH_STACK=" + std::to_string(host.bvh.stack_entries() / 8 * 8 + 8));
+  defines.push_back("KB_SLOTS_PER_ITEM=" + std::to_string(slots_per_item(device)));
   if (settings.method == Method::kPt) defines.push_back("KB_METHOD_PT=1");
   add_chunk_define(defines, host, settings.method);
   return defines;
@@ -60,9 +62,9 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       settings_(device_settings),
       shape_(evaluation_shape(device_context.device(), method, settings_.shared_wavelengths,
                               host.spectra.layout.channels)),
-      paths_(build_program(
-          context, "path/paths.cl",
-          ProgramOptions{path_defines(host, settings_), settings_.program_cache, kPathRegisters})),
+      paths_(build_program(context, "path/paths.cl",
+                           ProgramOptions{path_defines(context.device(), host, settings_),
+                                          settings_.program_cache, kPathRegisters})),
       scene_(upload_scene(memory, host.scene)),
       bvh_(upload_bvh(memory, host.bvh)),
       spectra_(upload_spectra(memory, host.spectra)) {}

@@ -7,6 +7,7 @@ namespace kiloband::opencl {
 namespace {
 
 constexpr uint64_t kPoolLocalSize = 64;
+constexpr uint32_t kCpuSlotsPerItem = 64;
 /// Iterations between two compactions of the queue. After so many the host looks whether the round is over, which waits for the
 /// device; not before it expects that, by the rounds before.
 constexpr uint32_t kIterationsPerLook = 8;
@@ -33,6 +34,10 @@ uint64_t path_pool_bytes(const PoolSize& size) {
   const uint64_t per_chunk = size.chunk_entries * sizeof(KbPathVertex) + sizeof(uint32_t);
   return size.slots * per_slot + size.arena_chunks * per_chunk + uint64_t{size.jobs} * sizeof(KbSavedPath) +
          uint64_t{size.pixels} * sizeof(KbRoundPixel) + uint64_t{size.tables} * sizeof(float);
+}
+
+uint32_t slots_per_item(const DeviceInfo& device) {
+  return device.type == DeviceType::kCpu ? kCpuSlotsPerItem : 1;
 }
 
 PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& program,
@@ -79,7 +84,9 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
 
 void PathPool::launch(PathKernel& kernel) {
   kernel.set(queue().slots);
-  kernel->launch(count_, std::min(kPoolLocalSize, kernel->max_work_group_size()));
+  const uint64_t each = slots_per_item(context_.device());
+  const uint64_t group = each > 1 ? 1 : std::min(kPoolLocalSize, kernel->max_work_group_size());
+  kernel->launch((count_ + each - 1) / each, group);
 }
 
 void PathPool::iterate(const AfterBounce& after_bounce) {

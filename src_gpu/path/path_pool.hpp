@@ -27,6 +27,10 @@ struct PoolSize {
 
 uint64_t path_pool_bytes(const PoolSize& size);
 
+/// Slots that a work-item of path generation takes (KB_SLOTS_PER_ITEM): CPU devices have groups of one work-item with a loop
+/// (kernels/path/path.clh).
+uint32_t slots_per_item(const DeviceInfo& device);
+
 /// Slots of a launch on the device, and how many work-items are enough for them.
 struct LaunchQueue {
   QueueArguments::Of<BufferRef> slots;
@@ -51,7 +55,8 @@ using PoolBuffers = PoolArguments::Of<DeviceBuffer>;
 
 class PathPool {
  public:
-  /// method_pt  the program was built with KB_METHOD_PT=1: vertices stay in a slot's own chunk for one bounce
+  /// program  built with KB_SLOTS_PER_ITEM=slots_per_item(device); for the method pt with KB_METHOD_PT=1 (vertices stay in a slot's
+  ///          own chunk for one bounce)
   PathPool(DeviceContext& context, DeviceMemory& memory, const Program& program, const DeviceScene& scene,
            const DeviceBvh& bvh, const DeviceSpectra& spectra, const PoolSize& size);
   /// Waits: the device may be reading a round that was begun.
