@@ -11,6 +11,9 @@
 namespace kiloband {
 namespace {
 
+/// A map of which a smaller part lies above its mean is even: that is rounding.
+constexpr double kEvenMap = 1e-6;
+
 void check(uint32_t width, uint32_t height, std::span<const float> texel_weights) {
   if (width == 0 || height == 0 || width > 65536 || height > 65536) {
     throw std::logic_error("build_envmap_sampling: width and height must be in [1, 65536]");
@@ -51,6 +54,28 @@ void integrate_row(uint32_t width, uint32_t height, std::span<const float> texel
   }
 }
 
+/// The map's mean over the sphere.
+double mean_weight(uint32_t width, uint32_t height, std::span<const float> texels) {
+  const uint32_t rows = std::max(height - 1, 1u);
+  std::vector<double> row(width);
+  double total = 0;
+  for (uint32_t i = 0; i < rows; ++i) {
+    integrate_row(width, height, texels, i, RowIntegrals(i, rows), row);
+    double sum = 0;
+    for (const double w : row) sum += w;
+    total += sum;
+  }
+  return total / (2.0 * width);
+}
+
+/// What the cells of a row have above `mean`, else 0: [sr * weight], without the column width.
+void excess_of_row(uint32_t width, uint32_t height, std::span<const float> texels, uint32_t row, double mean,
+                   std::span<double> out) {
+  const RowIntegrals integrals(row, std::max(height - 1, 1u));
+  integrate_row(width, height, texels, row, integrals, out);
+  for (double& w : out) w = std::max(w - mean * integrals.sum(), 0.0);
+}
+
 }  // namespace
 
 std::vector<double> row_solid_angles(uint32_t height) {
@@ -70,22 +95,24 @@ EnvmapSampling build_envmap_sampling(uint32_t width, uint32_t height, std::span<
   EnvmapSampling sampling{width, rows, std::vector<float>(rows + 1),
                           std::vector<float>(static_cast<std::size_t>(rows) * (width + 1))};
   std::vector<double> row(width), row_sums(rows);
+  const double mean = mean_weight(width, height, texel_weights);
   double total = 0;
   for (uint32_t i = 0; i < rows; ++i) {
-    integrate_row(width, height, texel_weights, i, RowIntegrals(i, rows), row);
+    excess_of_row(width, height, texel_weights, i, mean, row);
     for (const double w : row) row_sums[i] += w;
     total += row_sums[i];
   }
-  // Mixed density: (1 - share) weight / total + share * solid angle / 4 pi, cell by cell;
+  // Mixed density: (1 - share) excess / total + share * solid angle / 4 pi, cell by cell;
   // 2 width sums all solid angles.
-  const double keep = total > 0 ? (1 - kEnvmapUniformShare) / total : 0;
-  const double uniform = (total > 0 ? kEnvmapUniformShare : 1) / (2.0 * width);
+  const bool even = !(total > kEvenMap * mean * 2 * width);
+  const double keep = even ? 0 : (1 - kEnvmapUniformShare) / total;
+  const double uniform = (even ? 1 : kEnvmapUniformShare) / (2.0 * width);
   for (uint32_t i = 0; i < rows; ++i) {
-    const RowIntegrals integrals(i, rows);
-    integrate_row(width, height, texel_weights, i, integrals, row);
-    for (double& w : row) w = keep * w + uniform * integrals.sum();
+    const double solid_angle = RowIntegrals(i, rows).sum();
+    excess_of_row(width, height, texel_weights, i, mean, row);
+    for (double& w : row) w = keep * w + uniform * solid_angle;
     std::ranges::copy(lattice_cdf(row), &sampling.row_cdf[static_cast<std::size_t>(i) * (width + 1)]);
-    row_sums[i] = keep * row_sums[i] + uniform * width * integrals.sum();
+    row_sums[i] = keep * row_sums[i] + uniform * width * solid_angle;
   }
   sampling.marginal_cdf = lattice_cdf(row_sums);
   return sampling;

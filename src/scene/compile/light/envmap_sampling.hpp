@@ -22,8 +22,11 @@ namespace kiloband {
 /// where the guide bands see nothing.
 inline constexpr double kEnvmapUniformShare = 0.01;
 
-/// A cell's weight is the integral over its solid angle of the map interpolated between its 4 texels, mixed
-/// with kEnvmapUniformShare of the uniform density (all of it if the map is black). Cumulative values are
+/// A cell's weight is what the integral of the map over its solid angle, interpolated between its 4 texels, has above that of the map's mean,
+/// else 0, mixed with kEnvmapUniformShare of the uniform density (all of it if the map is even): MIS compensation (Karlik et al.,
+/// MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling, ACM TOG 38(6), 2019). Light that comes from
+/// everywhere is found by rays that BSDFs choose, with multiple importance sampling; samples of the map go where it is brighter.
+/// Measured: validation/results/environments.md. Cumulative values are
 /// multiples of 2^-24 and every cell has at least one unit: probabilities are exact in float and for 24-bit
 /// random numbers, and never 0.
 /// texel_weights  mean radiance of each texel over the guide bands, finite and >= 0, [row][column],

@@ -19,10 +19,10 @@ constexpr double kPi = 3.141592653589793238463;
 constexpr int kSamples = 1200000;
 
 void expect_irradiance(const FlatScene& scene, glm::vec3 point, glm::vec3 normal, double expected,
-                       uint32_t seed) {
+                       uint32_t seed, int samples = kSamples) {
   Uniform uniform(seed);
   double sum = 0, sum2 = 0;
-  for (int i = 0; i < kSamples; ++i) {
+  for (int i = 0; i < samples; ++i) {
     const glm::vec2 select = uniform.pair();
     const LightSample sample = sample_light(scene, point, select, uniform.pair());
     const float cosine = std::max(glm::dot(sample.direction, normal), 0.0f);
@@ -32,8 +32,8 @@ void expect_irradiance(const FlatScene& scene, glm::vec3 point, glm::vec3 normal
     sum += value;
     sum2 += value * value;
   }
-  const double mean = sum / kSamples;
-  const double error = std::sqrt(std::max(sum2 / kSamples - mean * mean, 0.0) / kSamples) + 1e-6 * expected;
+  const double mean = sum / samples;
+  const double error = std::sqrt(std::max(sum2 / samples - mean * mean, 0.0) / samples) + 1e-6 * expected;
   EXPECT_LT(std::fabs(mean - expected) / error, kMaxZ) << mean << " instead of " << expected;
   EXPECT_LT(6.1 * error, 1e-2 * expected);
 }
@@ -128,7 +128,8 @@ TEST(Irradiance, RotatedEnvironmentMap) {
   const double expected = integral_over_sphere(draw, [&](glm::dvec3 d) {
     return map_radiance(texels, kWidth, kHeight, to_map * d) * std::max(glm::dot(d, normal), 0.0);
   });
-  expect_irradiance(scene, glm::vec3(0), glm::vec3(normal), expected, 8);
+  // Samples of maps leave what is not above the mean to BSDFs: without those they are noisy.
+  expect_irradiance(scene, glm::vec3(0), glm::vec3(normal), expected, 8, 4 * kSamples);
 }
 
 TEST(DeltaLights, PointFollowsTheInverseSquare) {
