@@ -10,7 +10,7 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::blend_test {
 namespace {
 
 const char* const kBands = "500-510, 600-620";
@@ -150,4 +150,4 @@ TEST(BlendLight, EmissionAndLightSamplesAreMeans) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::blend_test

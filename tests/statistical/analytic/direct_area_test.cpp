@@ -24,7 +24,7 @@
 
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::direct_area_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -220,4 +220,4 @@ TEST(DirectArea, SeveralLightsAddUp) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::direct_area_test

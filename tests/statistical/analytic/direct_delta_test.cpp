@@ -20,7 +20,7 @@
 #include "spectral/colour/colour.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::direct_delta_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -184,4 +184,4 @@ TEST(DirectDelta, EnvironmentMapSeenDirectly) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::direct_delta_test

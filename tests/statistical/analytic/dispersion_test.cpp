@@ -13,7 +13,7 @@
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 #include "tests/statistical/analytic/gas/gas_scenes.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::dispersion_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -161,4 +161,4 @@ TEST(Dispersion, GlassBallVanishesInTheFurnace) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::dispersion_test

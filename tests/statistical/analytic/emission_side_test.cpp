@@ -14,7 +14,7 @@
 #include "spectral/planck.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::emission_side_test {
 namespace {
 
 constexpr double kPixel = 6, kPitch = 12 * kPixel;
@@ -256,4 +256,4 @@ TEST_F(EmissionSide, IsThatOfBsdfAndThermalEmission) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::emission_side_test

@@ -13,7 +13,7 @@
 #include "spectral/planck.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::enclosure_test {
 namespace {
 
 const char* const kBands = "400-420, 500-520, 600-620, 780-800";
@@ -154,4 +154,4 @@ TEST(Enclosure, ComparisonNoticesOnePercent) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::enclosure_test

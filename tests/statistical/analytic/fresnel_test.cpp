@@ -20,7 +20,7 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::fresnel_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -170,4 +170,4 @@ TEST(Fresnel, PerfectMirror) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::fresnel_test

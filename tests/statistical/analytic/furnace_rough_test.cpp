@@ -22,7 +22,7 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::furnace_rough_test {
 
 using namespace cpu;
 namespace {
@@ -217,4 +217,4 @@ TEST(RoughFurnace, RoughPlastic) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::furnace_rough_test

@@ -19,7 +19,7 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::furnace_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -133,4 +133,4 @@ TEST(Furnace, SmoothPlasticHasItsAlbedo) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::furnace_test

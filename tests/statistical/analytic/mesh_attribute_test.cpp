@@ -5,7 +5,7 @@
 // every point shows rho L0 exactly, so that pixels and the image have known means. Detectable bias: 0.5 %.
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::mesh_attribute_test {
 namespace {
 
 const char* const kBands = "400-420, 500-510, 690-700";
@@ -176,4 +176,4 @@ TEST(MeshAttribute, Refusals) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::mesh_attribute_test

@@ -4,7 +4,7 @@
 // the material is rough glass of the same alpha. Both are sampled as those are, so that images agree but for rounding.
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::principled_test {
 namespace {
 
 const char* const kBands = "400-420, 500-510, 690-700";
@@ -150,4 +150,4 @@ TEST(Principled, WhatHasNoMeaningIsRefused) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::principled_test

@@ -17,7 +17,7 @@
 #include "tests/statistical/analytic/dispersive_glass.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::prism_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -207,4 +207,4 @@ TEST(Prism, IndexFromYaml) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::prism_test

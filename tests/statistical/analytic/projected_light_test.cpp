@@ -16,7 +16,7 @@
 #include "spectral/colour/colour.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::projected_light_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -178,4 +178,4 @@ TEST(ProjectedLight, ColoursAreThoseOfReflectances) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::projected_light_test

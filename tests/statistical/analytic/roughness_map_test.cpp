@@ -5,7 +5,7 @@
 // with the number that it has there.
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::roughness_map_test {
 namespace {
 
 const char* const kBands = "400-420, 500-510, 690-700";
@@ -100,4 +100,4 @@ TEST(RoughnessMap, NotWhereTablesAreOfOneRoughness) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::roughness_map_test

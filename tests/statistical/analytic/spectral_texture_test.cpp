@@ -18,7 +18,7 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/support/cube_files.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::spectral_texture_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -189,4 +189,4 @@ TEST(SpectralTextures, BeyondTheBands) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::spectral_texture_test

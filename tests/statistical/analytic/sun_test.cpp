@@ -9,7 +9,7 @@
 
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::sun_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -107,4 +107,4 @@ TEST(Sun, HiddenFromTheCamera) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::sun_test

@@ -17,7 +17,7 @@
 #include "spectral/colour/colour.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::texture_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -164,4 +164,4 @@ TEST(Colours, BitmapUnderD65GivesBackItsMeanColour) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::texture_test

@@ -13,7 +13,7 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::thermal_emissivity_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -126,4 +126,4 @@ TEST(Emissivity, RoughMirrorsReflectEverything) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::thermal_emissivity_test

@@ -12,7 +12,7 @@
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/statistical/analytic/gas/gas_scenes.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::thermal_enclosure_test {
 namespace {
 
 // 0.4 to 20 um; channels narrow enough for the noise of wavelengths not to hide anything.
@@ -212,4 +212,4 @@ TEST(IsothermalFields, GivePlancksLaw) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::thermal_enclosure_test

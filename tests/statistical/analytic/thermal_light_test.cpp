@@ -16,7 +16,7 @@
 #include "spectral/planck.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::thermal_light_test {
 namespace {
 
 const char* const kBands = "4000-4010, 10000-10020";
@@ -141,4 +141,4 @@ TEST(ThermalLight, TemperatureFieldsFollowThePlace) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::thermal_light_test

@@ -7,7 +7,7 @@
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::camera_test {
 namespace {
 
 SamplingSettings settings() {
@@ -59,4 +59,4 @@ TEST(MovedCamera, HasTheBitsOfAFreshBackend) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::camera_test

@@ -7,7 +7,7 @@
 #include "backend_images.hpp"
 #include "scene/read/reader.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::invalid_test {
 namespace {
 
 /// A lamp 1e-18 m before a wall: a sample that selects it is beyond floats. Others meet the directional
@@ -86,4 +86,4 @@ TEST_F(InvalidSamples, AreTracedAlike) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::invalid_test

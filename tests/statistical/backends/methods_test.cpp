@@ -11,7 +11,7 @@
 
 #include "backend_images.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::methods_test {
 namespace {
 
 constexpr uint32_t kReplicates = 2, kSamples = 2;
@@ -177,4 +177,4 @@ TEST_F(Methods, ImageInPartsIsTheWhole) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::methods_test

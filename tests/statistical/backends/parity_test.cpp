@@ -29,7 +29,7 @@
 #include "shared/sampler.h"
 #include "tests/support/render_harness.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::parity_test {
 namespace {
 
 constexpr double kErrorRate = 1e-4;
@@ -160,4 +160,4 @@ TEST_P(Parity, PathsTakeTheSameDecisionsAndWeights) {
 INSTANTIATE_TEST_SUITE_P(Zoo, Parity, testing::ValuesIn(zoo_names()), [](const auto& p) { return p.param; });
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::parity_test

@@ -9,7 +9,7 @@
 #include "backend_images.hpp"
 #include "src_gpu/path/round_plan.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::parts_test {
 namespace {
 
 using Parts = std::vector<uint32_t>;
@@ -148,4 +148,4 @@ TEST(SampleCuts, GiveTheChunksOfOneDelivery) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::parts_test

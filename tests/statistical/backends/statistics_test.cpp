@@ -24,7 +24,7 @@
 #include "backend_images.hpp"
 #include "tests/support/render_harness.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::statistics_test {
 namespace {
 
 constexpr double kErrorRate = 1e-4, kRounding = 1e-5;
@@ -201,4 +201,4 @@ INSTANTIATE_TEST_SUITE_P(Zoo, Statistics, testing::ValuesIn(zoo_names()),
                          [](const auto& p) { return p.param; });
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::statistics_test

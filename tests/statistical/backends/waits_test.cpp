@@ -3,7 +3,7 @@
 
 #include "backend_images.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::waits_test {
 namespace {
 
 struct Work {
@@ -35,4 +35,4 @@ TEST(DeviceWaits, AtMostTwoPerRound) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::waits_test

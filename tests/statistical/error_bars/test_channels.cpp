@@ -17,7 +17,7 @@
 #include "tests/support/render_harness.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_channels {
 namespace {
 
 constexpr const char* kSpikes = "400:1, 450:4, 470:0.5, 552:3, 560:8, 568:3, 640:1, 700:5";
@@ -174,4 +174,4 @@ TEST_F(DispersiveChannels, RoughGlassAgreesInTheMean) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_channels

@@ -22,7 +22,7 @@
 #include "error_bar_study.hpp"
 #include "tests/support/render_harness.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_replicate_errors {
 namespace {
 
 constexpr uint64_t kSeeds = 1000;
@@ -142,4 +142,4 @@ TEST(ReplicateErrors, MarginalVariancesAreTooSmall) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_replicate_errors

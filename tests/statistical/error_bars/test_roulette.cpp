@@ -21,7 +21,7 @@
 #include "error_bar_study.hpp"
 #include "tests/support/render_harness.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_roulette {
 namespace {
 
 constexpr uint64_t kSeeds = 1000;
@@ -72,4 +72,4 @@ TEST(Roulette, BrightNarrowChannelIsUnbiasedAndItsErrorHonest) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_roulette

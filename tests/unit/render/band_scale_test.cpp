@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace kiloband {
+namespace kiloband::band_scale_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -56,4 +56,4 @@ TEST(BandScale, EveryLossIsCountedOnce) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::band_scale_test

@@ -12,7 +12,7 @@
 #include "base/hash.hpp"
 #include "tests/support/messages.hpp"
 
-namespace kiloband {
+namespace kiloband::checkpoint_test {
 namespace {
 
 constexpr uint64_t kFingerprint = 7;
@@ -217,4 +217,4 @@ TEST_F(Checkpoint, OnlyRegularFilesAreOpened) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::checkpoint_test

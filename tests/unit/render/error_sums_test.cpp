@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace kiloband {
+namespace kiloband::error_sums_test {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -61,4 +61,4 @@ TEST(ErrorSums, APixelHasAllBands) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::error_sums_test

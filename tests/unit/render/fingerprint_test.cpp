@@ -4,7 +4,7 @@
 #include "spectral/channel_knots.hpp"
 #include "tests/unit/render/session_fixture.hpp"
 
-namespace kiloband {
+namespace kiloband::fingerprint_test {
 namespace {
 
 TEST_F(SessionTest, FingerprintSeesSceneSamplingAndInstructionSet) {
@@ -49,4 +49,4 @@ TEST_F(SessionTest, FingerprintSeesSceneSamplingAndInstructionSet) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::fingerprint_test

@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "validation/suite/scene_text.hpp"
 
-namespace kiloband {
+namespace kiloband::overflow_test {
 namespace {
 
 constexpr uint32_t kSide = 16;  // pixels
@@ -55,4 +55,4 @@ TEST(Overflow, IsCounted) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::overflow_test

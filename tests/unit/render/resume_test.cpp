@@ -2,7 +2,7 @@
 #include "render/checkpoint/checkpoint.hpp"
 #include "tests/unit/render/session_fixture.hpp"
 
-namespace kiloband {
+namespace kiloband::resume_test {
 namespace {
 
 TEST_F(SessionTest, InterruptedAndResumedHasTheBitsOfUninterrupted) {
@@ -103,4 +103,4 @@ TEST_F(SessionTest, ACheckpointThatCannotBeWrittenIsAWarning) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::resume_test

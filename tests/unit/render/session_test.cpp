@@ -3,7 +3,7 @@
 
 #include "tests/unit/render/session_fixture.hpp"
 
-namespace kiloband {
+namespace kiloband::session_test {
 namespace {
 
 TEST_F(SessionTest, StreamedStripsGiveTheBitsOfTheWholeImage) {
@@ -87,4 +87,4 @@ TEST_F(SessionTest, InterruptedStripsBecomeNan) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::session_test

@@ -1,7 +1,7 @@
 // What ends a render: samples, time, a target error, and which came first.
 #include "tests/unit/render/session_fixture.hpp"
 
-namespace kiloband {
+namespace kiloband::stop_rule_test {
 namespace {
 
 TEST_F(SessionTest, TargetErrorIsReached) {
@@ -83,4 +83,4 @@ TEST_F(SessionTest, TimeLimitIsKept) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::stop_rule_test

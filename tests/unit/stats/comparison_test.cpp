@@ -10,7 +10,7 @@
 #include "tests/support/simulated_image.hpp"
 #include "tests/unit/stats/support.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::comparison_test {
 namespace {
 
 using test::BatchPool;
@@ -268,4 +268,4 @@ TEST(Comparison, WrongShapesAreOurBug) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::comparison_test

@@ -8,7 +8,7 @@
 
 #include "film/statistics.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::contrast_test {
 namespace {
 
 UnitSample one_channel(std::vector<double> values) {
@@ -93,4 +93,4 @@ TEST(Contrast, ContributionsFromEmptyReplicates) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::contrast_test

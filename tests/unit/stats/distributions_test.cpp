@@ -8,7 +8,7 @@
 
 #include "tests/unit/stats/support.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::distributions_test {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -59,4 +59,4 @@ TEST(Distributions, BinomialTails) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::distributions_test

@@ -5,7 +5,7 @@
 #include "stats/detectable.hpp"
 #include "stats/distributions.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::family_test {
 namespace {
 
 TEST(Family, TheRunFailsAtTheProductOfTheStages) {
@@ -43,4 +43,4 @@ TEST(Detectable, ByHand) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::family_test

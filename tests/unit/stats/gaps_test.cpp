@@ -10,7 +10,7 @@
 #include "tests/support/simulated_image.hpp"
 #include "tests/unit/stats/support.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::gaps_test {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -139,4 +139,4 @@ TEST(Gaps, AReplicateWithoutSamplesAnywhere) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::gaps_test

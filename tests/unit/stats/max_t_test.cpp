@@ -11,7 +11,7 @@
 #include "tests/support/simulated_image.hpp"
 #include "tests/unit/stats/support.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::max_t_test {
 namespace {
 
 UnitSample draw(std::size_t channels, double common, uint64_t seed, uint32_t replicates = 32,
@@ -147,4 +147,4 @@ TEST(MaxT, TheStrongestChannelHasTheSmallestP) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::max_t_test

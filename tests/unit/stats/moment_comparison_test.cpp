@@ -9,7 +9,7 @@
 #include "stats/distributions.hpp"
 #include "tests/support/simulated_image.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::moment_comparison_test {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -68,4 +68,4 @@ TEST(Moments, MissingPixels) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::moment_comparison_test

@@ -8,7 +8,7 @@
 #include "stats/comparison/comparison.hpp"
 #include "tests/support/simulated_image.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::power_test {
 namespace {
 
 using test::BatchPool;
@@ -111,4 +111,4 @@ TEST(Power, TheDetectableBiasIsDetected) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::power_test

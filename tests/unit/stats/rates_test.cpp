@@ -9,7 +9,7 @@
 #include "tests/support/simulated_image.hpp"
 #include "tests/unit/stats/support.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::rates_test {
 namespace {
 
 constexpr int kPairs = 40;
@@ -99,4 +99,4 @@ TEST(RatesOfPairs, NoMoreFalseAlarmsThanStated) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::rates_test

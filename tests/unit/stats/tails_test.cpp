@@ -6,7 +6,7 @@
 
 #include "tests/support/simulated_image.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::tails_test {
 namespace {
 
 std::vector<TailWeight> tails_of(const ReplicateImage& image) {
@@ -49,4 +49,4 @@ TEST(Tails, OneFirefly) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::tails_test

@@ -8,7 +8,7 @@
 #include "stats/comparison/comparison.hpp"
 #include "tests/support/simulated_image.hpp"
 
-namespace kiloband::stats {
+namespace kiloband::stats::variance_test {
 namespace {
 
 UnitSample one_channel(std::vector<double> values) {
@@ -60,4 +60,4 @@ TEST(Variances, TheRatioIsEstimated) {
 }
 
 }  // namespace
-}  // namespace kiloband::stats
+}  // namespace kiloband::stats::variance_test

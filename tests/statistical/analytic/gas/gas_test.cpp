@@ -14,7 +14,7 @@
 #include "spectral/planck.hpp"
 #include "tests/statistical/analytic/gas/gas_scenes.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::gas_test {
 namespace {
 
 const char* const kBands = "4500-4510, 4503-4504, 4505.48-4505.58, 4506.54-4506.544";
@@ -205,4 +205,4 @@ TEST(Gas, ASceneWithoutGasHasNothingOfIt) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::gas_test

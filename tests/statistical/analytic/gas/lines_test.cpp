@@ -7,7 +7,7 @@
 #include "tests/statistical/analytic/gas/gas_scenes.hpp"
 #include "tests/support/data_folder.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::lines_test {
 namespace {
 
 struct Lines {
@@ -68,4 +68,4 @@ TEST_P(GasLines, MeasuredSpectraOfCoAndCo2) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::lines_test

@@ -5,7 +5,7 @@
 #include "tests/statistical/analytic/gas/gas_scenes.hpp"
 #include "tests/support/messages.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::media_test {
 namespace {
 
 struct Placed {
@@ -115,4 +115,4 @@ TEST(Gas, TooManyMediaAtATimeAreInvalid) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::media_test

@@ -14,7 +14,7 @@
 #include "spectral/planck.hpp"
 #include "tests/statistical/analytic/gas/gas_scenes.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::plume_test {
 namespace {
 
 struct Point {
@@ -208,4 +208,4 @@ TEST(Plume, ShadowRayTakesTheColumn) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::plume_test

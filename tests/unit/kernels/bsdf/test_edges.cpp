@@ -6,7 +6,7 @@
 
 #include "comparison.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_edges {
 namespace {
 
 std::vector<glm::vec3> directions() {
@@ -95,4 +95,4 @@ TEST(DeviceBsdfEdges, HostBugsScatterNothing) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_edges

@@ -5,7 +5,7 @@
 
 #include "comparison.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_parity {
 namespace {
 
 /// `count` random queries. Half of the wo are samples of the CPU,
@@ -127,4 +127,4 @@ TEST(DeviceBsdf, SpecialisedBuildsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_parity

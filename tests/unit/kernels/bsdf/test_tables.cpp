@@ -6,7 +6,7 @@
 #include "probe.hpp"
 #include "shared/material_tables.h"
 
-namespace kiloband::test {
+namespace kiloband::test::test_tables {
 namespace {
 
 std::vector<float> cosines() {
@@ -50,4 +50,4 @@ TEST(MaterialTables, WithoutTableTheBoundIsOne) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_tables

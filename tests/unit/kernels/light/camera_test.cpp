@@ -5,7 +5,7 @@
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::camera_test {
 
 using namespace cpu;
 namespace {
@@ -144,4 +144,4 @@ TEST(GpuCamera, GaussiansOfOtherRatios) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::camera_test

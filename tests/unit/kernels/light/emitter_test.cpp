@@ -7,7 +7,7 @@
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::emitter_test {
 
 using namespace cpu;
 namespace {
@@ -291,4 +291,4 @@ TEST(GpuLights, NoLightNoSample) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::emitter_test

@@ -7,7 +7,7 @@
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::environment_test {
 
 using namespace cpu;
 namespace {
@@ -154,4 +154,4 @@ TEST(GpuEnvironment, Constant) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::environment_test

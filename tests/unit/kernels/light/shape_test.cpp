@@ -5,7 +5,7 @@
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::shape_test {
 
 using namespace cpu;
 namespace {
@@ -270,4 +270,4 @@ TEST(GpuShapes, AreaSamplesAreThoseOfTheCpu) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::shape_test

@@ -3,7 +3,7 @@
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::sun_test {
 
 using namespace cpu;
 namespace {
@@ -92,4 +92,4 @@ TEST(GpuSuns, EscapingRays) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::sun_test

@@ -5,7 +5,7 @@
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::surface_test {
 
 using namespace cpu;
 namespace {
@@ -164,4 +164,4 @@ TEST(GpuSurface, OffsetsAreThoseOfTheCpuBitForBit) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::surface_test

@@ -4,7 +4,7 @@
 #include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::texture_test {
 
 using namespace cpu;
 namespace {
@@ -184,4 +184,4 @@ TEST(GpuTexture, EnvironmentMapsAddressTheSameTexels) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::texture_test

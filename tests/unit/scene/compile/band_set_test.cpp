@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace kiloband::test {
+namespace kiloband::test::band_set_test {
 namespace {
 
 BandSet irregular(bool extrapolate = false) {
@@ -87,4 +87,4 @@ TEST(BandSet, MeanWeights) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::band_set_test

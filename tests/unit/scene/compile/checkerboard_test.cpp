@@ -4,7 +4,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "tests/unit/scene/compile/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::checkerboard_test {
 namespace {
 
 std::shared_ptr<const FlatScene> compiled(const std::string& body) {
@@ -38,4 +38,4 @@ TEST(CompiledCamera, RadianceMetersHaveNoExtent) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::checkerboard_test

@@ -5,7 +5,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/scene/compile/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::front_test {
 namespace {
 
 const std::string kMirror = "<transform name='to_world'><scale x='-1'/></transform>";
@@ -60,4 +60,4 @@ TEST(Front, VertexNormalsUnderAMirror) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::front_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace kiloband {
+namespace kiloband::gauss_legendre_test {
 namespace {
 
 TEST(GaussLegendre, ThreeNodesAreThePublishedOnes) {
@@ -37,4 +37,4 @@ TEST(GaussLegendre, IntegratesPolynomialsUpToItsDegree) {
 }
 
 }  // namespace
-}  // namespace kiloband
+}  // namespace kiloband::gauss_legendre_test

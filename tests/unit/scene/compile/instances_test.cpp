@@ -4,7 +4,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "tests/unit/scene/compile/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::instances_test {
 namespace {
 
 FlatScene compiled(const std::string& shapes) {
@@ -95,4 +95,4 @@ TEST(Instances, InGroupsAreMultipliedOut) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::instances_test

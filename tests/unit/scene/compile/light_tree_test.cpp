@@ -13,7 +13,7 @@
 // After the lanes that it is to be compiled for.
 #include "src_cpu/light/light_tree-inl.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::light_tree_test {
 namespace {
 
 using cpu::one_lane::F;
@@ -199,4 +199,4 @@ TEST(LightTree, IsForManyLightsUnlessToldOtherwise) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::light_tree_test

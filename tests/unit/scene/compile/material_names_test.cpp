@@ -4,7 +4,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "tests/unit/scene/compile/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::material_names_test {
 namespace {
 
 std::vector<std::string> names_of(const std::string& bsdf) {
@@ -28,4 +28,4 @@ TEST(MaterialNames, OwnIdThenThatOfWhatItIsNestedInThenANumber) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::material_names_test

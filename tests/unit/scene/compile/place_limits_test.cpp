@@ -4,7 +4,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "tests/unit/scene/compile/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::place_limits_test {
 namespace {
 
 const std::string kCamera = "<sensor type='perspective'/>";
@@ -76,4 +76,4 @@ TEST(PlaceLimits, LargeScenesAreWarnedOf) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::place_limits_test

@@ -4,7 +4,7 @@
 #include "scene/compile/flat_scene.hpp"
 #include "tests/unit/scene/compile/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::place_test {
 namespace {
 
 /// A cube of half side 1, a ball, a point light and a camera about (x, 0, 0).
@@ -49,4 +49,4 @@ TEST(Place, SceneNearTheOriginKeepsItsCoordinates) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::place_test

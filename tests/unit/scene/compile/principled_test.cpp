@@ -5,7 +5,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/scene/compile/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::principled_test {
 namespace {
 
 std::shared_ptr<const FlatScene> compiled(const std::string& bsdfs,
@@ -55,4 +55,4 @@ TEST(CompiledPrincipled, NumbersAreATable) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::principled_test

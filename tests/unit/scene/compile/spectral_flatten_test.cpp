@@ -11,7 +11,7 @@
 #include "support.hpp"
 #include "tests/support/chi_square.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::spectral_flatten_test {
 
 using namespace cpu;
 namespace {
@@ -222,4 +222,4 @@ TEST(SpectralFlatten, ChannelScalesFollowTheBrightestTexel) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::spectral_flatten_test

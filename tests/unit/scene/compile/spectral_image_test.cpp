@@ -5,7 +5,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::spectral_image_test {
 namespace {
 
 double sample(uint32_t x, uint32_t y, std::size_t b) {
@@ -64,4 +64,4 @@ TEST(SpectralImage, WeightsFromARadiancePicture) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::spectral_image_test

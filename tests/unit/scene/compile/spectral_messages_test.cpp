@@ -7,7 +7,7 @@
 #include "scene/image/spectral_image.hpp"
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::spectral_messages_test {
 namespace {
 
 const ChannelList kBands{{400, 450, ""}, {450, 500, ""}};
@@ -189,4 +189,4 @@ TEST(SpectralMessages, Endmembers) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::spectral_messages_test

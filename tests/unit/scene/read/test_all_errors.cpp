@@ -5,7 +5,7 @@
 
 #include "tests/unit/scene/read/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_all_errors {
 namespace {
 
 TEST(AllErrors, OfSeveralObjects) {
@@ -64,4 +64,4 @@ TEST(AllErrors, EndAfterTwenty) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_all_errors

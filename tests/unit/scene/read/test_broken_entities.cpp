@@ -4,7 +4,7 @@
 #include "support.hpp"
 #include "tests/support/picture_files.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_broken_entities {
 namespace {
 
 /// Scenes begin in line 2: see scene() and complete_scene().
@@ -379,4 +379,4 @@ TEST(BrokenScenes, Entities) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_broken_entities

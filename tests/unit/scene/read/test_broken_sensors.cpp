@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_broken_sensors {
 namespace {
 
 /// Scenes begin in line 2: see scene() and complete_scene().
@@ -111,4 +111,4 @@ TEST(BrokenScenes, Sensors) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_broken_sensors

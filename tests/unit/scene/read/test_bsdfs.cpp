@@ -4,7 +4,7 @@
 #include "spectral/materials/materials.hpp"
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_bsdfs {
 namespace {
 
 std::shared_ptr<const Bsdf> bsdf_of(const std::string& bsdf,
@@ -233,4 +233,4 @@ TEST(SceneBsdf, CheckerboardsAreSharedThroughReferences) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_bsdfs

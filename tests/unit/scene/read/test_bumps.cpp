@@ -5,7 +5,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_bumps {
 namespace {
 
 class SceneBump : public testing::Test {
@@ -86,4 +86,4 @@ TEST_F(SceneBump, Messages) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_bumps

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_common_scenes {
 namespace {
 
 struct Reading {
@@ -166,4 +166,4 @@ TEST(CommonScenes, ParametersOfOtherPurposeAreAccepted) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_common_scenes

@@ -6,7 +6,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_documented_elements {
 namespace {
 
 struct DocumentedType {
@@ -83,4 +83,4 @@ TEST(DocumentedElements, AreReadAsTheTableSays) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_documented_elements

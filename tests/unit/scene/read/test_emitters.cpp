@@ -6,7 +6,7 @@
 #include "spectral/colour/colour.hpp"
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_emitters {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -166,4 +166,4 @@ TEST(SceneIntegrator, DirectSplitsSamples) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_emitters

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_instances {
 namespace {
 
 std::string group(const std::string& contents, const std::string& id = "g") {
@@ -73,4 +73,4 @@ TEST(SceneInstances, WhatTheyCannot) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_instances

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_integrators {
 namespace {
 
 std::string moment(const std::string& inside) {
@@ -97,4 +97,4 @@ TEST(Integrators, WhatIsRefusedSaysWhatWorks) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_integrators

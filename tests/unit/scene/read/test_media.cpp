@@ -4,7 +4,7 @@
 #include "spectral/files/spectrum_files.hpp"
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_media {
 namespace {
 
 const std::string kAbsorption = R"(<spectrum name="absorption" value="0.5"/>)";
@@ -224,4 +224,4 @@ TEST(SceneMedium, NormalsAgainstTheWindingAreReported) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_media

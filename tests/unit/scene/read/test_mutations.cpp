@@ -4,7 +4,7 @@
 #include "support.hpp"
 #include "tests/support/mutations.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_mutations {
 namespace {
 
 const std::string kScene = R"(<scene version="3.0.0">
@@ -64,4 +64,4 @@ TEST(SceneMutations, DamagedScenesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_mutations

@@ -5,7 +5,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_principled {
 namespace {
 
 PrincipledBsdf read_one(const std::string& bsdf, const std::filesystem::path& folder = "/nonexistent") {
@@ -122,4 +122,4 @@ TEST(ScenePrincipled, Errors) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_principled

@@ -5,7 +5,7 @@
 #include "support.hpp"
 #include "tests/support/data_folder.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_real_scenes {
 namespace {
 
 double value(const Texture& texture, double lambda_nm) {
@@ -68,4 +68,4 @@ TEST(RealScenes, VeachMisInTheOldFormat) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_real_scenes

@@ -6,7 +6,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_sensor_film {
 namespace {
 
 Sensor sensor_of(const std::string& sensor, const std::filesystem::path& folder = "/nonexistent") {
@@ -174,4 +174,4 @@ TEST(SceneFilm, GapsBetweenResponsesNeedNoChannels) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_sensor_film

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_shapes {
 namespace {
 
 Shape shape_of(const std::string& shape, const std::filesystem::path& folder = "/nonexistent") {
@@ -133,4 +133,4 @@ TEST(SceneShape, OneEmitterMayServeSeveralShapes) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_shapes

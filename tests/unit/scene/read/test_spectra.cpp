@@ -6,7 +6,7 @@
 #include "spectral/planck.hpp"
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_spectra {
 namespace {
 
 TEST(SceneSpectra, ReflectanceNumbersAreFlat) {
@@ -138,4 +138,4 @@ TEST(SceneSpectra, QuantitiesAboveOneMayBeColours) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_spectra

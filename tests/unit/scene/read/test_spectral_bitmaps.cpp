@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_spectral_bitmaps {
 namespace {
 
 std::string wall(const std::string& parameters) {
@@ -44,4 +44,4 @@ TEST(SpectralBitmaps, EndmembersAndWeightsAreEqualInNumber) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_spectral_bitmaps

@@ -7,7 +7,7 @@
 #include "sky/sky_map.hpp"
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_sunsky {
 namespace {
 
 std::vector<Emitter> emitters_of(const std::string& contents, Messages* messages = nullptr) {
@@ -132,4 +132,4 @@ TEST(SceneSunsky, Errors) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_sunsky

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_thermal {
 namespace {
 
 const char* const kPly =
@@ -140,4 +140,4 @@ TEST(SceneThermal, WrongInput) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_thermal

@@ -3,7 +3,7 @@
 
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_value_limits {
 namespace {
 
 std::string bsdf(const std::string& type, const std::string& inner) {
@@ -150,4 +150,4 @@ TEST(ValueLimits, DirectionsOfAnyLength) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_value_limits

@@ -7,7 +7,7 @@
 #include "scene/xml/values.hpp"
 #include "support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_values {
 namespace {
 
 Transform transform_of(const std::string& steps) {
@@ -175,4 +175,4 @@ TEST(SceneValues, SnakeCase) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_values

@@ -3,7 +3,7 @@
 
 #include "tests/unit/scene/read/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_broken_syntax {
 namespace {
 
 /// `depth` nested elements around nothing.
@@ -213,4 +213,4 @@ TEST(BrokenScenes, Syntax) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_broken_syntax

@@ -5,7 +5,7 @@
 #include "scene/xml/document.hpp"
 #include "tests/unit/scene/read/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_limits {
 namespace {
 
 std::string repeated(const std::string& text, int count) {
@@ -76,4 +76,4 @@ TEST(SceneLimits, ShapesAndLightsStandInTheSceneOnce) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_limits

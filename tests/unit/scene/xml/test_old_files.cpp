@@ -5,7 +5,7 @@
 
 #include "tests/unit/scene/read/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_old_files {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
@@ -131,4 +131,4 @@ TEST(OldFiles, SunAndSkyAreOneEmitterEach) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_old_files

@@ -3,7 +3,7 @@
 
 #include "tests/unit/scene/read/support.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_xml {
 namespace {
 
 int width_of(const std::string& text, const std::filesystem::path& folder = "/nonexistent",
@@ -146,4 +146,4 @@ TEST(SceneXml, UnusedAreaEmitterIsReported) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_xml

@@ -5,7 +5,7 @@
 #include "random_scene.hpp"
 #include "spectral/planck.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_formulas {
 namespace {
 
 /// Constant spectra; row 0: 1/2, row 1: 1/4, row 2: emission of 3 per nm.
@@ -223,4 +223,4 @@ TEST_P(Formulas, FaintEmissionDoesNotUnderflow) {
 INSTANTIATE_TEST_SUITE_P(, Formulas, testing::ValuesIn(available_isas()), isa_name);
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_formulas

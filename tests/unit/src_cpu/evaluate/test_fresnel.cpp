@@ -4,7 +4,7 @@
 
 #include "random_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_fresnel {
 namespace {
 
 /// A scene whose channel k sees index n_k + i k_k, one path per cosine that reflects there towards
@@ -117,4 +117,4 @@ TEST_P(Fresnel, DielectricsNearTheCriticalAngle) {
 INSTANTIATE_TEST_SUITE_P(, Fresnel, testing::ValuesIn(available_isas()), isa_name);
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_fresnel

@@ -11,7 +11,7 @@
 #include "random_gas.hpp"
 #include "spectral/planck.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_gas {
 namespace {
 
 constexpr double kTolerance = 1e-5;
@@ -103,4 +103,4 @@ TEST_P(GasOracle, PlanckRatioOverTheFloatRange) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_gas

@@ -6,7 +6,7 @@
 
 #include "random_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_invariants {
 namespace {
 
 class Invariants : public EachIsa {};
@@ -197,4 +197,4 @@ TEST(InstructionSets, NamesAndResolution) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_invariants

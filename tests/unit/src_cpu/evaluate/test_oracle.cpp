@@ -9,7 +9,7 @@
 
 #include "random_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_oracle {
 namespace {
 
 constexpr double kTolerance = 1e-5;
@@ -112,4 +112,4 @@ TEST_P(Oracle, LongPath) {
 INSTANTIATE_TEST_SUITE_P(, Oracle, testing::ValuesIn(available_isas()), isa_name);
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_oracle

@@ -6,7 +6,7 @@
 #include "random_scene.hpp"
 #include "src_cpu/evaluate/evaluator_kernels.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_tables {
 namespace {
 
 class Tables : public EachIsa {};
@@ -64,4 +64,4 @@ TEST_P(Tables, ExactSamplesHaveTheBitsOfRegularTable) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_tables

@@ -9,7 +9,7 @@
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::camera_test {
 
 using namespace cpu;
 namespace {
@@ -248,4 +248,4 @@ TEST(Filter, PositionsOfLargeFilmsAreThoseOfDoublePrecision) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::camera_test

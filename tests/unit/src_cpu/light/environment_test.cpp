@@ -7,7 +7,7 @@
 
 #include "test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::environment_test {
 namespace {
 
 using namespace cpu;
@@ -55,4 +55,4 @@ TEST(EnvmapDensity, KeepsItsDigitsAtBothPoles) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::environment_test

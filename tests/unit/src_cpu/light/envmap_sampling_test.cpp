@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace kiloband::test {
+namespace kiloband::test::envmap_sampling_test {
 namespace {
 
 constexpr double kPi = 3.141592653589793238463;
@@ -112,4 +112,4 @@ TEST(EnvmapSampling, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::envmap_sampling_test

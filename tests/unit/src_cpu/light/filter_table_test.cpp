@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace kiloband::test {
+namespace kiloband::test::filter_table_test {
 namespace {
 
 /// Tail probability of a distance x, by the midpoint rule: the definition, without the closed form.
@@ -66,4 +66,4 @@ TEST(FilterTable, AnyRatio) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::filter_table_test

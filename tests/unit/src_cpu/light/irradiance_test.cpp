@@ -10,7 +10,7 @@
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::irradiance_test {
 
 using namespace cpu;
 namespace {
@@ -178,4 +178,4 @@ TEST(DeltaLights, DirectionalComesFromBehindItsAxis) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::irradiance_test

@@ -9,7 +9,7 @@
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::lanes_test {
 namespace {
 
 using namespace cpu;
@@ -252,4 +252,4 @@ TEST(CameraLanes, EveryProjectionAndFilter) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::lanes_test

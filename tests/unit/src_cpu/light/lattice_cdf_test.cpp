@@ -12,7 +12,7 @@
 #include "test_scene.hpp"
 #include "tests/support/messages.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::lattice_cdf_test {
 
 using namespace cpu;
 namespace {
@@ -132,4 +132,4 @@ TEST(Texels, IndicesBeyond32BitsAreRefused) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::lattice_cdf_test

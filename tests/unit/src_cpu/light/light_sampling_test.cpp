@@ -11,7 +11,7 @@
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::light_sampling_test {
 
 using namespace cpu;
 namespace {
@@ -247,4 +247,4 @@ TEST(Selection, FollowsTheTable) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::light_sampling_test

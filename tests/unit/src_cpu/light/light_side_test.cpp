@@ -4,7 +4,7 @@
 #include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::light_side_test {
 
 using namespace cpu;
 namespace {
@@ -33,4 +33,4 @@ TEST(MeshLight, VertexNormalsDecideTheSideThatShines) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::light_side_test

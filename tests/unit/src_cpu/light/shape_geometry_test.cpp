@@ -9,7 +9,7 @@
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::shape_geometry_test {
 
 using namespace cpu;
 namespace {
@@ -182,4 +182,4 @@ TEST(Intersection, DiskAndCylinderAgainstLongDouble) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::shape_geometry_test

@@ -10,7 +10,7 @@
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::shape_surface_test {
 
 using namespace cpu;
 namespace {
@@ -181,4 +181,4 @@ TEST(RayOffset, NoSelfIntersectionOnSpheres) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::shape_surface_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace kiloband::test {
+namespace kiloband::test::signed_filter_test {
 namespace {
 
 /// Integral over [from, to] by the midpoint rule, without the tables' cells.
@@ -77,4 +77,4 @@ TEST(SignedFilter, AFilterWithoutAnIntegralIsRefused) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::signed_filter_test

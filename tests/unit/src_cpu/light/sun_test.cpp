@@ -7,7 +7,7 @@
 #include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::sun_test {
 
 using namespace cpu;
 namespace {
@@ -126,4 +126,4 @@ TEST(Sun, IrradianceIsThatOfItsSpectrum) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::sun_test

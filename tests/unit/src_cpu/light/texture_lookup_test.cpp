@@ -10,7 +10,7 @@
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::texture_lookup_test {
 
 using namespace cpu;
 namespace {
@@ -150,4 +150,4 @@ TEST(EnvironmentMap, AxesAndBorders) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::texture_lookup_test

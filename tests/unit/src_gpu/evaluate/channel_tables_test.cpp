@@ -6,7 +6,7 @@
 #include "src_gpu/scene/channel_cover.hpp"
 #include "src_gpu/scene/channel_row.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::channel_tables_test {
 namespace {
 
 double interpolated(const opencl::ChannelTables& t, uint32_t row, std::size_t k, double mu) {
@@ -172,4 +172,4 @@ TEST(ChannelCover, IsExactForEveryOffset) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::channel_tables_test

@@ -7,7 +7,7 @@
 // its index row without bound, as 1 / sqrt(distance).
 #include "device_scene.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::device_evaluator_test {
 namespace {
 
 constexpr double kTolerance = 1e-5;
@@ -327,4 +327,4 @@ TEST(DeviceEvaluator, SpecialisedKernelsComputeTheSameBits) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::device_evaluator_test

@@ -10,7 +10,7 @@
 #include "spectral/planck.hpp"
 #include "tests/unit/src_cpu/evaluate/random_gas.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::gas_test {
 
 using namespace cpu;
 namespace {
@@ -140,4 +140,4 @@ TEST(DeviceGasTables, RowsOfLinesKeepTheirKnots) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::gas_test

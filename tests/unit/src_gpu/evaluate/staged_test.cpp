@@ -5,7 +5,7 @@
 #include "device_scene.hpp"
 #include "tests/unit/src_cpu/evaluate/random_gas.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::staged_test {
 
 using namespace cpu;
 namespace {
@@ -100,4 +100,4 @@ INSTANTIATE_TEST_SUITE_P(, StagedEvaluation,
                          });
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::staged_test

@@ -9,7 +9,7 @@
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "tests/unit/src_gpu/geometry/ray_tester.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::agreement_test {
 
 using namespace cpu;
 namespace {
@@ -152,4 +152,4 @@ TEST(BvhAgreement, AnalyticShapesAmongTriangles) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::agreement_test

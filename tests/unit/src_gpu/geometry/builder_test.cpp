@@ -8,7 +8,7 @@
 
 #include "tests/unit/src_gpu/geometry/ray_tester.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::builder_test {
 namespace {
 
 using opencl::build_bvh;
@@ -161,4 +161,4 @@ TEST(BvhBuilder, UnusableTrianglesStayOut) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::builder_test

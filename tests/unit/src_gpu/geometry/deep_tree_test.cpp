@@ -5,7 +5,7 @@
 
 #include "tests/unit/src_gpu/geometry/ray_tester.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::deep_tree_test {
 namespace {
 
 /// Upright triangles at x = ratio^i with heights in proportion: each split cuts off the largest few.
@@ -101,4 +101,4 @@ TEST(BvhDeepTree, NestedTriangles) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::deep_tree_test

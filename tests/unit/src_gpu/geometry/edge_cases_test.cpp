@@ -9,7 +9,7 @@
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "tests/unit/src_gpu/geometry/ray_tester.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::edge_cases_test {
 
 using namespace cpu;
 namespace {
@@ -206,4 +206,4 @@ TEST(BvhEdgeCases, LowestIndexWinsTies) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::edge_cases_test

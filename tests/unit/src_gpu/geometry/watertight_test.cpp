@@ -7,7 +7,7 @@
 
 #include "tests/unit/src_gpu/geometry/ray_tester.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::watertight_test {
 namespace {
 
 constexpr std::size_t kRays = 1u << 20;
@@ -91,4 +91,4 @@ TEST(Watertight, AHoleLeaks) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::watertight_test
