@@ -50,6 +50,9 @@ inline std::ostream& operator<<(std::ostream& out, const Mode& mode) {
   return out << name_of(mode);
 }
 std::vector<Mode> all_modes();
+/// Those that a test goes through by itself: all of them on the CPU, one on other backends, as of parametrised tests
+/// (CMakeLists.txt); tests/statistical/backends compares the others.
+std::vector<Mode> tried_modes();
 inline std::string mode_name(const ::testing::TestParamInfo<Mode>& info) {
   return name_of(info.param);
 }

@@ -113,7 +113,7 @@ TEST(BlendFurnace, IsTheMeanOfItsParts) {
   };
   for (const auto& c : cases) {
     SCOPED_TRACE(c.name);
-    const RenderResult result = render_valid(plane(c.material, c.degrees, sky(1)), kBands, {}, {128, 54});
+    const RenderResult result = render_valid(plane(c.material, c.degrees, sky(1)), kBands, {}, {32, 54});
     expect_image_mean(result, widths(result, c.expected), 0.01);
   }
 }

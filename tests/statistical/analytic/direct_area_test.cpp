@@ -176,7 +176,7 @@ TEST(DirectArea, BsdfSamplesAlone) {
       continue;
     SCOPED_TRACE(light.name);
     const RenderResult result =
-        render_valid(scene(3, camera() + receiver() + sheet + light.shape), kBands, {}, {128, 12});
+        render_valid(scene(3, camera() + receiver() + sheet + light.shape), kBands, {}, {64, 12});
     expect_image_mean(result, reflected(result, light.irradiance), 0.01);
   }
 }

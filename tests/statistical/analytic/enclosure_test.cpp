@@ -98,7 +98,7 @@ TEST(Enclosure, ThermalBoxShowsPlancksLaw) {
       "area", "<spectrum name=\"radiance\" type=\"planck\">" + real("temperature", 300) + "</spectrum>");
   for (const double reflectance : {0.0, 0.5}) {
     const std::string box = shape("cube", kInwards + diffuse(reflectance) + light);
-    for (const Mode& mode : all_modes()) {
+    for (const Mode& mode : tried_modes()) {
       SCOPED_TRACE(name_of(mode));
       const RenderResult result = render_valid(scene(-1, camera(16) + box), "8000:12000:8", mode, {8, 5});
       std::vector<double> expected;

@@ -84,7 +84,7 @@ TEST(Fresnel, DielectricBoundary) {
 
 /// A plate of 1 cm: inner reflections leave within centimetres of each other, all towards the same lights.
 TEST(Fresnel, ParallelSlab) {
-  for (const Mode& mode : all_modes()) {
+  for (const Mode& mode : tried_modes()) {
     for (const double degrees : {0.0, 50.0, 75.0}) {
       SCOPED_TRACE(name_of(mode) + " " + std::to_string(degrees));
       const double theta = degrees * kPi / 180, r = dielectric_reflectance(std::cos(theta), 1.5);

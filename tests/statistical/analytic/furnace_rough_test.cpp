@@ -162,7 +162,7 @@ TEST(RoughFurnace, DielectricBoundary) {
         const double theta = degrees * kPi / 180;
         const std::string material = bsdf("roughdielectric", f.text() + real("int_ior", eta > 1 ? 1.5 : 1.0) +
                                                                  real("ext_ior", eta > 1 ? 1.0 : 1.5));
-        const RenderResult result = render_valid(plane_furnace(material, theta), kBands, {}, {64, 43});
+        const RenderResult result = render_valid(plane_furnace(material, theta), kBands, {}, {32, 43});
         expect_image_mean(result, widths(result, albedo(f, theta, eta, true)), 0.01);
       }
     }

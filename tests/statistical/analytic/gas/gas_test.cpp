@@ -121,7 +121,7 @@ TEST(Gas, AreaLightThroughAnAtmosphere) {
 /// but the wavelength.
 TEST(Gas, OpticalDepthsFromEmptyToBlack) {
   for (const double depth : {1e-8, 1e-4, 1e-2, 1.0, 30.0, 1e4}) {
-    for (const Mode& mode : all_modes()) {
+    for (const Mode& mode : tried_modes()) {
       SCOPED_TRACE(std::to_string(depth) + " " + name_of(mode));
       const std::string box = slab(0.5, 1.5, kNull + gas("interior", spectrum("absorption", depth), 1000));
       const RenderResult result = render_valid(scene(2, straight_camera(2) + black_wall() + box),

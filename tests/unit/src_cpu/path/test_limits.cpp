@@ -76,12 +76,14 @@ TEST(HiddenEmitters, HideTheSky) {
 }
 
 /// 2^17 samples in each of two replicates, all of the same value, which is not a float: a plain float sum of
-/// them would be off by up to 2^17 x 6e-8 = 8e-3 relative.
+/// them would be off by up to 2^17 x 6e-8 = 8e-3 relative. On devices 2^15, where deliveries of one pixel take what their launches
+/// take: a plain sum of such numbers is off by 1.5e-4 to 4e-4.
 TEST(ManySamples, LoseNothing) {
   RenderSpec spec;
   spec.xml = scene(-1, perspective(lookat("0, 0, 4", "0, 0, 0"), 30, film(1)) + sky("0.7"));
   spec.bands = "500-510.1, 520-523.7, 540-540.3";
-  spec.spp = 1u << 18;
+  const uint64_t samples = test_backend_name() == "cpu" ? 1u << 18 : 1u << 16;
+  spec.spp = samples;
   spec.sampling.replicates = 2;
   spec.threads = 1;
   for (const WavelengthMode mode : {WavelengthMode::kShared, WavelengthMode::kPerPath}) {
@@ -92,7 +94,7 @@ TEST(ManySamples, LoseNothing) {
       EXPECT_NEAR(result.mean[c] / (0.7 * width_nm[c]), 1, 1e-6) << "channel " << c;
       EXPECT_LT(std::sqrt(result.variance[c]) / result.mean[c], 1e-6);
     }
-    EXPECT_EQ(result.paths, 1u << 18);
+    EXPECT_EQ(result.paths, samples);
   }
 }
 
