@@ -2,8 +2,12 @@
 // with each feature left out.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +58,23 @@ TEST(KernelSyntax, EveryFileCompilesAlone) {
   EXPECT_GE(count, 40u);
 }
 
+/// The texts that a kernel file consists of, each once, but the one that gives features that nobody chose.
+void add_texts(const fs::path& file, std::map<fs::path, std::string>& texts) {
+  if (file == kKernels / "base/scene.clh" || texts.contains(file)) return;
+  const std::string text = texts[file] = read_file(file);
+  static const std::regex kInclude("#include \"(.*)\"");
+  for (std::sregex_iterator found(text.begin(), text.end(), kInclude), end; found != end; ++found) {
+    for (const fs::path& root : {kKernels, kKernels / "../src"})
+      if (fs::exists(root / (*found)[1].str())) add_texts(root / (*found)[1].str(), texts);
+  }
+}
+
+/// Whether a file's text depends on the feature: only then is it another one without.
+bool depends_on(const std::map<fs::path, std::string>& texts, const std::string& feature) {
+  const std::regex name("\\bKB_HAS_" + feature + "\\b");
+  return std::ranges::any_of(texts, [&](const auto& text) { return std::regex_search(text.second, name); });
+}
+
 TEST(KernelSyntax, EveryFeatureCanBeAbsent) {
   const std::vector<std::string> features = all_features();
   ASSERT_GE(features.size(), 24u);
@@ -62,13 +83,21 @@ TEST(KernelSyntax, EveryFeatureCanBeAbsent) {
     for (const std::string& f : features) text += " -DKB_HAS_" + f + "=" + (f == present ? value : others);
     return text;
   };
+  std::set<std::string> unused(features.begin(), features.end());
   for (const fs::path& file : kernel_files(".cl")) {
+    EXPECT_EQ(kernel_syntax(file, defines("", "", "0")), "") << file << " without any";
+    EXPECT_EQ(kernel_syntax(file, defines("", "", "1")), "") << file << " with all";
+    std::map<fs::path, std::string> texts;
+    add_texts(file, texts);
     for (const std::string& feature : features) {
+      if (!depends_on(texts, feature)) continue;
+      unused.erase(feature);
       EXPECT_EQ(kernel_syntax(file, defines(feature, "1", "0")), "")
           << file << " with " << feature << " alone";
       EXPECT_EQ(kernel_syntax(file, defines(feature, "0", "1")), "") << file << " without " << feature;
     }
   }
+  EXPECT_EQ(unused, std::set<std::string>{"TWO_SIDED"}) << "no kernel asks for it, or texts are missed";
 }
 
 TEST(KernelSyntax, TheMethodPtCompiles) {
