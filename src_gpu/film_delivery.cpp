@@ -6,6 +6,20 @@
 #include <utility>
 
 namespace kiloband::opencl {
+namespace {
+
+template <class Value>
+void append(std::vector<Value>& to, std::vector<Value>& from) {
+  if (to.empty()) return to.swap(from);
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+template <class Value>
+void erase_front(std::vector<Value>& values, std::size_t number) {
+  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(std::min(number, values.size())));
+}
+
+}  // namespace
 
 FilmDelivery::FilmDelivery(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                            std::size_t channels)
@@ -40,37 +54,38 @@ FilmSums FilmDelivery::sums_of(std::span<const ImagePixel> pixels) const {
   return sums;
 }
 
-void FilmDelivery::put_sums(std::span<const ImagePixel> pixels, const FilmSums& sums) {
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const PixelSums to = film_.pixel_sums(range_.replicate, index(pixels[i]));
-    to.count = sums.counts[i];
-    std::copy_n(&sums.open[i * channels_], channels_, to.open.begin());
+/// The block's pixels are those from `first` on of what is collected.
+void FilmDelivery::put_sums(std::size_t first, const PixelRect& block) {
+  for (std::size_t i = 0; i < block.pixels(); ++i) {
+    const PixelSums to = film_.pixel_sums(range_.replicate, film_.pixel_index(block, i));
+    const std::size_t values = (first + i) * channels_;
+    to.count = sums_.counts[first + i];
+    std::copy_n(&sums_.open[values], channels_, to.open.begin());
     for (std::size_t c = 0; c < to.closed.size(); ++c)
-      to.closed[c] =
-          std::bit_cast<ClosedSum>(CompensatedSum{sums.sum[i * channels_ + c], sums.lost[i * channels_ + c]});
+      to.closed[c] = std::bit_cast<ClosedSum>(CompensatedSum{sums_.sum[values + c], sums_.lost[values + c]});
   }
 }
 
-void FilmDelivery::add(std::span<const ImagePixel> pixels, const GroupResult& result) {
-  if (film_.keeps_sums()) put_sums(pixels, result.sums);
-  means_.insert(means_.end(), result.means.begin(), result.means.end());
-  counts_.insert(counts_.end(), result.counts.begin(), result.counts.end());
+void FilmDelivery::add(std::span<const ImagePixel> pixels, GroupResult result) {
+  append(means_, result.means);
+  append(counts_, result.counts);
+  append(sums_.sum, result.sums.sum);
+  append(sums_.lost, result.sums.lost);
+  append(sums_.open, result.sums.open);
+  append(sums_.counts, result.sums.counts);
   attempted_.insert(attempted_.end(), pixels.size(), result.attempted);
   std::size_t first = 0;
   while (next_block_ < blocks_.size()) {
     const std::size_t in_block = film_.blocks()[blocks_[next_block_]].pixels();
     if (first + in_block > attempted_.size()) break;
+    if (film_.keeps_sums()) put_sums(first, film_.blocks()[blocks_[next_block_]]);
     finish_block(first, in_block);
     first += in_block;
     ++next_block_;
   }
-  const auto erase = [](auto& values, std::size_t number) {
-    values.erase(values.begin(),
-                 values.begin() + static_cast<std::ptrdiff_t>(std::min(number, values.size())));
-  };
-  erase(means_, first * channels_);
-  erase(counts_, first);
-  erase(attempted_, first);
+  for (std::vector<float>* values : {&means_, &sums_.sum, &sums_.lost, &sums_.open})
+    erase_front(*values, first * channels_);
+  for (std::vector<uint32_t>* values : {&counts_, &sums_.counts, &attempted_}) erase_front(*values, first);
 }
 
 /// Pixels first .. first + pixels - 1 of what is collected are the next block.

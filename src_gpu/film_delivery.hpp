@@ -10,8 +10,8 @@
 
 namespace kiloband::opencl {
 
-/// Collects the results of groups and hands complete blocks to the film; a film that keeps sums gets them
-/// pixel by pixel. References must outlive it.
+/// Collects the results of groups and hands complete blocks to the film: what fails in the middle of a block
+/// leaves nothing of it there. References must outlive it.
 class FilmDelivery {
  public:
   /// channels  derived ones included
@@ -28,11 +28,11 @@ class FilmDelivery {
   /// The film's sums of these pixels, of the samples before the range.
   FilmSums sums_of(std::span<const ImagePixel> pixels) const;
   /// The pixels follow those that were added before.
-  void add(std::span<const ImagePixel> pixels, const GroupResult& result);
+  void add(std::span<const ImagePixel> pixels, GroupResult result);
 
  private:
   std::size_t index(const ImagePixel& pixel) const;
-  void put_sums(std::span<const ImagePixel> pixels, const FilmSums& sums);
+  void put_sums(std::size_t first, const PixelRect& block);
   void finish_block(std::size_t first, std::size_t pixels);
 
   SpectralFilm& film_;
@@ -41,6 +41,7 @@ class FilmDelivery {
   std::size_t channels_, next_block_ = 0;
   std::vector<float> means_;
   std::vector<uint32_t> counts_;
+  FilmSums sums_;
   std::vector<uint32_t> attempted_;  // by pixel of the open block and those after it
 };
 

@@ -67,6 +67,7 @@ SpectralFilm::SpectralFilm(const PixelRect& rect, const FilmOptions& options)
     pixels_ = std::make_unique<ReplicateMoments>(rect.pixels(), options.channels, options.variance);
   block_sums_.resize(blocks_.size());
   block_counts_.assign(blocks_.size(), std::vector<uint64_t>(options.replicates));
+  if (!sums_) added_.assign(blocks_.size(), std::vector<char>(options.replicates));
 }
 
 SpectralFilm::~SpectralFilm() = default;
@@ -92,6 +93,12 @@ void SpectralFilm::add(const BlockSamples& samples) {
   }
   if (sums_) throw std::logic_error("SpectralFilm::add: the film keeps sums");
   add_pixels(samples);
+  added_[samples.block][samples.replicate] = 1;
+}
+
+bool SpectralFilm::has(uint32_t replicate, uint32_t block) const {
+  if (sums_) throw std::logic_error("SpectralFilm::has: the film keeps sums");
+  return added_.at(block).at(replicate) != 0;
 }
 
 /// Each pixel's means are read once: while they are in the first cache, all that is made of them is.

@@ -74,6 +74,8 @@ class SpectralFilm {
   /// Thread-safe for different blocks. Folded films take the replicates of a block in order.
   /// Not for films that keep sums.
   void add(const BlockSamples& samples);
+  /// Whether add() has had this replicate of the block.
+  bool has(uint32_t replicate, uint32_t block) const;
 
   /// What follows is for films that keep sums, and thread-safe for different blocks.
   bool keeps_sums() const { return sums_ != nullptr; }
@@ -138,6 +140,7 @@ class SpectralFilm {
   std::unique_ptr<Sums> sums_;
   std::vector<std::vector<double>> block_sums_;  // [block][replicate * channels + channel], sum of samples
   std::vector<std::vector<uint64_t>> block_counts_;  // [block][replicate]
+  std::vector<std::vector<char>> added_;             // [block][replicate] of films without sums
 };
 
 /// Mean and variance of the mean from sums over samples per replicate.

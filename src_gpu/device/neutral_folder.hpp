@@ -6,8 +6,8 @@ namespace kiloband::opencl {
 /// While one lives, the process stands in "/". Drivers start linkers, and those take files of the current
 /// folder for parts of the program: GNU ld looks there first for what a linker script names, such as the
 /// libgcc_s.so.1 of PoCL's kernels. A folder of scenes may be a stranger's. Relative names must not be used
-/// meanwhile, and other threads must not use any; one at a time. Where the current folder could not be
-/// entered again, the process stays in it.
+/// meanwhile, and other threads must not use any. Several may live at once, of several threads: the first
+/// leaves the folder, the last returns to it. Where it could not be entered again, the process stays in it.
 class NeutralFolder {
  public:
   NeutralFolder();
@@ -15,23 +15,26 @@ class NeutralFolder {
   NeutralFolder(const NeutralFolder&) = delete;
   NeutralFolder& operator=(const NeutralFolder&) = delete;
 
-  /// Calls `action`, which belongs to the program and may use relative names, in the folder that was left.
+  /// Calls `action`, which belongs to the program, in the folder that was left; where others live, too, their
+  /// drivers may build: then it is called in "/".
   template <class Action>
   void from_outside(const Action& action) const {
-    const Return visit(*this);
+    const Visit visit;
     action();
   }
 
  private:
-  struct Return {
-    explicit Return(const NeutralFolder& folder) : folder_(folder) { folder_.enter_left_folder(); }
-    ~Return() { folder_.enter_root(); }
-    const NeutralFolder& folder_;
-  };
-  void enter_left_folder() const;
-  void enter_root() const;
+  /// While one lives, no NeutralFolder begins or ends.
+  class Visit {
+   public:
+    Visit();
+    ~Visit();
+    Visit(const Visit&) = delete;
+    Visit& operator=(const Visit&) = delete;
 
-  int left_ = -1;  // descriptor of the folder that was left; -1: it was not
+   private:
+    bool outside_ = false;
+  };
 };
 
 }  // namespace kiloband::opencl
