@@ -168,12 +168,21 @@ std::map<std::string, std::string> metadata_of(const RenderOptions& options, con
   return metadata;
 }
 
+/// What each of several devices did.
+void print_shares(const BackendStatistics& done) {
+  for (const DeviceShare& share : done.devices)
+    tell("  {} ({}): {:.1f} % of the paths{}\n", share.backend, share.device,
+         100 * static_cast<double>(share.paths) / static_cast<double>(std::max<uint64_t>(done.paths, 1)),
+         share.failure.empty() ? "" : ", until it failed");
+}
+
 void print_summary(const RenderReport& report, const Backend& backend, double setup_seconds) {
   const uint64_t paths = backend.statistics().paths;
   const BackendInfo info = backend.info();
   tell("{} paths in {:.2f} s ({:.2f} Mpaths/s on {}, {}); set-up {:.2f} s, output {:.2f} s\n", paths,
        report.sampling_seconds, static_cast<double>(paths) / report.sampling_seconds * 1e-6, info.name,
        info.isa, setup_seconds, report.output_seconds);
+  print_shares(backend.statistics());
   if (report.errors.worst) tell("{}\n", describe_errors(report));
   for (const auto& file : report.written) tell("wrote {}\n", file.string());
 }

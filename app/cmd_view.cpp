@@ -118,6 +118,8 @@ std::vector<viewer::BackendChoice> backend_choices() {
       choices.push_back({"opencl", device.name, device.index, {"dpept-batch", "dpept-path", "pt"}});
   } catch (const DeviceError&) {  // there is none, then
   }
+  if (choices.size() > 1)
+    choices.push_back({"cpu+opencl", "both together", {}, {"dpept-batch", "dpept-path", "pt"}});
   return choices;
 }
 
@@ -129,7 +131,7 @@ std::unique_ptr<Backend> make_chosen(const BackendOptions& given, const viewer::
   if (chosen.backend == "cpu") {
     options.device.reset(), options.device_memory.reset(), options.method.reset();
   } else {
-    options.isa.reset(), options.threads.reset();
+    if (chosen.backend == "opencl") options.isa.reset(), options.threads.reset();
     options.device = chosen.device;
     options.method = chosen.method;
   }

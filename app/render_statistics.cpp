@@ -94,6 +94,16 @@ const char* json_text(StopReason reason) {
   return "interruption";
 }
 
+nlohmann::ordered_json share_json(const DeviceShare& share) {
+  nlohmann::ordered_json json{{"backend", share.backend},
+                              {"device", share.device},
+                              {"paths", share.paths},
+                              {"busy_seconds", share.busy_seconds},
+                              {"failure", nullptr}};
+  if (!share.failure.empty()) json["failure"] = share.failure;
+  return json;
+}
+
 }  // namespace
 
 std::string statistics_json(const RenderContext& context, const RenderReport& report,
@@ -127,6 +137,8 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["kernel_seconds"] = done.kernel_seconds;
   json["kernel_launches"] = done.kernel_launches;
   json["device_losses"] = done.device_losses;
+  if (!done.devices.empty()) json["devices"] = nlohmann::json::array();
+  for (const DeviceShare& share : done.devices) json["devices"].push_back(share_json(share));
   json["invalid_samples"] = done.invalid_samples;
   json["resumed_samples"] = report.resumed_samples;
   add_errors(json, report);

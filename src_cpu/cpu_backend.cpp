@@ -80,6 +80,7 @@ class CpuBackend final : public Backend {
   BackendStatistics statistics() const override;
   std::vector<double> film_scale() const override;
   SumRule sum_rule() const override { return BlockWorker::sum_rule(); }
+  uint32_t blocks_at_once(uint32_t) const override { return static_cast<uint32_t>(threads_); }
 
  private:
   void note_invalid(const InvalidSample& sample);
@@ -222,7 +223,11 @@ BackendEntry backend_entry() {
   return {"cpu", {}, [](const BackendInput& input, const BackendRequest& request, const auto&) {
             const std::optional<Isa> isa = find_isa(request.isa);
             if (!isa) throw InputError("no instruction set '" + request.isa + "'");
-            return make_backend(input.scene, input.derived, input.sampling, {*isa, request.threads});
+            const int left = std::max(1, omp_get_num_procs() - request.reserved_threads);
+            const int threads = request.threads == 0 && request.reserved_threads > 0 ? left : request.threads;
+            std::vector<std::unique_ptr<Backend>> one;
+            one.push_back(make_backend(input.scene, input.derived, input.sampling, {*isa, threads}));
+            return one;
           }};
 }
 

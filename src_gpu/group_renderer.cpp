@@ -110,6 +110,11 @@ SumRule GroupRenderer::sum_rule() const {
   return sum_rule_of(device_.method, round_samples_, device_.derived_channels() > 0);
 }
 
+uint32_t GroupRenderer::blocks_at_once(uint32_t samples) const {
+  const uint64_t of_block = uint64_t{kBlockSize} * kBlockSize * std::clamp(samples, 1u, round_samples_);
+  return static_cast<uint32_t>(std::max<uint64_t>(most_jobs(device_, most_slots_) / of_block, 1));
+}
+
 KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) const {
   KbRound round{};
   round.seed = settings_.seed;

@@ -54,6 +54,8 @@ class GroupRenderer {
   /// open: with sums that are gone on with.
   uint64_t group_pixels(uint64_t pixels, bool open);
   SumRule sum_rule() const;
+  /// Blocks of 32 x 32 pixels that fill a round of `samples` per pixel.
+  uint32_t blocks_at_once(uint32_t samples) const;
   /// Of the pool that is there; 0: none was needed yet.
   uint32_t pool_slots() const { return plan_ ? plan_->pool.slots : 0; }
 

@@ -29,13 +29,13 @@ std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
 
 class Renderer final : public Backend {
  public:
-  Renderer(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
-           const SamplingSettings& settings, const Options& options)
+  Renderer(std::shared_ptr<HostScene> host, const SamplingSettings& settings, const Options& options,
+           DeviceInfo device)
       : options_(options),
         settings_(settings),
-        host_(std::move(scene), derived),
+        host_(std::move(host)),
         method_(options.method.value_or(kDefaultMethod)),
-        context_(select_device(options.device), {.profiling = true}) {
+        context_(std::move(device), {.profiling = true}) {
     limit_memory();
     const NeutralFolder neutral;
     repeated([] {});
@@ -52,7 +52,7 @@ class Renderer final : public Backend {
   }
 
   void camera_moved() override {
-    host_.spectra.layout.film_width = host_.scene.camera.film_width;
+    host_->spectra.layout.film_width = host_->scene.camera.film_width;
     repeated([&] { state_->camera_moved(); });
   }
 
@@ -61,9 +61,10 @@ class Renderer final : public Backend {
     return {"opencl", device.name, "opencl " + device.driver_version, to_string(method_)};
   }
   BackendStatistics statistics() const override;
-  std::vector<double> film_scale() const override { return host_.film_scale(); }
+  std::vector<double> film_scale() const override { return host_->film_scale(); }
 
   SumRule sum_rule() const override { return groups_->sum_rule(); }
+  uint32_t blocks_at_once(uint32_t samples) const override { return groups_->blocks_at_once(samples); }
 
  private:
   void limit_memory();
@@ -81,7 +82,7 @@ class Renderer final : public Backend {
 
   Options options_;
   SamplingSettings settings_;
-  HostScene host_;
+  std::shared_ptr<HostScene> host_;  // of all devices that render it
   Method method_;
   DeviceContext context_;
   std::unique_ptr<DeviceState> state_;
@@ -117,7 +118,7 @@ void Renderer::make_device() {
   // PoCL keeps what it compiles itself; before it hands out a binary it compiles every kernel a second time, for groups of any size.
   const bool program_cache = options_.program_cache && !context_.device().is_pocl();
   state_ = std::make_unique<DeviceState>(
-      context_, host_,
+      context_, *host_,
       DeviceSettings{method_, settings_.wavelengths == WavelengthMode::kShared, options_.specialised,
                      program_cache, options_.device_memory});
   groups_ = std::make_unique<GroupRenderer>(*state_, settings_, options_.launch_seconds, options_.pool_slots,
@@ -250,7 +251,30 @@ std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
 
 std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
                                       const SamplingSettings& settings, const Options& options) {
-  return std::make_unique<Renderer>(std::move(scene), derived, settings, options);
+  DeviceInfo device = select_device(options.device);
+  return std::make_unique<Renderer>(std::make_shared<HostScene>(std::move(scene), derived), settings, options,
+                                    std::move(device));
+}
+
+std::vector<std::unique_ptr<Backend>> make_backends(std::shared_ptr<const FlatScene> scene,
+                                                    const DerivedChannels& derived,
+                                                    const SamplingSettings& settings,
+                                                    const Options& options) {
+  const std::vector<DeviceInfo> devices = select_devices(options.device);
+  const auto host = std::make_shared<HostScene>(std::move(scene), derived);
+  std::vector<std::unique_ptr<Backend>> backends;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    try {
+      backends.push_back(std::make_unique<Renderer>(host, settings, options, devices[i]));
+    } catch (const DeviceError& failure) {
+      const bool last_hope = backends.empty() && i + 1 == devices.size();
+      if (last_hope) throw;
+      warn(options.sink, {},
+           fmt::format("{}: the render goes without it (device {} of {})", failure.what(), i + 1,
+                       devices.size()));
+    }
+  }
+  return backends;
 }
 
 BackendEntry backend_entry() {
@@ -264,7 +288,7 @@ BackendEntry backend_entry() {
         if (method) options.method = find_method(*method);
         options.specialised = request.specialised;
         options.sink = request.sink;
-        return make_backend(input.scene, input.derived, input.sampling, options);
+        return make_backends(input.scene, input.derived, input.sampling, options);
       }};
 }
 

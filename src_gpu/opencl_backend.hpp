@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/diagnostics.hpp"
 #include "render/backend_registry.hpp"
@@ -14,7 +15,8 @@
 namespace kiloband::opencl {
 
 struct Options {
-  std::optional<std::string> device;  // index or part of the name; nothing: the first GPU, else what there is
+  /// Index or part of the name; nothing: the first GPU, else what there is. make_backends(): as select_devices().
+  std::optional<std::string> device;
   std::optional<uint64_t> device_memory;  // bytes; nothing: default_memory_budget
   std::optional<Method> method;           // nothing: kDefaultMethod
   bool specialised = true;                // kernels compiled for the scene's features only
@@ -27,6 +29,13 @@ struct Options {
 /// throws DeviceError (no device, kernels do not build, out of memory), InputError (no such device)
 std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
                                       const SamplingSettings& settings, const Options& options);
+
+/// A backend for every device of select_devices(); what is prepared on the host is there once. A device that
+/// fails is left out, with a warning, if another does not.
+/// throws as make_backend(): what the last device says where all fail
+std::vector<std::unique_ptr<Backend>> make_backends(std::shared_ptr<const FlatScene> scene,
+                                                    const DerivedChannels& derived,
+                                                    const SamplingSettings& settings, const Options& options);
 
 /// "opencl", with the methods of Method.
 BackendEntry backend_entry();

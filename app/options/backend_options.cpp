@@ -15,6 +15,8 @@
 namespace kiloband {
 namespace {
 
+constexpr const char* kBothBackends = "cpu+opencl";
+
 /// A real GPU; a loader or driver that fails counts as none.
 bool has_gpu() {
   try {
@@ -23,6 +25,12 @@ bool has_gpu() {
   } catch (const DeviceError&) {
     return false;
   }
+}
+
+/// As the registry calls it.
+std::string backend_name(const std::string& name, const std::optional<std::string>& method) {
+  const bool opencl = name.ends_with("opencl");  // alone, or behind the CPU
+  return opencl && method ? name + ":" + *method : name;
 }
 
 /// The first option of a backend that was given, or null.
@@ -52,15 +60,20 @@ uint64_t parse_bytes(const std::string& option, const std::string& text) {
 }
 
 void BackendOptions::add_to(CLI::App& command, bool with_method) {
-  command.add_option("--backend", backend, "auto (a GPU if there is one, else the CPU), cpu or opencl")
-      ->check(CLI::IsMember({"auto", "cpu", "opencl"}))
+  command
+      .add_option("--backend", backend,
+                  "auto (a GPU if there is one, else the CPU), cpu, opencl, or cpu+opencl: both together")
+      ->check(CLI::IsMember({"auto", "cpu", "opencl", kBothBackends}))
       ->capture_default_str();
   command.add_option("--threads", threads, "cpu: threads (0: all)")->check(CLI::Range(0, 4096));
   command.add_option("--isa", isa, "cpu: instruction set (default auto)")
       ->check(CLI::IsMember({"auto", "sse4", "avx2", "avx512"}));
-  command.add_option("--device", device,
-                     "opencl: index or part of the name, as `kiloband devices` lists them");
-  command.add_option("--device-memory", device_memory, "opencl: memory to use at most, such as 4GiB");
+  command.add_option(
+      "--device", device,
+      "opencl: index or part of the name, as `kiloband devices` lists them; several, which render "
+      "together: 0,1 or all; 0/2: both halves of device 0");
+  command.add_option("--device-memory", device_memory,
+                     "opencl: memory to use at most, of each device, such as 4GiB");
   if (!with_method) return;
   command
       .add_option("--method", method,
@@ -86,9 +99,8 @@ std::unique_ptr<Backend> make_backend(const BackendOptions& options, std::shared
                                       const DiagnosticSink& sink) {
   static const BackendRegistry kBackends({cpu::backend_entry(), opencl::backend_entry()});
   BackendRequest request;
-  request.backend = options.resolve();
+  request.backend = backend_name(options.resolve(), options.method);
   if (options.device_memory) request.device_memory = parse_bytes("--device-memory", *options.device_memory);
-  if (options.method && request.backend == "opencl") request.backend += ":" + *options.method;
   request.isa = options.isa.value_or("auto");
   request.threads = options.threads.value_or(0);
   request.device = options.device;

@@ -25,7 +25,7 @@ struct BackendOptions {
 
   /// with_method: --method too, for commands that evaluate paths
   void add_to(CLI::App& command, bool with_method = true);
-  /// "cpu" or "opencl".
+  /// "cpu", "opencl" or "cpu+opencl".
   /// throws InputError  options that do not apply
   std::string resolve() const;
 };

@@ -52,6 +52,14 @@ struct BackendInfo {
   std::string method = "dpept-batch";  // how paths are evaluated: "dpept-batch", "dpept-path" or "pt"
 };
 
+/// What one of several devices has done.
+struct DeviceShare {
+  std::string backend, device;
+  uint64_t paths = 0;
+  double busy_seconds = 0;  // in which it rendered
+  std::string failure;      // why it was left out; empty: it was not
+};
+
 /// What a backend has done over its life; each fills it as far as it can.
 struct BackendStatistics {
   uint64_t paths = 0, vertices = 0, rays = 0, invalid_samples = 0;
@@ -63,6 +71,7 @@ struct BackendStatistics {
   double longest_launch_seconds = 0;  // of a kernel, measured on the device: display drivers kill long ones
   uint64_t device_rounds = 0, device_waits = 0;  // rounds of paths; how often the host waited for the device
   uint32_t device_losses = 0;                    // how often the device was lost and set up again
+  std::vector<DeviceShare> devices;              // of a backend of several
 };
 
 /// Auxiliary values of one pixel, from the ray through its centre.
@@ -80,7 +89,8 @@ class Backend {
   /// Renders the range in the film's blocks `blocks` and adds them; a film that keeps sums must be of this
   /// backend's sum_rule() and have range.first samples of the replicate there. Returns early when stop
   /// becomes true: samples in flight are finished and delivered. `progress` is called now and then, from one
-  /// thread at a time, with the pixel samples done.
+  /// thread at a time, with the pixel samples done; it must not use relative names of files.
+  /// throws DeviceError  the device has failed: every block has all of its samples of the range, or none
   virtual void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) = 0;
   /// [y][x] of the rectangle.
@@ -100,6 +110,8 @@ class Backend {
   virtual std::vector<double> film_scale() const = 0;
   /// How samples are added; follows from scene, settings and device alone.
   virtual SumRule sum_rule() const = 0;
+  /// Blocks that keep all of the backend busy where each gets so many samples; with fewer a part of it idles.
+  virtual uint32_t blocks_at_once(uint32_t samples) const = 0;
 };
 
 }  // namespace kiloband

@@ -134,6 +134,11 @@ DeviceInfo device_of_name(const std::vector<DeviceInfo>& devices, const std::str
   return matches.front();
 }
 
+void require_platform() {
+  if (list_platforms().empty())
+    throw DeviceError("no OpenCL platform: no OpenCL driver is installed (for processors: pocl-opencl-icd)");
+}
+
 }  // namespace
 
 const char* to_string(DeviceType type) {
@@ -174,9 +179,7 @@ DeviceInfo select_device(const std::vector<DeviceInfo>& devices, const std::opti
 }
 
 DeviceInfo select_device(const std::optional<std::string>& choice) {
-  if (list_platforms().empty()) {
-    throw DeviceError("no OpenCL platform: no OpenCL driver is installed (for processors: pocl-opencl-icd)");
-  }
+  require_platform();
   return select_device(list_devices(), choice);
 }
 

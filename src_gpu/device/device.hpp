@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct DeviceInfo {
   uint64_t max_allocation = 0;  // bytes, of one buffer
   uint64_t max_work_group_size = 0;
   _cl_device_id* id = nullptr;
+  std::shared_ptr<void> kept;  // of a part: what keeps `id` valid
 
   /// PoCL: needs settings of its own.
   bool is_pocl() const { return platform == "Portable Computing Language"; }
@@ -51,5 +53,16 @@ DeviceInfo select_device(const std::optional<std::string>& choice);
 
 /// The same among given devices.
 DeviceInfo select_device(const std::vector<DeviceInfo>& devices, const std::optional<std::string>& choice);
+
+/// The devices to use together.
+/// choice  as of select_device(); several of them with commas between; "all"; behind an index or a name "/N":
+///         the device in N equal parts, each a device that has its share of compute units and memory
+/// throws as select_device()
+///        InputError  a device twice; a device that cannot be divided so
+std::vector<DeviceInfo> select_devices(const std::optional<std::string>& choice);
+
+/// The same among given devices.
+std::vector<DeviceInfo> select_devices(const std::vector<DeviceInfo>& devices,
+                                       const std::optional<std::string>& choice);
 
 }  // namespace kiloband::opencl

@@ -89,6 +89,7 @@ class NoBackend final : public Backend {
   BackendStatistics statistics() const override { return {}; }
   std::vector<double> film_scale() const override { return std::vector<double>(channels_, 1.0); }
   SumRule sum_rule() const override { return {}; }
+  uint32_t blocks_at_once(uint32_t) const override { return 1; }
 
  private:
   std::size_t channels_;

@@ -55,7 +55,7 @@ function backend_rows(settings) {
   const is_used = (b) => of_backend(b) && b.device === settings.device;
   const found = backends.findIndex(is_used);
   const at = Math.max(0, found < 0 ? backends.findIndex(of_backend) : found);
-  const kinds = {cpu: 'CPU', opencl: 'OpenCL'};
+  const kinds = {cpu: 'CPU', opencl: 'OpenCL', 'cpu+opencl': 'CPU and OpenCL'};
   const list = backends.map((b, i) => [i, `${kinds[b.name] ?? b.name}: ${b.device}`]);
   const pick = (chosen) => {
     const {name, index, methods} = backends[Number(chosen)];

@@ -132,7 +132,7 @@ TEST(WrongOption, SamplingAndOutput) {
           {{"--threads", "-1"}, "--threads: Value -1 not in range 0 to 4096 (see kiloband render --help)"},
           {{"--isa", "mmx"}, "--isa: mmx not in {auto,sse4,avx2,avx512} (see kiloband render --help)"},
           {{"--backend", "vulkan"},
-           "--backend: vulkan not in {auto,cpu,opencl} (see kiloband render --help)"},
+           "--backend: vulkan not in {auto,cpu,opencl,cpu+opencl} (see kiloband render --help)"},
           {{"--sampler", "halton"},
            "--sampler: halton not in {sobol,independent} (see kiloband render --help)"},
           {{"--wavelengths", "hero"},

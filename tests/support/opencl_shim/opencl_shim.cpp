@@ -4,6 +4,8 @@
 //   KILOBAND_SHIM_NTH       which of its calls fails, from 1 (default 1)
 //   KILOBAND_SHIM_CODE      the code that it gives, a number (default -5, CL_OUT_OF_RESOURCES)
 //   KILOBAND_SHIM_REPEAT    1: all later calls fail too
+//   KILOBAND_SHIM_DEVICE    1: calls of queues of the device count and fail that was the first to have a queue, 2: of
+//                           the second ...; functions without a queue never fail then (default: any device)
 //   KILOBAND_SHIM_REPORT    file to write at exit: a line "NAME CALLS" per function, then "live_buffers N",
 //                           the references to buffers that were not released, and "failed N", the calls that
 //                           were failed
@@ -18,6 +20,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -64,12 +69,35 @@ struct Plan {
   long nth = number_of("KILOBAND_SHIM_NTH", 1);
   cl_int code = static_cast<cl_int>(number_of("KILOBAND_SHIM_CODE", CL_OUT_OF_RESOURCES));
   bool repeat = number_of("KILOBAND_SHIM_REPEAT", 0) != 0;
-  std::atomic<long> calls[kFunctionCount] = {}, live_buffers{0}, failed{0};
+  long device = number_of("KILOBAND_SHIM_DEVICE", 0);  // 0: any
+  std::atomic<long> calls[kFunctionCount] = {}, live_buffers{0}, failed{0}, calls_of_device{0};
+  std::mutex mutex;
+  std::vector<cl_device_id> devices;                      // in the order in which they had queues
+  std::vector<std::pair<cl_command_queue, long>> queues;  // and their devices' numbers, from 1
+
+  void note_queue(cl_command_queue queue, cl_device_id its_device) {
+    const std::lock_guard lock(mutex);
+    long number = 0;
+    while (number < static_cast<long>(devices.size()) && devices[number] != its_device) ++number;
+    if (number == static_cast<long>(devices.size())) devices.push_back(its_device);
+    queues.insert(queues.begin(), {queue, number + 1});  // the newest of an address counts
+  }
+
+  long device_of(cl_command_queue queue) {
+    const std::lock_guard lock(mutex);
+    for (const auto& [known, number] : queues)
+      if (known == queue) return number;
+    return 0;
+  }
 
   /// The code to give; CL_SUCCESS: call the real function.
-  cl_int next(Function called) {
-    const long call = ++calls[called];
+  cl_int next(Function called, cl_command_queue queue = nullptr) {
+    long call = ++calls[called];
     if (!function || std::strcmp(function, kNames[called]) != 0) return CL_SUCCESS;
+    if (device > 0) {
+      if (!queue || device_of(queue) != device) return CL_SUCCESS;
+      call = ++calls_of_device;
+    }
     if (call < nth || (call > nth && !repeat)) return CL_SUCCESS;
     ++failed;
     return code;
@@ -133,9 +161,10 @@ cl_context clCreateContext(const cl_context_properties* properties, cl_uint coun
 
 cl_command_queue clCreateCommandQueue(cl_context context, cl_device_id device,
                                       cl_command_queue_properties properties, cl_int* error) {
-  const cl_int code = plan.next(kCreateCommandQueue);
-  return code ? refuse<_cl_command_queue>(code, error)
-              : REAL(clCreateCommandQueue)(context, device, properties, error);
+  if (const cl_int code = plan.next(kCreateCommandQueue)) return refuse<_cl_command_queue>(code, error);
+  const cl_command_queue queue = REAL(clCreateCommandQueue)(context, device, properties, error);
+  if (queue) plan.note_queue(queue, device);
+  return queue;
 }
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
@@ -186,7 +215,7 @@ cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* error) {
 cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
                               const size_t* offset, const size_t* global, const size_t* local, cl_uint count,
                               const cl_event* events, cl_event* event) {
-  const cl_int code = plan.next(kEnqueueNDRangeKernel);
+  const cl_int code = plan.next(kEnqueueNDRangeKernel, queue);
   return code ? code
               : REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, count, events,
                                              event);
@@ -194,7 +223,7 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
 
 cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
                            size_t size, void* to, cl_uint count, const cl_event* events, cl_event* event) {
-  const cl_int code = plan.next(kEnqueueReadBuffer);
+  const cl_int code = plan.next(kEnqueueReadBuffer, queue);
   return code ? code
               : REAL(clEnqueueReadBuffer)(queue, buffer, blocking, offset, size, to, count, events, event);
 }
@@ -202,7 +231,7 @@ cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocki
 cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
                             size_t size, const void* from, cl_uint count, const cl_event* events,
                             cl_event* event) {
-  const cl_int code = plan.next(kEnqueueWriteBuffer);
+  const cl_int code = plan.next(kEnqueueWriteBuffer, queue);
   return code ? code
               : REAL(clEnqueueWriteBuffer)(queue, buffer, blocking, offset, size, from, count, events, event);
 }
@@ -210,14 +239,14 @@ cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool block
 cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void* pattern, size_t pattern_size,
                            size_t offset, size_t size, cl_uint count, const cl_event* events,
                            cl_event* event) {
-  const cl_int code = plan.next(kEnqueueFillBuffer);
+  const cl_int code = plan.next(kEnqueueFillBuffer, queue);
   return code ? code
               : REAL(clEnqueueFillBuffer)(queue, buffer, pattern, pattern_size, offset, size, count, events,
                                           event);
 }
 
 cl_int clFinish(cl_command_queue queue) {
-  const cl_int code = plan.next(kFinish);
+  const cl_int code = plan.next(kFinish, queue);
   const cl_int result =
       REAL(clFinish)(queue);  // also of a failed one: nothing is to run on when the process ends
   return code ? code : result;
