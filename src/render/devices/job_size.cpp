@@ -45,7 +45,7 @@ std::size_t blocks_to_take(std::span<const DeviceLoad> devices, std::size_t whic
   const auto share = static_cast<std::size_t>(std::ceil(static_cast<double>(left) * own / all));
   const std::size_t most = std::clamp<std::size_t>(share, 1, left), busy = asking.at_once;
   if (!known) return std::clamp<std::size_t>(std::min(most / 4, busy), 1, left);
-  return std::min(most, std::max((most + 1) / 2, busy));
+  return std::min(most, ((most + 1) / 2 + busy - 1) / busy * busy);
 }
 
 }  // namespace kiloband

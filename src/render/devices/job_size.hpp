@@ -19,8 +19,8 @@ struct DeviceLoad {
 /// through with all of them before it had one. The fastest device is never told so: somebody takes what is left.
 ///
 /// A device takes half of its share by speed of what is left (guided self-scheduling: Polychronopoulos and Kuck
-/// 1987), and all of its share where half leaves it idle; one of unknown speed a quarter, and no more than keeps it
-/// busy.
+/// 1987), rounded up to what keeps all of it busy as far as its share goes; one of unknown speed a quarter, and no more
+/// than keeps it busy.
 /// left  at least 1
 std::size_t blocks_to_take(std::span<const DeviceLoad> devices, std::size_t which, std::size_t left);
 

@@ -84,7 +84,7 @@ TEST_F(ProgramDevices, OneMayFail) {
   const std::string image = expected(options);
   for (const std::string device : {"1", "2"}) {
     for (const auto& [function, nth] : std::map<std::string, std::vector<std::string>>{
-             {"clEnqueueNDRangeKernel", {"1", "60", "200"}}, {"clEnqueueReadBuffer", {"2", "20"}}}) {
+             {"clEnqueueNDRangeKernel", {"1", "40", "100"}}, {"clEnqueueReadBuffer", {"2", "10"}}}) {
       for (const std::string& call : nth) {
         const Outcome outcome = run({"--spp", "40", "--device", "0/2", "--stats", "s.json"},
                                     {.environment = {{"LD_PRELOAD", SHIM_LIBRARY},

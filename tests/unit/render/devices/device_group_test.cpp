@@ -28,6 +28,12 @@ class DeviceGroupTest : public SessionTest {
   std::unique_ptr<FaultyBackend> faulty(const Fault& fault, const std::string& name = "faulty") const {
     return std::make_unique<FaultyBackend>(one(), fault, name);
   }
+  /// One with a fault, and one that renders nothing before: the image's nine blocks are at least four jobs for the first.
+  std::unique_ptr<Backend> failing(const Fault& fault) {
+    auto first = faulty(fault), second = faulty({});
+    second->wait_for(*first);
+    return group(std::move(first), std::move(second));
+  }
   template <class... Some>
   std::unique_ptr<Backend> group(Some... backends) {
     std::vector<std::unique_ptr<Backend>> all;
@@ -104,7 +110,7 @@ TEST_F(DeviceGroupTest, GoesOnWithoutADeviceThatFails) {
     for (const int call : {1, 4}) {
       for (const std::size_t delivered : {0u, 1u}) {
         messages_.texts.clear();
-        const auto both = group(faulty({Fault::Kind::kDevice, call, delivered}), one());
+        const auto both = failing({Fault::Kind::kDevice, call, delivered});
         expect_image(*both, expected);
         ASSERT_EQ(messages_.texts.size(), 1u);
         EXPECT_EQ(messages_.texts.front(),
@@ -118,7 +124,7 @@ TEST_F(DeviceGroupTest, GoesOnWithoutADeviceThatFails) {
 TEST_F(DeviceGroupTest, CountsEverySampleOnceInTheProgress) {
   settings_.stop.samples_per_pixel = 32;
   for (const std::size_t delivered : {0u, 1u}) {
-    const auto both = group(faulty({Fault::Kind::kDevice, 3, delivered}), one());
+    const auto both = failing({Fault::Kind::kDevice, 3, delivered});
     uint64_t last = 0;
     run(*both, "image.hdr", false, [&](const Progress& p) {
       EXPECT_GE(p.pixel_samples, last);
@@ -139,7 +145,7 @@ TEST_F(DeviceGroupTest, EndsWithTheLastErrorWhereAllFail) {
 }
 
 TEST_F(DeviceGroupTest, DoesNotHideBugs) {
-  const auto both = group(faulty({Fault::Kind::kBug, 2}), one());
+  const auto both = failing({Fault::Kind::kBug, 2});
   EXPECT_EQ(test::error_of<std::logic_error>([&] { run(*both, "image.hdr"); }), "a bug");
 }
 
@@ -192,9 +198,10 @@ TEST_F(DeviceGroupTest, OfDifferentRulesRendersTheSameImage) {
     settings_.stop.samples_per_pixel = samples;
     const test::Cube expected = image(*one());
     auto other = faulty({Fault::Kind::kDevice, 4, 1});
-    auto third = faulty({});
+    auto second = faulty({}), third = faulty({});
+    second->wait_for(*other), third->wait_for(*other);
     other->claim_other_rule(), third->claim_other_rule();
-    const auto all = group(std::move(other), one(), std::move(third));
+    const auto all = group(std::move(other), std::move(second), std::move(third));
     EXPECT_EQ(all->sum_rule(), kStagedRule);
     const test::Cube got = image(*all);
     expect_same(expected.mean, got.mean, 2e-6);

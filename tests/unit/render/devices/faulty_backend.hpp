@@ -1,7 +1,11 @@
 // A backend that fails when it is told to.
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <optional>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "base/error.hpp"
@@ -25,11 +29,13 @@ class FaultyBackend final : public Backend {
 
   void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
               const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override {
+    while (waits_for_ && !*waits_for_) std::this_thread::yield();
     const bool fails = fault_.kind != Fault::Kind::kNone && ++calls_ >= fault_.at_call;
     if (!fails) return backend_->render(film, range, blocks, stop, progress);
     const auto end = blocks.begin() + static_cast<std::ptrdiff_t>(std::min(fault_.delivered, blocks.size()));
     backend_->render(film, range, {blocks.begin(), end}, stop, progress);
     if (progress) progress(1);  // of a block that is never delivered
+    *failed_ = true;
     if (fault_.kind == Fault::Kind::kBug) throw std::logic_error("a bug");
     throw DeviceError(name_ + ": lost");
   }
@@ -51,6 +57,9 @@ class FaultyBackend final : public Backend {
   SumRule sum_rule() const override { return rule_.value_or(backend_->sum_rule()); }
   uint32_t blocks_at_once(uint32_t samples) const override { return backend_->blocks_at_once(samples); }
 
+  /// Renders nothing before the other has failed, so that it does.
+  void wait_for(const FaultyBackend& other) { waits_for_ = other.failed_; }
+
   /// One that keeps the film as the backend does, and is another for all that.
   void claim_other_rule() {
     rule_ = backend_->sum_rule();
@@ -67,6 +76,7 @@ class FaultyBackend final : public Backend {
   std::string name_;
   std::optional<SumRule> rule_;
   int calls_ = 0;
+  std::shared_ptr<std::atomic<bool>> failed_ = std::make_shared<std::atomic<bool>>(false), waits_for_;
 };
 
 }  // namespace kiloband::test

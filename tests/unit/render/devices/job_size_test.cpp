@@ -26,6 +26,12 @@ TEST(JobSize, IsTheShareWhereHalfOfItLeavesTheDeviceIdle) {
   EXPECT_EQ(blocks_to_take(loads, 1, 20), 8u);
 }
 
+TEST(JobSize, KeepsAllOfTheDeviceBusyToItsEnd) {
+  const Loads loads{{1, 4}, {1, 1}};
+  EXPECT_EQ(blocks_to_take(loads, 0, 36), 12u);  // of a share of 18
+  EXPECT_EQ(blocks_to_take(loads, 1, 36), 9u);
+}
+
 TEST(JobSize, OfUnknownSpeedIsSmall) {
   const Loads loads{{0, 64}, {0, 4}, {0, 1}};
   EXPECT_EQ(blocks_to_take(loads, 0, 96), 8u);
