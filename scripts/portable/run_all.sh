@@ -90,7 +90,10 @@ if grep -qE '^ *[0-9]+ ' "$work/devices"; then
   done
 fi
 reserve=90
-step "validate --quick" 300 "$here/kiloband" validate --quick --quiet -o validate
+# Every method where there is a GPU; OpenCL on processors is too slow for more than one in the time.
+backends=cpu,opencl:dpept-batch
+if grep -qwi gpu "$work/devices"; then backends=cpu,opencl:dpept-batch,opencl:dpept-path,opencl:pt; fi
+step "validate --quick" 300 "$here/kiloband" validate --quick --quiet --backends "$backends" -o validate
 reserve=0
 step "bench --quick" 240 "$here/kiloband" bench --quick --quiet -o bench
 
