@@ -42,8 +42,9 @@
   X(scene, IN, KbLightNode, light_nodes) SEP  /* light_tree.h; empty without a tree, as the next two */          \
   X(scene, IN, KbTreeLight, tree_lights) SEP                                                                     \
   X(scene, IN, kb_u32, first_tree_light) SEP  /* by emitter */                                                   \
-  X(scene, IN, float, envmap_marginal) SEP    /* rows + 1 */                                                     \
-  X(scene, IN, float, envmap_rows) SEP        /* rows of columns + 1 */                                          \
+  X(scene, IN, float, envmap_facings) SEP     /* EnvmapSampling's distributions, as the next two */              \
+  X(scene, IN, float, envmap_rows) SEP                                                                           \
+  X(scene, IN, float, envmap_columns) SEP                                                                        \
   X(scene, IN, KbMedium, media) SEP                                                                              \
   X(scene, IN, KbFloat2, plume_nodes) SEP     /* temperature, scale */                                           \
   X(scene, IN, kb_u32, interiors) SEP         /* by shape: the medium inside, or KB_NONE; empty without gas */   \

@@ -8,6 +8,7 @@
 #ifndef KILOBAND_SHARED_PIPELINE_H
 #define KILOBAND_SHARED_PIPELINE_H
 
+#include "shared/environment.h"
 #include "shared/estimator.h"
 #include "shared/lang.h"
 #include "shared/records.h"
@@ -45,7 +46,9 @@ typedef struct {
   kb_u32 instances;                     /* 1: the scene has instances */
   kb_u32 first_sun;                     /* the emitters from here on are suns; emitter_count: none is */
   kb_u32 light_tree;                    /* 1: the scene has one (light_tree.h) */
-  kb_u32 reserved[3];
+  kb_u32 envmap_row_shift;              /* cells of a region of the map: 2^shift */
+  kb_u32 envmap_column_shift;
+  kb_u32 reserved;
 } KB_ALIGNED(16) KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 208, scene_constants_size);
 
@@ -115,7 +118,9 @@ typedef struct {
 KB_STATIC_ASSERT(sizeof(KbShadowRay) == 32, shadow_ray_size);
 
 /* ---- path state --------------------------------------------------------------------------------------- */
-#define KB_PATH_BOUNCE_MASK 0x00ffffffu
+#define KB_PATH_BOUNCE_MASK 0x0001ffffu
+#define KB_PATH_FACING_MASK 0x00fe0000u /* of where the ray comes from: environment.h */
+#define KB_PATH_FACING_SHIFT 17u
 #define KB_PATH_LIVE 0x01000000u           /* has a ray to trace */
 #define KB_PATH_ENDED 0x02000000u          /* complete, not yet handed over to evaluation */
 #define KB_PATH_INVALID 0x04000000u        /* a weight is not finite, or the path is endless */
@@ -133,9 +138,12 @@ typedef struct {
 } KB_ALIGNED(16) KbDispersionState;
 KB_STATIC_ASSERT(sizeof(KbDispersionState) == 96, dispersion_state_size);
 
+KB_STATIC_ASSERT(KB_MAX_VERTICES <= KB_PATH_BOUNCE_MASK, bounces_fit);
+KB_STATIC_ASSERT(KB_ALL_FACINGS <= KB_PATH_FACING_MASK >> KB_PATH_FACING_SHIFT, facings_fit);
+
 typedef struct {
   kb_u32 job;
-  kb_u32 flags;    /* bounce | KB_PATH_* */
+  kb_u32 flags;    /* bounce | facing | KB_PATH_* */
   float bound;     /* upper bound of the throughput over all channels, without radiance scaling */
   float magnitude; /* product of the scatter weights */
   kb_u32 channel;  /* the one that survived a dispersive refraction, or KB_NONE */

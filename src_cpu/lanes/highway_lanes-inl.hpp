@@ -168,6 +168,10 @@ template <int S>
 KB_INLINE U shift_left(U a) {
   return hn::ShiftLeft<S>(a.v);
 }
+/// By the same number of bits, which is known only when the program runs.
+KB_INLINE U shift_right(U a, uint32_t bits) {
+  return hn::ShiftRightSame(a.v, static_cast<int>(bits));
+}
 KB_INLINE M has_bits(U a, uint32_t bits) {
   return {hn::RebindMask(kFloatLanes, hn::Ne(hn::And(a.v, hn::Set(kWordLanes, bits)), hn::Zero(kWordLanes)))};
 }

@@ -160,6 +160,9 @@ template <int S>
 KB_INLINE U shift_left(U a) {
   return a.v << S;
 }
+KB_INLINE U shift_right(U a, uint32_t bits) {
+  return a.v >> bits;
+}
 /// Where any of these bits is set.
 KB_INLINE M has_bits(U a, uint32_t bits) {
   return {(a.v & bits) != 0};

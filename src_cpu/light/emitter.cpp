@@ -47,7 +47,8 @@ LightSample sample_shape_light(const FlatScene& scene, const SelectedLight& sele
   return sample;
 }
 
-LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position) {
+LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position,
+                         uint32_t facing) {
   if (scene.emitters.empty()) return {};
   const one_lane::F4 u{u_select.x, u_select.y, u_position.x, u_position.y};
   const one_lane::ChosenLight chosen = one_lane::choose_light(scene, to_lane(point), u, {true});
@@ -55,7 +56,7 @@ LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_se
     return sample_shape_light(scene,
                               {chosen.emitter.v, chosen.head.select_pdf.v, chosen.triangle.v, chosen.area.v},
                               point, u_select.y, u_position);
-  const one_lane::Light light = one_lane::sample_chosen({scene}, chosen, to_lane(point), u, {true});
+  const one_lane::Light light = one_lane::sample_chosen({scene}, chosen, {to_lane(point), facing}, u, {true});
   LightSample sample;
   sample.direction = to_glm(light.direction);
   sample.target = to_glm(light.target);
@@ -83,9 +84,10 @@ float area_light_pdf(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 or
   return probability > 0 ? probability * area_light_density(record, hit, origin, chosen.area.v) : 0;
 }
 
-float environment_pdf(const FlatScene& scene, glm::vec3 direction) {
+float environment_pdf(const FlatScene& scene, glm::vec3 direction, uint32_t facing) {
   if (scene.environment == KB_NONE) return 0;
-  return one_lane::environment_pdf(scene, one_lane::environment_coordinates(scene, to_lane(direction))).v;
+  const one_lane::V2 uv = one_lane::environment_coordinates(scene, to_lane(direction));
+  return one_lane::environment_pdf(scene, uv, facing).v;
 }
 
 float sun_pdf(const FlatScene& scene, uint32_t emitter, glm::vec3 direction) {

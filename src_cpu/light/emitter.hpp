@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "scene/compile/flat_scene.hpp"
+#include "shared/environment.h"
 #include "src_cpu/geometry/surface_hit.hpp"
 
 namespace kiloband::cpu {
@@ -45,7 +46,9 @@ struct LightSample {
 /// tree if there is one (shared/light_tree.h), then a point or direction on it (u_position). Spheres are sampled over the cone that they subtend from outside, over their
 /// area from inside; other shapes over their area; environment maps by their texels; constant environments
 /// over the sphere; suns over their discs. Points that a one-sided area light does not shine to give pdf 0.
-LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position);
+/// facing  of the receiver (shared/environment.h): environment maps are sampled for it, and take finer digits from u_select.y
+LightSample sample_light(const FlatScene& scene, glm::vec3 point, glm::vec2 u_select, glm::vec2 u_position,
+                         uint32_t facing = KB_ALL_FACINGS);
 
 /// An emitter that has been selected.
 struct SelectedLight {
@@ -67,9 +70,9 @@ SurfaceHit thermal_surface(const FlatScene& scene, const ThermalPoint& on);
 /// origin  the `point` that was given to sample_light(): for spheres the density depends on its side
 float area_light_pdf(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 origin);
 
-/// Density with which sample_light() gives a direction that escapes to the environment;
+/// Density with which sample_light() gives a receiver of this facing a direction that escapes to the environment;
 /// 0 without environment [1/sr].
-float environment_pdf(const FlatScene& scene, glm::vec3 direction);
+float environment_pdf(const FlatScene& scene, glm::vec3 direction, uint32_t facing = KB_ALL_FACINGS);
 /// The same of a sun, by its index; 0 beside its disc. direction: a unit vector towards it
 float sun_pdf(const FlatScene& scene, uint32_t emitter, glm::vec3 direction);
 /// What the environment sends from `direction` (a unit vector towards it); scene.environment must exist.

@@ -8,6 +8,7 @@
 #define KILOBAND_ENVIRONMENT_INL
 #endif
 
+#include "shared/environment.h"
 #include "src_cpu/geometry/texture/texture-inl.hpp"
 #include "src_cpu/lanes/lane_sampler-inl.hpp"
 #include "src_cpu/light/area-inl.hpp"
@@ -25,31 +26,80 @@ KB_INLINE V2 envmap_coordinates(const KbEmitter& emitter, V3 direction) {
   return {select(u < F(1), u, F(0)), min(v, F(1))};
 }
 
+/// Facing (shared/environment.h) of receivers in an environment's frame.
+KB_INLINE U facing_of(const KbEmitter& emitter, V3 normal) {
+  const V3 n = transform_vector(emitter.to_object, normal);
+  const F scale = F(1) / (abs(n.x) + abs(n.y) + abs(n.z));
+  const F x = n.x * scale, z = n.z * scale;
+  const M below = n.y < F(0);
+  const auto fold = [](F a, F b) KB_LAMBDA { return select(a < F(0), abs(b) - F(1), F(1) - abs(b)); };
+  const auto cell = [](F c) KB_LAMBDA {
+    constexpr float kAcross = KB_FACINGS_ACROSS;
+    const F place = (c + F(1)) * F(0.5f * kAcross);
+    const F inside = select(place > F(0), place, F(0));  // NaN, too
+    return to_words(select(inside < F(kAcross - 1), inside, F(kAcross - 1)));
+  };
+  return cell(select(below, fold(x, z), x)) + cell(select(below, fold(z, x), z)) * U(KB_FACINGS_ACROSS);
+}
+
 /// A value drawn from a piecewise constant distribution: the cell and where u fell in it, in [0, 1).
 struct CellSample {
   U cell;
   F fraction;
 };
 
-/// first: where in cdf the distribution begins
-KB_INLINE CellSample sample_cell(const float* cdf, U first, uint32_t count, F u) {
+/// first: where in cdf the distribution begins; digits: of u beyond its 24 bits, in [0, 1)
+KB_INLINE CellSample sample_cell(const float* cdf, U first, uint32_t count, F u, F digits) {
   const U cell = find_interval(cdf, first, U(count), u);
   const F low = gather(cdf, first + cell), high = gather(cdf + 1, first + cell);
-  return {cell, min((u - low) / (high - low), F(KB_ONE_MINUS_EPSILON))};
+  return {cell, min(((u - low) + digits * F(0x1p-24f)) / (high - low), F(KB_ONE_MINUS_EPSILON))};
 }
 
-/// Unit world direction; u, v uniform in [0,1)^2.
-KB_INLINE V3 sample_envmap_direction(const EnvmapSampling& sampling, const KbEmitter& emitter, F u, F v) {
-  const CellSample row = sample_cell(sampling.marginal_cdf.data(), U(0u), sampling.height, v);
+/// Where the distributions of a map begin in their arrays.
+struct EnvmapPlaces {
+  const EnvmapSampling& sampling;
+  uint32_t down, across, rows, columns;  // regions of the map, cells of a region
+
+  KB_INLINE explicit EnvmapPlaces(const EnvmapSampling& of)
+      : sampling(of),
+        down(of.regions_down()),
+        across(of.regions_across()),
+        rows(1u << of.row_shift),
+        columns(1u << of.column_shift) {}
+  KB_INLINE U region_rows(U facing) const { return facing * U(down + 1 + down * (across + 1)); }
+  KB_INLINE U region_columns(U facing, U region_row) const {
+    return region_rows(facing) + U(down + 1) + region_row * U(across + 1);
+  }
+  KB_INLINE U cell_rows(U region_row, U region_column) const {
+    return (region_row * U(across) + region_column) * U(rows + 1);
+  }
+  /// Of an array that may have 2^32 entries.
+  KB_INLINE U cell_columns(U row, U region_column) const {
+    return (row * U(across) + region_column) * U(columns + 1);
+  }
+};
+
+/// Unit world direction for a facing. u, v uniform in [0,1)^2; spare: another such number, for finer digits of both
+KB_INLINE V3 sample_envmap_direction(const EnvmapSampling& sampling, const KbEmitter& emitter, U facing, F u,
+                                     F v, F spare) {
+  const EnvmapPlaces at(sampling);
+  const float* facings = sampling.facing_cdf.data();
+  const F scaled = spare * F(KB_FINER_DIGITS), whole = floor(scaled);
+  const CellSample down = sample_cell(facings, at.region_rows(facing), at.down, v, scaled - whole);
+  const CellSample across = sample_cell(facings, at.region_columns(facing, down.cell), at.across, u,
+                                        whole * F(1 / KB_FINER_DIGITS));
+  const CellSample row = sample_cell(sampling.row_cdf.data(), at.cell_rows(down.cell, across.cell), at.rows,
+                                     down.fraction, F(0));
+  const U map_row = down.cell * U(at.rows) + row.cell;
   const CellSample column =
-      sample_cell(sampling.row_cdf.data() + kArrayMiddle, row.cell * U(sampling.width + 1) - U(kArrayMiddle),
-                  sampling.width, u);
+      sample_cell(sampling.column_cdf.data() + kArrayMiddle,
+                  at.cell_columns(map_row, across.cell) - U(kArrayMiddle), at.columns, across.fraction, F(0));
 
   // Uniform in solid angle within the row: h = sin^2(theta / 2) = (1 - cos theta) / 2 is uniform. Rows of the
   // lower half are mirrored, so that h stays small near either pole
   // and sin theta = 2 sqrt(h (1 - h)) keeps its digits.
   const auto height = static_cast<float>(sampling.height);
-  const F upper_row = to_floats(row.cell);
+  const F upper_row = to_floats(map_row);
   const M lower = F(2) * upper_row >= F(height);
   const F from_pole = select(lower, F(height - 1) - upper_row, upper_row);
   const F step(0.25f / height);  // theta / 2 of a row, in turns
@@ -59,25 +109,36 @@ KB_INLINE V3 sample_envmap_direction(const EnvmapSampling& sampling, const KbEmi
   const F h = h0 + (h1 - h0) * row.fraction;
   const F sin_theta = F(2) * sqrt(h * (F(1) - h)), cos_upper = F(1) - F(2) * h;
 
-  const F map_u =
-      (to_floats(column.cell) + F(0.5f) + column.fraction) / F(static_cast<float>(sampling.width));
+  const F map_column = to_floats(across.cell * U(at.columns) + column.cell);
+  const F map_u = (map_column + F(0.5f) + column.fraction) / F(static_cast<float>(sampling.width));
   const SinCos phi = sin_cos_of_turns(map_u);
   const V3 local{phi.sin * sin_theta, select(lower, -cos_upper, cos_upper), -(phi.cos * sin_theta)};
   return normalize(transform_vector(emitter.to_world, local));
 }
 
-/// Density at map coordinates [1/sr].
-KB_INLINE F envmap_density(const EnvmapSampling& sampling, V2 uv) {
+/// Of an entry of a distribution.
+KB_INLINE F difference(const float* cdf, U index) {
+  return gather(cdf + 1, index) - gather(cdf, index);
+}
+
+/// Density at map coordinates, for a facing [1/sr].
+KB_INLINE F envmap_density(const EnvmapSampling& sampling, V2 uv, U facing) {
+  const EnvmapPlaces at(sampling);
   const auto rows = static_cast<float>(sampling.height);
   const auto columns = static_cast<float>(sampling.width);
   const F row = min(max(floor(uv.y * F(rows)), F(0)), F(rows - 1));
   const F shifted = floor(uv.x * F(columns) - F(0.5f));
   const F column = select(shifted < F(0), F(columns - 1), min(shifted, F(columns - 1)));
-  const float* marginal = sampling.marginal_cdf.data();
-  const float* row_cdf = sampling.row_cdf.data();
-  const U i = to_words(row), j = i * U(sampling.width + 1) + to_words(column);
-  const F probability = (gather(marginal + 1, i) - gather(marginal, i)) *
-                        (gather_from_large(row_cdf + 1, j) - gather_from_large(row_cdf, j));
+  const U i = to_words(row), j = to_words(column);
+  const U down = shift_right(i, sampling.row_shift), across = shift_right(j, sampling.column_shift);
+  const U k = at.cell_columns(i, across) + (j & U(at.columns - 1));
+  const float* facings = sampling.facing_cdf.data();
+  const float* column_cdf = sampling.column_cdf.data();
+  const F probability =
+      difference(facings, at.region_rows(facing) + down) *
+      difference(facings, at.region_columns(facing, down) + across) *
+      difference(sampling.row_cdf.data(), at.cell_rows(down, across) + (i & U(at.rows - 1))) *
+      (gather_from_large(column_cdf + 1, k) - gather_from_large(column_cdf, k));
   // Solid angle of the cell: 2 pi / columns * (cos theta0 - cos theta1), the difference as a product of sines. The
   // sine of a row's middle is that of its mirror image in the upper half, where the angle has more digits.
   const F half_step(0.25f / rows);  // in turns
@@ -86,11 +147,11 @@ KB_INLINE F envmap_density(const EnvmapSampling& sampling, V2 uv) {
          (F(4 * KB_PI) * sin_cos_of_turns(middle).sin * sin_cos_of_turns(half_step).sin);
 }
 
-/// A direction towards the scene's environment; u, v uniform in [0,1)^2.
-KB_INLINE V3 sample_environment_direction(const FlatScene& scene, F u, F v) {
+/// A direction towards the scene's environment for receivers of a facing; u, v, spare uniform in [0,1)^3.
+KB_INLINE V3 sample_environment_direction(const FlatScene& scene, U facing, F u, F v, F spare) {
   const KbEmitter& emitter = scene.emitters[scene.environment];
   if (emitter.type == KB_EMITTER_CONSTANT) return uniform_sphere(u, v);
-  return sample_envmap_direction(scene.envmap, emitter, u, v);
+  return sample_envmap_direction(scene.envmap, emitter, facing, u, v, spare);
 }
 
 /// Where a direction lies on the scene's environment; constant ones have no coordinates.
@@ -100,11 +161,11 @@ KB_INLINE V2 environment_coordinates(const FlatScene& scene, V3 direction) {
   return envmap_coordinates(emitter, direction);
 }
 
-/// Density with which light is sampled from there, selection included [1/sr].
-KB_INLINE F environment_pdf(const FlatScene& scene, V2 uv) {
+/// Density with which light is sampled from there for a facing, selection included [1/sr].
+KB_INLINE F environment_pdf(const FlatScene& scene, V2 uv, U facing) {
   const KbEmitter& emitter = scene.emitters[scene.environment];
   if (emitter.type == KB_EMITTER_CONSTANT) return F(0.25f * KB_INV_PI * emitter.select_pdf);
-  return F(emitter.select_pdf) * envmap_density(scene.envmap, uv);
+  return F(emitter.select_pdf) * envmap_density(scene.envmap, uv, facing);
 }
 
 KB_INLINE Resolved environment_radiance(const FlatScene& scene, V2 uv, M active) {

@@ -109,18 +109,19 @@ KB_INLINE Light sample_mesh_light(const Lights& lights, const ChosenLight& chose
   return light;
 }
 
+/// Where light is wanted: a point, and the facing (shared/environment.h) of what receives it there.
+struct Receiver {
+  V3 point;
+  U facing = U(KB_ALL_FACINGS);
+};
+
 /// Constant environments and maps. A map's density and radiance are those of the final direction, so that they are the
 /// ones that a ray finds which leaves in the same direction.
-KB_INLINE Light sample_environment(const FlatScene& scene, const F4& u, M active) {
-  const V3 direction = sample_environment_direction(scene, u.z, u.w);
+KB_INLINE Light sample_environment(const FlatScene& scene, U facing, const F4& u, M active) {
+  const V3 direction = sample_environment_direction(scene, facing, u.z, u.w, u.y);
   const V2 uv = environment_coordinates(scene, direction);
-  return {direction,
-          no_vector(),
-          environment_pdf(scene, uv),
-          F(1),
-          active,
-          no_lanes(),
-          environment_radiance(scene, uv, active)};
+  return {direction, no_vector(), environment_pdf(scene, uv, facing),     F(1),
+          active,    no_lanes(),  environment_radiance(scene, uv, active)};
 }
 
 KB_INLINE Light sample_suns(const FlatScene& scene, U emitter, const F4& u, M active) {
@@ -191,9 +192,10 @@ inline void sample_shape_lights(const FlatScene& scene, const ChosenLight& chose
 }
 
 /// Samples of what has been chosen.
-KB_INLINE Light sample_chosen(const Lights& lights, const ChosenLight& chosen, V3 point, const F4& u,
-                              M active) {
+KB_INLINE Light sample_chosen(const Lights& lights, const ChosenLight& chosen, const Receiver& receiver,
+                              const F4& u, M active) {
   const FlatScene& scene = lights.scene;
+  const V3 point = receiver.point;
   const EmitterHead& head = chosen.head;
   const U type = head.type;
   const M on_shape = active & (type == U(KB_EMITTER_AREA));
@@ -207,7 +209,7 @@ KB_INLINE Light sample_chosen(const Lights& lights, const ChosenLight& chosen, V
     mesh = on_shape & (record.type == U(KB_SHAPE_MESH)) & (record.first_cdf != U(KB_NONE));
     if (any(mesh)) light = sample_mesh_light(lights, chosen, record, point, u, mesh);
   }
-  if (any(sky)) light = select(sky, sample_environment(scene, u, sky), light);
+  if (any(sky)) light = select(sky, sample_environment(scene, receiver.facing, u, sky), light);
   const M delta = active & ((type == U(KB_EMITTER_POINT)) | (type == U(KB_EMITTER_SPOT)) |
                             (type == U(KB_EMITTER_DIRECTIONAL)) | (type == U(KB_EMITTER_PROJECTOR)));
   if (any(delta)) light = select(delta, sample_delta_lights(scene, chosen, point, delta), light);
@@ -219,8 +221,8 @@ KB_INLINE Light sample_chosen(const Lights& lights, const ChosenLight& chosen, V
 }
 
 /// sample_light() of emitter.hpp, without thermally emitting shapes. u: selection, triangle, position.
-KB_INLINE Light sample_lights(const Lights& lights, V3 point, const F4& u, M active) {
-  return sample_chosen(lights, choose_light(lights.scene, point, u, active), point, u, active);
+KB_INLINE Light sample_lights(const Lights& lights, const Receiver& receiver, const F4& u, M active) {
+  return sample_chosen(lights, choose_light(lights.scene, receiver.point, u, active), receiver, u, active);
 }
 
 /// With which probability sample_lights() chooses what was hit, and the area [m^2] by which its points are chosen.
@@ -268,17 +270,17 @@ KB_INLINE F area_light_pdf(const FlatScene& scene, const Hit& hit, U emitter, U 
   return result;
 }
 
-/// What rays find that leave the scene: the density of sample_lights() and the radiance, which is `scale` times a
+/// What rays find that leave the scene: the density of sample_lights() where they come from, and the radiance, which is `scale` times a
 /// spectrum.
 struct Escape {
   F pdf;
   Resolved radiance;
   F scale;
 };
-/// Of the environment, which there is.
-KB_INLINE Escape environment_at(const FlatScene& scene, V3 direction, M active) {
+/// Of the environment, which there is. facing: of where the rays come from
+KB_INLINE Escape environment_at(const FlatScene& scene, V3 direction, U facing, M active) {
   const V2 uv = environment_coordinates(scene, direction);
-  return {environment_pdf(scene, uv), environment_radiance(scene, uv, active), F(1)};
+  return {environment_pdf(scene, uv, facing), environment_radiance(scene, uv, active), F(1)};
 }
 /// Of a sun that they meet.
 KB_INLINE Escape sun_at(const KbEmitter& sun) {

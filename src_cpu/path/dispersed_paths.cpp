@@ -174,7 +174,7 @@ void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSe
   if (scene_.emitters.empty()) return;
   const Light light = scene_.features.thermal
                           ? choose_thermal_light(s)
-                          : sample_lights({scene_, s.bounce.lights}, s.hit.point,
+                          : sample_lights({scene_, s.bounce.lights}, s.receiver(),
                                           s.numbers(kb_block_light(s.bounce.number)), {true});
   if (!(light.pdf.v > 0) || !(light.factor.v > 0)) return;
   const glm::vec3 wo = to_glm(s.frame.to_local(light.direction));

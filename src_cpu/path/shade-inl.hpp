@@ -33,7 +33,10 @@ KB_INLINE void append_escape(Shading& s, const Escape& seen, M escaped) {
 KB_INLINE void add_escaped(Shading& s) {
   const FlatScene& scene = s.scene();
   if (s.bounce.number == 0 && scene.integrator.hide_emitters) return;
-  if (scene.environment != KB_NONE) append_escape(s, environment_at(scene, s.direction, s.active), s.active);
+  if (scene.environment != KB_NONE) {
+    const U facing = s.has_facings() ? s.state_word(offsetof(PathState, facing)) : U(KB_ALL_FACINGS);
+    append_escape(s, environment_at(scene, s.direction, facing, s.active), s.active);
+  }
   for (std::size_t i = scene.first_sun; i < scene.emitters.size(); ++i) {
     const M met = s.active & meets_sun(scene.emitters[i], s.direction);
     if (any(met)) append_escape(s, sun_at(scene.emitters[i]), met);
@@ -156,6 +159,13 @@ inline void look_up_principled(Shading& s, M seen) {
   set_principled_alpha(s.material, lanes);
 }
 
+/// What of an environment map the surface may receive light from.
+KB_INLINE void find_facing(Shading& s) {
+  const M both_sides = has_bits(s.surface_flags, KB_SURFACE_TRANSMISSIVE);
+  const KbEmitter& environment = s.scene().emitters[s.scene().environment];
+  s.facing = select(both_sides, U(KB_ALL_FACINGS), facing_of(environment, s.frame.z));
+}
+
 /// The material that is seen, its spectra, the frame and the direction to where the path comes from. Returns the
 /// lanes that have a material which scatters.
 KB_INLINE M find_material(Shading& s, U surface, M hit) {
@@ -191,6 +201,7 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   s.frame.z = s.frame.z * sign;
   if (scene.features.bump) s.unbumped = s.hit.shading_normal * sign;
   s.wi = s.frame.to_local(-s.direction);
+  if (s.has_facings()) find_facing(s);
   return seen & ((s.material.bound_a != F(0)) | (s.material.bound_b != F(0)));
 }
 
@@ -198,7 +209,7 @@ KB_INLINE Light choose_light(Shading& s, M smooth) {
 #ifdef KB_ONE_LANE
   if (s.scene().features.thermal) return choose_thermal_light(s);
 #endif
-  return sample_lights({s.scene(), s.bounce.lights}, s.hit.point, s.numbers(kb_block_light(s.bounce.number)),
+  return sample_lights({s.scene(), s.bounce.lights}, s.receiver(), s.numbers(kb_block_light(s.bounce.number)),
                        smooth);
 }
 

@@ -44,6 +44,7 @@ struct Shading {
   Principled principled;  // only in scenes with principled materials
   Frame frame;
   V3 wi;
+  U facing;  // only in scenes with an environment map: shared/environment.h
   // Only in scenes with bump maps:
   V3 unbumped;  // the normal without, on the frame's side
   F alpha2;     // BumpedNormal::alpha2
@@ -61,6 +62,8 @@ struct Shading {
         vertex(empty_vertex()) {}
 
   KB_INLINE const FlatScene& scene() const { return bounce.scene; }
+  KB_INLINE bool has_facings() const { return scene().envmap.height > 0; }
+  KB_INLINE Receiver receiver() const { return {hit.point, has_facings() ? facing : U(KB_ALL_FACINGS)}; }
   KB_INLINE F state_float(std::size_t offset) const { return gather_float(wave.paths.data(), offset, path); }
   KB_INLINE U state_word(std::size_t offset) const { return gather_word(wave.paths.data(), offset, path); }
   /// What of the paths' keys differs between paths is all that is read of them.
@@ -158,6 +161,9 @@ KB_INLINE void continue_paths(Shading& s, V3 direction, F bound, F pdf, M delta,
     state.bound = bounds[i];
     state.previous_delta = deltas >> i & 1;
   });
+  if (!s.has_facings()) return;
+  const WordArray facings(s.facing);
+  each_lane(goes_on, [&](uint32_t i) KB_LAMBDA { s.wave.paths[paths[i]].facing = facings[i]; });
 }
 
 /// The factors S_a and S_b that the vertex needs, and their lookups. use_b: S_b stands in the place of S_a.

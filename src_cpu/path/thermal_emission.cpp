@@ -78,7 +78,8 @@ void choose_compensation(Shading& s) {
 /// What a thermally emitting surface sends is known once its direction is.
 Light choose_thermal_light(const Shading& s) {
   const F4 u = s.numbers(kb_block_light(s.bounce.number));
-  LightSample light = sample_light(s.scene(), to_glm(s.hit.point), {u.x.v, u.y.v}, {u.z.v, u.w.v});
+  LightSample light =
+      sample_light(s.scene(), to_glm(s.hit.point), {u.x.v, u.y.v}, {u.z.v, u.w.v}, s.receiver().facing.v);
   if (!light.thermal) return to_lanes(light);
   const KbFloat4 v = thermal_numbers(s);
   const ThermalRadiance emitted =

@@ -35,6 +35,7 @@ struct alignas(64) PathState {
   uint32_t pixel;           // in the block
   uint32_t channel;         // after degradation, else KB_NONE
   uint32_t first_entry, last_entry;  // linked list in the wave's entries
+  uint32_t facing;  // of previous_point, where light of an environment map is sampled (shared/environment.h)
   // Of its KbSamplerKey, what differs between paths:
   uint32_t film_pixel;
   uint32_t key0, key1;

@@ -54,6 +54,8 @@ inline KbSceneConstants scene_constants(const FlatScene& scene) {
   c.unit_row = scene.unit_row;
   c.envmap_width = scene.envmap.width;
   c.envmap_height = scene.envmap.height;
+  c.envmap_row_shift = scene.envmap.row_shift;
+  c.envmap_column_shift = scene.envmap.column_shift;
   c.atmosphere = scene.atmosphere;
   std::ranges::copy(scene.camera_media, c.camera_media);
   c.gas = scene.features.gas ? 1 : 0;
@@ -92,8 +94,9 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .light_nodes = up("light tree", scene.light_nodes),
           .tree_lights = up("lights of the tree", scene.tree_lights),
           .first_tree_light = up("lights of emitters", scene.first_tree_light),
-          .envmap_marginal = up("environment rows", scene.envmap.marginal_cdf),
-          .envmap_rows = up("environment distribution", scene.envmap.row_cdf),
+          .envmap_facings = up("environment regions", scene.envmap.facing_cdf),
+          .envmap_rows = up("environment rows", scene.envmap.row_cdf),
+          .envmap_columns = up("environment distribution", scene.envmap.column_cdf),
           .media = up("media", scene.media),
           .plume_nodes = up("plumes", scene.plume_nodes),
           .interiors = up("interiors", scene.interiors),

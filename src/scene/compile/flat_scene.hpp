@@ -31,11 +31,17 @@ struct SpectrumRow {
   float bound = 0;                                 // upper bound over guide bands and rendered channels
 };
 
-/// Importance sampling of an environment map over its texels: piecewise constant in (u, v).
+/// Importance sampling of an environment map, piecewise constant in (u, v) for each facing of receivers (shared/environment.h):
+/// scene/compile/light/envmap_sampling.hpp. Cells form regions of 2^shift cells along their edges, at the map's ends fewer.
 struct EnvmapSampling {
-  uint32_t width = 0, height = 0;   // cells
-  std::vector<float> marginal_cdf;  // height + 1
-  std::vector<float> row_cdf;       // height rows of width + 1
+  uint32_t width = 0, height = 0;  // cells
+  uint32_t column_shift = 0, row_shift = 0;
+  std::vector<float> facing_cdf;  // by facing: of the rows of regions, then of each row's regions
+  std::vector<float> row_cdf;     // by region: of its 2^row_shift rows of cells
+  std::vector<float> column_cdf;  // by row of cells and column of regions: of 2^column_shift cells
+
+  uint32_t regions_across() const { return ((width - 1) >> column_shift) + 1; }
+  uint32_t regions_down() const { return ((height - 1) >> row_shift) + 1; }
 };
 
 /// The wavelengths of spectral texels (KB_TEXTURE_BANDS): a texel's spectrum is linear between band centres,

@@ -16,7 +16,7 @@ const char* const kSource = R"(
 #include "light/emitter.clh"
 __kernel void light(ARGS) {
   ITEM
-  const LightSample s = sample_light(&scene, VEC3(0), VEC2(3), VEC2(5));
+  const LightSample s = sample_light(&scene, VEC3(0), KB_ALL_FACINGS, VEC2(3), VEC2(5));
   PUT3(0, s.direction); PUT3(3, s.target); out->f[6] = s.pdf; out->f[7] = s.factor;
   out->f[8] = s.radiance.texture.fx; out->f[9] = s.radiance.texture.fy;
   out->u[0] = (s.infinite ? 1u : 0u) | (s.delta ? 2u : 0u) | (s.radiance.textured ? 4u : 0u);
@@ -27,7 +27,7 @@ __kernel void density(ARGS) {
   SurfaceHit hit;
   hit.shape = in->u[0]; hit.point = VEC3(3); hit.geometric_normal = VEC3(6); hit.shading_normal = VEC3(12);
   out->f[0] = area_light_pdf(&scene, &hit, VEC3(0));
-  out->f[1] = environment_pdf(&scene, VEC3(9));
+  out->f[1] = environment_pdf(&scene, VEC3(9), KB_ALL_FACINGS);
 }
 )";
 

@@ -12,7 +12,7 @@ const char* const kSource = R"(
 #include "light/emitter.clh"
 __kernel void sample_sun_of_scene(ARGS) {
   ITEM
-  const LightSample s = sample_light(&scene, (float3)(0.0f), (float2)(0.5f), VEC2(0));
+  const LightSample s = sample_light(&scene, (float3)(0.0f), KB_ALL_FACINGS, (float2)(0.5f), VEC2(0));
   PUT3(0, s.direction); out->f[3] = s.pdf; out->f[4] = s.factor;
   out->u[0] = (s.infinite ? 1u : 0u) | (s.delta ? 2u : 0u) | (s.radiance.textured ? 4u : 0u);
   out->u[1] = s.radiance.row;

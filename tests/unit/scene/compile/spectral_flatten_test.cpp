@@ -10,6 +10,7 @@
 #include "src_cpu/light/environment.hpp"
 #include "support.hpp"
 #include "tests/support/chi_square.hpp"
+#include "tests/support/envmap_table.hpp"
 
 namespace kiloband::test::spectral_flatten_test {
 
@@ -146,11 +147,8 @@ TEST(SpectralFlatten, EveryChannelHasOneVoteInTheChoiceOfDirections) {
   const EnvmapSampling& sampling = voting.scene.envmap;
   const auto around = [&](uint32_t x, uint32_t y) {  // the four cells of a texel
     double probability = 0;
-    for (const uint32_t row : {y - 1, y}) {
-      const float* cdf = &sampling.row_cdf[row * 17];
-      probability +=
-          (sampling.marginal_cdf[row + 1] - sampling.marginal_cdf[row]) * (cdf[x + 1] - cdf[x - 1]);
-    }
+    for (const uint32_t row : {y - 1, y})
+      for (const uint32_t column : {x - 1, x}) probability += envmap_probability(sampling, row, column);
     return probability;
   };
   // Of the uniform 1 % they have their part of the sphere, 1.6 %, as have what the mean takes from them on either side.
@@ -178,10 +176,7 @@ TEST(SpectralFlatten, SampledDirectionsFollowTheirDensity) {
   }
   for (uint32_t row = 0; row < sampling.height; ++row) {
     for (uint32_t column = 0; column < sampling.width; ++column) {
-      const float* cdf = &sampling.row_cdf[row * (sampling.width + 1)];
-      expected.push_back(kSamples *
-                         static_cast<double>(sampling.marginal_cdf[row + 1] - sampling.marginal_cdf[row]) *
-                         (cdf[column + 1] - cdf[column]));
+      expected.push_back(kSamples * envmap_probability(sampling, row, column));
       ASSERT_GT(expected.back(), 5);
     }
   }

@@ -61,7 +61,7 @@ KB_ARRAY_FUNCTION(words, {
   put(1, as_floats(x - y));
   put(2, as_floats(x * y));
   put(3, as_floats((x & y) ^ shift_left<7>(x | y)));
-  put(4, as_floats(shift_right<9>(x)));
+  put(4, as_floats(shift_right<9>(x) ^ shift_right(y, 9)));
   put(5, as_floats(reversed_bits(x)));
   put(6, as_floats(high));
   put(7, as_floats(low));

@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include "scene/compile/light/envmap_facings.hpp"
 #include "test_scene.hpp"
+#include "tests/support/envmap_table.hpp"
 
 namespace kiloband::test::environment_test {
 namespace {
@@ -40,13 +42,29 @@ TEST(EnvmapCoordinates, AreThoseOfDoublePrecision) {
   }
 }
 
+/// Facings as defined, in double precision; a normal at a cell's border may go to either side.
+TEST(EnvironmentFacing, IsTheCellOfTheNormalInTheMapsFrame) {
+  const KbEmitter emitter = make_emitter(KB_EMITTER_ENVMAP, placed({1, 2, 3}, 1.1, glm::dvec3(2)));
+  const glm::dmat3 to_world(placed({0, 0, 0}, 1.1, glm::dvec3(1)));
+  Uniform uniform(5);
+  int other = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const glm::vec3 normal(random_direction(uniform));
+    const uint32_t facing = environment_facing(emitter, normal);
+    ASSERT_LT(facing, KB_FACINGS);
+    other += facing != facing_of_normal(glm::transpose(to_world) * glm::dvec3(normal));
+  }
+  EXPECT_LE(other, 5);
+  for (const glm::vec3 axis : {glm::vec3(1, 0, 0), glm::vec3(0, -1, 0), glm::vec3(0, 0, 0), glm::vec3(NAN)})
+    EXPECT_LT(environment_facing(emitter, axis), KB_FACINGS);
+}
+
 /// The solid angle of rows by either pole of a map that is as high as maps may be.
 TEST(EnvmapDensity, KeepsItsDigitsAtBothPoles) {
   constexpr uint32_t kHeight = 65536, kRows = kHeight - 1;
   const EnvmapSampling sampling = build_envmap_sampling(1, kHeight, std::vector<float>(kHeight, 1.0f));
   for (const uint32_t row : {0u, 1u, 2u, 77u, kRows / 2, kRows - 78, kRows - 3, kRows - 2, kRows - 1}) {
-    const double probability =
-        static_cast<double>(sampling.marginal_cdf[row + 1]) - sampling.marginal_cdf[row];
+    const double probability = envmap_probability(sampling, row, 0);
     const double step = kPi / kRows, from_pole = std::min(row, kRows - 1 - row);
     const double solid_angle = 4 * kPi * std::sin((from_pole + 0.5) * step) * std::sin(0.5 * step);
     const auto v = static_cast<float>((row + 0.5) / kRows);

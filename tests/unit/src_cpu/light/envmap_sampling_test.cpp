@@ -7,6 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <vector>
+
+#include "scene/compile/light/envmap_facings.hpp"
+#include "tests/support/envmap_table.hpp"
 
 namespace kiloband::test::envmap_sampling_test {
 namespace {
@@ -22,9 +26,27 @@ void expect_valid_cdf(const float* cdf, uint32_t count) {
   }
 }
 
-double probability(const EnvmapSampling& s, uint32_t row, uint32_t column) {
-  const float* cdf = &s.row_cdf[row * (s.width + 1)];
-  return static_cast<double>(s.marginal_cdf[row + 1] - s.marginal_cdf[row]) * (cdf[column + 1] - cdf[column]);
+/// All distributions that lead to cells, for every facing: whole units, and `possible` says which may have none.
+template <class Possible>
+void expect_valid_tables(const EnvmapSampling& s, const Possible& possible) {
+  const std::size_t down = s.regions_down(), across = s.regions_across();
+  const std::size_t rows = std::size_t{1} << s.row_shift, columns = std::size_t{1} << s.column_shift;
+  ASSERT_EQ(s.facing_cdf.size(), (KB_ALL_FACINGS + 1) * (down + 1 + down * (across + 1)));
+  ASSERT_EQ(s.row_cdf.size(), down * across * (rows + 1));
+  ASSERT_EQ(s.column_cdf.size(), s.height * across * (columns + 1));
+  for (uint32_t i = 0; i < s.height; ++i) {
+    for (std::size_t c = 0; c < across; ++c) {
+      const EnvmapCell at(s, i, static_cast<uint32_t>(c << s.column_shift), KB_ALL_FACINGS);
+      expect_valid_cdf(at.column, static_cast<uint32_t>(std::min(columns, s.width - (c << s.column_shift))));
+      expect_valid_cdf(at.row,
+                       static_cast<uint32_t>(std::min<std::size_t>(rows, s.height - (i & ~(rows - 1)))));
+    }
+  }
+  for (uint32_t facing = 0; facing <= KB_ALL_FACINGS; ++facing)
+    for (uint32_t i = 0; i < s.height; ++i)
+      for (uint32_t j = 0; j < s.width; ++j)
+        ASSERT_EQ(envmap_probability(s, i, j, facing) > 0, possible(facing, i, j))
+            << facing << " " << i << " " << j;
 }
 
 TEST(EnvmapSampling, WeightsAreWhatThePatchesHaveAboveTheMean) {
@@ -69,7 +91,7 @@ TEST(EnvmapSampling, WeightsAreWhatThePatchesHaveAboveTheMean) {
     for (uint32_t column = 0; column < 4; ++column) {
       const double expected = (1 - kEnvmapUniformShare) * excess(row, column) / above +
                               kEnvmapUniformShare * solid_angle(row) / (4 * kPi);
-      EXPECT_NEAR(probability(s, row, column), expected, 3e-7);
+      EXPECT_NEAR(envmap_probability(s, row, column), expected, 3e-7);
     }
   }
 }
@@ -80,11 +102,17 @@ TEST(EnvmapSampling, NoCellIsImpossibleBesideASun) {
   std::vector<float> texels(kWidth * kHeight, 0.0f);
   texels[40 * kWidth + 511] = 1e12f;
   const EnvmapSampling s = build_envmap_sampling(kWidth, kHeight, texels);
-  expect_valid_cdf(s.marginal_cdf.data(), s.height);
-  for (uint32_t row = 0; row < s.height; ++row) expect_valid_cdf(&s.row_cdf[row * (kWidth + 1)], kWidth);
+  // But for regions that a facing does not see.
+  std::vector<std::vector<double>> seen;
+  for (uint32_t facing = 0; facing <= KB_ALL_FACINGS; ++facing)
+    seen.push_back(envmap_facing_weights(s, facing));
+  expect_valid_tables(s, [&](uint32_t facing, uint32_t i, uint32_t j) {
+    return seen[facing][(i >> s.row_shift) * s.regions_across() + (j >> s.column_shift)] > 0;
+  });
   // The sun lights four patches, two of them on either side of the seam.
   double sun = 0;
-  for (const uint32_t row : {39u, 40u}) sun += probability(s, row, 510) + probability(s, row, 511);
+  for (const uint32_t row : {39u, 40u})
+    sun += envmap_probability(s, row, 510) + envmap_probability(s, row, 511);
   EXPECT_NEAR(sun, 1 - kEnvmapUniformShare, 1e-3);
 }
 
@@ -94,13 +122,70 @@ TEST(EnvmapSampling, BlackAndSmallestMapsAreUniform) {
   for (uint32_t row = 0; row < 4; ++row) {
     const double expected = (std::cos(kPi * row / 4) - std::cos(kPi * (row + 1) / 4)) / 16;
     for (uint32_t column = 0; column < 8; ++column) {
-      EXPECT_NEAR(probability(black, row, column), expected, 2e-7);
-      EXPECT_NEAR(probability(even, row, column), expected, 2e-7);
+      EXPECT_NEAR(envmap_probability(black, row, column), expected, 2e-7);
+      EXPECT_NEAR(envmap_probability(even, row, column), expected, 2e-7);
     }
   }
   const EnvmapSampling one = build_envmap_sampling(1, 1, std::vector<float>{2.0f});
-  EXPECT_EQ(one.marginal_cdf, (std::vector<float>{0, 1}));
   EXPECT_EQ(one.row_cdf, (std::vector<float>{0, 1}));
+  EXPECT_EQ(one.column_cdf, (std::vector<float>{0, 1}));
+}
+
+/// For a facing: what the map gives a region times the facing's weight of it, and within the region as the map has it.
+TEST(EnvmapSampling, FacingsAreProductsOfMapAndWeights) {
+  constexpr uint32_t kWidth = 70, kHeight = 36;  // regions of 4 x 4 cells, the last ones smaller
+  std::vector<float> texels;
+  for (uint32_t i = 0; i < kWidth * kHeight; ++i) texels.push_back(static_cast<float>(1 + (i * 13) % 37));
+  const EnvmapSampling s = build_envmap_sampling(kWidth, kHeight, texels);
+  ASSERT_EQ(s.row_shift, 2u);
+  ASSERT_EQ(s.column_shift, 2u);
+  ASSERT_EQ(s.regions_down(), 9u);
+  ASSERT_EQ(s.regions_across(), 18u);
+  const auto region = [&](uint32_t i, uint32_t j) { return (i >> 2) * 18 + (j >> 2); };
+  for (const uint32_t facing : {0u, 9u, 27u, 36u, 63u}) {
+    const std::vector<double> weights = envmap_facing_weights(s, facing);
+    double total = 0;
+    for (uint32_t i = 0; i < s.height; ++i)
+      for (uint32_t j = 0; j < s.width; ++j) total += weights[region(i, j)] * envmap_probability(s, i, j);
+    double sum = 0;
+    for (uint32_t i = 0; i < s.height; ++i) {
+      for (uint32_t j = 0; j < s.width; ++j) {
+        const double p = envmap_probability(s, i, j, facing);
+        ASSERT_NEAR(p, weights[region(i, j)] * envmap_probability(s, i, j) / total, 3e-7);
+        sum += p;
+      }
+    }
+    EXPECT_NEAR(sum, 1, 1e-12);
+  }
+}
+
+/// Every facing's normals lie in it, all of them cover the sphere once; weights are cosines, where a region is seen at all.
+TEST(EnvmapFacings, AreCellsOfTheSphereAndSeeWhatLiesAbove) {
+  const EnvmapSampling s = build_envmap_sampling(32, 17, std::vector<float>(32 * 17, 1.0f));
+  glm::dvec3 sum(0);
+  for (uint32_t facing = 0; facing < KB_FACINGS; ++facing) {
+    for (const double x : {0.01, 0.5, 0.99})
+      for (const double y : {0.01, 0.5, 0.99}) {
+        ASSERT_EQ(facing_of_normal(3.0 * facing_normal(facing, x, y)), facing) << x << " " << y;
+        ASSERT_NEAR(glm::length(facing_normal(facing, x, y)), 1, 1e-14);
+        sum += facing_normal(facing, x, y);
+      }
+    const glm::dvec3 middle = facing_normal(facing, 0.5, 0.5);
+    const std::vector<double> weights = envmap_facing_weights(s, facing);
+    for (uint32_t i = 0; i < 16; ++i) {
+      for (uint32_t j = 0; j < 32; ++j) {
+        const double theta = kPi * (i + 0.5) / 16, phi = 2 * kPi * (j + 1.0) / 32;
+        const double cosine = glm::dot(middle, glm::dvec3(std::sin(phi) * std::sin(theta), std::cos(theta),
+                                                          -std::cos(phi) * std::sin(theta)));
+        // A facing reaches 20 degrees from its middle, a region 8.
+        const double weight = weights[i * 32 + j];
+        ASSERT_NEAR(weight, std::max(cosine, 0.0) + (weight > 0 ? kLeastFacingWeight : 0), 0.12) << cosine;
+        ASSERT_FALSE(cosine < -0.5 && weight > 0) << weight;
+        ASSERT_FALSE(cosine > 0.1 && weight <= kLeastFacingWeight) << weight;
+      }
+    }
+  }
+  EXPECT_LT(glm::length(sum), 1e-12);
 }
 
 TEST(EnvmapSampling, RefusesNonsense) {

@@ -7,6 +7,7 @@
 #include "scene/compile/light/envmap_sampling.hpp"
 #include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "src_cpu/light/emitter.hpp"
+#include "src_cpu/light/environment.hpp"
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
 
@@ -130,6 +131,54 @@ TEST(Irradiance, RotatedEnvironmentMap) {
   });
   // Samples of maps leave what is not above the mean to BSDFs: without those they are noisy.
   expect_irradiance(scene, glm::vec3(0), glm::vec3(normal), expected, 8, 4 * kSamples);
+}
+
+/// Direction about a normal with density cos / pi.
+glm::vec3 cosine_direction(Uniform& uniform, glm::dvec3 normal) {
+  const glm::dvec3 d = normal * (1 - 1e-9) + random_direction(uniform);
+  return glm::vec3(glm::normalize(d));
+}
+
+/// One sample of the map for the receiver's facing and one with density cos / pi, by the power heuristic, as a path tracer takes
+/// them: what a facing does not see at all is left to the other technique.
+TEST(Irradiance, OfEveryFacingByBothTechniques) {
+  constexpr int kWidth = 40, kHeight = 21;
+  std::vector<float> texels;
+  for (int i = 0; i < kWidth * kHeight; ++i)
+    texels.push_back(0.1f + static_cast<float>((i * 37) % 11) * 0.2f);
+  texels[6 * kWidth + 39] = 60;
+  texels[15 * kWidth + 7] = 20;
+  const glm::dmat4 to_world = placed({0, 0, 0}, 0.8, glm::dvec3(1));
+  const FlatScene scene = envmap_scene(kWidth, kHeight, texels, to_world);
+  const glm::dmat3 to_map = glm::transpose(glm::dmat3(to_world));
+  Uniform uniform(31);
+  for (int receiver = 0; receiver < 6; ++receiver) {
+    const glm::dvec3 normal = random_direction(uniform);
+    const uint32_t facing = environment_facing(scene.emitters[0], glm::vec3(normal));
+    const auto radiance = [&](glm::dvec3 d) { return map_radiance(texels, kWidth, kHeight, to_map * d); };
+    const auto share = [&](glm::vec3 d, double pdf, double other) {
+      const double cosine = std::max(glm::dot(glm::dvec3(d), normal), 0.0);
+      return pdf > 0 ? radiance(glm::dvec3(d)) * cosine * pdf / (pdf * pdf + other * other) : 0;
+    };
+    const auto cosine_pdf = [&](glm::vec3 d) { return std::max(glm::dot(glm::dvec3(d), normal), 0.0) / kPi; };
+    double sum = 0, sum2 = 0;
+    constexpr int kPairs = 400000;
+    for (int i = 0; i < kPairs; ++i) {
+      const LightSample light = sample_light(scene, glm::vec3(0), uniform.pair(), uniform.pair(), facing);
+      const glm::vec3 d = cosine_direction(uniform, normal);
+      const double value = share(light.direction, light.pdf, cosine_pdf(light.direction)) +
+                           share(d, cosine_pdf(d), environment_pdf(scene, d, facing));
+      sum += value;
+      sum2 += value * value;
+    }
+    const auto draw = [&] { return Draw{glm::vec3(random_direction(uniform))}; };
+    const double expected = integral_over_sphere(
+        draw, [&](glm::dvec3 d) { return radiance(d) * std::max(glm::dot(d, normal), 0.0); });
+    const double mean = sum / kPairs;
+    const double error = std::sqrt((sum2 / kPairs - mean * mean) / kPairs) + 1e-5 * expected;
+    EXPECT_LT(std::fabs(mean - expected) / error, kMaxZ) << mean << " instead of " << expected;
+    EXPECT_LT(6.1 * error, 1e-2 * expected);
+  }
 }
 
 TEST(DeltaLights, PointFollowsTheInverseSquare) {

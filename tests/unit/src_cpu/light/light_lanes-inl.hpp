@@ -29,9 +29,17 @@ namespace kiloband::cpu::KB_LANES {
     }                                                                                             \
   }
 
+/// Of any normal; of half of them that of receivers which see both sides.
+KB_INLINE U some_facing(const FlatScene& scene, V3 normal) {
+  if (scene.envmap.height == 0) return U(KB_ALL_FACINGS);
+  return select(normal.x + normal.z < F(0), U(KB_ALL_FACINGS),
+                facing_of(scene.emitters[scene.environment], normal));
+}
+
 KB_SCENE_FUNCTION(lights, {
-  const Light light =
-      sample_lights({scene}, {a(0), a(1), a(2)}, {a(3), a(4), a(5), a(6)}, first_lanes(kLanes));
+  const V3 point(V3({a(0), a(1), a(2)}));
+  const Light light = sample_lights({scene}, {point, some_facing(scene, point)}, {a(3), a(4), a(5), a(6)},
+                                    first_lanes(kLanes));
   const M sampled = light.pdf > F(0);
   put(0, light.pdf);
   put(1, select(sampled, light.factor, F(0)));
@@ -45,7 +53,8 @@ KB_SCENE_FUNCTION(lights, {
   put_lookup(9, light.radiance);
 })
 KB_SCENE_FUNCTION(escape, {
-  const Escape seen = environment_at(scene, {a(0), a(1), a(2)}, first_lanes(kLanes));
+  const U facing = some_facing(scene, {a(1), a(2), a(0)});
+  const Escape seen = environment_at(scene, {a(0), a(1), a(2)}, facing, first_lanes(kLanes));
   put(0, seen.pdf);
   put_lookup(1, seen.radiance);
 })

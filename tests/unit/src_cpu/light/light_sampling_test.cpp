@@ -20,11 +20,12 @@ constexpr int kSamples = 200000;
 
 /// Tests sample_light() at `point` against density(direction); returns the density's integral.
 double expect_distribution(const FlatScene& scene, glm::vec3 point,
-                           const std::function<double(glm::dvec3)>& density, uint32_t seed) {
+                           const std::function<double(glm::dvec3)>& density, uint32_t seed,
+                           uint32_t facing = KB_ALL_FACINGS) {
   Uniform uniform(seed);
   const auto draw = [&]() -> Draw {
     const glm::vec2 select = uniform.pair();
-    const LightSample sample = sample_light(scene, point, select, uniform.pair());
+    const LightSample sample = sample_light(scene, point, select, uniform.pair(), facing);
     if (!(sample.pdf > 0 && density(glm::dvec3(sample.direction)) > 0)) return {};
     return {sample.direction};
   };
@@ -221,6 +222,27 @@ TEST(Environment, MapWithBrightTexelRotated) {
     // its weighted mean, half of which lies above the map's.
     const double bound = radiance < mean ? 1.001 * radiance / kEnvmapUniformShare : 12.2 * mean;
     EXPECT_LT(radiance / sample.pdf, 4 * 3.1416 * bound);
+  }
+}
+
+/// For receivers of one facing: what they do not see is never sampled, and has density 0.
+TEST(Environment, DirectionsForAFacing) {
+  std::vector<float> texels(64 * 33, 0.2f);
+  texels[12 * 64 + 63] = 30;
+  texels[27 * 64 + 20] = 10;
+  const FlatScene scene = envmap_scene(64, 33, texels, placed({7, 8, 9}, 1.1, glm::dvec3(1)));
+  for (const uint32_t facing : {0u, 20u, 35u, 63u}) {
+    const auto density = [&](glm::dvec3 d) { return environment_pdf(scene, glm::vec3(d), facing); };
+    EXPECT_NEAR(expect_distribution(scene, glm::vec3(0), density, 12 + facing, facing), 1, 5e-3) << facing;
+    Uniform uniform(facing);
+    int unseen = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const LightSample sample = sample_light(scene, glm::vec3(0), uniform.pair(), uniform.pair(), facing);
+      EXPECT_EQ(sample.pdf, environment_pdf(scene, sample.direction, facing));
+      EXPECT_GT(sample.pdf, 0);
+      unseen += density(random_direction(uniform)) == 0;
+    }
+    EXPECT_GT(unseen, 500) << facing;  // of 2000 directions a third lies far below the horizon
   }
 }
 
