@@ -9,7 +9,10 @@
 namespace kiloband {
 namespace {
 
-constexpr uint32_t kPartSamples = 16;  // most samples of a replicate that are rendered at a time
+constexpr uint32_t kWholeSamples = 16;  // replicates of so many samples are rendered at one go
+constexpr double kPartSeconds = 1;      // parts of longer ones are longer where they take less than this,
+constexpr uint32_t kEvenness = 8;       // up to this part of what pixels have
+constexpr double kMostGrowth = 16;      // of a part over the one before
 
 std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
   std::vector<uint32_t> blocks(film.blocks().size());
@@ -38,7 +41,7 @@ BandErrors film_errors(const SpectralFilm& film, const std::vector<std::size_t>&
 }  // namespace
 
 bool replicates_in_parts(uint64_t samples_per_pixel, uint32_t replicates) {
-  return ReplicatePlan::deal(samples_per_pixel, replicates).size(0) > kPartSamples;
+  return ReplicatePlan::deal(samples_per_pixel, replicates).size(0) > kWholeSamples;
 }
 
 Passes::Passes(Backend& backend, const SessionSettings& settings, uint32_t replicates,
@@ -89,15 +92,16 @@ void Passes::render_fixed(SpectralFilm& film) {
 }
 
 /// Samples first, first + 1, ... of a replicate that are rendered at one go. Long replicates come in parts,
-/// so that an interrupted render is even; the first replicate begins with single samples, so that every pixel
-/// soon has some. With a checkpoint the steps follow its clock. What is seen of it later is where the render
-/// was interrupted: sums do not depend on the parts that they come in.
-uint32_t Passes::next_part(uint32_t replicate, uint32_t first, uint32_t target) const {
+/// so that an interrupted render is even; the first part is a single sample, so that every pixel soon has some, the next ones as many as
+/// pixels have, up to kWholeSamples, and more where the clock says that they are short. With a checkpoint parts follow its clock alone.
+/// Each part carries the film to the backend and back: few are better. What is seen of them later is where the render was
+/// interrupted: sums do not depend on the parts that they come in.
+uint32_t Passes::next_part(uint32_t first, uint32_t target) const {
   const uint32_t left = target - first;
-  if (!keeper_ && !in_parts_) return left;
-  uint32_t wanted = replicate > 0 ? kPartSamples : std::clamp(first, 1u, kPartSamples);
-  if (keeper_) wanted = step_;
-  if (wanted >= left) return left;
+  const uint32_t least = std::clamp(first, 1u, kWholeSamples);
+  const uint32_t most = first > 0 ? std::max(kWholeSamples, first / kEvenness) : 1;
+  const uint32_t wanted = keeper_ ? step_ : std::clamp(step_, least, most);
+  if ((!keeper_ && !in_parts_) || wanted >= left) return left;
   const uint64_t end = uint64_t{first} + wanted,
                  whole = (end + whole_steps_ - 1) / whole_steps_ * whole_steps_;
   return static_cast<uint32_t>(std::min<uint64_t>(left, whole - first));
@@ -106,10 +110,12 @@ uint32_t Passes::next_part(uint32_t replicate, uint32_t first, uint32_t target) 
 /// All blocks of a film that takes one replicate after the other.
 void Passes::render_replicate(SpectralFilm& film, uint32_t replicate, uint32_t target) {
   for (uint32_t first = 0; first < target && !stop_;) {
-    const uint32_t count = next_part(replicate, first, target);
+    const uint32_t count = next_part(first, target);
+    const auto begin = Clock::now();
     backend_.render(film, {replicate, first, count}, all_blocks(film), stop_,
                     [this](uint64_t pixels) { advance(pixels); });
     first += count;
+    adapt_step(count, seconds_since(begin));
   }
 }
 
@@ -122,21 +128,21 @@ void Passes::bring_to(SpectralFilm& film, uint32_t replicate, uint32_t target, c
   }
   for (const auto& [done, blocks] : behind) {
     for (uint32_t first = done; first < target && !stop;) {
-      const uint32_t count = next_part(replicate, first, target);
+      const uint32_t count = next_part(first, target);
       const auto begin = Clock::now();
       backend_.render(film, {replicate, first, count}, blocks, stop, on_samples);
       first += count;
-      if (!keeper_) continue;
-      adapt_step(seconds_since(begin));
-      keeper_->save_if_due(film);
+      adapt_step(count, seconds_since(begin));
+      if (keeper_) keeper_->save_if_due(film);
     }
   }
 }
 
-void Passes::adapt_step(double step_seconds) {
-  const double interval = settings_.checkpoint_interval_seconds;
-  if (step_seconds < interval / 8 && step_ < 1u << 20) step_ *= 2;
-  if (step_seconds > interval / 2 && step_ > 1) step_ /= 2;
+/// As many samples as take kPartSeconds, or a quarter of the checkpoint's interval, by the part before.
+void Passes::adapt_step(uint32_t samples, double seconds) {
+  const double wanted = keeper_ ? settings_.checkpoint_interval_seconds / 4 : kPartSeconds;
+  const double fitting = samples * std::min(wanted / std::max(seconds, 1e-9), kMostGrowth);
+  step_ = static_cast<uint32_t>(std::clamp(fitting, 1.0, 0x1p20));
 }
 
 /// Passes over all replicates, each as long as all before it, until a rule is met. Where the number of

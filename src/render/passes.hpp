@@ -43,8 +43,8 @@ class Passes {
   StopReason render_passes(SpectralFilm& film);
   void bring_to(SpectralFilm& film, uint32_t replicate, uint32_t target, const std::atomic<bool>& stop,
                 const std::function<void(uint64_t)>& on_samples);
-  uint32_t next_part(uint32_t replicate, uint32_t first, uint32_t target) const;
-  void adapt_step(double step_seconds);
+  uint32_t next_part(uint32_t first, uint32_t target) const;
+  void adapt_step(uint32_t samples, double seconds);
   bool is_pass_end(const SpectralFilm& film) const;
   uint32_t pass_end(uint32_t done, uint32_t begin, uint32_t most) const;
   std::optional<StopReason> look_at_error(const SpectralFilm& film);
@@ -67,7 +67,7 @@ class Passes {
   std::optional<CheckpointKeeper> keeper_;
   Clock::time_point start_;
   double seconds_ = 0;
-  uint32_t step_ = 1;  // samples per replicate between looks at the checkpoint clock
+  uint32_t step_ = 1;                            // samples of the next part of a replicate
   uint64_t done_ = 0, total_ = 0, resumed_ = 0;  // pixel samples
   BandErrors errors_;
   uint64_t errors_done_ = 0;  // done_ when errors_ were found
