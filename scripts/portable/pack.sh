@@ -77,7 +77,7 @@ put_licences() {
 # What `validate`, `bench` and the tests of kernels read.
 put_data() {
   local to=$folder/share/kiloband
-  cp -r --parents scenes validation/scenes validation/report validation/mitsuba kernels src/shared "$to"
+  cp -r --parents scenes validation/scenes validation/report validation/mitsuba validation/raysect kernels src/shared "$to"
   rm -rf "$to/scenes/generator"
   find "$to" \( -name '*.cpp' -o -name '*.hpp' -o -name CMakeLists.txt -o -name __pycache__ \) -prune -exec rm -rf {} +
 }

@@ -122,14 +122,15 @@ def render(mitsuba, scene_file, size, bands, spp, replicates, seed):
     return numpy.stack(images)[..., : len(bands)].astype(numpy.float32)
 
 
-def write_cube(header, image, bands):
+def write_cube(header, image, bands, program="Mitsuba 3"):
+    """ENVI: float32 [line][sample][channel], W m^-2 sr^-1."""
     lines, samples, count = image.shape
     numbers = [", ".join(f"{value:.9g}" for value in values) for values in zip(*bands)]
     centres = ", ".join(f"{0.5 * (low + high):.9g}" for low, high in bands)
     widths = ", ".join(f"{high - low:.9g}" for low, high in bands)
     image.transpose(2, 0, 1).astype("<f4").tofile(header.with_suffix(".img"))
     header.write_text(
-        f"ENVI\ndescription = {{band radiance (integral over the band) in W m^-2 sr^-1; by Mitsuba 3}}\n"
+        f"ENVI\ndescription = {{band radiance (integral over the band) in W m^-2 sr^-1; by {program}}}\n"
         f"samples = {samples}\nlines = {lines}\nbands = {count}\nheader offset = 0\nfile type = ENVI Standard\n"
         f"data type = 4\ninterleave = bsq\nbyte order = 0\nwavelength units = Nanometers\nwavelength = {{{centres}}}\n"
         f"fwhm = {{{widths}}}\nkiloband band minimum = {{{numbers[0]}}}\nkiloband band maximum = {{{numbers[1]}}}\n"

@@ -35,11 +35,19 @@ def has_value(record):
     return isinstance(value, (int, float)) and math.isfinite(value)
 
 
+NAMES = {"cpu": "CPU", "opencl": "OpenCL", "mitsuba": "Mitsuba", "raysect": "Raysect"}
+
+
 def backend_label(record):
-    """ "cpu", "opencl dpept-batch", "Mitsuba llvm_ad_spectral" """
-    name = {"cpu": "CPU", "opencl": "OpenCL", "mitsuba": "Mitsuba", "raysect": "Raysect"}
-    words = [name.get(record.get("backend"), str(record.get("backend"))), record.get("method")]
+    """ "CPU", "OpenCL dpept-batch", "Mitsuba llvm_ad_spectral" """
+    words = [NAMES.get(record.get("backend"), str(record.get("backend"))), record.get("method")]
     return " ".join(word for word in words if word)
+
+
+def ratio_label(record):
+    """Ours over another program, which the series names: "CPU sobol : Mitsuba llvm_ad_spectral"."""
+    backend, *variant = str(record.get("series")).split(" ")
+    return f"CPU {record.get('sampler')} : {' '.join([NAMES.get(backend, backend), *variant])}"
 
 
 def way_label(record):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The two plots of README.md from the results of `kiloband bench`: equal-error speed against K beside Mitsuba 3, and error against time.
+"""The two plots of README.md from the results of `kiloband bench`: equal-error speed against K beside other renderers, and error against time.
 
 Usage: speed_pictures.py DIR OUT    DIR/bench.json of a full run; writes OUT/equal_error_speed.svg and OUT/error_against_time.svg
 Needs matplotlib.
@@ -12,12 +12,12 @@ sys.dont_write_bytecode = True  # nothing is left in the source folder
 
 import speed_plots  # noqa: E402
 import speed_sections  # noqa: E402
-from speed_data import SpeedError, distinct, pick, read_bench  # noqa: E402
+from speed_data import SpeedError, distinct, pick, ratio_label, read_bench  # noqa: E402
 
 
 def equal_error_speed(records):
     shown = pick(records, case="peers", quantity="equal_error_speed")
-    curves = speed_sections.by_scene(shown, "channels", speed_sections.ratio_label)
+    curves = speed_sections.by_scene(shown, "channels", ratio_label)
     return speed_plots.panels(curves, "channels K", "times sooner at equal error", reference=1)
 
 

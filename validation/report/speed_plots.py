@@ -47,8 +47,8 @@ def label_ticks(axis):
 
 @functools.lru_cache(maxsize=256)
 def style_of(label, place):
-    """Colour by backend, or by place where the label names none; dashes: independent numbers; marker: by place."""
-    known = next((colour for name, colour in COLOURS.items() if label.startswith(name)), None)
+    """Colour by backend (of a ratio, by what it is over), or by place where the label names none; dashes: independent numbers; marker: by place."""
+    known = next((colour for name, colour in COLOURS.items() if label.split(" : ")[-1].startswith(name)), None)
     dashed = "independent" in label or "scalar" in label
     return {
         "color": known or OTHERS[place % len(OTHERS)],

@@ -2,7 +2,7 @@
 
 import markup
 import speed_plots
-from speed_data import backend_label, distinct, has_value, lines, pick, way_label
+from speed_data import backend_label, distinct, has_value, lines, pick, ratio_label, way_label
 
 COLUMNS = [
     ("scene", "scene"),
@@ -154,10 +154,6 @@ def channel_errors(records):
     return figure(svg, f"Error of each channel at {most} samples per pixel.", shown, "error of each channel")
 
 
-def ratio_label(record):
-    return f"CPU {record.get('sampler')} : {record.get('series')}"
-
-
 def peers(results):
     records = pick(results["records"], case="peers")
     body = missing_peers(records)
@@ -184,7 +180,7 @@ def peers(results):
 
 PEER_CAPTIONS = {
     "equal_error_speed": "How many times sooner kiloband's CPU backend reaches an error than the other renderer; bars: one standard error.",
-    "path_speed": "Paths per second, whatever they carry: kiloband's have all K channels, Mitsuba's four wavelengths.",
+    "path_speed": "Paths per second, whatever they carry: kiloband's and Raysect's have all K channels, Mitsuba's four wavelengths.",
     "paths_per_second": "Mitsuba traces without Embree's flag ROBUST, kiloband with it. Bars: half of the range over rounds.",
     "mean_difference": "Means of the image against the reference come first: an error would contain their difference.",
 }
@@ -192,8 +188,12 @@ PEER_CAPTIONS = {
 
 def missing_peers(records):
     gone = [r for r in pick(records, quantity="paths_per_second") if not has_value(r)]
-    items = "".join(f"<li>{markup.text(backend_label(r))}: {markup.text(r.get('note'))}</li>" for r in gone)
+    items = "".join(f"<li>{markup.text(missing_label(r))}: {markup.text(r.get('note'))}</li>" for r in gone)
     return f"<ul>{items}</ul>" if items else ""
+
+
+def missing_label(record):
+    return ", ".join(filter(None, (backend_label(record), record.get("scene"))))
 
 
 def pool(results):

@@ -45,18 +45,10 @@ Peer probe(const Settings& settings, const std::string& backend, const std::stri
   return peer;
 }
 
-/// Raysect reads no scene files, and none of ours has been written in its Python: it is looked for, so that the list of
-/// numbers says why it has none.
-Peer probe_raysect() {
-  Peer peer{"raysect", {}, {}, {}, {}, "Raysect is not installed"};
-  for (const char* interpreter : kInterpreters) {
-    const ChildEnd end =
-        run_child({interpreter, "-c", "import raysect; print(getattr(raysect, '__version__', ''))"}, {}, {});
-    if (end.code != 0) continue;
-    peer.version = end.out.substr(0, end.out.find('\n'));
-    peer.why = "Raysect " + peer.version + " is installed, but it reads no scene files of ours";
-    break;
-  }
+/// Its script writes scenes for it, of those that are made of diffuse meshes alone.
+Peer probe_raysect(const Settings& settings) {
+  Peer peer = probe(settings, "raysect", "validation/raysect/time_raysect.py", {});
+  peer.refuses = true;
   return peer;
 }
 
@@ -97,7 +89,13 @@ std::vector<float> read_image(const fs::path& file, const Setup& setup) {
 std::vector<Peer> find_peers(const Settings& settings) {
   const std::string mitsuba = "validation/mitsuba/time_mitsuba.py";
   return {probe(settings, "mitsuba", mitsuba, "llvm_ad_spectral"),
-          probe(settings, "mitsuba", mitsuba, "scalar_spectral"), probe_raysect()};
+          probe(settings, "mitsuba", mitsuba, "scalar_spectral"), probe_raysect(settings)};
+}
+
+std::string refusal(const Peer& peer, const SceneFile& scene) {
+  if (!peer.refuses) return {};
+  const ChildEnd end = run_child({peer.interpreter, peer.script, scene.file.string(), "--load"}, {}, {});
+  return end.code == 0 ? std::string{} : reason_of(end);
 }
 
 PeerTiming time_peer(const Bench& bench, const Peer& peer, const SceneFile& scene, const Setup& setup,

@@ -1,4 +1,4 @@
-// Other renderers, found at run time: Mitsuba 3 (validation/mitsuba/time_mitsuba.py); Raysect is only looked for.
+// Other renderers, found at run time: Mitsuba 3 (validation/mitsuba/time_mitsuba.py) and Raysect (validation/raysect/time_raysect.py).
 #pragma once
 
 #include <optional>
@@ -15,11 +15,15 @@ struct Peer {
   std::string interpreter;       // empty: not there
   std::string version;
   std::string script;
-  std::string why;  // it is not there
+  std::string why;       // it is not there
+  bool refuses = false;  // scenes, whatever it has no word for: refusal() asks
 };
 
 /// Every variant that is asked for; which python3 has it is tried.
 std::vector<Peer> find_peers(const Settings& settings);
+
+/// Why the peer cannot render that scene; empty: it can.
+std::string refusal(const Peer& peer, const SceneFile& scene);
 
 struct PeerTiming {
   Repetitions images;

@@ -62,7 +62,7 @@ const std::vector<Case>& cases() {
       {"refraction", "degradation against spectral MIS at 64 wavelengths", 4, 150, run_refraction},
       {"error", "error against time: backends, methods, wavelength modes, samplers", 5, 600, run_error},
       {"stages", "time by stage, and the attained part of its limit", 7, 180, run_stages},
-      {"peers", "other renderers: paths per second, time to equal error", 5, 250, run_peers},
+      {"peers", "other renderers: paths per second, time to equal error", 5, 320, run_peers},
       {"split", "paths that carry a part of the channels", 4, 240, run_split},
   };
   return kCases;

@@ -100,23 +100,39 @@ Rated rate_theirs(Bench& bench, const Peer& peer, const SceneFile& scene, Setup 
 
 void add_ratio(Bench& bench, const Rated& ours, const Rated& theirs) {
   Record record = record_for(ours.setup, bench_command(bench.settings(), "peers"));
-  record.series = theirs.setup.backend + " " + theirs.setup.method;
+  record.series = theirs.setup.backend;
+  if (!theirs.setup.method.empty()) record.series += " " + theirs.setup.method;
   add_number(bench, record, "equal_error_speed", "", ratio_of(ours.efficiency, theirs.efficiency));
   add_number(bench, record, "path_speed", "", ratio_of(ours.rate, theirs.rate), "half range");
 }
 
-void add_missing(Bench& bench, const Peer& peer) {
+/// scene: that the peer cannot render; empty: it is not there at all
+void add_missing(Bench& bench, const Peer& peer, const std::string& scene, const std::string& why) {
   Setup setup;
+  setup.scene = scene;
   setup.backend = peer.backend, setup.method = peer.variant;
   Record record = record_for(setup, bench_command(bench.settings(), "peers"));
   record.quantity = "paths_per_second", record.unit = "1/s";
-  record.note = "not measured: " + peer.why;
+  record.note = "not measured: " + why;
   bench.add(record);
+}
+
+/// Those of the peers that are there and can render it; the others leave a record that says why.
+std::vector<Peer> peers_for(Bench& bench, const SceneFile& scene, const std::vector<Peer>& peers) {
+  std::vector<Peer> able;
+  for (const Peer& peer : peers) {
+    if (peer.interpreter.empty()) continue;
+    const std::string why = refusal(peer, scene);
+    if (why.empty())
+      able.push_back(peer);
+    else
+      add_missing(bench, peer, scene.name, why);
+  }
+  return able;
 }
 
 /// Scalar renders of many channels take hours and say nothing new.
 bool takes_part(const Bench& bench, const Peer& peer, uint32_t channels) {
-  if (peer.interpreter.empty()) return false;
   return peer.variant != "scalar_spectral" || channels <= (bench.quick() ? 0u : 31u);
 }
 
@@ -140,15 +156,16 @@ void measure_scene(Bench& bench, const SceneFile& scene, uint32_t channels, cons
 void run_peers(Bench& bench) {
   const std::vector<Peer> peers = find_peers(bench.settings());
   for (const Peer& peer : peers)
-    if (peer.interpreter.empty()) add_missing(bench, peer);
+    if (peer.interpreter.empty()) add_missing(bench, peer, {}, peer.why);
   std::vector<SceneFile> scenes = peer_scenes(bench.settings());
   if (bench.quick()) scenes.resize(1);
   const std::vector<uint32_t> few{8}, many{8, 31, 100, 512};
   const auto& counts = bench.quick() ? few : many;
   double done = 0;
   for (const SceneFile& scene : scenes) {
+    const std::vector<Peer> able = peers_for(bench, scene, peers);
     for (const uint32_t channels : counts) {
-      measure_scene(bench, scene, channels, peers);
+      measure_scene(bench, scene, channels, able);
       if (bench.stopped()) return;
       bench.progress(++done / static_cast<double>(scenes.size() * counts.size()));
     }

@@ -101,6 +101,18 @@ class Page(unittest.TestCase):
         self.assertIn('<div class="failure">the &lt;device&gt; was lost</div>', page)
         self.assertIn("Interrupted", page)
 
+    def test_peers_without_variants_and_scenes_that_they_refuse(self):
+        results = small_results()
+        raysect = {"backend": "raysect", "channels": 8}
+        results["records"] += [
+            record("peers", "paths_per_second", 6e4, scene="box", **raysect),
+            record("peers", "equal_error_speed", 70.0, scene="box", channels=8, sampler="sobol", series="raysect"),
+            record("peers", "paths_per_second", None, scene="glass", backend="raysect", note="not measured: emitter <sky>"),
+        ]
+        page = page_of(results)
+        self.assertIn("Raysect, glass: not measured: emitter &lt;sky&gt;", plain(page))
+        self.assertEqual(page.count('<figure class="wide">'), 6)  # two of peers
+
     def test_an_empty_run_has_a_page(self):
         page = page_of({"format": "kiloband bench 1"})
         self.assertIn("Speed of kiloband", page)
@@ -164,6 +176,12 @@ class Curves(unittest.TestCase):
         records[0]["value"] = None
         found = speed_data.lines(speed_data.pick(records, quantity="paths_per_second"), "channels", speed_data.way_label)
         self.assertEqual(found["OpenCL pt"], [(64, 1e6, 0.1)])
+
+    def test_ratios_have_the_colour_of_what_they_are_over(self):
+        labels = [speed_data.ratio_label({"sampler": "sobol", "series": series}) for series in ("mitsuba llvm_ad_spectral", "raysect")]
+        self.assertEqual(labels, ["CPU sobol : Mitsuba llvm_ad_spectral", "CPU sobol : Raysect"])
+        colours = [speed_plots.style_of(label, 0)["color"] for label in labels]
+        self.assertEqual(colours, [speed_plots.COLOURS["Mitsuba"], speed_plots.COLOURS["Raysect"]])
 
     def test_ticks(self):
         self.assertEqual(speed_plots.tick_text(300.0), "300")
