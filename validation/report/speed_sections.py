@@ -337,8 +337,9 @@ def stage_lines(records):
 
 
 FRACTIONS = (
-    "CPU: the time of bare Embree packets with the same rays over that of path generation, and of the whole render. OpenCL's evaluation: pt's bytes "
-    "against a triad's bandwidth over as many bytes as the pool's state, dpept's operations against multiply-adds in registers."
+    "CPU: the time of bare Embree packets with the same rays over that of path generation, and of the whole render; the operations of evaluation alone "
+    "against multiply-adds in the registers of one thread. OpenCL's evaluation: pt's bytes against a triad's bandwidth over as many bytes as the pool's "
+    "state, dpept's operations against multiply-adds in registers."
 )
 
 

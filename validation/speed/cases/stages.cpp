@@ -2,17 +2,19 @@
 //
 // CPU, one thread: bare ray queries of the same paths (single, and packets as they are traced), path generation, whole
 // renders. Tracing rays is what bare packets take, shading what generation takes beyond, evaluation and film what a render takes beyond.
-// Limit: the bare packets.
+// Limit: the bare packets. Evaluation alone, of paths that are stored and in the caches, against multiply-adds in registers: 3
+// operations per channel and vertex (a factor, a light's product and sum).
 //
 // OpenCL: seconds of every kernel by profiling events. Evaluation against its limit: pt moves throughput and radiance of every
-// channel there and back, 16 bytes per channel and vertex, against a triad over as many bytes as the pool's state; dpept
-// does 3 operations per channel and vertex (a factor, a light's product and sum), against multiply-adds in registers.
+// channel there and back, 16 bytes per channel and vertex, against a triad over as many bytes as the pool's state; dpept's
+// is counted as the CPU's.
 #include <algorithm>
 #include <chrono>
 
 #include "src_gpu/device/device.hpp"
 #include "validation/speed/arithmetic.hpp"
 #include "validation/speed/bare_rays.hpp"
+#include "validation/speed/cpu_limits.hpp"
 #include "validation/speed/device_limits.hpp"
 #include "validation/speed/subject.hpp"
 
@@ -20,7 +22,7 @@ namespace kiloband::speed {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kBytesOfPt = 16, kOperationsOfDpept = 3;
+constexpr double kBytesOfPt = 16, kOperations = 3;  // per channel and vertex
 
 Record stage_record(const Bench& bench, const Setup& setup, const std::string& series, const char* quantity,
                     const char* unit, const Estimate& e) {
@@ -68,6 +70,30 @@ void render_blocks(const BareScene& scene, cpu::BlockWorker& worker, uint32_t sa
                            {[](uint64_t) {}, [](const InvalidSample&) {}}));
 }
 
+/// The paths of one sample of every pixel, and what evaluates them.
+struct StoredPaths {
+  std::vector<cpu::PathBuffer> blocks;
+  double vertices = 0;
+  cpu::Evaluator evaluator;
+  std::vector<float> sums;  // of a block
+
+  StoredPaths(const BareScene& scene, cpu::PathTracer& tracer, cpu::Isa isa)
+      : evaluator(*scene.compiled, {}, isa), sums(kBlockSize * kBlockSize * evaluator.stride()) {
+    std::vector<uint32_t> invalid;
+    const float mu[1] = {0.5f};
+    for (const PixelRect& block : scene.blocks) {
+      cpu::PathBuffer& paths = blocks.emplace_back();
+      tracer.trace(block, {0, 0, 0}, mu, paths, invalid);
+      for (std::size_t i = 0; i < paths.entries.size(); ++vertices)
+        i += 1 + kb_vertex_extensions(paths.entries[i].head);
+    }
+  }
+
+  void evaluate() {
+    for (const cpu::PathBuffer& paths : blocks) evaluator.add_shared(paths, 0.5, sums);
+  }
+};
+
 Setup cpu_setup(const Bench& bench, const SceneFile& file, uint32_t channels) {
   Setup setup;
   setup.scene = file.name, setup.backend = "cpu", setup.wavelengths = "shared", setup.sampler = "independent";
@@ -75,6 +101,21 @@ Setup cpu_setup(const Bench& bench, const SceneFile& file, uint32_t channels) {
   setup.width = setup.height = bench.pick(64u, 128u);
   setup.replicates = 1;
   return setup;
+}
+
+void measure_cpu_evaluation(Bench& bench, const Setup& setup, const BareScene& scene,
+                            cpu::PathTracer& tracer) {
+  const cpu::Isa isa = cpu::resolve_isa(cpu::Isa::kAuto);
+  StoredPaths stored(scene, tracer, isa);
+  const auto pixels = static_cast<double>(scene.pixels());
+  const Estimate time = time_per_path(bench, pixels, [&] { stored.evaluate(); });
+  if (bench.stopped()) return;
+  const double operations = kOperations * setup.channels * stored.vertices / pixels;  // per path
+  const Estimate rate = ratio_of({1e9 * operations, 0}, time);
+  const double peak = peak_flops_of_thread(isa);
+  bench.add(stage_record(bench, setup, "evaluation", "operations_per_second", "1/s", rate));
+  bench.add(stage_record(bench, setup, "limit", "peak_operations", "1/s", {peak, kNone}));
+  bench.add(stage_record(bench, setup, "evaluation", "fraction_of_peak", "", ratio_of(rate, {peak, 0})));
 }
 
 void measure_cpu(Bench& bench, const SceneFile& file, uint32_t channels) {
@@ -104,6 +145,7 @@ void measure_cpu(Bench& bench, const SceneFile& file, uint32_t channels) {
       bench.add(
           stage_record(bench, setup, name, "fraction_of_bare_packets", "", ratio_of(stages[1].second, time)));
   }
+  measure_cpu_evaluation(bench, setup, scene, tracer);
 }
 
 /// Kernels that evaluate, of each method.
@@ -141,7 +183,7 @@ void measure_device(Bench& bench, opencl::DeviceContext& context, const SceneFil
   add("render", "time_per_path", "ns", 1e9 * seconds / paths);
   const bool pt = setup.method == "pt";
   const double padded = pt ? (setup.channels + 15) / 16 * 16 : setup.channels;
-  const double attained = (pt ? kBytesOfPt : kOperationsOfDpept) * padded * vertices / evaluation;
+  const double attained = (pt ? kBytesOfPt : kOperations) * padded * vertices / evaluation;
   const double limit = limit_of(context, setup, after.pool_slots);
   add("evaluation", pt ? "bytes_per_second" : "operations_per_second", pt ? "B/s" : "1/s", attained);
   add("limit", pt ? "triad_bandwidth" : "peak_operations", pt ? "B/s" : "1/s", limit);
