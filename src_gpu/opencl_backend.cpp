@@ -35,7 +35,7 @@ class Renderer final : public Backend {
         settings_(settings),
         host_(std::move(host)),
         method_(options.method.value_or(kDefaultMethod)),
-        context_(std::move(device), {.profiling = true}) {
+        context_(std::move(device), {.profiling = true, .shared = true}) {
     limit_memory();
     const NeutralFolder neutral;
     repeated([] {});
@@ -127,7 +127,10 @@ void Renderer::make_device() {
 
 /// After a lost device: everything on it is made anew, and the work is repeated.
 void Renderer::recover(const DeviceLost& loss) {
-  if (++done_.device_losses > kMostLosses) throw loss;
+  if (++done_.device_losses > kMostLosses) {
+    context_.abandon();
+    throw loss;
+  }
   note(options_.sink, {}, fmt::format("{}: device lost, context rebuilt, work repeated", loss.what()));
   groups_.reset();
   if (state_) done_.device_memory_bytes = std::max(done_.device_memory_bytes, state_->memory.peak());

@@ -13,7 +13,51 @@ void drop(T& object) noexcept {
   std::swap(dead, object);
 }
 
+/// Never destroyed: when statics are, drivers may be gone.
+struct SharedContexts {
+  std::mutex mutex;
+  std::map<cl_device_id, std::shared_ptr<ContextPrograms>> of_device;
+};
+SharedContexts& shared_contexts() {
+  static SharedContexts* const kContexts = new SharedContexts;
+  return *kContexts;
+}
+
+std::shared_ptr<ContextPrograms> new_context(const DeviceInfo& device) {
+  return checked({Phase::kSetup, device.name, {}},
+                 [&] { return std::make_shared<ContextPrograms>(cl::Context(cl::Device(device.id, true))); });
+}
+
 }  // namespace
+
+std::optional<cl::Program> ContextPrograms::find(const std::string& key) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [known, program] : kept_)
+    if (known == key) return program;
+  return std::nullopt;
+}
+
+void ContextPrograms::keep(const std::string& key, const cl::Program& program) {
+  const std::lock_guard lock(mutex_);
+  kept_.emplace_back(key, program);
+  if (kept_.size() > kMost) kept_.pop_front();
+}
+
+std::shared_ptr<ContextPrograms> shared_programs(const DeviceInfo& device) {
+  if (device.kept) return new_context(device);  // a part: its id is another's once it is gone
+  SharedContexts& all = shared_contexts();
+  const std::lock_guard lock(all.mutex);
+  std::shared_ptr<ContextPrograms>& programs = all.of_device[device.id];
+  if (!programs) programs = new_context(device);
+  return programs;
+}
+
+void forget_shared(const DeviceInfo& device, const std::shared_ptr<ContextPrograms>& lost) {
+  SharedContexts& all = shared_contexts();
+  const std::lock_guard lock(all.mutex);
+  const auto known = all.of_device.find(device.id);
+  if (known != all.of_device.end() && known->second == lost) all.of_device.erase(known);
+}
 
 DeviceContext::DeviceContext(DeviceInfo device, ContextOptions options)
     : device_(std::move(device)), options_(options) {
@@ -21,10 +65,9 @@ DeviceContext::DeviceContext(DeviceInfo device, ContextOptions options)
 }
 
 void DeviceContext::create() {
+  programs_ = options_.shared ? shared_programs(device_) : new_context(device_);
   checked(site(Phase::kSetup), [&] {
-    const cl::Device device = cl_device();
-    context_ = cl::Context(device);
-    queue_ = cl::CommandQueue(context_, device, options_.profiling ? CL_QUEUE_PROFILING_ENABLE : 0);
+    queue_ = cl::CommandQueue(context(), cl_device(), options_.profiling ? CL_QUEUE_PROFILING_ENABLE : 0);
   });
 }
 
@@ -37,9 +80,9 @@ void DeviceContext::rebuild() {
   ++generation_;
   settle();
   launches_.clear();
-  programs_.clear();
   drop(queue_);
-  drop(context_);
+  abandon();
+  programs_.reset();
   create();
 }
 

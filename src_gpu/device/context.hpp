@@ -1,7 +1,11 @@
 // One device in use: context, in-order queue and the programs built for it.
 #pragma once
 
+#include <deque>
 #include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,7 +17,35 @@ namespace kiloband::opencl {
 
 struct ContextOptions {
   bool profiling = false;  // events of the queue carry times: Kernel::launch_timed
+  bool shared =
+      false;  // cl::Context and built programs are those of all who share the device (shared_programs)
 };
+
+/// A cl::Context and the programs built in it last. For any thread.
+class ContextPrograms {
+ public:
+  explicit ContextPrograms(cl::Context context) : context_(std::move(context)) {}
+
+  const cl::Context& context() const { return context_; }
+  /// The program kept under `key`: the hash of source and options.
+  std::optional<cl::Program> find(const std::string& key) const;
+  /// Keeps it; of more than kMost the one that was kept first goes. Kernels made from it remain valid.
+  void keep(const std::string& key, const cl::Program& program);
+
+  static constexpr std::size_t kMost = 24;  // of PoCL a MiB or two each
+
+ private:
+  cl::Context context_;
+  mutable std::mutex mutex_;
+  std::deque<std::pair<std::string, cl::Program>> kept_;
+};
+
+/// What those who share a device have in common: made at the first call, there until the process ends or it is
+/// forgotten. A part of a device has its own, which nobody else gets.
+/// throws DeviceError
+std::shared_ptr<ContextPrograms> shared_programs(const DeviceInfo& device);
+/// After a loss: the next call of shared_programs() makes another. Nothing where that has happened already.
+void forget_shared(const DeviceInfo& device, const std::shared_ptr<ContextPrograms>& lost);
 
 /// What the time of a kernel's launches grows with: slots of the pool, paths of a round, or neither.
 enum class LaunchScale { kOther, kSlots, kPaths };
@@ -29,9 +61,12 @@ class DeviceContext {
   DeviceContext(const DeviceContext&) = delete;
   DeviceContext& operator=(const DeviceContext&) = delete;
 
-  /// After DeviceLost: a new context and queue, without programs. Buffers, programs and kernels of the old
+  /// After DeviceLost: a new context and queue, without the programs of the old one. Buffers, programs and kernels of the old
   /// one are useless from now on; destroying them remains valid, before or after.
   void rebuild();
+
+  /// After DeviceLost, where it is not rebuilt: nobody else gets the lost context.
+  void abandon() { forget_shared(device_, programs_); }
 
   /// Waits until everything enqueued is done, whatever comes of it.
   void settle() noexcept;
@@ -43,7 +78,7 @@ class DeviceContext {
 
   const DeviceInfo& device() const { return device_; }
   const ContextOptions& options() const { return options_; }
-  const cl::Context& context() const { return context_; }
+  const cl::Context& context() const { return programs_->context(); }
   cl::CommandQueue& queue() { return queue_; }
   cl::Device cl_device() const { return cl::Device(device_.id, true); }
   /// How often it was rebuilt.
@@ -71,8 +106,8 @@ class DeviceContext {
   /// Their number.
   const std::map<std::string, uint64_t>& kernel_launches() const { return kernel_launches_; }
 
-  /// Built programs by the hash of source and options; build_program looks here first.
-  std::map<std::string, cl::Program>& programs() { return programs_; }
+  /// Built programs; build_program looks here first.
+  ContextPrograms& programs() { return *programs_; }
 
   /// Why built programs could not be kept on disk, the first time; empty: no reason, or not tried.
   const std::string& cache_problem() const { return cache_problem_; }
@@ -85,9 +120,8 @@ class DeviceContext {
 
   DeviceInfo device_;
   ContextOptions options_;
-  cl::Context context_;
+  std::shared_ptr<ContextPrograms> programs_;
   cl::CommandQueue queue_;
-  std::map<std::string, cl::Program> programs_;
   std::string cache_problem_;
   struct Launch {
     LaunchScale scale;

@@ -99,19 +99,19 @@ Program build_program(DeviceContext& context, const SourceMap& sources, const st
   const std::string source = assemble_source(sources, main);
   const std::string flags = build_options(context, options);
   const std::string key = ProgramCache::key(source, flags, context.device());
-  const auto known = context.programs().find(key);
-  if (known != context.programs().end()) return Program(context, known->second, ProgramOrigin::kProcess);
+  if (auto known = context.programs().find(key))
+    return Program(context, std::move(*known), ProgramOrigin::kProcess);
 
   const ProgramCache cache = options.disk_cache ? ProgramCache::of_user() : ProgramCache({});
   if (auto binary = cache.load(key)) {
     if (auto program = from_binary(context, std::move(*binary), flags)) {
-      context.programs()[key] = *program;
+      context.programs().keep(key, *program);
       return Program(context, *program, ProgramOrigin::kDisk);
     }
   }
   const cl::Program program = from_source(context, main, source, flags);
   if (options.disk_cache) save_binary(context, cache, key, program);
-  context.programs()[key] = program;
+  context.programs().keep(key, program);
   return Program(context, program, ProgramOrigin::kSource);
 }
 

@@ -86,6 +86,64 @@ TEST_F(ProgramTest, ComesFromTheProcessThenTheDisk) {
   EXPECT_EQ(fs::status(folder()).permissions(), fs::perms::owner_all);
 }
 
+/// Who shares a device finds what another has built, also when that one is gone.
+TEST_F(ProgramTest, SharedByAllOfTheDevice) {
+  const DeviceInfo device = context_.device();
+  const auto origin = [&](DeviceContext& context) {
+    const Program program = build_in(context);
+    EXPECT_EQ(run(context, program), 7u);
+    return program.origin();
+  };
+  {
+    DeviceContext first(device, {.shared = true});
+    EXPECT_EQ(origin(first), ProgramOrigin::kSource);
+  }
+  DeviceContext second(device, {.shared = true}), third(device, {.profiling = true, .shared = true});
+  EXPECT_EQ(second.context()(), third.context()());
+  EXPECT_EQ(origin(second), ProgramOrigin::kProcess);
+  EXPECT_EQ(built_afresh(), ProgramOrigin::kDisk) << "a context of its own";
+
+  // A lost context is nobody's any more, but for those who have yet to notice; they find the new one.
+  const cl_context lost = third.context()();
+  second.rebuild();
+  EXPECT_NE(second.context()(), lost);
+  EXPECT_EQ(third.context()(), lost);
+  EXPECT_EQ(origin(second), ProgramOrigin::kDisk);
+  third.rebuild();
+  EXPECT_EQ(third.context()(), second.context()());
+  EXPECT_EQ(origin(third), ProgramOrigin::kProcess);
+
+  second.abandon();
+  DeviceContext fourth(device, {.shared = true});
+  EXPECT_NE(fourth.context()(), second.context()());
+  EXPECT_EQ(origin(fourth), ProgramOrigin::kDisk);
+  third.rebuild();
+  EXPECT_EQ(third.context()(), fourth.context()());
+}
+
+TEST_F(ProgramTest, PartsOfADeviceShareNothing) {
+  DeviceInfo part = context_.device();
+  part.kept = std::make_shared<int>(0);
+  DeviceContext first(part, {.shared = true}), second(part, {.shared = true});
+  EXPECT_NE(first.context()(), second.context()());
+}
+
+/// The latest are kept; a program that has gone can still be used.
+TEST_F(ProgramTest, AsManyAsAreKept) {
+  const Program built = build_in(context_);
+  ContextPrograms programs(context_.context());
+  for (std::size_t i = 0; i < ContextPrograms::kMost; ++i)
+    programs.keep(std::to_string(i), built.cl_program());
+  ASSERT_TRUE(programs.find("0").has_value());
+  EXPECT_EQ((*programs.find("0"))(), built.cl_program()());
+  EXPECT_FALSE(programs.find("another").has_value());
+  programs.keep("another", built.cl_program());
+  EXPECT_TRUE(programs.find("another").has_value());
+  EXPECT_FALSE(programs.find("0").has_value());
+  EXPECT_TRUE(programs.find("1").has_value());
+  EXPECT_EQ(run(context_, built), 7u);
+}
+
 TEST_F(ProgramTest, DamagedFilesAreReplaced) {
   build_in(context_);
   ASSERT_EQ(files().size(), 1u);
