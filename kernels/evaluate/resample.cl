@@ -1,4 +1,4 @@
-// Dense spectra of shared wavelengths (build macros KB_WIDTH, see path_spectra.clh).
+// Dense spectra of shared wavelengths (build macros KB_WIDTH, see path_spectra.clh, and KB_HAS_GAS: Evaluation gives no others).
 //
 //   kernel         work-items
 //   resample_rows  blocks * samples of the round * rows * stride / KB_WIDTH

@@ -37,6 +37,15 @@ Program build(DeviceContext& context, const char* file, std::vector<std::string>
   return build_program(context, file, ProgramOptions{std::move(defines), cache});
 }
 
+/// resample_rows asks for the width, and whether the scene has gas: scenes that differ in all else share its program.
+std::vector<std::string> resample_defines(const EvaluationShape& shape,
+                                          const std::vector<std::string>& of_scene) {
+  std::vector<std::string> d{"KB_WIDTH=" + std::to_string(shape.width)};
+  if (std::ranges::find(of_scene, "KB_HAS_GAS=0") != of_scene.end())
+    d.insert(d.end(), {"KB_SPECIALISED", "KB_HAS_GAS=0"});
+  return d;
+}
+
 /// Floats of the parts of derived channels that work-items leave behind.
 uint64_t partial_floats(const KbSpectraLayout& layout, const EvaluationShape& shape, const PoolSize& pool) {
   if (shape.method == Method::kDpeptPath) return 0;
@@ -152,8 +161,7 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
   if (layout.derived > 0 && shape.method != Method::kDpeptPath)
     derived_ = program_.kernel(shape.method == Method::kPt ? "pt_derived" : "derived_add");
   if (!shape.shared_wavelengths) return;
-  resample_program_ =
-      build(context, "evaluate/resample.cl", joined(defines, shape.defines(layout.derived)), program_cache);
+  resample_program_ = build(context, "evaluate/resample.cl", resample_defines(shape, defines), program_cache);
   resample_ = resample_program_->kernel("resample_rows");
 }
 
