@@ -60,16 +60,13 @@ void integrate_row(uint32_t width, uint32_t height, std::span<const float> texel
 
 /// The map's mean over the sphere.
 double mean_weight(uint32_t width, uint32_t height, std::span<const float> texels) {
-  const uint32_t rows = std::max(height - 1, 1u);
-  std::vector<double> row(width);
+  const std::vector<double> angles = row_solid_angles(height);
   double total = 0;
-  for (uint32_t i = 0; i < rows; ++i) {
-    integrate_row(width, height, texels, i, RowIntegrals(i, rows), row);
-    double sum = 0;
-    for (const double w : row) sum += w;
-    total += sum;
+  for (uint32_t i = 0; i < height; ++i) {
+    const std::span<const float> row = texels.subspan(static_cast<std::size_t>(i) * width, width);
+    total += angles[i] * std::accumulate(row.begin(), row.end(), 0.0);
   }
-  return total / (2.0 * width);
+  return total / (static_cast<double>(width) * height);
 }
 
 /// What the cells of a row have above `mean`, else 0: [sr * weight], without the column width.
