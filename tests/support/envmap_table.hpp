@@ -1,8 +1,11 @@
-// The probabilities that the tables of an environment map (scene/compile/light/envmap_sampling.hpp) give its cells.
+// What the tables of an environment map (scene/compile/light/envmap_sampling.hpp) are held against: probabilities of cells, facings of normals.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 
 #include "scene/compile/flat_scene.hpp"
 #include "shared/environment.h"
@@ -35,6 +38,21 @@ inline double envmap_probability(const EnvmapSampling& s, uint32_t row, uint32_t
   const auto step = [](const float* cdf, uint32_t i) { return static_cast<double>(cdf[i + 1]) - cdf[i]; };
   return step(at.down, at.down_cell) * step(at.across, at.across_cell) * step(at.row, at.row_cell) *
          step(at.column, at.column_cell);
+}
+
+/// Facing of a normal in the map's frame, which need not have length 1: the definition, in double precision.
+inline uint32_t facing_of_normal(const glm::dvec3& normal) {
+  const double size = std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
+  double a = normal.x / size, b = normal.z / size;
+  if (normal.y < 0) {
+    const double folded = (1 - std::fabs(b)) * std::copysign(1, a);
+    b = (1 - std::fabs(a)) * std::copysign(1, b);
+    a = folded;
+  }
+  const auto cell = [](double c) {
+    return static_cast<uint32_t>(std::clamp((c + 1) * (KB_FACINGS_ACROSS / 2), 0.0, KB_FACINGS_ACROSS - 1.0));
+  };
+  return cell(a) + KB_FACINGS_ACROSS * cell(b);
 }
 
 }  // namespace kiloband::test

@@ -57,20 +57,6 @@ glm::dvec3 facing_normal(uint32_t facing, double x, double y) {
   return glm::normalize(glm::dvec3((1 - std::fabs(b)) * sign_of(a), up, (1 - std::fabs(a)) * sign_of(b)));
 }
 
-uint32_t facing_of_normal(const glm::dvec3& normal) {
-  const double size = std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
-  double a = normal.x / size, b = normal.z / size;
-  if (normal.y < 0) {
-    const double folded = (1 - std::fabs(b)) * sign_of(a);
-    b = (1 - std::fabs(a)) * sign_of(b);
-    a = folded;
-  }
-  const auto cell = [](double c) {
-    return static_cast<uint32_t>(std::clamp((c + 1) * (KB_FACINGS_ACROSS / 2), 0.0, KB_FACINGS_ACROSS - 1.0));
-  };
-  return cell(a) + KB_FACINGS_ACROSS * cell(b);
-}
-
 std::vector<double> envmap_facing_weights(const EnvmapSampling& sampling, uint32_t facing) {
   const uint32_t down = sampling.regions_down(), across = sampling.regions_across();
   if (facing == KB_ALL_FACINGS) return std::vector<double>(std::size_t{down} * across, 1.0);

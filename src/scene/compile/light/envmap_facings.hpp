@@ -16,9 +16,6 @@ inline constexpr double kLeastFacingWeight = 0.02;
 /// Unit normal, in the map's frame, at (i + x, j + y) cells of the octahedral map.
 glm::dvec3 facing_normal(uint32_t facing, double x, double y);
 
-/// Facing of a normal in the map's frame, which need not have length 1: the definition, in double precision.
-uint32_t facing_of_normal(const glm::dvec3& normal);
-
 /// Weights of the map's regions, [region row][region column], for receivers of a facing: the cosine between normal and direction where that is
 /// positive, averaged over the facing and the region, and kLeastFacingWeight; 0 for regions that no normal of the facing sees. 1 everywhere
 /// for KB_ALL_FACINGS. Of `sampling` only the sizes are used. (Regions that are called unseen by the sampled averages may be seen by a corner:
