@@ -11,8 +11,8 @@
 
 #include "base/diagnostics.hpp"
 #include "render/backend.hpp"
-#include "src_gpu/device/launch_pace.hpp"
 #include "src_gpu/device_state.hpp"
+#include "src_gpu/path/launch_pace.hpp"
 #include "src_gpu/path/round_plan.hpp"
 
 namespace kiloband::opencl {

@@ -5,9 +5,9 @@
 #include <map>
 
 #include "scene/read/reader.hpp"
-#include "src_gpu/device/launch_pace.hpp"
 #include "src_gpu/device_state.hpp"
 #include "src_gpu/opencl_backend.hpp"
+#include "src_gpu/path/launch_pace.hpp"
 #include "validation/suite/scene_text.hpp"
 
 namespace kiloband::test {

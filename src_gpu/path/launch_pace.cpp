@@ -1,4 +1,4 @@
-#include "src_gpu/device/launch_pace.hpp"
+#include "src_gpu/path/launch_pace.hpp"
 
 #include <algorithm>
 
