@@ -1,16 +1,9 @@
 #include "src_gpu/device/program_cache.hpp"
 
-#include <fmt/format.h>
-#include <sys/stat.h>
-
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 
-#include "base/error.hpp"
-#include "base/hash.hpp"
-#include "files/atomic_file.hpp"
+#include "src_gpu/device/user_cache.hpp"
 
 namespace kiloband::opencl {
 namespace {
@@ -31,40 +24,10 @@ std::string header_of(const std::string& key, const std::vector<unsigned char>& 
   return header;
 }
 
-/// Made with all its parents, for this user alone. false: errno says why.
-bool make_folder(const fs::path& folder) {
-  std::error_code error;
-  if (fs::is_directory(folder, error)) return true;
-  if (folder.has_parent_path() && folder.parent_path() != folder && !make_folder(folder.parent_path()))
-    return false;
-  if (mkdir(folder.c_str(), 0700) == 0) return true;
-  const int reason = errno == EEXIST ? ENOTDIR : errno;
-  if (fs::is_directory(folder, error)) return true;  // made by another process meanwhile
-  errno = reason;
-  return false;
-}
-
-/// What an environment variable says, if it is an absolute path.
-fs::path absolute_path_of(const char* variable) {
-  const char* value = std::getenv(variable);
-  const fs::path path = value ? value : "";
-  return path.is_absolute() ? path : fs::path();
-}
-
 }  // namespace
 
-std::string text_hash(std::string_view text) {
-  const Uint128 hash = fnv1a<Uint128>(text);
-  return fmt::format("{:016x}{:016x}", static_cast<uint64_t>(hash >> 64), static_cast<uint64_t>(hash));
-}
-
 ProgramCache ProgramCache::of_user() {
-  const fs::path below = fs::path("kiloband") / "programs";
-  if (const fs::path cache = absolute_path_of("XDG_CACHE_HOME"); !cache.empty())
-    return ProgramCache(cache / below);
-  if (const fs::path home = absolute_path_of("HOME"); !home.empty())
-    return ProgramCache(home / ".cache" / below);
-  return ProgramCache({});
+  return ProgramCache(user_cache("programs"));
 }
 
 std::string ProgramCache::key(const std::string& source, const std::string& options,
@@ -95,15 +58,9 @@ std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& 
 
 std::string ProgramCache::save(const std::string& key, const std::vector<unsigned char>& binary) const {
   if (folder_.empty() || binary.empty()) return {};
-  if (!make_folder(folder_)) return "cannot write '" + folder_.string() + "': " + std::strerror(errno);
   std::string text = header_of(key, binary);
   text.append(reinterpret_cast<const char*>(binary.data()), binary.size());
-  try {
-    write_file_atomically(file(key), text, 0600);  // is executed: for this user alone
-  } catch (const DeviceError& refusal) {
-    return refusal.what();
-  }
-  return {};
+  return keep_file(file(key), text);  // is executed: for this user alone
 }
 
 }  // namespace kiloband::opencl

@@ -5,20 +5,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "src_gpu/device/device.hpp"
 
 namespace kiloband::opencl {
 
-/// 128 bits of FNV-1a of the text as 32 hex digits: names of programs. Twice the bits of other hashes: a name is
-/// all that says that a stored program is the one asked for, and a wrong one would render. Not for secrets.
-std::string text_hash(std::string_view text);
-
 /// Files of one folder, named by key. Whatever goes wrong (no folder, no permission, a full disk, a damaged
-/// or foreign file) is no error: load gives nothing, and save says why it did nothing. Files are written under another
-/// name and renamed, so that processes side by side never see half of one.
+/// or foreign file) is no error: load gives nothing, and save says why it did nothing.
 class ProgramCache {
  public:
   /// The folder of this user; nothing is created before the first save. Where neither

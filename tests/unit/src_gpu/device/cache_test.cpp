@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "src_gpu/device/program_cache.hpp"
+#include "src_gpu/device/user_cache.hpp"
 #include "tests/unit/src_gpu/device/gpu_fixture.hpp"
 
 namespace kiloband::opencl::test {
