@@ -106,7 +106,8 @@ void print_vertex(const FlatScene& scene, const KbPathVertex& v) {
            v.head & KB_VERTEX_DEFER ? ", through gas" : "");
   }
   if (v.head & KB_VERTEX_DEGRADE) {
-    answer("  scatter  weight {:.9g}, only channel {} goes on\n", v.scatter0, kb_as_u32(v.scatter1));
+    answer("  scatter  weight {:.9g}, only channel {} goes on\n", v.scatter0,
+           kb_surviving_channel(v.scatter1));
   } else if (v.head & KB_VERTEX_SCATTER) {
     answer("  scatter  weights {:.9g} {:.9g}\n", v.scatter0, v.scatter1);
   }

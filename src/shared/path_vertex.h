@@ -32,7 +32,7 @@
 
    KB_VERTEX_NEGATIVE, of the first vertex of a path only: tau_0 = -1, where the reconstruction filter is negative.
 
-   KB_VERTEX_DEGRADE: after B is applied only channel kb_as_u32(scatter1) goes on, tau of the others becomes 0
+   KB_VERTEX_DEGRADE: after B is applied only channel kb_surviving_channel(scatter1) goes on, tau of the others becomes 0
    (its kind is SCALED; scatter0 includes 1 / probability of the channel).
 
    Gas along a ray is a vertex of kind KB_KIND_MEDIUM. It works with a third register q, which is 1 at the path's
@@ -118,6 +118,16 @@ KB_STATIC_ASSERT(sizeof(KbPlumeCell) == 8, plume_cell_size);
 KB_FN kb_u32 kb_vertex_extensions(kb_u32 head) {
   if ((head & KB_VERTEX_KIND_MASK) == KB_KIND_MEDIUM) return ((head >> KB_VERTEX_MATERIAL_SHIFT) + 3u) / 4u;
   return (kb_popcount(head & KB_VERTEX_TEX_MASK) + 1u) / 2u;
+}
+
+/* The channel that goes on behind KB_VERTEX_DEGRADE, as scatter1 holds it: its number as a float, exact below 2^24. Its bits would be a
+   subnormal float: compilers may divide by 1 where a weight is not divided (LLVM makes one operation of "w / q or w"), and processors that
+   flush subnormals to 0 then make every channel the first one. */
+KB_FN float kb_channel_weight(kb_u32 channel) {
+  return (float)channel;
+}
+KB_FN kb_u32 kb_surviving_channel(float scatter1) {
+  return (kb_u32)scatter1;
 }
 
 #endif

@@ -198,7 +198,7 @@ void apply(const Point& at, const KbPathVertex& v, const KbTextureSample* sample
       state.radiance += lit;
   }
   if (v.head & KB_VERTEX_SCATTER) state.tau *= scattering(at, v, a, b, v.scatter0, v.scatter1);
-  if ((v.head & KB_VERTEX_DEGRADE) && k != kb_as_u32(v.scatter1)) state.tau = 0;
+  if ((v.head & KB_VERTEX_DEGRADE) && k != kb_surviving_channel(v.scatter1)) state.tau = 0;
 }
 
 /// A plume's cells: the source function is linear in the column within each.

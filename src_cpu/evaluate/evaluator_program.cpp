@@ -216,7 +216,7 @@ void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from
   out.nee1 = vertex.nee1;
   out.scatter0 = vertex.scatter0;
   out.scatter1 = vertex.scatter1;
-  if (head & KB_VERTEX_DEGRADE) out.survivor = kb_as_u32(vertex.scatter1);
+  if (head & KB_VERTEX_DEGRADE) out.survivor = kb_surviving_channel(vertex.scatter1);
   out.a = from.a;
   out.b = from.b;
   out.emit = from.emit;

@@ -99,7 +99,7 @@ void DispersedPaths::refract_one_channel(Shading& s, BsdfSample& sample) {
   sample.delta = {one.delta};
   sample.lobe_b = {true};
   sample.kind = U(one.kind);
-  sample.w1 = F(kb_as_f32(path.channel));
+  sample.w1 = F(kb_channel_weight(path.channel));
   s.vertex.set({one.pdf > 0}, KB_VERTEX_DEGRADE);
 }
 
@@ -111,7 +111,7 @@ void DispersedPaths::degrade(Shading& s) {
   v.head = U(KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
   v.a.row = U(scene_.unit_row);
   v.scatter0 = 1 / probability;
-  v.scatter1 = kb_as_f32(path.channel);
+  v.scatter1 = kb_channel_weight(path.channel);
   path.bound /= probability * static_cast<float>(scene_.channels.size());
   append(s.wave, s.path, v, {true});
   carry(s.wave, s.path.v);

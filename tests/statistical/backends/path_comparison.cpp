@@ -34,7 +34,7 @@ bool same_decisions(const KbPathVertex& a, const KbPathVertex& b) {
   if (has_two_terms(a.head) && read(kReflects, KB_VERTEX_TEX_B) && a.row_b != b.row_b) return false;
   if (read(KB_VERTEX_EMIT, KB_VERTEX_TEX_EMIT) && a.emit_row != b.emit_row) return false;
   if (read(KB_VERTEX_NEE, KB_VERTEX_TEX_NEE) && a.nee_row != b.nee_row) return false;
-  return !(a.head & KB_VERTEX_DEGRADE) || kb_as_u32(a.scatter1) == kb_as_u32(b.scatter1);
+  return !(a.head & KB_VERTEX_DEGRADE) || a.scatter1 == b.scatter1;
 }
 
 /// Texture samples behind a vertex.

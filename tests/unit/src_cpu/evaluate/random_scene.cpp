@@ -159,7 +159,7 @@ KbPathVertex random_vertex(const FlatScene& scene, std::mt19937& random) {
   v.scatter1 = uniform_float(random, angle ? low : 0.1, 1);
   if (kind == KB_KIND_SCALED && chance(random, 0.2)) {
     v.head |= KB_VERTEX_DEGRADE | KB_VERTEX_SCATTER;
-    v.scatter1 = kb_as_f32(below(random, scene.channels.size()));
+    v.scatter1 = kb_channel_weight(below(random, scene.channels.size()));
   }
   if (kind == KB_KIND_ROUGH_TRANSMISSION) make_transmission(scene, v, random);
   return v;

@@ -117,7 +117,7 @@ TEST_P(Formulas, NonlinearAndDegraded) {
   first.scatter0 = 1;
   KbPathVertex second = vertex_of(KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
   second.scatter0 = 3;
-  second.scatter1 = kb_as_f32(1);
+  second.scatter1 = kb_channel_weight(1);
   KbPathVertex third = vertex_of(KB_KIND_SCALED | KB_VERTEX_EMIT);
   third.emit_weight = 1;
   const PathBuffer paths = one_path({first, second, third});

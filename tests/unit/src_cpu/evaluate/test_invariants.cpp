@@ -22,7 +22,8 @@ std::pair<FlatScene, PathBuffer> channel_alone(const FlatScene& scene, const Pat
   for (const SavedPath& path : changed.paths) {
     for (uint32_t i = path.first; i < path.first + path.count; ++i) {
       KbPathVertex& v = changed.entries[i];
-      if (v.head & KB_VERTEX_DEGRADE) v.scatter1 = kb_as_f32(kb_as_u32(v.scatter1) == k ? 0 : 1);
+      if (v.head & KB_VERTEX_DEGRADE)
+        v.scatter1 = kb_channel_weight(kb_surviving_channel(v.scatter1) == k ? 0 : 1);
       i += kb_vertex_extensions(v.head);
     }
   }
