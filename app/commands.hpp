@@ -26,6 +26,7 @@ Command add_sky(CLI::App& program);
 Command add_sensor(CLI::App& program);
 Command add_trace(CLI::App& program);
 Command add_devices(CLI::App& program);
+Command add_tune(CLI::App& program);
 Command add_bench(CLI::App& program);
 Command add_validate(CLI::App& program);
 Command add_view(CLI::App& program);

@@ -31,7 +31,7 @@ int fail(int code, const std::string& message, const char* hint = "") {
 void check_command(const std::map<std::string, Command>& commands, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-' || commands.contains(argv[1])) return;
   throw InputError(fmt::format(
-      "unknown command '{}': must be render, info, convert, sensor, compare, sky, devices, trace, "
+      "unknown command '{}': must be render, info, convert, sensor, compare, sky, devices, tune, trace, "
       "validate, bench or view (see kiloband --help)",
       argv[1]));
 }
@@ -64,6 +64,7 @@ int run(int argc, char** argv) {
   commands["compare"] = add_compare(program);
   commands["bench"] = add_bench(program);
   commands["devices"] = add_devices(program);
+  commands["tune"] = add_tune(program);
   commands["view"] = add_view(program);
   commands["sky"] = add_sky(program);
   commands["trace"] = add_trace(program);

@@ -133,6 +133,7 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["rays"] = done.rays;
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["device_memory_bytes"] = done.device_memory_bytes;
+  json["pool_slots"] = done.pool_slots;
   json["longest_launch_seconds"] = done.longest_launch_seconds;
   json["kernel_seconds"] = done.kernel_seconds;
   json["kernel_launches"] = done.kernel_launches;

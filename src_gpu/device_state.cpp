@@ -61,7 +61,7 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       host_(host),
       settings_(device_settings),
       shape_(evaluation_shape(device_context.device(), method, settings_.shared_wavelengths,
-                              host.spectra.layout.channels)),
+                              host.spectra.layout.channels, settings_.tuning.evaluation_group)),
       paths_(build_program(context, "path/paths.cl",
                            ProgramOptions{path_defines(context.device(), host, settings_),
                                           settings_.program_cache, kPathRegisters})),
@@ -94,7 +94,8 @@ void DeviceState::release_pool() {
 
 void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels, bool open) {
   release_pool();
-  pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size);
+  pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size,
+                settings_.tuning.path_group.value_or(kPoolLocalSize));
   evaluation_.emplace(context, memory, host_.spectra.layout, shape_, evaluation_defines(host_, settings_),
                       settings_.program_cache, size, film_pixels, open);
   evaluation_->bind(scene_, spectra_, *pool_);

@@ -13,6 +13,7 @@
 #include "src_gpu/path/path_pool.hpp"
 #include "src_gpu/path/round_plan.hpp"
 #include "src_gpu/scene/device_scene.hpp"
+#include "src_gpu/tuning/tuning.hpp"
 
 namespace kiloband::opencl {
 
@@ -36,6 +37,7 @@ struct DeviceSettings {
   bool specialised = true;
   bool program_cache = true;
   std::optional<uint64_t> memory_budget;
+  Tuning tuning;  // of work-groups
 };
 
 class DeviceState {

@@ -10,9 +10,6 @@
 namespace kiloband::opencl {
 namespace {
 
-/// Paths in flight and paths of a round: a CPU device keeps what a round touches in its caches.
-constexpr uint32_t kCpuSlots = 1u << 13;
-constexpr uint64_t kCpuJobs = 1u << 16;
 constexpr uint32_t kFewestSlots = 64;
 /// What the first launches have of it: their times say how many the next ones may have.
 constexpr uint64_t kFirstPart = 16;
@@ -23,12 +20,13 @@ bool is_cpu(const DeviceState& device) {
   return device.context.device().type == DeviceType::kCpu;
 }
 
-uint32_t most_slots(const DeviceState& device, std::optional<uint32_t> wanted) {
-  return wanted.value_or(is_cpu(device) ? kCpuSlots : gpu_slots(device.memory.budget()));
+uint32_t most_slots(const DeviceState& device, const Tuning& tuning) {
+  return tuning.pool_slots.value_or(usual_slots(is_cpu(device), device.memory.budget()));
 }
 
-uint64_t most_jobs(const DeviceState& device, uint32_t slots) {
-  return std::max<uint64_t>(is_cpu(device) ? kCpuJobs : gpu_jobs(device.memory.budget()), slots);
+uint64_t most_jobs(const DeviceState& device, const Tuning& tuning) {
+  return std::max<uint64_t>(tuning.round_paths.value_or(usual_jobs(is_cpu(device), device.memory.budget())),
+                            most_slots(device, tuning));
 }
 
 uint64_t round_up(uint64_t n, uint64_t multiple) {
@@ -38,15 +36,15 @@ uint64_t round_up(uint64_t n, uint64_t multiple) {
 }  // namespace
 
 GroupRenderer::GroupRenderer(DeviceState& device, const SamplingSettings& settings, double launch_seconds,
-                             std::optional<uint32_t> pool_slots, DiagnosticSink note)
+                             const Tuning& tuning, DiagnosticSink note)
     : device_(device),
       settings_(settings),
       note_(std::move(note)),
       round_samples_(samples_of_round(is_cpu(device), device.table_bytes())),
-      most_slots_(most_slots(device, pool_slots)),
+      most_slots_(most_slots(device, tuning)),
+      most_jobs_(most_jobs(device, tuning)),
       slots_pace_(launch_seconds, most_slots_ / kFirstPart, kFewestSlots, most_slots_),
-      paths_pace_(launch_seconds, most_jobs(device, most_slots_) / kFirstPart, 1,
-                  most_jobs(device, most_slots_)) {}
+      paths_pace_(launch_seconds, most_jobs_ / kFirstPart, 1, most_jobs_) {}
 
 PlanRequest GroupRenderer::request(uint64_t pixels, bool open) const {
   PlanRequest r;
@@ -59,7 +57,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels, bool open) const {
   r.table_bytes = device_.table_bytes();
   r.slot_bytes = device_.slot_bytes();
   r.most_slots = most_slots_;
-  r.most_jobs = most_jobs(device_, most_slots_);
+  r.most_jobs = most_jobs_;
   r.chunks_per_path = chunks_per_path_;
   r.dispersion = device_.has_dispersion();
   r.chunk_entries = device_.chunk_entries();
@@ -112,7 +110,7 @@ SumRule GroupRenderer::sum_rule() const {
 
 uint32_t GroupRenderer::blocks_at_once(uint32_t samples) const {
   const uint64_t of_block = uint64_t{kBlockSize} * kBlockSize * std::clamp(samples, 1u, round_samples_);
-  return static_cast<uint32_t>(std::max<uint64_t>(most_jobs(device_, most_slots_) / of_block, 1));
+  return static_cast<uint32_t>(std::max<uint64_t>(most_jobs_ / of_block, 1));
 }
 
 KbRound GroupRenderer::make_round(const SampleRange& samples, uint64_t number) const {

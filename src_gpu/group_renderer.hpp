@@ -48,7 +48,7 @@ class GroupRenderer {
  public:
   /// note  receives a line where a pool is made smaller
   GroupRenderer(DeviceState& device, const SamplingSettings& settings, double launch_seconds,
-                std::optional<uint32_t> pool_slots, DiagnosticSink note);
+                const Tuning& tuning, DiagnosticSink note);
 
   /// Pixels whose film is resident at once, for an image part of this many pixels;
   /// open: with sums that are gone on with.
@@ -97,6 +97,7 @@ class GroupRenderer {
   bool planned_open_ = false;
   uint32_t round_samples_;
   uint32_t most_slots_;
+  uint64_t most_jobs_;
   LaunchPace slots_pace_, paths_pace_;
   double chunks_per_path_ = 3;    // measured
   uint64_t evaluated_paths_ = 0;  // by the evaluation that was enqueued last

@@ -10,6 +10,7 @@
 #include "src_gpu/device/pocl_cache.hpp"
 #include "src_gpu/film_delivery.hpp"
 #include "src_gpu/group_renderer.hpp"
+#include "src_gpu/tuning/tuning_store.hpp"
 
 namespace kiloband::opencl {
 namespace {
@@ -37,6 +38,7 @@ class Renderer final : public Backend {
         method_(options.method.value_or(kDefaultMethod)),
         context_(std::move(device), {.profiling = true, .shared = true}) {
     limit_memory();
+    if (options_.tuned) options_.tuning = merged(options_.tuning, kept_tuning());
     const NeutralFolder neutral;
     repeated([] {});
     warn_of_cache();
@@ -68,6 +70,7 @@ class Renderer final : public Backend {
 
  private:
   void limit_memory();
+  Tuning kept_tuning() const;
   void warn_of_cache() const;
   void make_device();
   void recover(const DeviceLost& loss);
@@ -101,6 +104,12 @@ void Renderer::limit_memory() {
   options_.device_memory = most;
 }
 
+/// What `kiloband tune` found for the device.
+Tuning Renderer::kept_tuning() const {
+  return tuning_for(TuningStore::of_user().load(context_.device()), to_string(method_),
+                    host_->spectra.layout.channels);
+}
+
 /// One warning: without a cache the render goes on, and the next one compiles again.
 void Renderer::warn_of_cache() const {
   const std::string pocl = context_.device().is_pocl() ? pocl_cache_problem() : "";
@@ -120,8 +129,8 @@ void Renderer::make_device() {
   state_ = std::make_unique<DeviceState>(
       context_, *host_,
       DeviceSettings{method_, settings_.wavelengths == WavelengthMode::kShared, options_.specialised,
-                     program_cache, options_.device_memory});
-  groups_ = std::make_unique<GroupRenderer>(*state_, settings_, options_.launch_seconds, options_.pool_slots,
+                     program_cache, options_.device_memory, options_.tuning});
+  groups_ = std::make_unique<GroupRenderer>(*state_, settings_, options_.launch_seconds, options_.tuning,
                                             options_.sink);
 }
 
@@ -254,9 +263,15 @@ std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
 
 std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
                                       const SamplingSettings& settings, const Options& options) {
-  DeviceInfo device = select_device(options.device);
-  return std::make_unique<Renderer>(std::make_shared<HostScene>(std::move(scene), derived), settings, options,
-                                    std::move(device));
+  return backend_maker(std::move(scene), derived, settings, select_device(options.device))(options);
+}
+
+BackendMaker backend_maker(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+                           const SamplingSettings& settings, const DeviceInfo& device) {
+  return [host = std::make_shared<HostScene>(std::move(scene), derived), settings,
+          device](const Options& options) -> std::unique_ptr<Backend> {
+    return std::make_unique<Renderer>(host, settings, options, device);
+  };
 }
 
 std::vector<std::unique_ptr<Backend>> make_backends(std::shared_ptr<const FlatScene> scene,

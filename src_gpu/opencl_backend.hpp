@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "render/backend_registry.hpp"
 #include "scene/description/derived_channels.hpp"
 #include "src_gpu/path/round_plan.hpp"
+#include "src_gpu/tuning/tuning.hpp"
 
 namespace kiloband::opencl {
 
@@ -22,7 +24,8 @@ struct Options {
   bool specialised = true;                // kernels compiled for the scene's features only
   bool program_cache = true;              // binaries on disk, where the driver does not keep them itself
   double launch_seconds = 0.5;            // longest launch aimed at: display drivers kill long ones
-  std::optional<uint32_t> pool_slots;     // paths in flight; nothing: what the device gains from
+  Tuning tuning;                          // sizes, before those that are kept for the device
+  bool tuned = true;                      // what `kiloband tune` keeps for the device is used
   DiagnosticSink sink;                    // notes on smaller pools and repeated work; may be empty
 };
 
@@ -36,6 +39,11 @@ std::unique_ptr<Backend> make_backend(std::shared_ptr<const FlatScene> scene, co
 std::vector<std::unique_ptr<Backend>> make_backends(std::shared_ptr<const FlatScene> scene,
                                                     const DerivedChannels& derived,
                                                     const SamplingSettings& settings, const Options& options);
+
+/// Makes backends of one scene for one device: what is prepared on the host is there once. options.device is not looked at.
+using BackendMaker = std::function<std::unique_ptr<Backend>(const Options& options)>;
+BackendMaker backend_maker(std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+                           const SamplingSettings& settings, const DeviceInfo& device);
 
 /// "opencl", with the methods of Method.
 BackendEntry backend_entry();

@@ -79,7 +79,7 @@ std::vector<std::string> EvaluationShape::defines(uint32_t derived) const {
 }
 
 EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool shared_wavelengths,
-                                 uint32_t channels) {
+                                 uint32_t channels, std::optional<uint32_t> largest_group) {
   EvaluationShape shape;
   shape.method = method;
   shape.shared_wavelengths = shared_wavelengths;
@@ -96,10 +96,16 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
   shape.staged = method == Method::kDpeptBatch;
   shape.width = channels >= 512 ? 4 : channels >= 128 ? 2 : 1;
   shape.vectors = 1;
-  const uint64_t most = std::min<uint64_t>(device.max_work_group_size, 256);
+  const uint64_t wanted = largest_group.value_or(usual_evaluation_group(method));
+  const uint64_t most = std::min(device.max_work_group_size, wanted);
   const uint64_t items = ceil_div(ceil_div(channels, shape.width), 32) * 32;
-  shape.local_size = method == Method::kDpeptPath ? 64 : static_cast<uint32_t>(std::min(items, most));
+  shape.local_size = static_cast<uint32_t>(method == Method::kDpeptPath ? most : std::min(items, most));
   return shape;
+}
+
+uint32_t usual_evaluation_group(Method method) {
+  return method == Method::kDpeptPath ? 64
+                                      : 256;  // dpept-path: work-items have a path each, the others share one
 }
 
 uint32_t fitting_local_size(uint32_t wanted, uint64_t kernel_limit) {

@@ -6,7 +6,6 @@
 namespace kiloband::opencl {
 namespace {
 
-constexpr uint64_t kPoolLocalSize = 64;
 constexpr uint32_t kCpuSlotsPerItem = 64;
 /// Iterations between two compactions of the queue. After so many the host looks whether the round is over, which waits for the
 /// device; not before it expects that, by the rounds before.
@@ -42,9 +41,10 @@ uint32_t slots_per_item(const DeviceInfo& device) {
 
 PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& program,
                    const DeviceScene& scene, const DeviceBvh& bvh, const DeviceSpectra& spectra,
-                   const PoolSize& size)
+                   const PoolSize& size, uint32_t group)
     : context_(context),
       size_(size),
+      group_(group),
       buffers_{
           .round = memory.allocate<KbRound>("round", 1),
           .pixels = memory.allocate<KbRoundPixel>("round's pixels", size.pixels),
@@ -85,7 +85,7 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
 void PathPool::launch(PathKernel& kernel) {
   kernel.set(queue().slots);
   const uint64_t each = slots_per_item(context_.device());
-  const uint64_t group = each > 1 ? 1 : std::min(kPoolLocalSize, kernel->max_work_group_size());
+  const uint64_t group = each > 1 ? 1 : std::min<uint64_t>(group_, kernel->max_work_group_size());
   kernel->launch((count_ + each - 1) / each, group);
 }
 

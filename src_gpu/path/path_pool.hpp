@@ -48,6 +48,9 @@ struct RoundOutcome {
   double longest_launch_seconds = 0;   // of the kernels that run over slots
 };
 
+/// Work-items of a group where nobody says otherwise.
+inline constexpr uint32_t kPoolLocalSize = 64;
+
 /// throws std::logic_error for what only a bug of ours can raise
 void throw_for_bugs(const KbFaults& faults);
 
@@ -56,9 +59,9 @@ using PoolBuffers = PoolArguments::Of<DeviceBuffer>;
 class PathPool {
  public:
   /// program  built with KB_SLOTS_PER_ITEM=slots_per_item(device); for the method pt with KB_METHOD_PT=1 (vertices stay in a slot's
-  ///          own chunk for one bounce)
+  ///          own chunk for one bounce); group: work-items of a group, if the kernel can have as many; CPU devices have one
   PathPool(DeviceContext& context, DeviceMemory& memory, const Program& program, const DeviceScene& scene,
-           const DeviceBvh& bvh, const DeviceSpectra& spectra, const PoolSize& size);
+           const DeviceBvh& bvh, const DeviceSpectra& spectra, const PoolSize& size, uint32_t group);
   /// Waits: the device may be reading a round that was begun.
   ~PathPool() { context_.settle(); }
   PathPool(const PathPool&) = delete;
@@ -92,6 +95,7 @@ class PathPool {
 
   DeviceContext& context_;
   PoolSize size_;
+  uint32_t group_;
   PoolBuffers buffers_;
   DeviceBuffer<uint32_t> queue_, length_, packed_, packed_length_;
   PathKernel reset_, generate_, closest_, shade_, any_, compact_, tallies_;

@@ -25,6 +25,10 @@ constexpr uint64_t kTablesOfBlock = 4u << 20;
 constexpr uint64_t kFewestGpuSlots = 1u << 16, kMostGpuSlots = 1u << 21, kMostGpuJobs = 1u << 24;
 constexpr uint64_t kSlotBytes = 256, kJobBytes = 512;
 
+/// A CPU device keeps what a round touches in its caches.
+constexpr uint32_t kCpuSlots = 1u << 13;
+constexpr uint64_t kCpuJobs = 1u << 16;
+
 uint64_t share(uint64_t bytes, double part) {
   return static_cast<uint64_t>(static_cast<double>(bytes) * part);
 }
@@ -131,6 +135,14 @@ uint32_t gpu_slots(uint64_t budget) {
 uint64_t gpu_jobs(uint64_t budget) {
   const uint64_t fitting = std::bit_floor(std::max<uint64_t>(share(budget, kPathShare) / kJobBytes, 1));
   return std::clamp<uint64_t>(fitting, gpu_slots(budget), kMostGpuJobs);
+}
+
+uint32_t usual_slots(bool cpu_device, uint64_t budget) {
+  return cpu_device ? kCpuSlots : gpu_slots(budget);
+}
+
+uint64_t usual_jobs(bool cpu_device, uint64_t budget) {
+  return cpu_device ? kCpuJobs : gpu_jobs(budget);
 }
 
 SumRule sum_rule_of(Method method, uint32_t round_samples, bool derived) {

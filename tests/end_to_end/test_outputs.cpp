@@ -194,9 +194,9 @@ TEST(Outputs, StatisticsHaveTheNamesOfTheContract) {
                        "mean_relative_error"};
   Names expected = contract;
   expected.insert(expected.end(),
-                  {"kernel_launches", "underflowed_values", "overflowed_values", "overflowed_variances",
-                   "streamed", "interrupted", "features", "ended_by", "worst_relative_error", "worst_channel",
-                   "median_relative_error", "dark_channels"});
+                  {"kernel_launches", "pool_slots", "underflowed_values", "overflowed_values",
+                   "overflowed_variances", "streamed", "interrupted", "features", "ended_by",
+                   "worst_relative_error", "worst_channel", "median_relative_error", "dark_channels"});
   std::sort(expected.begin(), expected.end());
   Names found;
   for (const auto& [name, value] : stats.items()) found.push_back(name);

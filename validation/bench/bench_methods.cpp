@@ -87,7 +87,7 @@ Timing measure(const std::shared_ptr<const FlatScene>& scene, const Settings& se
   opencl::Options options;
   options.device = settings.device;
   options.method = method;
-  options.pool_slots = settings.pool;
+  options.tuning.pool_slots = settings.pool;
   SamplingSettings sampling;
   sampling.replicates = 1;
   const auto backend = opencl::make_backend(scene, {}, sampling, options);

@@ -59,7 +59,7 @@ std::unique_ptr<Backend> make_backend(const Settings& settings, const Setup& set
   options.device = settings.device;
   options.method = opencl::find_method(setup.method);
   if (setup.pool > 0) {
-    options.pool_slots = setup.pool;
+    options.tuning.pool_slots = setup.pool;
     options.device_memory = settings.device_memory;
   }
   return opencl::make_backend(scene, {}, sampling, options);

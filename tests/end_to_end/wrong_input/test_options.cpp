@@ -28,7 +28,7 @@ TEST(WrongOption, Command) {
       {
           {{}, "A subcommand is required (see kiloband --help)"},
           {{"rendr", "scene.xml"},
-           "unknown command 'rendr': must be render, info, convert, sensor, compare, sky, devices, trace, "
+           "unknown command 'rendr': must be render, info, convert, sensor, compare, sky, devices, tune, trace, "
            "validate, bench or view (see kiloband --help)"},
           {{"render"}, "SCENE is required (see kiloband render --help)"},
           {{"render", "none.xml"}, "none.xml: error: file not found"},

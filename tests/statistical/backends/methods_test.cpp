@@ -129,10 +129,13 @@ TEST_F(Methods, SameSeedSameBitsWhateverThePool) {
     expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared), method + ", again");
     for (const uint32_t slots : {64u, 100u, 4096u}) {
       opencl::Options options = general();
-      options.pool_slots = slots;
+      options.tuning.pool_slots = slots;
       expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared, options),
                        method + ", " + std::to_string(slots) + " slots");
     }
+    opencl::Options tuned = general();
+    tuned.tuning = {512, 2000, 32, 128};
+    expect_same_bits(first, image(method, scene, {}, WavelengthMode::kShared, tuned), method + ", tuned");
   }
 }
 

@@ -22,8 +22,9 @@ TEST(DeviceWaits, AtMostTwoPerRound) {
   const ZooFolder folder;
   const FlatScene scene = folder.flatten(zoo_scene("diffuse_room"), "450:650:4");
   for (const std::string& method : kOpenclMethods) {
-    const auto backend = make_zoo_backend(
-        method, scene, {}, {WavelengthMode::kShared, SamplerType::kSobol, 5, 1}, {.pool_slots = 256});
+    const auto backend =
+        make_zoo_backend(method, scene, {}, {WavelengthMode::kShared, SamplerType::kSobol, 5, 1},
+                         {.tuning = {.pool_slots = 256}});
     work_of(*backend, scene, 160);  // builds kernels; launches grow, and iterations become known
     const Work few = work_of(*backend, scene, 16 * 10), many = work_of(*backend, scene, 16 * 40);
     const uint64_t rounds = many.rounds - few.rounds, waits = many.waits - few.waits;

@@ -1,0 +1,107 @@
+#include "src_gpu/tuning/tuning_store.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "src_gpu/device/user_cache.hpp"
+
+namespace kiloband::opencl {
+namespace {
+
+using nlohmann::json;
+
+/// What the numbers in a file mean.
+constexpr int kFormat = 1;
+/// No device has more, or gains from less.
+constexpr uint64_t kFewestPaths = 64, kMostPaths = uint64_t{1} << 28, kLargestGroup = 4096;
+
+template <class T>
+std::optional<T> size_in(const json& from, const char* name, uint64_t fewest, uint64_t most) {
+  if (!from.contains(name)) return std::nullopt;
+  const auto value = from.at(name).get<uint64_t>();
+  if (value < fewest || value > most) throw std::out_of_range(name);
+  return static_cast<T>(value);
+}
+
+template <class T>
+void put(json& to, const char* name, const std::optional<T>& value) {
+  if (value) to[name] = *value;
+}
+
+TunedMethod tuned_method(const json& from) {
+  TunedMethod one;
+  one.method = from.at("method").get<std::string>();
+  one.channels = from.at("channels").get<uint32_t>();
+  if (one.channels == 0) throw std::out_of_range("channels");
+  one.scene = from.at("scene").get<std::string>();
+  one.speed_up = from.at("speed_up").get<double>();
+  one.tuning.pool_slots = size_in<uint32_t>(from, "pool_slots", kFewestPaths, kMostPaths);
+  one.tuning.round_paths = size_in<uint64_t>(from, "round_paths", kFewestPaths, kMostPaths);
+  one.tuning.path_group = size_in<uint32_t>(from, "path_group", 1, kLargestGroup);
+  one.tuning.evaluation_group = size_in<uint32_t>(from, "evaluation_group", 1, kLargestGroup);
+  return one;
+}
+
+json tuned_json(const TunedMethod& one) {
+  json j{
+      {"method", one.method}, {"channels", one.channels}, {"scene", one.scene}, {"speed_up", one.speed_up}};
+  put(j, "pool_slots", one.tuning.pool_slots);
+  put(j, "round_paths", one.tuning.round_paths);
+  put(j, "path_group", one.tuning.path_group);
+  put(j, "evaluation_group", one.tuning.evaluation_group);
+  return j;
+}
+
+}  // namespace
+
+TuningStore TuningStore::of_user() {
+  return TuningStore(user_cache("tuning"));
+}
+
+std::filesystem::path TuningStore::file(const DeviceInfo& device) const {
+  if (folder_.empty()) return {};
+  std::string all;
+  for (const std::string* part :
+       {&device.name, &device.driver_version, &device.platform, &device.platform_version})
+    all.append(std::to_string(part->size())).append(1, ':').append(*part);
+  all += fmt::format("{} units", device.compute_units);  // of a part fewer than of the whole
+  return folder_ / (text_hash(all) + ".json");
+}
+
+std::vector<TunedMethod> TuningStore::load(const DeviceInfo& device) const {
+  std::vector<TunedMethod> tuned;
+  try {
+    std::ifstream stream(file(device));
+    if (!stream) return {};
+    const json all = json::parse(stream);
+    if (all.at("format").get<int>() != kFormat || all.at("device").get<std::string>() != device.name)
+      return {};
+    for (const json& one : all.at("tuned")) tuned.push_back(tuned_method(one));
+  } catch (const json::exception&) {
+    return {};
+  } catch (const std::out_of_range&) {
+    return {};
+  }
+  return tuned;
+}
+
+std::string TuningStore::save(const DeviceInfo& device, const TunedMethod& measured) const {
+  if (folder_.empty()) return "there is no folder for it: neither XDG_CACHE_HOME nor HOME is set";
+  std::vector<TunedMethod> tuned = load(device);
+  std::erase_if(tuned, [&](const TunedMethod& one) {
+    return one.method == measured.method && one.channels == measured.channels;
+  });
+  tuned.push_back(measured);
+  json all{{"format", kFormat}, {"device", device.name}, {"driver", device.driver_version}};
+  for (const TunedMethod& one : tuned) all["tuned"].push_back(tuned_json(one));
+  return keep_file(file(device), all.dump(2) + "\n");
+}
+
+bool TuningStore::forget(const DeviceInfo& device) const {
+  std::error_code ignored;
+  return !folder_.empty() && std::filesystem::remove(file(device), ignored);
+}
+
+}  // namespace kiloband::opencl

@@ -1,0 +1,127 @@
+// Measurements of `kiloband tune` on disk: what is kept is found again, by its device alone, and nothing else is believed.
+#include "src_gpu/tuning/tuning_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace kiloband::test::tuning_store_test {
+namespace {
+
+using namespace opencl;
+
+DeviceInfo some_device() {
+  DeviceInfo device;
+  device.name = "Some GPU";
+  device.driver_version = "1.2";
+  device.compute_units = 8;
+  return device;
+}
+
+TunedMethod measured(const std::string& method, uint32_t channels, uint32_t slots) {
+  TunedMethod one;
+  one.method = method;
+  one.channels = channels;
+  one.tuning.pool_slots = slots;
+  one.scene = "a scene";
+  one.speed_up = 1.25;
+  return one;
+}
+
+class TuningStoreTest : public testing::Test {
+ protected:
+  void write(const std::string& text) const {
+    std::filesystem::create_directories(store_.file(device_).parent_path());
+    std::ofstream(store_.file(device_)) << text;
+  }
+
+  TemporaryFolder folder_;
+  TuningStore store_{folder_.path() / "kiloband" / "tuning"};
+  DeviceInfo device_ = some_device();
+};
+
+TEST_F(TuningStoreTest, FindsWhatItKept) {
+  EXPECT_TRUE(store_.load(device_).empty());
+  TunedMethod all = measured("dpept-batch", 64, 4096);
+  all.tuning = {4096, uint64_t{1} << 25, 128, 64};
+  EXPECT_EQ(store_.save(device_, all), "");
+  EXPECT_EQ(store_.save(device_, measured("pt", 64, 512)), "");
+  const auto found = store_.load(device_);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].tuning, all.tuning);
+  EXPECT_EQ(found[0].method, "dpept-batch");
+  EXPECT_EQ(found[0].channels, 64u);
+  EXPECT_EQ(found[0].scene, "a scene");
+  EXPECT_EQ(found[0].speed_up, 1.25);
+  EXPECT_EQ(found[1].tuning, (Tuning{512, {}, {}, {}}));
+}
+
+TEST_F(TuningStoreTest, ALaterMeasurementTakesThePlace) {
+  store_.save(device_, measured("dpept-batch", 64, 4096));
+  store_.save(device_, measured("dpept-batch", 8, 1024));
+  store_.save(device_, measured("dpept-batch", 64, 2048));
+  const auto found = store_.load(device_);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(tuning_for(found, "dpept-batch", 64).pool_slots, 2048u);
+  EXPECT_EQ(tuning_for(found, "dpept-batch", 8).pool_slots, 1024u);
+}
+
+TEST_F(TuningStoreTest, OtherDevicesAndDriversHaveTheirOwn) {
+  store_.save(device_, measured("dpept-batch", 64, 4096));
+  DeviceInfo other = device_;
+  other.driver_version = "1.3";
+  EXPECT_TRUE(store_.load(other).empty());
+  other = device_;
+  other.compute_units = 4;  // half of it
+  EXPECT_TRUE(store_.load(other).empty());
+  EXPECT_FALSE(store_.forget(other));
+  EXPECT_TRUE(store_.forget(device_));
+  EXPECT_TRUE(store_.load(device_).empty());
+}
+
+TEST_F(TuningStoreTest, BelievesNoStrangeFile) {
+  const std::string head = R"({"format": 1, "device": "Some GPU", "tuned": [)";
+  const std::string one = R"({"method": "pt", "channels": 8, "scene": "", "speed_up": 1)";
+  write(head + one + R"(, "pool_slots": 4096}]})");
+  EXPECT_EQ(store_.load(device_).size(), 1u);
+  for (const std::string& text :
+       {std::string(), std::string("{"), std::string("[]"), head + "7]}",
+        head + one + R"(, "pool_slots": 3}]})", head + one + R"(, "pool_slots": -4096}]})",
+        head + one + R"(, "round_paths": 1e30}]})", head + one + R"(, "path_group": 0}]})",
+        head + one + R"(, "evaluation_group": "64"}]})",
+        std::string(R"({"format": 2, "device": "Some GPU", "tuned": []})"),
+        std::string(R"({"format": 1, "device": "Another", "tuned": []})") + ""}) {
+    write(text);
+    EXPECT_TRUE(store_.load(device_).empty()) << text;
+  }
+}
+
+TEST_F(TuningStoreTest, SaysWhyNothingIsKept) {
+  EXPECT_NE(TuningStore({}).save(device_, measured("pt", 8, 512)), "");
+  std::ofstream(folder_.path() / "file") << "no folder";
+  const TuningStore blocked(folder_.path() / "file" / "tuning");
+  EXPECT_NE(blocked.save(device_, measured("pt", 8, 512)).find("cannot write"), std::string::npos);
+}
+
+TEST(Tuning, OfTheNearestNumberOfChannels) {
+  const std::vector<TunedMethod> tuned{measured("dpept-batch", 8, 800), measured("dpept-batch", 512, 51200),
+                                       measured("pt", 64, 6400)};
+  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 1).pool_slots, 800u);
+  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 63).pool_slots, 800u);
+  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 65).pool_slots, 51200u);
+  EXPECT_EQ(tuning_for(tuned, "dpept-path", 64), Tuning{});
+  EXPECT_EQ(tuning_for({}, "pt", 64), Tuning{});
+}
+
+TEST(Tuning, WhatIsAskedForComesFirst) {
+  const Tuning asked{64, {}, 32, {}}, found{128, 1024, {}, {}};
+  EXPECT_EQ(merged(asked, found), (Tuning{64, 1024, 32, {}}));
+  EXPECT_EQ(describe(merged(asked, found)),
+            "paths in flight 64, paths of a round 1024, group of path generation 32");
+  EXPECT_EQ(describe({}), "the usual sizes");
+}
+
+}  // namespace
+}  // namespace kiloband::test::tuning_store_test
