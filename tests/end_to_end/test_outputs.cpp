@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/end_to_end/support/program.hpp"
+#include "tests/support/sanitizer.hpp"
 
 namespace kiloband::test {
 namespace {

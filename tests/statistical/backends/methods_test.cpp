@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 
 #include "backend_images.hpp"
 
@@ -39,7 +39,7 @@ Difference difference(const Image& a, const Image& b) {
   for (std::size_t first = 0; first < a.means.size(); first += a.channels) {
     const double largest = *std::max_element(&a.means[first], &a.means[first] + a.channels);
     for (std::size_t i = first; i < first + a.channels; ++i) {
-      if (std::memcmp(&a.means[i], &b.means[i], sizeof(float)) == 0) continue;
+      if (std::bit_cast<uint32_t>(a.means[i]) == std::bit_cast<uint32_t>(b.means[i])) continue;
       ++d.bits;
       d.relative = std::max(d.relative, std::abs(double{a.means[i]} - b.means[i]) / largest);
     }
