@@ -24,9 +24,9 @@ uint32_t most_slots(const DeviceState& device, const Tuning& tuning) {
   return tuning.pool_slots.value_or(usual_slots(is_cpu(device), device.memory.budget()));
 }
 
-uint64_t most_jobs(const DeviceState& device, const Tuning& tuning) {
+uint64_t most_jobs(const DeviceState& device, const Tuning& tuning, uint32_t slots) {
   return std::max<uint64_t>(tuning.round_paths.value_or(usual_jobs(is_cpu(device), device.memory.budget())),
-                            most_slots(device, tuning));
+                            slots);
 }
 
 uint64_t round_up(uint64_t n, uint64_t multiple) {
@@ -42,7 +42,7 @@ GroupRenderer::GroupRenderer(DeviceState& device, const SamplingSettings& settin
       note_(std::move(note)),
       round_samples_(samples_of_round(is_cpu(device), device.table_bytes())),
       most_slots_(most_slots(device, tuning)),
-      most_jobs_(most_jobs(device, tuning)),
+      most_jobs_(most_jobs(device, tuning, most_slots_)),
       slots_pace_(launch_seconds, most_slots_ / kFirstPart, kFewestSlots, most_slots_),
       paths_pace_(launch_seconds, most_jobs_ / kFirstPart, 1, most_jobs_) {}
 

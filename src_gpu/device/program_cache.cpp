@@ -32,11 +32,8 @@ ProgramCache ProgramCache::of_user() {
 
 std::string ProgramCache::key(const std::string& source, const std::string& options,
                               const DeviceInfo& device) {
-  std::string all;
-  for (const std::string* part : {&source, &options, &device.name, &device.driver_version, &device.platform,
-                                  &device.platform_version}) {
-    all.append(std::to_string(part->size())).append(1, ':').append(*part);
-  }
+  std::string all = joined_parts(
+      {source, options, device.name, device.driver_version, device.platform, device.platform_version});
   const char* method = std::getenv("POCL_WORK_GROUP_METHOD");  // part of what PoCL compiles
   if (device.is_pocl() && method) all += method;
   return text_hash(all);

@@ -43,6 +43,13 @@ std::string text_hash(std::string_view text) {
   return fmt::format("{:016x}{:016x}", static_cast<uint64_t>(hash >> 64), static_cast<uint64_t>(hash));
 }
 
+std::string joined_parts(std::initializer_list<std::string_view> parts) {
+  std::string all;
+  for (const std::string_view part : parts)
+    all.append(std::to_string(part.size())).append(1, ':').append(part);
+  return all;
+}
+
 fs::path user_cache(const std::string& name) {
   const fs::path below = fs::path("kiloband") / name;
   if (const fs::path cache = absolute_path_of("XDG_CACHE_HOME"); !cache.empty()) return cache / below;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,9 @@ namespace kiloband::opencl {
 /// 128 bits of FNV-1a of the text as 32 hex digits: names of files. Twice the bits of other hashes: the name of a program is all that
 /// says that it is the one asked for, and a wrong one would render. Not for secrets.
 std::string text_hash(std::string_view text);
+
+/// The parts behind their lengths: other parts give another text.
+std::string joined_parts(std::initializer_list<std::string_view> parts);
 
 /// The folder `name` of this user's cache; nothing is created. Empty where neither XDG_CACHE_HOME (absolute) nor HOME is set.
 std::filesystem::path user_cache(const std::string& name);

@@ -48,7 +48,7 @@ class Climber {
   }
 
   bool is_faster(const Rungs& other) {
-    if (stop_() || !refused_.emplace(best_, other).second) return false;
+    if (stop_() || !compared_.emplace(best_, other).second) return false;
     return speed_over_(best_, other) >= least_gain_;
   }
 
@@ -57,7 +57,7 @@ class Climber {
   const SpeedOver& speed_over_;
   const std::function<bool()>& stop_;
   Rungs best_;
-  std::set<std::pair<Rungs, Rungs>> refused_;  // or taken, after which there is another best
+  std::set<std::pair<Rungs, Rungs>> compared_;
 };
 
 }  // namespace

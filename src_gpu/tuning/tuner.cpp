@@ -82,7 +82,7 @@ TuneOutcome find_tuning(const TuningBounds& bounds, const TimeRender& time, cons
   const auto compare = [&](const Rungs& best, const Rungs& other) {
     const Tuning tried = tuning_of(ladders, other);
     const double speed = speed_over(tuning_of(ladders, best), tried, settings.rounds, time);
-    settings.told(tried, speed);
+    if (!settings.stop()) settings.told(tried, speed);  // what was stopped was not compared
     return speed;
   };
   TuneOutcome outcome;

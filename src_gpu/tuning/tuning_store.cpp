@@ -62,10 +62,8 @@ TuningStore TuningStore::of_user() {
 
 std::filesystem::path TuningStore::file(const DeviceInfo& device) const {
   if (folder_.empty()) return {};
-  std::string all;
-  for (const std::string* part :
-       {&device.name, &device.driver_version, &device.platform, &device.platform_version})
-    all.append(std::to_string(part->size())).append(1, ':').append(*part);
+  std::string all =
+      joined_parts({device.name, device.driver_version, device.platform, device.platform_version});
   all += fmt::format("{} units", device.compute_units);  // of a part fewer than of the whole
   return folder_ / (text_hash(all) + ".json");
 }
