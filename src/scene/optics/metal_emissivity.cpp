@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace kiloband {
 namespace {
@@ -67,22 +68,11 @@ class MetalEmissivity::Directions {
   bool rough() const { return facets_.has_value(); }
   bool anisotropic() const { return facets_ && facets_->alpha_u != facets_->alpha_v; }
 
-  /// Weights of the cell cosines; their sum is E. Linear deposition: the absorptance is smooth over a cell.
-  std::vector<double> weights(double cosine, double s) const {
-    glm::dvec2 azimuth(std::sqrt((1 - s) / facets_->alpha_u), std::sqrt(s / facets_->alpha_v));
-    azimuth = glm::normalize(azimuth);
-    const double sine = std::sqrt((1 - cosine) * (1 + cosine));
-    const glm::dvec3 v(sine * azimuth.x, sine * azimuth.y, cosine);
-    std::vector<double> weights(kCells + 1, 0.0);
-    for (const VisibleFacet& f : visible_facets(*facets_, v)) {
-      const double c = std::clamp(glm::dot(v, f.normal), 0.0, 1.0);
-      const double weight = f.weight * facets_->masking(2 * c * f.normal - v);
-      const int i = std::min(static_cast<int>(std::sqrt(c) * kCells), kCells - 1);
-      const double t = (c - cell_cosine(i)) / (cell_cosine(i + 1) - cell_cosine(i));
-      weights[i] += (1 - t) * weight;
-      weights[i + 1] += t * weight;
-    }
-    return weights;
+  /// Weights of the cell cosines; their sum is E. Refinement asks for the same directions again and again: all are kept.
+  const std::vector<double>& weights(double cosine, double s) {
+    const auto [place, is_new] = known_.try_emplace({cosine, s});
+    if (is_new) place->second = integrate(cosine, s);
+    return place->second;
   }
 
   static std::vector<double> absorptances(double n, double k) {
@@ -100,7 +90,26 @@ class MetalEmissivity::Directions {
   }
 
  private:
+  /// Linear deposition: the absorptance is smooth over a cell.
+  std::vector<double> integrate(double cosine, double s) const {
+    glm::dvec2 azimuth(std::sqrt((1 - s) / facets_->alpha_u), std::sqrt(s / facets_->alpha_v));
+    azimuth = glm::normalize(azimuth);
+    const double sine = std::sqrt((1 - cosine) * (1 + cosine));
+    const glm::dvec3 v(sine * azimuth.x, sine * azimuth.y, cosine);
+    std::vector<double> weights(kCells + 1, 0.0);
+    for (const VisibleFacet& f : visible_facets(*facets_, v)) {
+      const double c = std::clamp(glm::dot(v, f.normal), 0.0, 1.0);
+      const double weight = f.weight * facets_->masking(2 * c * f.normal - v);
+      const int i = std::min(static_cast<int>(std::sqrt(c) * kCells), kCells - 1);
+      const double t = (c - cell_cosine(i)) / (cell_cosine(i + 1) - cell_cosine(i));
+      weights[i] += (1 - t) * weight;
+      weights[i + 1] += t * weight;
+    }
+    return weights;
+  }
+
   std::optional<Facets> facets_;
+  std::map<std::pair<double, double>, std::vector<double>> known_;  // weights by cosine and s
 };
 
 MetalEmissivity::MetalEmissivity(const MetalSpectra& spectra, const std::optional<Facets>& facets,
@@ -119,6 +128,8 @@ MetalEmissivity::MetalEmissivity(const MetalSpectra& spectra, const std::optiona
     for (const auto* values : {&n_, &k_}) probes_.push_back(place_of(*values, largest));
   std::ranges::sort(probes_);
   probes_.erase(std::unique(probes_.begin(), probes_.end()), probes_.end());
+  if (directions_->rough())
+    for (const std::size_t i : probes_) absorptances_.push_back(Directions::absorptances(n_[i], k_[i]));
 
   choose_nodes_s();
   cosines_ = {0};
@@ -139,10 +150,10 @@ std::vector<double> MetalEmissivity::at(double cosine, double s) const {
       values.push_back(1 - tint_[i] + tint_[i] * metal_absorptance(cosine, n_[i], k_[i]));
     return values;
   }
-  const std::vector<double> weights = directions_->weights(cosine, s);
-  for (const std::size_t i : probes_) {
-    const double e = Directions::emissivity(weights, Directions::absorptances(n_[i], k_[i]));
-    values.push_back(1 - tint_[i] + tint_[i] * e);
+  const std::vector<double>& weights = directions_->weights(cosine, s);
+  for (std::size_t p = 0; p < probes_.size(); ++p) {
+    const double tint = tint_[probes_[p]];
+    values.push_back(1 - tint + tint * Directions::emissivity(weights, absorptances_[p]));
   }
   return values;
 }
@@ -154,17 +165,18 @@ bool MetalEmissivity::refine(double from, double to, int depth) {
   constexpr double kSmallest = 1e-3;  // no node for the sake of directions closer to grazing
   if (depth >= kDeepest || to <= kSmallest) return false;
   bool good = true;
+  const double middle = 0.5 * (from + to), quarters[] = {0.5 * (from + middle), middle, 0.5 * (middle + to)};
   for (const double s : {0.0, 0.5, 1.0}) {
     if (s > 0 && !directions_->anisotropic()) break;
     const std::vector<double> low = at(from, s), high = at(to, s);
-    for (const double t : {0.25, 0.5, 0.75}) {
-      const std::vector<double> exact = at((1 - t) * from + t * to, s);
+    for (int quarter = 1; quarter <= 3; ++quarter) {
+      const double t = 0.25 * quarter;
+      const std::vector<double> exact = at(quarters[quarter - 1], s);
       for (std::size_t i = 0; i < exact.size(); ++i)
         good = good && std::abs((1 - t) * low[i] + t * high[i] - exact[i]) <= allowed(exact[i]);
     }
   }
   if (good) return false;
-  const double middle = 0.5 * (from + to);
   refine(from, middle, depth + 1);
   cosines_.push_back(middle);
   refine(middle, to, depth + 1);
@@ -200,16 +212,17 @@ RegularTable MetalEmissivity::tabulate(const std::vector<double>& values) const 
 
 std::vector<RegularTable> MetalEmissivity::rows() const {
   const std::size_t directions = cosines_.size() * nodes_s_, wavelengths = lambda_nm_.size();
-  std::vector<std::vector<double>> values(directions, std::vector<double>(wavelengths)), weights;
+  std::vector<std::vector<double>> values(directions, std::vector<double>(wavelengths));
+  std::vector<const std::vector<double>*> weights;
   for (std::size_t d = 0; directions_->rough() && d < directions; ++d) {
     const double s = nodes_s_ > 1 ? static_cast<double>(d / cosines_.size()) / (nodes_s_ - 1) : 0;
-    weights.push_back(directions_->weights(cosines_[d % cosines_.size()], s));
+    weights.push_back(&directions_->weights(cosines_[d % cosines_.size()], s));
   }
   for (std::size_t i = 0; i < wavelengths; ++i) {
     std::vector<double> absorptances;
     if (directions_->rough()) absorptances = Directions::absorptances(n_[i], k_[i]);
     for (std::size_t d = 0; d < directions; ++d) {
-      const double e = directions_->rough() ? Directions::emissivity(weights[d], absorptances)
+      const double e = directions_->rough() ? Directions::emissivity(*weights[d], absorptances)
                                             : metal_absorptance(cosines_[d], n_[i], k_[i]);
       values[d][i] = 1 - tint_[i] + tint_[i] * e;
     }

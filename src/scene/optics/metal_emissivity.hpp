@@ -52,6 +52,8 @@ class MetalEmissivity {
 
   std::vector<double> lambda_nm_, n_, k_, tint_;  // regular
   std::vector<std::size_t> probes_;               // wavelengths that decide on nodes
+  std::vector<std::vector<double>>
+      absorptances_;  // of a rough metal at the probes, by the cells of facet cosines
   std::unique_ptr<Directions> directions_;
   std::vector<double> cosines_;
   uint32_t nodes_s_ = 1;
