@@ -99,6 +99,7 @@ struct ConductorBsdf {
   Spectrum k = Spectrum::constant(1);
   Texture specular_reflectance = Spectrum::constant(1);
   std::optional<Roughness> roughness;
+  std::string material;  // whose index it is, as the scene names it; empty: given by numbers
 };
 /// Indices are spectra; both constant: no dispersion. thin: a pane without thickness, seen from outside on both
 /// sides, smooth; what it reflects and transmits has been reflected in it any number of times.
@@ -108,6 +109,7 @@ struct DielectricBsdf {
   Texture specular_reflectance = Spectrum::constant(1);
   Texture specular_transmittance = Spectrum::constant(1);
   std::optional<Roughness> roughness;
+  std::string material;  // inside, as the scene names it; empty: given by a number
   bool thin = false;
 };
 struct PlasticBsdf {

@@ -98,10 +98,18 @@ Spectrum read_index(ReadContext& context, const ObjectReader& object, std::strin
   return constants->n;
 }
 
+/// The material that read_index() takes; empty: it takes a number.
+std::string name_of_index(const ObjectReader& object, std::string_view ior, std::string_view material) {
+  const Node* const index = object.find(ior);
+  if (index && index->tag == "string") return object.get_string(ior, {});
+  return object.get_string(material, {});
+}
+
 DielectricBsdf read_dielectric(ReadContext& context, const ObjectReader& object, bool rough) {
   DielectricBsdf bsdf;
   bsdf.int_ior = read_index(context, object, "int_ior", "int_material", 1.5046);
   bsdf.ext_ior = read_index(context, object, "ext_ior", "ext_material", 1.000277);
+  bsdf.material = name_of_index(object, "int_ior", "int_material");
   bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
   bsdf.specular_transmittance =
       reflectance(context, object, "specular_transmittance", bsdf.specular_transmittance);

@@ -177,6 +177,7 @@ void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf&
   if (!constants) return;
   bsdf.eta = constants->n;
   bsdf.k = *constants->k;
+  bsdf.material = object.get_string(object.has("metal") ? "metal" : "material", {});
 }
 
 }  // namespace kiloband

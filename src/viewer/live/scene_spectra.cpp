@@ -207,7 +207,8 @@ json SpectrumEdits::list(const SceneDescription& original, const Channel& range)
                {"edited", edit != edits_.end()},
                {"value", nullptr},
                {"name", nullptr}};
-    if (edit != edits_.end() && !edit->second.name.empty()) entry["name"] = edit->second.name;
+    const std::string& name = edit != edits_.end() ? edit->second.name : slot.name;
+    if (!name.empty()) entry["name"] = name;
     add_values(slot, range, entry);
     list.push_back(std::move(entry));
   });

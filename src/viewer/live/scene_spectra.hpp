@@ -16,6 +16,7 @@ struct SpectrumSlot {
   enum class Type { kReflectance, kEmission, kMetal, kGlass, kTemperature, kScale };
   Type type = Type::kReflectance;
   std::string owner, role, unit;
+  std::string name;              // of the metal or glass in the scene file; empty: it has none
   Spectrum* spectrum = nullptr;  // null: a number
   Spectrum* second = nullptr;    // kMetal: k, `spectrum` being n
   double* number = nullptr;      // kTemperature: K; kScale

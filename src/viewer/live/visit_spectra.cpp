@@ -29,12 +29,14 @@ class Visitor {
 
  private:
   void spectrum(Type type, const std::string& owner, const char* role, const char* unit, Spectrum& spectrum,
-                Spectrum* second = nullptr) {
-    SpectrumSlot slot{type, owner, role, unit, &spectrum, second, nullptr};
+                Spectrum* second = nullptr, const std::string& material = {}) {
+    // Of a file its name alone: folders are nobody's business.
+    SpectrumSlot slot{type,      owner,  role,   unit, material.substr(material.rfind('/') + 1),
+                      &spectrum, second, nullptr};
     visit_(slot);
   }
   void number(Type type, const std::string& owner, const char* role, const char* unit, double& value) {
-    SpectrumSlot slot{type, owner, role, unit, nullptr, nullptr, &value};
+    SpectrumSlot slot{type, owner, role, unit, {}, nullptr, nullptr, &value};
     visit_(slot);
   }
   /// Textures are left as they are.
@@ -76,10 +78,10 @@ class Visitor {
     texture(Type::kReflectance, owner, "reflectance", "1", m.reflectance);
   }
   void model(ConductorBsdf& m, const std::string& owner) {
-    spectrum(Type::kMetal, owner, "index of refraction", "1", m.eta, &m.k);
+    spectrum(Type::kMetal, owner, "index of refraction", "1", m.eta, &m.k, m.material);
   }
   void model(DielectricBsdf& m, const std::string& owner) {
-    spectrum(Type::kGlass, owner, "index of refraction inside", "1", m.int_ior);
+    spectrum(Type::kGlass, owner, "index of refraction inside", "1", m.int_ior, nullptr, m.material);
   }
   void model(PlasticBsdf& m, const std::string& owner) {
     texture(Type::kReflectance, owner, "diffuse reflectance", "1", m.diffuse_reflectance);

@@ -45,15 +45,18 @@ class Metal(RenderedPage):
         revision = self.revision()
         self.open_tab("scene")
         gold = next(s for s in self.browser.value("return state.scene.spectra") if s["kind"] == "metal")
+        now = lambda: self.browser.find(f"[data-spectrum={gold['id']}] .now").text
+        self.assertEqual(now(), "Au")  # as the scene file names it
         self.browser.find(f"[data-spectrum={gold['id']}]").click()
         self.browser.choose_option(".editor select", "Ag", which=1)
         self.wait_for_revision_after(revision)
         self.assert_curve_of("Ag", revision)
-        self.assertIn("Ag", self.browser.find(f"[data-spectrum={gold['id']}] .now").text)
+        self.assertIn("Ag", now())
         revision = self.revision()
         self.browser.find(".editor .alone button").click()
         self.wait_for_revision_after(revision)
         self.assert_curve_of("Au", revision)
+        self.assertEqual(now(), "Au")
 
 
 if __name__ == "__main__":

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/temporary_folder.hpp"
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "tests/support/messages.hpp"
 #include "viewer/api/selections.hpp"
 #include "viewer/live/camera_view.hpp"
+#include "viewer/live/scene_spectra.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -108,6 +110,28 @@ TEST_F(LiveWall, SpectraAreReplacedAndReset) {
   controls.set_spectrum({{"id", "s1"}, {"set", {{"reset", true}}}});
   wait_for("done");
   expect_radiance(0.5);
+}
+
+/// Member "name" of the wall's metal or glass.
+json material_name(const std::string& bsdf) {
+  std::string text = kScene;
+  const std::string paint =
+      "<bsdf type='diffuse' id='paint'><spectrum name='reflectance' value='0.5'/></bsdf>";
+  text.replace(text.find(paint), paint.size(), "<bsdf " + bsdf + "</bsdf>");
+  return SpectrumEdits().list(read_scene_text(text, "wall.xml", "."), {500, 600})[0]["name"];
+}
+
+TEST(SpectraOfAScene, MaterialsHaveTheNamesOfTheSceneFile) {
+  EXPECT_EQ(material_name("type='conductor'><string name='metal' value='Ag'/>"), "Ag");
+  EXPECT_EQ(material_name("type='roughconductor'><string name='material' value='Cu'/>"), "Cu");
+  EXPECT_EQ(material_name("type='conductor'>"), nullptr);
+  EXPECT_EQ(material_name("type='dielectric'><string name='int_ior' value='water'/>"), "water");
+  EXPECT_EQ(material_name("type='dielectric'><string name='int_material' value='N-SF11'/>"), "N-SF11");
+  EXPECT_EQ(material_name("type='dielectric'><float name='int_ior' value='1.4'/>"), nullptr);
+  const ScratchFolder folder;
+  const std::string file = folder.write("own glass.csv", "300, 1.5\n900, 1.4\n").string();
+  EXPECT_EQ(material_name("type='dielectric'><string name='int_material' value='" + file + "'/>"),
+            "own glass.csv");
 }
 
 TEST_F(LiveWall, RefusedEditsChangeNothing) {
