@@ -23,14 +23,20 @@ def gibibytes(value):
     return f"{value / 2**30:.1f} GiB" if markup.is_number(value) else markup.DASH
 
 
+def device_line(device):
+    if not device:
+        return "no device"
+    tuned = "; ".join(f"{one['method']} at {one['channels']} channels: {one['sizes']}" for one in device.get("tuned") or [])
+    return f"{device.get('name')} ({device.get('platform')}, {device.get('driver')})" + (f", tuned ({tuned})" if tuned else "")
+
+
 def head(results):
     machine = results.get("machine") or {}
-    device = machine.get("opencl") or {}
     facts = [
         ("program", f"{machine.get('version')}, commit {machine.get('commit') or 'unknown'}"),
         ("processor", f"{machine.get('processor')}, {machine.get('threads')} threads, {machine.get('isa')}"),
         ("memory", gibibytes(machine.get("memory_bytes"))),
-        ("OpenCL", f"{device.get('name')} ({device.get('platform')}, {device.get('driver')})" if device else "no device"),
+        ("OpenCL", device_line(machine.get("opencl") or {})),
         ("run", f"{machine.get('date')}; {'quick' if results.get('quick') else 'full'}, {markup.duration(results.get('seconds'))}"),
         ("load average", f"{markup.number(machine.get('load_average'), 2)} when it began"),
     ]

@@ -7,6 +7,7 @@
 #include "src_cpu/cpu_backend.hpp"
 #include "src_cpu/lanes/isa.hpp"
 #include "src_gpu/device/device.hpp"
+#include "src_gpu/tuning/tuning_store.hpp"
 #include "validation/speed/bench.hpp"
 #include "validation/suite/child_process.hpp"
 
@@ -27,6 +28,15 @@ ordered_json commit_of(const std::filesystem::path& root) {
   return head.out.substr(0, head.out.find('\n')) + (changes.out.empty() ? "" : "+");
 }
 
+/// Sizes that `kiloband tune` has kept for the device: renders use them, so its speeds are of them.
+ordered_json tuned_sizes(const opencl::DeviceInfo& device) {
+  ordered_json list = ordered_json::array();
+  for (const opencl::TunedMethod& one : opencl::TuningStore::of_user().load(device))
+    list.push_back(
+        {{"method", one.method}, {"channels", one.channels}, {"sizes", opencl::describe(one.tuning)}});
+  return list;
+}
+
 ordered_json device_of(const Settings& settings) {
   if (!settings.opencl()) return nullptr;
   const opencl::DeviceInfo device = opencl::select_device(settings.device);
@@ -35,7 +45,8 @@ ordered_json device_of(const Settings& settings) {
           {"platform", device.platform},
           {"driver", device.driver_version},
           {"compute_units", device.compute_units},
-          {"memory_bytes", device.global_memory}};
+          {"memory_bytes", device.global_memory},
+          {"tuned", tuned_sizes(device)}};
 }
 
 }  // namespace

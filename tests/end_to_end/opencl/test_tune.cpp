@@ -1,5 +1,6 @@
 // kiloband tune: what it finds is kept for the device, and changes no image.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include "src_gpu/tuning/tuning_store.hpp"
 #include "tests/end_to_end/support/program.hpp"
@@ -12,8 +13,7 @@ using Names = std::vector<std::string>;
 /// A cache of programs and tunings that is the test's own.
 class ProgramTune : public testing::Test {
  protected:
-  Outcome run(const Names& arguments) {
-    Treatment treatment;
+  Outcome run(const Names& arguments, Treatment treatment = {}) {
     treatment.environment = {{"XDG_CACHE_HOME", (folder_.path() / "cache").string()}};
     return run_program(folder_, arguments, treatment);
   }
@@ -42,6 +42,22 @@ TEST_F(ProgramTune, KeepsWhatItFindsUntilItIsForgotten) {
   EXPECT_EQ(kept[0].channels, 5u);
   EXPECT_NE(run({"tune", "--forget"}).out.find("usual sizes again"), std::string::npos);
   EXPECT_NE(run({"tune", "--forget"}).out.find("nothing was kept"), std::string::npos);
+}
+
+/// Its speeds are those of the sizes that were kept.
+TEST_F(ProgramTune, BenchSaysWhatIsKept) {
+  opencl::TunedMethod tuned;
+  tuned.method = "pt";
+  tuned.channels = 7;
+  tuned.tuning.pool_slots = 64;
+  EXPECT_EQ(store().save(opencl::select_device(std::nullopt), tuned), "");
+  const Outcome outcome = run(
+      {"bench", "channels", "--quick", "--backends", "opencl:pt", "--no-report", "-o", "out"},
+      {.signal = SIGINT, .after_text = "channels"});  // the facts of the machine are all that it is asked for
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  const auto kept = read_json(folder_, "out/bench.json")["machine"]["opencl"]["tuned"];
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0], (nlohmann::json{{"method", "pt"}, {"channels", 7}, {"sizes", "paths in flight 64"}}));
 }
 
 TEST_F(ProgramTune, RendersUseItWithTheSameBits) {

@@ -101,6 +101,15 @@ class Page(unittest.TestCase):
         self.assertIn('<div class="failure">the &lt;device&gt; was lost</div>', page)
         self.assertIn("Interrupted", page)
 
+    def test_tuned_sizes_are_told(self):
+        results = small_results()
+        device = {"name": "GPU <7>", "platform": "Some", "driver": "1.2", "tuned": []}
+        results["machine"]["opencl"] = device
+        self.assertIn("GPU &lt;7&gt; (Some, 1.2)", page_of(results))
+        self.assertNotIn("tuned", page_of(results))
+        device["tuned"] = [{"method": "pt", "channels": 64, "sizes": "paths in flight 4096"}]
+        self.assertIn("GPU &lt;7&gt; (Some, 1.2), tuned (pt at 64 channels: paths in flight 4096)", page_of(results))
+
     def test_peers_without_variants_and_scenes_that_they_refuse(self):
         results = small_results()
         raysect = {"backend": "raysect", "channels": 8}
