@@ -41,17 +41,23 @@ class OpenclProbe {
     device = devices.front();
     context = cl::Context(device);
     queue = cl::CommandQueue(context, device);
-    program = cl::Program(context, source);
+    program = build(source, options);
+  }
+
+  /// One more program on the device, of source text as above.
+  cl::Program build(const std::string& source, const std::string& options) const {
+    cl::Program built(context, source);
     const char* named =
         std::getenv("KILOBAND_SOURCES");  // of a program that is away from its sources (docs/portable.md)
     const std::string root = named ? named : KILOBAND_SOURCE_DIR;
     const std::string flags =
         "-cl-std=CL1.2 -I" + root + "/kernels -I" + root + "/src -I" + root + " " + options;
     try {
-      program.build(flags.c_str());
+      built.build(flags.c_str());
     } catch (const cl::Error&) {
-      throw std::runtime_error("kernel build:\n" + program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
+      throw std::runtime_error("kernel build:\n" + built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
     }
+    return built;
   }
 
   /// A device copy of `values` (of one byte if there are none).

@@ -75,18 +75,22 @@ uint32_t entries_of(const KbPathVertex& vertex) {
 std::string EvaluatorBuild::options() const {
   return "-DKB_WIDTH=" + std::to_string(width) + " -DKB_VECTORS=" + std::to_string(vectors) +
          " -DKB_PER_PATH=" + std::to_string(per_path) + " -DKB_DERIVED=" + std::to_string(derived) +
-         " -DKB_FILM_TRANSPOSED=" + std::to_string(transposed) + " -DKB_PIXELS=" + std::to_string(tile) +
-         " -DKB_STAGED=" + std::to_string(staged) + " -DKB_STAGE_ENTRIES=" + std::to_string(stage_entries) +
-         " " + features;
+         film_options() + " -DKB_PIXELS=" + std::to_string(tile) + " -DKB_STAGED=" + std::to_string(staged) +
+         " -DKB_STAGE_ENTRIES=" + std::to_string(stage_entries) + " " + features;
 }
 
-// film.cl sets the width for itself, so it comes last.
+std::string EvaluatorBuild::film_options() const {
+  return " -DKB_FILM_TRANSPOSED=" + std::to_string(transposed);
+}
+
 EvaluatorProgram::EvaluatorProgram(const EvaluatorBuild& b)
     : build(b),
       probe(std::string("#include \"evaluate/evaluate.cl\"\n") +
-                (b.staged ? "" : "#include \"evaluate/pt.cl\"\n") +
-                "#include \"evaluate/resample.cl\"\n#include \"film/film.cl\"\n",
-            b.options()) {}
+                (b.staged ? "" : "#include \"evaluate/pt.cl\"\n"),
+            b.options()),
+      resample(probe.build("#include \"evaluate/resample.cl\"\n",
+                           "-DKB_WIDTH=" + std::to_string(b.width) + " " + b.features)),
+      film(probe.build("#include \"film/film.cl\"\n", b.film_options())) {}
 
 float per_path_mu(const RoundOfPaths& round, uint32_t pixel, uint32_t sample) {
   const uint32_t index = round.first_index + sample;
@@ -153,20 +157,24 @@ void DeviceEvaluator::load(const PathBuffer& paths, const RoundOfPaths& round, b
 void DeviceEvaluator::resample() {
   const std::size_t floats = std::size_t{round_.blocks} * round_.samples * layout_.rows * layout_.stride;
   evaluation_.dense = cl::Buffer(program_.probe.context, CL_MEM_READ_WRITE, floats * sizeof(float));
-  cl::Kernel k = evaluation_kernel("resample_rows");
+  cl::Kernel k = evaluation_kernel(program_.resample, "resample_rows");
   run(k, floats / program_.build.width, 1);
 }
 
 template <class... Groups>
-cl::Kernel DeviceEvaluator::kernel(const char* name, const Groups&... groups) {
-  cl::Kernel k(program_.probe.program, name);
+cl::Kernel DeviceEvaluator::kernel(const cl::Program& program, const char* name, const Groups&... groups) {
+  cl::Kernel k(program, name);
   cl_uint index = 0;
   ((index = set_argument(k, index, groups)), ...);
   return k;
 }
 
+cl::Kernel DeviceEvaluator::evaluation_kernel(const cl::Program& program, const char* name) {
+  return kernel(program, name, scene_, spectra_, pool_, evaluation_, film_, queue_);
+}
+
 cl::Kernel DeviceEvaluator::evaluation_kernel(const char* name) {
-  return kernel(name, scene_, spectra_, pool_, evaluation_, film_, queue_);
+  return evaluation_kernel(program_.probe.program, name);
 }
 
 void DeviceEvaluator::run(cl::Kernel& k, std::size_t items, std::size_t local) {
@@ -202,7 +210,7 @@ void DeviceEvaluator::path(uint32_t local_size) {
 cl::Kernel DeviceEvaluator::film_kernel(const char* name, const cl::Buffer& packed) {
   const opencl::PackingArguments::Of<ProbeBuffer> packing{
       .layout = spectra_.layout, .open = {}, .values = {}, .packed = packed, .pixels = film_pixels_};
-  return kernel(name, film_, packing);
+  return kernel(program_.film, name, film_, packing);
 }
 
 void DeviceEvaluator::clear() {

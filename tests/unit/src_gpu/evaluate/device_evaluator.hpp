@@ -32,13 +32,16 @@ struct EvaluatorBuild {
   uint32_t stage_entries = 256;
 
   std::string options() const;
+  std::string film_options() const;
 };
 
-/// Compiled kernels; scenes share them.
+/// Compiled kernels; scenes share them. As the renderer has them, resampling and film are programs of their own: builds that differ in
+/// all else find them in the driver's cache.
 struct EvaluatorProgram {
   explicit EvaluatorProgram(const EvaluatorBuild& build);
   EvaluatorBuild build;
-  OpenclProbe probe;
+  OpenclProbe probe;  // evaluation
+  cl::Program resample, film;
 };
 
 /// What a round evaluates: for every job (sample * pixels + pixel) a path of the buffer.
@@ -100,9 +103,10 @@ class DeviceEvaluator {
  private:
   /// With all its groups set to what they hold now.
   cl::Kernel evaluation_kernel(const char* name);
+  cl::Kernel evaluation_kernel(const cl::Program& program, const char* name);
   cl::Kernel film_kernel(const char* name, const cl::Buffer& packed);
   template <class... Groups>
-  cl::Kernel kernel(const char* name, const Groups&... groups);
+  cl::Kernel kernel(const cl::Program& program, const char* name, const Groups&... groups);
   void run(cl::Kernel& kernel, std::size_t items, std::size_t local);
 
   EvaluatorProgram& program_;

@@ -70,8 +70,8 @@ TEST_P(StagedEvaluation, PathsLongerThanTheStage) {
   }
   ASSERT_GT(parts.entries.size(), 4 * kFewestEntries);
   const RoundOfPaths round = make_round(paths, 6, 9, random);
-  EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 5),
-            evaluated(without, scene, tables, paths, round, 5));
+  EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 3),
+            evaluated(without, scene, tables, paths, round, 3));
 }
 
 /// Cells of plumes are on the stage, too.
@@ -84,9 +84,9 @@ TEST_P(StagedEvaluation, Gas) {
     const opencl::ChannelTables tables = opencl::make_channel_tables(scene, make_responses());
     const PathBuffer paths = make_gas_paths(scene, 60, random);
     const RoundOfPaths round = make_round(paths, 12, 5, random);
-    const Result expected = evaluated(without, scene, tables, paths, round, 4);
+    const Result expected = evaluated(without, scene, tables, paths, round, 3);
     EXPECT_GT(*std::ranges::max_element(expected.means), 0);
-    EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 4), expected) << channels << " channels";
+    EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 3), expected) << channels << " channels";
   }
 }
 
