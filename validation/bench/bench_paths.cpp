@@ -1,8 +1,9 @@
 // Path generation against the bare ray queries that it contains,
 // and whole renders against the number of channels.
 //
-//   bench_paths --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
+//   bench_paths --benchmark_repetitions=5 --benchmark_report_aggregates_only=true [SCENE.xml ...]
 //
+// Scenes that are named are measured besides those of here, at 256x256 pixels.
 // Counter paths_per_second. "bare" sends the recorded rays of the same paths through Embree on the same scene: the rate
 // of a tracer whose shading and random numbers cost nothing.
 //   single   path by path in the order of a scalar tracer (closest hit and shadow ray of each bounce), single rays
@@ -15,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <span>
 
 #include "scene/read/reader.hpp"
 #include "src_cpu/block_worker.hpp"
@@ -44,8 +46,11 @@ std::filesystem::path data_directory() {
   return std::filesystem::path(KILOBAND_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-/// "cornell" from the repository, others from the folder of public data.
+/// "cornell" from the repository, a file by its path, others from the folder of public data.
 SceneDescription read_bench_scene(const std::string& name) {
+  ReadOptions options;
+  options.film_size = {256, 256};
+  if (name.ends_with(".xml")) return read_scene(name, options);
   if (name == "cornell")
     return read_scene(std::filesystem::path(KILOBAND_SOURCE_DIR) / "scenes/cornell_box/cornell_box.xml");
   if (name == "matpreview") return read_scene(data_directory() / "scenes/mitsuba/matpreview/matpreview.xml");
@@ -124,8 +129,8 @@ void render(benchmark::State& state, bool variance, WavelengthMode wavelengths) 
 }
 
 /// What a viewer does: sample after sample of all pixels, of a film that keeps sums.
-void frames(benchmark::State& state) {
-  Bench& bench = bench_of("cornell", static_cast<std::size_t>(state.range(0)));
+void frames(benchmark::State& state, const std::string& name) {
+  Bench& bench = bench_of(name, static_cast<std::size_t>(state.range(0)));
   SamplingSettings settings;
   settings.replicates = 1;
   BlockWorker worker(bench.tracer, {}, settings, resolve_isa(Isa::kAuto));
@@ -144,10 +149,14 @@ void frames(benchmark::State& state) {
   count_paths(state, bench.pixels());
 }
 
-void register_all() {
-  const bool data = std::filesystem::exists(data_directory() / "meshes" / "conference.ply");
-  for (const std::string name : {"cornell", "conference", "matpreview"}) {
-    if (name != "cornell" && !data) continue;
+/// files: of more scenes
+void register_all(std::span<char*> files) {
+  std::vector<std::string> names{"cornell"};
+  if (std::filesystem::exists(data_directory() / "meshes" / "conference.ply"))
+    names.insert(names.end(), {"conference", "matpreview"});
+  names.insert(names.end(), files.begin(), files.end());
+  for (const std::string& name : names) {
+    benchmark::RegisterBenchmark(("frames/" + name).c_str(), frames, name)->Arg(8)->Arg(100);
     benchmark::RegisterBenchmark(("bare/" + name + "/single").c_str(), bare, name);
     benchmark::RegisterBenchmark(("bare/" + name + "/packets").c_str(), bare_packets, name, false);
     benchmark::RegisterBenchmark(("bare/" + name + "/sorted").c_str(), bare_packets, name, true);
@@ -163,7 +172,6 @@ void register_all() {
   benchmark::RegisterBenchmark("render/shared-variance", render, true, WavelengthMode::kShared)
       ->Arg(8)
       ->Arg(512);
-  benchmark::RegisterBenchmark("frames", frames)->Arg(8)->Arg(100);
   benchmark::RegisterBenchmark("render/per-path", render, false, WavelengthMode::kPerPath)->Arg(8)->Arg(512);
 }
 
@@ -171,7 +179,7 @@ void register_all() {
 }  // namespace kiloband
 
 int main(int argc, char** argv) {
-  kiloband::register_all();
   benchmark::Initialize(&argc, argv);
+  kiloband::register_all(std::span(argv + 1, static_cast<std::size_t>(argc - 1)));
   benchmark::RunSpecifiedBenchmarks();
 }
