@@ -285,6 +285,8 @@ KB_INLINE void store_chosen(F a, M m, float* p) {
 KB_INLINE void store_chosen(U a, M m, uint32_t* p) {
   if (m.v) *p = a.v;
 }
+/// Ends a function over lanes which others call.
+KB_INLINE void end_lanes() {}
 /// 0, 1, 2, ...
 KB_INLINE U lane_numbers() {
   return 0u;

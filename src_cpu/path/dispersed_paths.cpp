@@ -20,22 +20,38 @@ bool is_rough(const KbMaterial& material) {
   return material.type == KB_MATERIAL_ROUGH_DIELECTRIC;
 }
 
+bool is_dispersive(const FlatScene& scene, uint32_t material) {
+  return material != KB_NONE && (scene.materials[material].flags & KB_MATERIAL_DISPERSIVE);
+}
+
+/// Whether a surface, or one of those that it blends, has a dispersive side.
+bool may_disperse(const FlatScene& scene, const KbSurface& surface) {
+  if (surface.flags & KB_SURFACE_BLEND)
+    return may_disperse(scene, scene.surfaces[surface.first]) ||
+           may_disperse(scene, scene.surfaces[surface.second]);
+  return is_dispersive(scene, surface.front) || is_dispersive(scene, surface.back);
+}
+
 }  // namespace
 
 bool RareFeatures::shade_dispersive(Shading& s) {
   return dispersion_ && dispersion_->shade(s, *this);
 }
 
+DispersedPaths::DispersedPaths(const FlatScene& scene) : scene_(scene) {
+  std::vector<uint32_t> surfaces;
+  for (const KbSurface& surface : scene.surfaces) surfaces.push_back(may_disperse(scene, surface));
+  for (const KbShape& shape : scene.shapes) shapes_.push_back(surfaces[shape.surface]);
+}
+
 void DispersedPaths::start(std::span<const float> mu) {
   mu_ = mu;
-  DispersedPath white;
-  white.carried.fill(1);
-  paths_.assign(kWavePaths, white);
+  paths_.assign(kWavePaths, {});
 }
 
 bool DispersedPaths::shade(Shading& s, RareFeatures& rare) {
+  if (!is_dispersive(scene_, s.side.v)) return false;
   const KbMaterial material = material_of(s);
-  if (!(material.flags & KB_MATERIAL_DISPERSIVE)) return false;
   PathState& path = s.wave.paths[s.path.v];
   if (is_rough(material) && path.channel == KB_NONE) {
     append(s.wave, s.path, s.vertex, s.vertex.has(KB_VERTEX_EMIT));
@@ -66,6 +82,16 @@ float DispersedPaths::channel_eta(const KbMaterial& material, uint32_t channel, 
   return static_cast<float>(scene_.spectra[material.eta_row].table(lambda_nm) / exterior);
 }
 
+/// What each channel still carries, by bins: the product of the scatter weights that the path has saved.
+BinnedThroughput DispersedPaths::carried(const Shading& s) const {
+  BinnedThroughput product;
+  product.fill(1);
+  const std::vector<WaveEntry>& entries = s.wave.entries;
+  for (uint32_t e = s.wave.paths[s.path.v].first_entry; e != KB_NONE; e = entries[e].next)
+    if (entries[e].vertex.head & KB_VERTEX_SCATTER) carry(product, entries[e].vertex, scene_.channel_bins);
+  return product;
+}
+
 /// One channel is what the path stands for from here on. carried: what each still carries.
 /// Returns its probability.
 float DispersedPaths::survive(const Shading& s, const BinnedThroughput& carried) {
@@ -80,12 +106,12 @@ float DispersedPaths::survive(const Shading& s, const BinnedThroughput& carried)
 void DispersedPaths::refract_one_channel(Shading& s, BsdfSample& sample) {
   const PathState& path = s.wave.paths[s.path.v];
   const KbMaterial material = material_of(s);
-  BinnedThroughput carried = paths_[s.path.v].carried;
+  BinnedThroughput carries = carried(s);
   if ((material.ref_b & KB_REF_KIND_MASK) == KB_REF_SPECTRUM) {
     for (uint32_t b = 0; b < KB_CHANNEL_BINS; ++b)
-      carried[b] *= scene_.channel_bins[std::size_t{material.ref_b} * KB_CHANNEL_BINS + b];
+      carries[b] *= scene_.channel_bins[std::size_t{material.ref_b} * KB_CHANNEL_BINS + b];
   }
-  const float probability = survive(s, carried);
+  const float probability = survive(s, carries);
   const float eta = channel_eta(material, path.channel, mu_of(path));
   const cpu::BsdfSample one =
       cpu::transmit_dispersive(material, to_glm(s.wi), eta, sample.pdf.v * probability);
@@ -106,7 +132,7 @@ void DispersedPaths::refract_one_channel(Shading& s, BsdfSample& sample) {
 /// A rough dispersive boundary: the channel is chosen on arrival, before light and BSDF samples.
 void DispersedPaths::degrade(Shading& s) {
   PathState& path = s.wave.paths[s.path.v];
-  const float probability = survive(s, paths_[s.path.v].carried);
+  const float probability = survive(s, carried(s));
   Vertex v = empty_vertex();
   v.head = U(KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE);
   v.a.row = U(scene_.unit_row);
@@ -114,13 +140,6 @@ void DispersedPaths::degrade(Shading& s) {
   v.scatter1 = kb_channel_weight(path.channel);
   path.bound /= probability * static_cast<float>(scene_.channels.size());
   append(s.wave, s.path, v, {true});
-  carry(s.wave, s.path.v);
-}
-
-void DispersedPaths::carry(const Wave& wave, uint32_t path) {
-  const uint32_t entry = wave.paths[path].last_entry;
-  if (entry == KB_NONE || !(wave.entries[entry].vertex.head & KB_VERTEX_SCATTER)) return;
-  cpu::carry(paths_[path].carried, wave.entries[entry].vertex, scene_.channel_bins);
 }
 
 /// The path's hero channels at this boundary. count 0: there are none, since a lobe is too narrow for float
@@ -165,7 +184,6 @@ void DispersedPaths::append_pair(Shading& s, const Boundary& at, const cpu::Boun
     (light ? v.nee1 : v.scatter1) = pair.cosine;
   }
   append(s.wave, s.path, v, {true});
-  carry(s.wave, s.path.v);
 }
 
 /// Next-event estimation at a rough dispersive boundary: a vertex of its own.

@@ -11,4 +11,8 @@ const PathKernels& one_lane_path_kernels() {
   return kKernels;
 }
 
+void shade_rare_rays(const Bounce& bounce, Wave& wave) {
+  one_lane::shade_rare_rays(bounce, wave);
+}
+
 }  // namespace kiloband::cpu

@@ -10,7 +10,8 @@ struct PathKernels {
   /// Camera rays of the whole block of the film in which `block` lies -> wave.rays() and the states of the paths, which
   /// outside of `block` have no pixel.
   void (*start)(const Bounce& bounce, const PixelRect& block, Wave& wave);
-  /// Answers of wave.rays -> saved vertices, wave.shadow_rays, wave.next_rays and the states of the paths.
+  /// Answers of wave.rays -> saved vertices, wave.shadow_rays, wave.next_rays and the states of the paths; what has hit a shape of
+  /// Bounce::rare_shapes is left in wave.rare_rays.
   void (*shade)(const Bounce& bounce, Wave& wave);
 };
 
@@ -18,5 +19,7 @@ struct PathKernels {
 const PathKernels& path_kernels(Isa isa);
 /// One path after another, by plain numbers: for scenes with rare features, and the oracle of the others.
 const PathKernels& one_lane_path_kernels();
+/// Goes on where PathKernels::shade has left rays, with Bounce::rare.
+void shade_rare_rays(const Bounce& bounce, Wave& wave);
 
 }  // namespace kiloband::cpu

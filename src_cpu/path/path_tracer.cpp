@@ -9,8 +9,12 @@ namespace {
 /// 512 KiB: about as much as the second-level cache has for them.
 constexpr std::size_t kMostCachedRecords = 8192;
 
+/// Of every path, wherever it is: one lane traces all of them.
+bool is_rare_everywhere(const SceneFeatures& f) {
+  return f.gas || f.thermal || f.compensation;
+}
 bool has_rare_features(const SceneFeatures& f) {
-  return f.gas || f.dispersion || f.thermal || f.compensation;
+  return is_rare_everywhere(f) || f.dispersion;
 }
 
 /// Paths without a pixel are traced for their neighbours' sake alone.
@@ -78,7 +82,8 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
       settings_(settings),
       rare_(has_rare_features(flat_.features) ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree)
                                               : nullptr),
-      kernels_(rare_ ? one_lane_path_kernels() : kernels),
+      parts_(rare_ && !is_rare_everywhere(flat_.features)),
+      kernels_(rare_ && !parts_ ? one_lane_path_kernels() : kernels),
       sorts_(!rare_ && scene.embree->sorting_pays()) {}
 
 PathTracer::~PathTracer() = default;
@@ -96,7 +101,8 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
                 rare_.get(),
                 records.empty() ? nullptr : records.data(),
                 scene_.lights.empty() ? nullptr : scene_.lights.data(),
-                records.size() > kMostCachedRecords};
+                records.size() > kMostCachedRecords,
+                parts_ ? rare_->dispersive_shapes() : nullptr};
   wave_.paths.resize(kWavePaths + 1);
   wave_.entries.clear();
   kernels_.start(bounce, block, wave_);
@@ -110,6 +116,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
     }
     trace_closest(bounce.number, in_part);
     kernels_.shade(bounce, wave_);
+    if (parts_) shade_rare_rays(bounce, wave_);
     trace_shadows();
     wave_.current = 1 - wave_.current;
   }

@@ -98,7 +98,7 @@ struct Boundary {
 /// Boundaries whose index depends on wavelength: degradation to one channel, spectral MIS for all.
 class DispersedPaths {
  public:
-  explicit DispersedPaths(const FlatScene& scene) : scene_(scene) {}
+  explicit DispersedPaths(const FlatScene& scene);
 
   /// mu: wavelength offset per pixel, or one for all
   void start(std::span<const float> mu);
@@ -107,19 +107,19 @@ class DispersedPaths {
   bool shade(Shading& s, RareFeatures& rare);
   /// Refraction by an index that depends on wavelength: one channel goes on, with weight 1 / probability.
   void refract_one_channel(Shading& s, BsdfSample& sample);
-  /// Multiplies what each channel still carries by the vertex that the path has saved last.
-  void carry(const Wave& wave, uint32_t path);
+  /// By shape: not 0 where one of its materials is dispersive.
+  const std::vector<uint32_t>& shapes() const { return shapes_; }
 
  private:
   /// What a path carries besides.
   struct DispersedPath {
-    BinnedThroughput carried;                         // in each bin of channels
     uint32_t heroes = 0;                              // of spectral MIS; 0: none chosen yet
     std::array<float, KB_MAX_HEROES> hero_weights{};  // q_c
   };
 
   float mu_of(const PathState& path) const { return mu_[mu_.size() == 1 ? 0 : path.pixel]; }
   float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
+  BinnedThroughput carried(const Shading& s) const;
   float survive(const Shading& s, const BinnedThroughput& carried);
   void degrade(Shading& s);
   HeroSet choose_heroes(const Shading& s, const KbMaterial& material);
@@ -130,6 +130,7 @@ class DispersedPaths {
   const FlatScene& scene_;
   std::span<const float> mu_;
   std::vector<DispersedPath> paths_;
+  std::vector<uint32_t> shapes_;
 };
 
 /// All of them, as far as the scene has them.
@@ -145,15 +146,14 @@ class RareFeatures {
     if (dispersion_) dispersion_->start(mu);
   }
   GasPaths* gas() { return gas_ ? &*gas_ : nullptr; }
+  /// What Bounce::rare_shapes is where nothing but dispersion is rare.
+  const uint32_t* dispersive_shapes() const { return dispersion_->shapes().data(); }
 
   void pass_gas(const Shading& s, bool escapes) {
     if (gas_) gas_->append(s.wave, s.path.v, escapes);
   }
   bool shade_dispersive(Shading& s);
   void refract_one_channel(Shading& s, BsdfSample& sample) { dispersion_->refract_one_channel(s, sample); }
-  void carry_channels(const Shading& s) {
-    if (dispersion_ && s.vertex.has(KB_VERTEX_SCATTER).v) dispersion_->carry(s.wave, s.path.v);
-  }
   void note_shadow_ray(const Shading& s) {
     if (gas_) gas_->note_shadow_ray(s);
   }

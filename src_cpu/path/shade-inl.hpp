@@ -81,12 +81,16 @@ inline U choose_surfaces(Shading& s, U surface, M hit) {
   const KbSurface* surfaces = scene.surfaces.data();
   WordArray chosen(surface);
   FloatArray u(s.u.x), opacity(KB_GATHER_FLOAT(surfaces, KbSurface, opacity, surface));
-  const TexturePoints points(texture_place(s));
-  each_lane(hit, [&](uint32_t i) KB_LAMBDA {
-    const KbSurface& one = chosen_surface(scene, chosen[i], points[i], u[i]);
-    chosen[i] = static_cast<uint32_t>(&one - surfaces);
-    opacity[i] = opacity_at(scene, one, points[i]);
-  });
+  const M varies = hit & (has_bits(KB_GATHER_WORD(surfaces, KbSurface, flags, surface), KB_SURFACE_BLEND) |
+                          (KB_GATHER_WORD(surfaces, KbSurface, opacity_ref, surface) != U(KB_NONE)));
+  if (any(varies)) {
+    const TexturePoints points(texture_place(s));
+    each_lane(varies, [&](uint32_t i) KB_LAMBDA {
+      const KbSurface& one = chosen_surface(scene, chosen[i], points[i], u[i]);
+      chosen[i] = static_cast<uint32_t>(&one - surfaces);
+      opacity[i] = opacity_at(scene, one, points[i]);
+    });
+  }
   s.opacity = opacity;
   const F x = u;
   const M masked = s.opacity < F(1);
@@ -294,30 +298,45 @@ KB_INLINE void scatter(Shading& s, M hit, M scatters, M lit) {
 #endif
 }
 
-/// Moves the rays that have hit something together, in their order, and those that have not to `escaped`: so vectors of
-/// either are full.
-inline void part_rays(RayQueue& rays, EscapeQueue& escaped) {
+/// Moves chosen lanes from `first` on to `at`: all but where the search began. from and to may be one, with at <= first.
+KB_INLINE void move_rays(const RayQueue& from, uint32_t first, M chosen, RayQueue& to, uint32_t at) {
+  const auto move = [&](const auto* array, auto* target)
+                        KB_LAMBDA { store_chosen(load(array + first), chosen, target + at); };
+  move(from.ox, to.ox), move(from.oy, to.oy), move(from.oz, to.oz);
+  move(from.dx, to.dx), move(from.dy, to.dy), move(from.dz, to.dz);
+  move(from.t_max, to.t_max), move(from.u, to.u), move(from.v, to.v);
+  move(from.primitive, to.primitive), move(from.shape, to.shape), move(from.path, to.path);
+}
+
+/// Moves the rays that have hit something together, in their order, those that have not to `escaped`, and those that are for one
+/// path at a time to `rare_rays`: so vectors of each are full.
+inline void part_rays(const Bounce& bounce, Wave& wave) {
+  RayQueue& rays = wave.rays();
+  EscapeQueue& escaped = wave.escaped;
   uint32_t hits = 0;
-  escaped.count = 0;
+  escaped.count = wave.rare_rays.count = 0;
   for (uint32_t first = 0; first < rays.count; first += kLanes) {
     const M active = first_lanes(rays.count - first);
     const U shape = load(rays.shape + first);
-    const M hit = active & (shape != U(KB_NONE)), miss = active & !hit;
-    const U path = load(rays.path + first);
+    M hit = active & (shape != U(KB_NONE));
+    const M miss = active & !hit;
     if (any(miss)) {
       const uint32_t n = escaped.count;
       store_chosen(load(rays.dx + first), miss, escaped.dx + n);
       store_chosen(load(rays.dy + first), miss, escaped.dy + n);
       store_chosen(load(rays.dz + first), miss, escaped.dz + n);
-      store_chosen(path, miss, escaped.path + n);
+      store_chosen(load(rays.path + first), miss, escaped.path + n);
       escaped.count += count(miss);
     }
-    if (hits != first || any(miss)) {
-      const auto move = [&](auto* array) KB_LAMBDA { store_chosen(load(array + first), hit, array + hits); };
-      for (float* array : {rays.ox, rays.oy, rays.oz, rays.dx, rays.dy, rays.dz, rays.t_max, rays.u, rays.v})
-        move(array);
-      for (uint32_t* array : {rays.primitive, rays.shape, rays.path}) move(array);
+    if (bounce.rare_shapes) {
+      const M rare = hit & (gather(bounce.rare_shapes, select(hit, shape, U(0u))) != U(0u));
+      if (any(rare)) {
+        move_rays(rays, first, rare, wave.rare_rays, wave.rare_rays.count);
+        wave.rare_rays.count += count(rare);
+        hit = hit & !rare;
+      }
     }
+    if (hits != first || any(active & !hit)) move_rays(rays, first, hit, rays, hits);
     hits += count(hit);
   }
   rays.count = hits;
@@ -364,16 +383,13 @@ inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
   const M lit = add_light(s, scatters);
   scatter(s, hit, scatters, lit);
   append(wave, s.path, s.vertex, hit & s.vertex.has(KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER));
-#ifdef KB_ONE_LANE
-  if (bounce.rare) bounce.rare->carry_channels(s);
-#endif
   note_shadow_rays(wave, lit);
 }
 
 /// All paths of the wave at what their rays have hit: fills the queues of shadow rays and next rays.
 inline void shade_wave(const Bounce& bounce, Wave& wave) {
   wave.shadow_rays.count = wave.next_rays().count = 0;
-  part_rays(wave.rays(), wave.escaped);
+  part_rays(bounce, wave);
   if (bounce.scene.environment != KB_NONE || bounce.scene.features.sun || bounce.rare)
     for (uint32_t first = 0; first < wave.escaped.count; first += kLanes) leave_scene(bounce, wave, first);
   const RayQueue& rays = wave.rays();
@@ -384,6 +400,16 @@ inline void shade_wave(const Bounce& bounce, Wave& wave) {
                        first_lanes(rays.count - next));
     shade_lanes(bounce, wave, first);
   }
+  end_lanes();
+}
+
+/// The paths of rare_rays, in the place of those that are done. They join the queues behind the others.
+inline void shade_rare_rays(const Bounce& bounce, Wave& wave) {
+  RayQueue& rays = wave.rays();
+  rays.count = wave.rare_rays.count;
+  for (uint32_t first = 0; first < rays.count; first += kLanes)
+    move_rays(wave.rare_rays, first, first_lanes(rays.count - first), rays, first);
+  for (uint32_t first = 0; first < rays.count; first += kLanes) shade_lanes(bounce, wave, first);
 }
 
 }  // namespace kiloband::cpu::KB_LANES

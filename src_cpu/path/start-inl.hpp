@@ -91,6 +91,7 @@ inline void start_wave(const Bounce& bounce, const PixelRect& asked, Wave& wave)
   rays.count = block.width * block.height;
   for (uint32_t first = 0; first < rays.count; first += kLanes)
     start_lanes(bounce, block, common, wave, first);
+  end_lanes();
   std::fill(wave.paths.begin() + rays.count, wave.paths.end(), kNoPath);
 }
 

@@ -68,6 +68,7 @@ struct Wave {
   RayQueue queues[2];  // what is traced, and what the next bounce will trace
   uint32_t current = 0;
   EscapeQueue escaped;
+  RayQueue rare_rays;  // that have hit a shape of Bounce::rare_shapes
   ShadowQueue shadow_rays, sorted_shadow_rays;
   uint64_t vertices = 0, traced_rays = 0;
   Recording* recording = nullptr;  // appended to
@@ -90,6 +91,8 @@ struct Bounce {
   const TriangleRecord* records = nullptr;  // null: hits are made from the arrays of the scene
   const LightTriangle* lights = nullptr;    // null: so are light samples
   bool prefetches = false;                  // records, which are more than the caches hold
+  const uint32_t* rare_shapes =
+      nullptr;  // not 0: what hits the shape is for one path at a time; null: there is none
 
   uint32_t sampler() const {
     return settings.sampler == SamplerType::kSobol ? KB_SAMPLER_SOBOL : KB_SAMPLER_INDEPENDENT;
