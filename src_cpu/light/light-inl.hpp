@@ -157,38 +157,52 @@ KB_INLINE Light sample_delta_lights(const FlatScene& scene, const ChosenLight& c
           resolve(scene, chosen.head.ref, place_at(sample.uv), lit)};
 }
 
-/// Area lights on shapes of other kinds.
-inline void sample_shape_lights(const FlatScene& scene, const ChosenLight& chosen, V3 point, const F4& u,
-                                M active, Light& light) {
+/// What is emitted, in memory.
+struct RadianceArrays {
+  WordArray row, textured, texture, xy;
+  FloatArray fx, fy;
+
+  KB_INLINE explicit RadianceArrays(const Resolved& r)
+      : row(r.row),
+        textured(select(r.textured, U(1u), U(0u))),
+        texture(r.sample.texture),
+        xy(r.sample.xy),
+        fx(r.sample.fx),
+        fy(r.sample.fy) {}
+  KB_INLINE void put(uint32_t i, const EmittedRadiance& one) {
+    row[i] = one.row;
+    textured[i] = one.textured;
+    texture[i] = one.texture.texture, xy[i] = one.texture.xy;
+    fx[i] = one.texture.fx, fy[i] = one.texture.fy;
+  }
+  KB_INLINE Resolved lanes() const { return {row, has_bits(textured, 1u), {texture, xy, fx, fy}}; }
+};
+
+/// `light` with samples of area lights on shapes of other kinds, and of thermal ones, in active lanes.
+/// finish  (lane, sample): what is left to be done with it
+template <class Finish>
+inline Light sample_shape_lights(const FlatScene& scene, const ChosenLight& chosen, V3 point, const F4& u,
+                                 M active, const Light& light, const Finish& finish) {
   V3Array direction(light.direction), target(light.target);
-  FloatArray pdf(light.pdf), factor(light.factor), fx(light.radiance.sample.fx), fy(light.radiance.sample.fy);
-  WordArray row(light.radiance.row), texture(light.radiance.sample.texture), xy(light.radiance.sample.xy);
+  FloatArray pdf(light.pdf), factor(light.factor);
+  RadianceArrays radiance(light.radiance);
   const auto words = [](M m) KB_LAMBDA { return select(m, U(1u), U(0u)); };
-  WordArray infinite(words(light.infinite)), delta(words(light.delta)),
-      textured(words(light.radiance.textured));
+  WordArray infinite(words(light.infinite)), delta(words(light.delta));
   const V3Array at(point);
   const FloatArray u1(u.y), u2(u.z), u3(u.w), probability(chosen.head.select_pdf), area(chosen.area);
   const WordArray emitters(chosen.emitter), triangle(chosen.triangle);
   each_lane(active, [&](uint32_t i) KB_LAMBDA {
-    const LightSample one = sample_shape_light(scene, {emitters[i], probability[i], triangle[i], area[i]},
-                                               {at.x[i], at.y[i], at.z[i]}, u1[i], {u2[i], u3[i]});
+    LightSample one = sample_shape_light(scene, {emitters[i], probability[i], triangle[i], area[i]},
+                                         {at.x[i], at.y[i], at.z[i]}, u1[i], {u2[i], u3[i]});
+    finish(i, one);
     direction.x[i] = one.direction.x, direction.y[i] = one.direction.y, direction.z[i] = one.direction.z;
     target.x[i] = one.target.x, target.y[i] = one.target.y, target.z[i] = one.target.z;
     pdf[i] = one.pdf;
     factor[i] = one.factor;
     infinite[i] = one.infinite, delta[i] = one.delta;
-    row[i] = one.radiance.row;
-    textured[i] = one.radiance.textured;
-    texture[i] = one.radiance.texture.texture, xy[i] = one.radiance.texture.xy;
-    fx[i] = one.radiance.texture.fx, fy[i] = one.radiance.texture.fy;
+    radiance.put(i, one.radiance);
   });
-  light = {direction,
-           target,
-           pdf,
-           factor,
-           has_bits(infinite, 1u),
-           has_bits(delta, 1u),
-           {row, has_bits(textured, 1u), {texture, xy, fx, fy}}};
+  return {direction, target, pdf, factor, has_bits(infinite, 1u), has_bits(delta, 1u), radiance.lanes()};
 }
 
 /// Samples of what has been chosen.
@@ -216,8 +230,8 @@ KB_INLINE Light sample_chosen(const Lights& lights, const ChosenLight& chosen, c
   const M sun = active & (type == U(KB_EMITTER_SUN));
   if (any(sun)) light = select(sun, sample_suns(scene, chosen.emitter, u, sun), light);
   const M others = active & !mesh & !sky & !delta & !sun;
-  if (any(others)) sample_shape_lights(scene, chosen, point, u, others, light);
-  return light;
+  if (!any(others)) return light;
+  return sample_shape_lights(scene, chosen, point, u, others, light, [](uint32_t, LightSample&) KB_LAMBDA {});
 }
 
 /// sample_light() of emitter.hpp, without thermally emitting shapes. u: selection, triangle, position.

@@ -4,6 +4,8 @@
 
 #include "shared/sampler.h"
 #include "src_cpu/path/rare_features.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/path/thermal-inl.hpp"
 
 namespace kiloband::cpu::one_lane {
 namespace {
@@ -191,7 +193,7 @@ void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSe
                                     RareFeatures& rare) {
   if (scene_.emitters.empty()) return;
   const Light light = scene_.features.thermal
-                          ? choose_thermal_light(s)
+                          ? sample_thermal_lights(s, {true})
                           : sample_lights({scene_, s.bounce.lights}, s.receiver(),
                                           s.numbers(kb_block_light(s.bounce.number)), {true});
   if (!(light.pdf.v > 0) || !(light.factor.v > 0)) return;

@@ -22,6 +22,22 @@
 namespace kiloband::cpu::one_lane {
 namespace {
 
+SurfaceHit surface_hit(const Shading& s) {
+  const RayQueue& rays = s.wave.rays();
+  SurfaceHit hit;
+  hit.point = to_glm(s.hit.point);
+  hit.geometric_normal = to_glm(s.hit.geometric_normal);
+  hit.shading_normal = to_glm(s.hit.shading_normal);
+  hit.tangent = to_glm(s.hit.tangent);
+  hit.offset = s.hit.offset.v;
+  hit.departure = to_glm(s.hit.departure);
+  hit.uv = to_glm(s.hit.uv);
+  hit.shape = s.hit.shape.v;
+  hit.triangle = rays.primitive[s.first];
+  hit.barycentric = {rays.u[s.first], rays.v[s.first]};
+  return hit;
+}
+
 KbFloat3 to_record(glm::vec3 v) {
   return {v.x, v.y, v.z};
 }

@@ -9,12 +9,8 @@ namespace {
 /// 512 KiB: about as much as the second-level cache has for them.
 constexpr std::size_t kMostCachedRecords = 8192;
 
-/// Of every path, wherever it is: one lane traces all of them.
-bool is_rare_everywhere(const SceneFeatures& f) {
-  return f.gas || f.thermal || f.compensation;
-}
 bool has_rare_features(const SceneFeatures& f) {
-  return is_rare_everywhere(f) || f.dispersion;
+  return f.gas || f.dispersion;
 }
 
 /// Paths without a pixel are traced for their neighbours' sake alone.
@@ -82,9 +78,9 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
       settings_(settings),
       rare_(has_rare_features(flat_.features) ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree)
                                               : nullptr),
-      parts_(rare_ && !is_rare_everywhere(flat_.features)),
+      parts_(rare_ && !rare_->gas()),
       kernels_(rare_ && !parts_ ? one_lane_path_kernels() : kernels),
-      sorts_(!rare_ && scene.embree->sorting_pays()) {}
+      sorts_(!rare_ && !flat_.features.thermal && scene.embree->sorting_pays()) {}
 
 PathTracer::~PathTracer() = default;
 

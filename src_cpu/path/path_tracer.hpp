@@ -7,8 +7,8 @@
 //
 // A block of 32 x 32 pixels is a wave: its paths advance together, bounce by bounce. Their rays are traced in packets
 // (embree_scene.hpp); what they have hit is shaded a vector of paths at a time (shade-inl.hpp), paths that have ended
-// leave the queues. Scenes with gas or thermal emission are shaded one path after another, by the same code compiled for one
-// lane; so is, in others, what has hit a dispersive surface.
+// leave the queues. Scenes with gas are shaded one path after another, by the same code compiled for one lane; so is, in others,
+// what has hit a dispersive surface.
 //
 // Which primitive a ray hits on an edge may depend on the rays that share a coherent packet. Packets are therefore those
 // of the whole block, whatever part of it is asked for: crops have the bits of the whole image.

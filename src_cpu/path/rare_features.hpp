@@ -1,4 +1,4 @@
-// What few scenes have: gas, indices of refraction that depend on wavelength, thermal emission. For one path at a time,
+// What few scenes have: gas, indices of refraction that depend on wavelength. For one path at a time,
 // in the places of a bounce (shade-inl.hpp) that call it; scenes without pay nothing.
 #pragma once
 
@@ -16,15 +16,6 @@
 #include "src_cpu/path/shading-inl.hpp"
 
 namespace kiloband::cpu::one_lane {
-
-// ---- thermal emission (thermal_emission.cpp) ---------------------------------------------------------
-
-/// Kirchhoff's law, for surfaces that emit by it. Returns whether this one does.
-bool add_thermal_emission(Shading& s);
-/// A metal's energy compensation has two parts, a and a F0: one of them is taken, for light and BSDF sample alike.
-void choose_compensation(Shading& s);
-/// A light sample in scenes with thermal emission.
-Light choose_thermal_light(const Shading& s);
 
 // ---- gas (gas_paths.cpp) -----------------------------------------------------------------------------
 
@@ -165,8 +156,5 @@ class RareFeatures {
   std::optional<GasPaths> gas_;
   std::optional<DispersedPaths> dispersion_;
 };
-
-/// The hit in glm's types.
-SurfaceHit surface_hit(const Shading& s);
 
 }  // namespace kiloband::cpu::one_lane

@@ -12,6 +12,7 @@
 #endif
 
 #include "src_cpu/path/shading-inl.hpp"
+#include "src_cpu/path/thermal-inl.hpp"
 #ifdef KB_ONE_LANE
 #include "src_cpu/path/rare_features.hpp"
 #endif
@@ -53,9 +54,7 @@ KB_INLINE TexturePlace texture_place(const Shading& s) {
 /// Emission of area lights that were hit.
 KB_INLINE void add_emission(Shading& s, M hit) {
   const FlatScene& scene = s.scene();
-#ifdef KB_ONE_LANE
-  if (scene.features.thermal && add_thermal_emission(s)) return;
-#endif
+  if (scene.features.thermal) hit = hit & !add_thermal_emission(s, hit);
   if (s.bounce.number == 0 && scene.integrator.hide_emitters) return;
   const M emits = hit & (s.hit.emitter != U(KB_NONE)) & on_front(s.hit.shading_normal, -s.direction);
   if (!any(emits)) return;
@@ -68,10 +67,11 @@ KB_INLINE void add_emission(Shading& s, M hit) {
     weight = select(weighted, power_heuristic(s.previous_pdf(), pdf), F(1));
   }
   s.vertex.set(emits, KB_VERTEX_EMIT);
-  s.vertex.emit_weight = select(emits, weight, F(0));
-  s.vertex.emission =
+  s.vertex.emit_weight = select(emits, weight, s.vertex.emit_weight);
+  const Resolved emission =
       resolve(scene, KB_GATHER_WORD(scene.emitters.data(), KbEmitter, ref, index), texture_place(s), emits);
-  s.vertex.set(emits & s.vertex.emission.textured, KB_VERTEX_TEX_EMIT);
+  s.vertex.emission = scene.features.thermal ? select(emits, emission, s.vertex.emission) : emission;
+  s.vertex.set(emits & emission.textured, KB_VERTEX_TEX_EMIT);
 }
 
 /// Blends choose one of their surfaces, masks whether the ray passes; both by u.x, which is uniform again afterwards.
@@ -209,10 +209,8 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   return seen & ((s.material.bound_a != F(0)) | (s.material.bound_b != F(0)));
 }
 
-KB_INLINE Light choose_light(Shading& s, M smooth) {
-#ifdef KB_ONE_LANE
-  if (s.scene().features.thermal) return choose_thermal_light(s);
-#endif
+KB_INLINE Light sample_lights(Shading& s, M smooth) {
+  if (s.scene().features.thermal) return sample_thermal_lights(s, smooth);
   return sample_lights({s.scene(), s.bounce.lights}, s.receiver(), s.numbers(kb_block_light(s.bounce.number)),
                        smooth);
 }
@@ -224,7 +222,7 @@ KB_INLINE M add_light(Shading& s, M scatters) {
   if (scene.emitters.empty()) return no_lanes();
   const M smooth = scatters & has_smooth_lobe(s.material.type);
   if (!any(smooth)) return smooth;
-  const Light light = choose_light(s, smooth);
+  const Light light = sample_lights(s, smooth);
   M lit = smooth & (light.pdf > F(0)) & (light.factor > F(0));
   if (!any(lit)) return lit;
   const BsdfValue value = eval_bsdf(s.material, s.wi, s.frame.to_local(light.direction), lit);
@@ -372,8 +370,8 @@ inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
   U surface = s.hit.surface;
   if (bounce.scene.features.mask || bounce.scene.features.blend) surface = choose_surfaces(s, surface, hit);
   const M scatters = find_material(s, surface, hit);
+  if (bounce.scene.features.compensation) choose_compensation(s, scatters);
 #ifdef KB_ONE_LANE
-  if (bounce.scene.features.compensation && scatters.v) choose_compensation(s);
   if (bounce.rare && scatters.v && bounce.rare->shade_dispersive(s)) return;
 #endif
   s.vertex.head = select(scatters,
