@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -17,10 +18,16 @@ constexpr int kFormat = 1;
 /// No device has more, or gains from less.
 constexpr uint64_t kFewestPaths = 64, kMostPaths = uint64_t{1} << 28, kLargestGroup = 4096;
 
+/// A conversion of other numbers is undefined where they are too large.
+uint64_t whole_number(const json& from, const char* name) {
+  if (!from.at(name).is_number_unsigned()) throw std::out_of_range(name);
+  return from.at(name).get<uint64_t>();
+}
+
 template <class T>
 std::optional<T> size_in(const json& from, const char* name, uint64_t fewest, uint64_t most) {
   if (!from.contains(name)) return std::nullopt;
-  const auto value = from.at(name).get<uint64_t>();
+  const auto value = whole_number(from, name);
   if (value < fewest || value > most) throw std::out_of_range(name);
   return static_cast<T>(value);
 }
@@ -33,7 +40,7 @@ void put(json& to, const char* name, const std::optional<T>& value) {
 TunedMethod tuned_method(const json& from) {
   TunedMethod one;
   one.method = from.at("method").get<std::string>();
-  one.channels = from.at("channels").get<uint32_t>();
+  one.channels = static_cast<uint32_t>(std::min<uint64_t>(whole_number(from, "channels"), ~0u));
   if (one.channels == 0) throw std::out_of_range("channels");
   one.scene = from.at("scene").get<std::string>();
   one.speed_up = from.at("speed_up").get<double>();
@@ -74,8 +81,7 @@ std::vector<TunedMethod> TuningStore::load(const DeviceInfo& device) const {
     std::ifstream stream(file(device));
     if (!stream) return {};
     const json all = json::parse(stream);
-    if (all.at("format").get<int>() != kFormat || all.at("device").get<std::string>() != device.name)
-      return {};
+    if (all.at("format") != kFormat || all.at("device").get<std::string>() != device.name) return {};
     for (const json& one : all.at("tuned")) tuned.push_back(tuned_method(one));
   } catch (const json::exception&) {
     return {};
