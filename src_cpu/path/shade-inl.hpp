@@ -11,6 +11,7 @@
 #define KILOBAND_SHADE_INL
 #endif
 
+#include "src_cpu/path/part_rays-inl.hpp"
 #include "src_cpu/path/shading-inl.hpp"
 #include "src_cpu/path/thermal-inl.hpp"
 #ifdef KB_ONE_LANE
@@ -294,50 +295,6 @@ KB_INLINE void scatter(Shading& s, M hit, M scatters, M lit) {
 #ifdef KB_ONE_LANE
   if (s.bounce.rare) s.bounce.rare->follow_ray(s);
 #endif
-}
-
-/// Moves chosen lanes from `first` on to `at`: all but where the search began. from and to may be one, with at <= first.
-KB_INLINE void move_rays(const RayQueue& from, uint32_t first, M chosen, RayQueue& to, uint32_t at) {
-  const auto move = [&](const auto* array, auto* target)
-                        KB_LAMBDA { store_chosen(load(array + first), chosen, target + at); };
-  move(from.ox, to.ox), move(from.oy, to.oy), move(from.oz, to.oz);
-  move(from.dx, to.dx), move(from.dy, to.dy), move(from.dz, to.dz);
-  move(from.t_max, to.t_max), move(from.u, to.u), move(from.v, to.v);
-  move(from.primitive, to.primitive), move(from.shape, to.shape), move(from.path, to.path);
-}
-
-/// Moves the rays that have hit something together, in their order, those that have not to `escaped`, and those that are for one
-/// path at a time to `rare_rays`: so vectors of each are full.
-inline void part_rays(const Bounce& bounce, Wave& wave) {
-  RayQueue& rays = wave.rays();
-  EscapeQueue& escaped = wave.escaped;
-  uint32_t hits = 0;
-  escaped.count = wave.rare_rays.count = 0;
-  for (uint32_t first = 0; first < rays.count; first += kLanes) {
-    const M active = first_lanes(rays.count - first);
-    const U shape = load(rays.shape + first);
-    M hit = active & (shape != U(KB_NONE));
-    const M miss = active & !hit;
-    if (any(miss)) {
-      const uint32_t n = escaped.count;
-      store_chosen(load(rays.dx + first), miss, escaped.dx + n);
-      store_chosen(load(rays.dy + first), miss, escaped.dy + n);
-      store_chosen(load(rays.dz + first), miss, escaped.dz + n);
-      store_chosen(load(rays.path + first), miss, escaped.path + n);
-      escaped.count += count(miss);
-    }
-    if (bounce.rare_shapes) {
-      const M rare = hit & (gather(bounce.rare_shapes, select(hit, shape, U(0u))) != U(0u));
-      if (any(rare)) {
-        move_rays(rays, first, rare, wave.rare_rays, wave.rare_rays.count);
-        wave.rare_rays.count += count(rare);
-        hit = hit & !rare;
-      }
-    }
-    if (hits != first || any(active & !hit)) move_rays(rays, first, hit, rays, hits);
-    hits += count(hit);
-  }
-  rays.count = hits;
 }
 
 /// Lanes `first` .. of the rays that have hit nothing.
