@@ -192,10 +192,7 @@ void DispersedPaths::append_pair(Shading& s, const Boundary& at, const cpu::Boun
 void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSet& heroes,
                                     RareFeatures& rare) {
   if (scene_.emitters.empty()) return;
-  const Light light = scene_.features.thermal
-                          ? sample_thermal_lights(s, {true})
-                          : sample_lights({scene_, s.bounce.lights}, s.receiver(),
-                                          s.numbers(kb_block_light(s.bounce.number)), {true});
+  const Light light = sample_lights(s, {true});
   if (!(light.pdf.v > 0) || !(light.factor.v > 0)) return;
   const glm::vec3 wo = to_glm(s.frame.to_local(light.direction));
   const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);

@@ -22,6 +22,7 @@
 namespace kiloband::cpu::one_lane {
 namespace {
 
+/// The hit in glm's types.
 SurfaceHit surface_hit(const Shading& s) {
   const RayQueue& rays = s.wave.rays();
   SurfaceHit hit;

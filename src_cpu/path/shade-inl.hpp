@@ -210,12 +210,6 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   return seen & ((s.material.bound_a != F(0)) | (s.material.bound_b != F(0)));
 }
 
-KB_INLINE Light sample_lights(Shading& s, M smooth) {
-  if (s.scene().features.thermal) return sample_thermal_lights(s, smooth);
-  return sample_lights({s.scene(), s.bounce.lights}, s.receiver(), s.numbers(kb_block_light(s.bounce.number)),
-                       smooth);
-}
-
 /// Next-event estimation: stores the weights as if the light were visible, and queues the shadow rays. Returns the
 /// lanes that have one; the vertices that they belong to are noted by note_shadow_rays().
 KB_INLINE M add_light(Shading& s, M scatters) {

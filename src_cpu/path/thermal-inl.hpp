@@ -116,6 +116,13 @@ inline Light sample_thermal_lights(const Shading& s, M active) {
       });
 }
 
+/// A light sample, in scenes of either kind.
+KB_INLINE Light sample_lights(const Shading& s, M active) {
+  if (s.scene().features.thermal) return sample_thermal_lights(s, active);
+  return sample_lights({s.scene(), s.bounce.lights}, s.receiver(), s.numbers(kb_block_light(s.bounce.number)),
+                       active);
+}
+
 }  // namespace kiloband::cpu::KB_LANES
 KB_AFTER_LANES;
 
