@@ -8,6 +8,7 @@
 
 #include "base/text.hpp"
 #include "viewer/display/brightness.hpp"
+#include "viewer/display/three_sums.hpp"
 
 namespace kiloband::viewer {
 namespace {
@@ -52,21 +53,7 @@ ThreeSums::ThreeSums(const PixelSource& source, const RgbWeights& of_integrals) 
 }
 
 void ThreeSums::operator()(const float* values, float* out) const {
-  const std::size_t bands = weights_[0].size(), whole = bands / kLanes * kLanes;
-  const float *r = weights_[0].data(), *g = weights_[1].data(), *b = weights_[2].data();
-  float red[kLanes] = {}, green[kLanes] = {}, blue[kLanes] = {};
-  for (std::size_t k = 0; k < whole; k += kLanes) {
-    for (std::size_t i = 0; i < kLanes; ++i) red[i] += r[k + i] * values[k + i];
-    for (std::size_t i = 0; i < kLanes; ++i) green[i] += g[k + i] * values[k + i];
-    for (std::size_t i = 0; i < kLanes; ++i) blue[i] += b[k + i] * values[k + i];
-  }
-  for (std::size_t k = whole; k < bands; ++k) {
-    red[k - whole] += r[k] * values[k];
-    green[k - whole] += g[k] * values[k];
-    blue[k - whole] += b[k] * values[k];
-  }
-  out[0] = out[1] = out[2] = 0;
-  for (std::size_t i = 0; i < kLanes; ++i) out[0] += red[i], out[1] += green[i], out[2] += blue[i];
+  three_sums({weights_[0].data(), weights_[1].data(), weights_[2].data()}, values, weights_[0].size(), out);
 }
 
 void PixelSource::sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const {

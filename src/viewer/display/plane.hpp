@@ -16,7 +16,7 @@ class PixelSource;
 /// Per band, for red, green and blue; of bands' integrals.
 using RgbWeights = std::vector<std::array<float, 3>>;
 
-/// Sums of products with three sets of weights at once, in lanes that the compiler makes vectors of.
+/// Sums of products with three sets of weights at once (three_sums.hpp).
 class ThreeSums {
  public:
   ThreeSums(const PixelSource& source, const RgbWeights& of_integrals);
@@ -25,7 +25,6 @@ class ThreeSums {
   bool operator==(const ThreeSums&) const = default;
 
  private:
-  static constexpr std::size_t kLanes = 8;
   std::array<std::vector<float>, 3> weights_;  // [component][band], times the unit
 };
 
