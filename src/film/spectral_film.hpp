@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -92,8 +93,13 @@ class SpectralFilm {
   OpenSums open_sums(uint32_t replicate, std::size_t pixel, std::size_t pixels);
   OpenSumsView open_sums(uint32_t replicate, std::size_t pixel, std::size_t pixels) const;
   std::size_t pixel_index(const PixelRect& block, std::size_t pixel_in_block) const;
+  /// Which block a pixel of the rectangle lies in.
+  uint32_t block_of(std::size_t pixel) const;
   /// To be called once the sums have all samples before this one.
   void set_attempted(uint32_t replicate, uint32_t block, uint32_t attempted);
+  /// The observer is called at the end of set_attempted(), by the thread that has added to the block's sums, which are in
+  /// its caches then. It must not be changed meanwhile.
+  void observe(std::function<void(uint32_t block)> observer);
   /// Folded films: what is open becomes part of the moments. To be called before anything is read; no more
   /// samples of the replicates so far may follow.
   void finish_replicates();

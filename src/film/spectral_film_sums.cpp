@@ -73,14 +73,24 @@ OpenSumsView SpectralFilm::open_sums(uint32_t replicate, std::size_t pixel, std:
 void SpectralFilm::set_attempted(uint32_t replicate, uint32_t block, uint32_t attempted) {
   require_sums();
   sums_->attempted.at(options_.held ? replicate : 0).at(block) = attempted;
+  if (sums_->observer) sums_->observer(block);
 }
 
-uint32_t SpectralFilm::attempted_at(uint32_t replicate, std::size_t pixel) const {
+void SpectralFilm::observe(std::function<void(uint32_t block)> observer) {
+  require_sums();
+  sums_->observer = std::move(observer);
+}
+
+uint32_t SpectralFilm::block_of(std::size_t pixel) const {
   const std::size_t x = rect_.x0 + pixel % rect_.width, y = rect_.y0 + pixel / rect_.width;
   const std::size_t per_row = (rect_.x0 + rect_.width - 1) / kBlockSize - rect_.x0 / kBlockSize + 1;
   const std::size_t column = x / kBlockSize - rect_.x0 / kBlockSize;
   const std::size_t row = y / kBlockSize - rect_.y0 / kBlockSize;
-  return attempted(replicate, static_cast<uint32_t>(row * per_row + column));
+  return static_cast<uint32_t>(row * per_row + column);
+}
+
+uint32_t SpectralFilm::attempted_at(uint32_t replicate, std::size_t pixel) const {
+  return attempted(replicate, block_of(pixel));
 }
 
 SpectralFilm::BlockMeans SpectralFilm::means_of_block(uint32_t replicate, uint32_t block) const {

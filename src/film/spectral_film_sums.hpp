@@ -34,6 +34,7 @@ struct SpectralFilm::Sums {
   std::vector<std::vector<uint32_t>> attempted;  // [slot][block]
   std::vector<uint32_t> open;                    // [block] of folded films: the replicate, or kNone
   std::vector<char> stale;                       // [block]: its sums are of before restart(); empty: none is
+  std::function<void(uint32_t block)> observer;
 };
 
 /// The means of a replicate of a block, made from sums.

@@ -36,7 +36,10 @@ LiveFilm::LiveFilm(const PixelRect& rect, std::vector<Band> bands, std::vector<d
                    const SumRule& rule, bool variance)
     : film_(rect, film_options(bands.size(), rule, variance)),
       bands_(std::move(bands)),
-      units_(std::move(units)) {}
+      units_(std::move(units)),
+      additions_(film_.blocks().size()) {
+  film_.observe([this](uint32_t block) { add_block(block); });
+}
 
 std::size_t LiveFilm::bytes(const PixelRect& rect, std::size_t channels, const SumRule& rule, bool variance) {
   return rect.pixels() * SpectralFilm::bytes_per_pixel(film_options(channels, rule, variance));
@@ -50,7 +53,7 @@ uint64_t LiveFilm::most_samples() {
 
 void LiveFilm::restart() {
   film_.restart();
-  closed_.clear();
+  kept_.clear();
   replicate_ = first_ = 0;
   passes_ = 0;
 }
@@ -100,42 +103,76 @@ void LiveFilm::means(uint32_t y, std::span<float> out) const {
 
 void LiveFilm::prepare(const ThreeSums& sums) const {
   constexpr std::size_t kMostKept = 4;
-  if (std::ranges::any_of(closed_, [&](const ClosedSums& kept) { return kept.sums == sums; })) return;
-  if (closed_.size() >= kMostKept) closed_.pop_front();
+  if (film_.options().sums->kind != SumRule::Kind::kFolded) return;  // others have no sums that are all open
+  const auto kept = std::ranges::find_if(kept_, [&](const KeptSums& k) { return k.sums == sums; });
+  if (kept != kept_.end()) {
+    kept->asked = passes_;
+    return;
+  }
+  if (kept_.size() >= kMostKept) kept_.pop_front();
   const std::size_t pixels = film_.rect().pixels();
-  closed_.push_back({sums, std::vector<float>(3 * pixels), std::vector<uint32_t>(pixels)});
+  const std::vector<float> nothing(3 * pixels);
+  kept_.push_back(
+      {sums, passes_, nothing, nothing, std::vector<uint32_t>(pixels), std::vector<uint64_t>(blocks())});
+}
+
+/// What nobody has asked for of late is not made.
+void LiveFilm::add_block(uint32_t block) {
+  constexpr uint64_t kLately = 2;  // passes
+  const std::size_t channels = bands_.size();
+  const PixelRect& rect = film_.blocks()[block];
+  ++additions_[block];
+  for (KeptSums& kept : kept_) {
+    if (passes_ - kept.asked > kLately) continue;
+    for (uint32_t y = 0; y < rect.height; ++y) {
+      const std::size_t first = film_.pixel_index(rect, std::size_t{y} * rect.width);
+      const OpenSumsView open = std::as_const(film_).open_sums(0, first, rect.width);
+      for (uint32_t x = 0; x < rect.width; ++x)
+        kept.sums(&open.values[x * channels], &kept.open[3 * (first + x)]);
+    }
+    kept.additions[block] = additions_[block];
+  }
 }
 
 /// Where a replicate was closed since.
-void LiveFilm::update_closed(uint32_t y, ClosedSums& closed) const {
+void LiveFilm::update_closed(uint32_t y, KeptSums& kept) const {
   const std::size_t first = std::size_t{y} * width(), channels = bands_.size();
   bool same = true;
-  for (uint32_t x = 0; x < width(); ++x) same = same && closed.samples[first + x] == film_.samples(x, y);
+  for (uint32_t x = 0; x < width(); ++x) same = same && kept.samples[first + x] == film_.samples(x, y);
   if (same) return;
   std::vector<float> row(width() * channels);
   film_.row(y, row, {});
   for (uint32_t x = 0; x < width(); ++x) {
-    closed.sums(&row[x * channels], &closed.values[3 * (first + x)]);
-    closed.samples[first + x] = static_cast<uint32_t>(film_.samples(x, y));
+    kept.sums(&row[x * channels], &kept.closed[3 * (first + x)]);
+    kept.samples[first + x] = static_cast<uint32_t>(film_.samples(x, y));
   }
 }
 
 void LiveFilm::sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const {
-  const bool plain = film_.options().sums->kind == SumRule::Kind::kFolded;  // and all sums are open: kLongest
-  const auto kept = std::ranges::find_if(closed_, [&](const ClosedSums& c) { return c.sums == of_row; });
-  if (!plain || kept == closed_.end()) return PixelSource::sums(y, of_row, out);
+  const auto kept = std::ranges::find_if(kept_, [&](const KeptSums& k) { return k.sums == of_row; });
+  if (kept == kept_.end()) return PixelSource::sums(y, of_row, out);
   update_closed(y, *kept);
   const std::size_t first = std::size_t{y} * width(), channels = bands_.size();
   const OpenSumsView open = film_.open_sums(0, first, width());
+  uint32_t end = 0;  // of the block
+  bool made = false;
   for (uint32_t x = 0; x < width(); ++x) {
-    float* const to = &out[3 * std::size_t{x}];
-    const double closed = kept->samples[first + x], count = closed + open.counts[x];
+    const std::size_t pixel = first + x;
+    if (x == end) {
+      const uint32_t block = film_.block_of(pixel);
+      end = film_.blocks()[block].x0 + film_.blocks()[block].width - film_.rect().x0;
+      made = kept->additions[block] == additions_[block];
+    }
     float of_open[3] = {};
-    if (open.counts[x] > 0) of_row(&open.values[x * channels], of_open);
+    if (open.counts[x] > 0 && made)
+      std::copy_n(&kept->open[3 * pixel], 3, of_open);
+    else if (open.counts[x] > 0)
+      of_row(&open.values[x * channels], of_open);
+    const double closed = kept->samples[pixel], count = closed + open.counts[x];
     const auto a = static_cast<float>(closed / count);
     for (std::size_t c = 0; c < 3; ++c)
-      to[c] = count > 0 ? a * kept->values[3 * (first + x) + c] + of_open[c] / static_cast<float>(count)
-                        : kNothing;
+      out[3 * std::size_t{x} + c] =
+          count > 0 ? a * kept->closed[3 * pixel + c] + of_open[c] / static_cast<float>(count) : kNothing;
   }
 }
 

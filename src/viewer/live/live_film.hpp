@@ -22,6 +22,8 @@ class LiveFilm final : public PixelSource {
   /// throws DeviceError  no memory
   LiveFilm(const PixelRect& rect, std::vector<Band> bands, std::vector<double> units, const SumRule& rule,
            bool variance);
+  LiveFilm(const LiveFilm&) = delete;  // which the film's observer points to
+  LiveFilm& operator=(const LiveFilm&) = delete;
 
   static std::size_t bytes(const PixelRect& rect, std::size_t channels, const SumRule& rule, bool variance);
   /// The replicates of SamplingSettings.
@@ -55,22 +57,26 @@ class LiveFilm final : public PixelSource {
   void prepare(const ThreeSums& sums) const override;
 
  private:
-  /// Sums of the closed replicates' means, which change with every 16th pass or less: each frame then reads the open sums
-  /// alone, half of what there is.
-  struct ClosedSums {
+  /// Three sums of all pixels, so that a picture does not read every channel. Of the closed replicates' means: they change with
+  /// every 16th pass or less. Of the open replicate: they are made as soon as a block has got its sample, by the thread that
+  /// has its channels in the caches.
+  struct KeptSums {
     ThreeSums sums;
-    std::vector<float> values;      // [pixel][3]
-    std::vector<uint32_t> samples;  // [pixel]: that the values are of
+    uint64_t asked;                   // passes() when they were asked for last
+    std::vector<float> closed, open;  // [pixel][3]
+    std::vector<uint32_t> samples;    // [pixel]: that `closed` is of
+    std::vector<uint64_t> additions;  // [block]: after which of them `open` was made; 0: never
   };
-  void update_closed(uint32_t y, ClosedSums& closed) const;
+  void add_block(uint32_t block);
+  void update_closed(uint32_t y, KeptSums& kept) const;
   void add_open(uint32_t y, uint32_t x, std::span<float> mean) const;
 
   SpectralFilm film_;
   std::vector<Band> bands_;
   std::vector<double> units_;
+  std::vector<uint64_t> additions_;  // [block]: how often its sums have been added to
   uint32_t replicate_ = 0, first_ = 0;
-  mutable std::deque<ClosedSums>
-      closed_;  // of the sums that were asked for last; rows belong to who reads them
+  mutable std::deque<KeptSums> kept_;  // of the sums that were asked for last; rows belong to who reads them
   uint64_t passes_ = 0;
 };
 

@@ -54,6 +54,28 @@ void put(SpectralFilm& film, uint32_t replicate, uint32_t n) {
   film.set_attempted(replicate, 0, n);
 }
 
+/// Who watches the film hears of a block when its sums are there, and only then.
+TEST(SpectralFilm, ObserversSeeTheNewSums) {
+  SpectralFilm film({0, 0, 2, 1}, with_sums(3, false, 64));
+  std::vector<float> seen;
+  film.observe([&](uint32_t block) {
+    EXPECT_EQ(block, 0u);
+    seen.push_back(film.pixel_sums(1, 1).open[1]);
+  });
+  put(film, 1, 4);
+  EXPECT_EQ(seen, std::vector<float>{4 * (3.0f + 2 + 1)});
+  film.observe({});
+  put(film, 1, 5);
+  EXPECT_EQ(seen.size(), 1u);
+}
+
+TEST(SpectralFilm, PixelsLieInTheirBlocks) {
+  const SpectralFilm film({40, 50, 70, 90}, with_sums(1, false, 64));
+  for (uint32_t b = 0; b < film.blocks().size(); ++b)
+    for (std::size_t p = 0; p < film.blocks()[b].pixels(); ++p)
+      ASSERT_EQ(film.block_of(film.pixel_index(film.blocks()[b], p)), b) << p;
+}
+
 /// Both ways of keeping sums give what means that come at once give, moments included.
 TEST(SpectralFilm, FoldedAndHeldSumsGiveTheMomentsOfTheirMeans) {
   SpectralFilm folded({0, 0, 2, 1}, with_sums(3, false, 64)), held({0, 0, 2, 1}, with_sums(3, true, 64));
