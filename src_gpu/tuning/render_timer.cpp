@@ -8,8 +8,6 @@
 #include "base/error.hpp"
 #include "src_gpu/device/memory.hpp"
 #include "src_gpu/device_state.hpp"
-#include "src_gpu/evaluate/evaluation.hpp"
-#include "src_gpu/path/path_pool.hpp"
 
 namespace kiloband::opencl {
 namespace {
@@ -75,16 +73,10 @@ uint64_t RenderTimer::paths() const {
 }
 
 TuningBounds RenderTimer::bounds() const {
-  const uint64_t budget = options_.device_memory.value_or(default_memory_budget(device_));
-  TuningBounds bounds;
-  bounds.method = options_.method.value_or(kDefaultMethod);
-  bounds.cpu_device = device_.type == DeviceType::kCpu;
-  bounds.pool_slots = usual_slots(bounds.cpu_device, budget);
-  bounds.round_paths = usual_jobs(bounds.cpu_device, budget);
-  bounds.path_group = kPoolLocalSize;
-  bounds.evaluation_group = usual_evaluation_group(bounds.method);
-  bounds.largest_group = device_.max_work_group_size;
-  return bounds;
+  const TunedRender render{options_.method.value_or(kDefaultMethod),
+                           sampling_.wavelengths == WavelengthMode::kShared,
+                           static_cast<uint32_t>(scene_->channels.size()), paths()};
+  return tuning_bounds(device_, render, options_.device_memory.value_or(default_memory_budget(device_)));
 }
 
 }  // namespace kiloband::opencl

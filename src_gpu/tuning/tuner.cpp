@@ -1,7 +1,11 @@
 #include "src_gpu/tuning/tuner.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <vector>
+
+#include "src_gpu/evaluate/evaluation.hpp"
+#include "src_gpu/path/path_pool.hpp"
 
 namespace kiloband::opencl {
 namespace {
@@ -29,8 +33,11 @@ Ladder around(const char* name, uint64_t usual, uint64_t fewest, uint64_t most) 
   return ladder;
 }
 
-Ladder of_paths(const char* name, uint64_t usual) {
-  return around(name, usual, std::max(usual >> kRungsBelow, kFewestPaths), usual << kRungsAbove);
+Ladder of_paths(const char* name, uint64_t usual, uint64_t paths) {
+  constexpr uint64_t kLargest = uint64_t{1} << 40;
+  const uint64_t all = std::bit_ceil(std::min(paths, kLargest));
+  return around(name, usual, std::max(usual >> kRungsBelow, kFewestPaths),
+                std::min(usual << kRungsAbove, all));
 }
 
 /// What differs from the usual sizes.
@@ -69,12 +76,31 @@ double speed_over(const Tuning& best, const Tuning& other, uint32_t rounds, cons
 }  // namespace
 
 std::vector<Ladder> tuning_ladders(const TuningBounds& bounds) {
-  std::vector<Ladder> ladders{of_paths(kSlots, bounds.pool_slots)};
-  if (bounds.method != Method::kPt) ladders.push_back(of_paths(kPaths, bounds.round_paths));
+  std::vector<Ladder> ladders{of_paths(kSlots, bounds.pool_slots, bounds.paths)};
+  if (bounds.method != Method::kPt) ladders.push_back(of_paths(kPaths, bounds.round_paths, bounds.paths));
   if (bounds.cpu_device) return ladders;
   ladders.push_back(around(kPathGroup, bounds.path_group, kSmallestGroup, bounds.largest_group));
-  ladders.push_back(around(kEvaluationGroup, bounds.evaluation_group, kSmallestGroup, bounds.largest_group));
+  ladders.push_back(
+      around(kEvaluationGroup, bounds.evaluation_group, kSmallestGroup, bounds.largest_evaluation_group));
   return ladders;
+}
+
+TuningBounds tuning_bounds(const DeviceInfo& device, const TunedRender& render, uint64_t memory_budget) {
+  const auto group = [&](std::optional<uint32_t> largest) {
+    return evaluation_shape(device, render.method, render.shared_wavelengths, render.channels, largest)
+        .local_size;
+  };
+  TuningBounds bounds;
+  bounds.method = render.method;
+  bounds.cpu_device = device.type == DeviceType::kCpu;
+  bounds.pool_slots = usual_slots(bounds.cpu_device, memory_budget);
+  bounds.round_paths = usual_jobs(bounds.cpu_device, memory_budget);
+  bounds.path_group = kPoolLocalSize;
+  bounds.evaluation_group = group({});
+  bounds.largest_group = device.max_work_group_size;
+  bounds.largest_evaluation_group = group(static_cast<uint32_t>(device.max_work_group_size));
+  bounds.paths = render.paths;
+  return bounds;
 }
 
 TuneOutcome find_tuning(const TuningBounds& bounds, const TimeRender& time, const TuneSettings& settings) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "src_gpu/device/device.hpp"
 #include "src_gpu/path/round_plan.hpp"
 #include "src_gpu/tuning/ladder_search.hpp"
 #include "src_gpu/tuning/tuning.hpp"
@@ -14,15 +15,28 @@ namespace kiloband::opencl {
 /// Where the search begins, and what it leaves alone.
 struct TuningBounds {
   Method method = Method::kDpeptBatch;
-  bool cpu_device = false;        // groups of one work-item: sizes of groups are not searched
-  uint64_t pool_slots = 0;        // the usual ones
-  uint64_t round_paths = 0;       // of dpept
-  uint64_t path_group = 0;        // of GPUs
-  uint64_t evaluation_group = 0;  // of GPUs
-  uint64_t largest_group = 0;     // that the device has
+  bool cpu_device = false;                // groups of one work-item: sizes of groups are not searched
+  uint64_t pool_slots = 0;                // the usual ones
+  uint64_t round_paths = 0;               // of dpept
+  uint64_t path_group = 0;                // of GPUs
+  uint64_t evaluation_group = 0;          // of GPUs
+  uint64_t largest_group = 0;             // that the device has
+  uint64_t largest_evaluation_group = 0;  // that the channels have work for, too
+  uint64_t paths = ~uint64_t{0};          // of a timed render: no more are ever in flight or in a round
 };
 
-/// The ladders of the search: sizes by powers of two around the usual ones, 64 times less to 16 times more paths.
+/// What of a render the sizes depend on.
+struct TunedRender {
+  Method method = Method::kDpeptBatch;
+  bool shared_wavelengths = true;
+  uint32_t channels = 1;
+  uint64_t paths = 0;
+};
+/// Those of a device that nobody has tuned. memory_budget: bytes
+TuningBounds tuning_bounds(const DeviceInfo& device, const TunedRender& render, uint64_t memory_budget);
+
+/// The ladders of the search: sizes by powers of two around the usual ones, 64 times less to 16 times more paths. They end where larger
+/// sizes would come to the same: noise would choose among those.
 std::vector<Ladder> tuning_ladders(const TuningBounds& bounds);
 
 /// Seconds of one render with these sizes; nothing: it does not work with them.

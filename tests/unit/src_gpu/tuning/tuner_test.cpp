@@ -17,7 +17,8 @@ TuningBounds gpu_bounds() {
           .round_paths = 1u << 22,
           .path_group = 64,
           .evaluation_group = 256,
-          .largest_group = 1024};
+          .largest_group = 1024,
+          .largest_evaluation_group = 1024};
 }
 
 std::vector<std::string> names(const std::vector<Ladder>& ladders) {
@@ -49,6 +50,33 @@ TEST(Tuner, LaddersBeginAtTheUsualSizes) {
     EXPECT_EQ(ladders[3].values[ladders[3].start], 64u);
     for (const Ladder& ladder : ladders) EXPECT_TRUE(std::ranges::is_sorted(ladder.values));
   }
+}
+
+/// Sizes that come to the same are no rungs: groups beyond what the channels give work, paths beyond those of the render.
+TEST(Tuner, LaddersEndWhereSizesComeToTheSame) {
+  DeviceInfo gpu;
+  gpu.type = DeviceType::kGpu;
+  gpu.max_work_group_size = 1024;
+  constexpr uint64_t kBudget = uint64_t{8} << 30;
+  const auto last = [&](const TunedRender& render, std::size_t ladder) {
+    return tuning_ladders(tuning_bounds(gpu, render, kBudget)).at(ladder).values.back();
+  };
+  TunedRender render{Method::kDpeptBatch, true, 100, uint64_t{1} << 40};
+  EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group,
+            128u);  // a vector of one channel each, in groups of 32
+  EXPECT_EQ(last(render, 3), 128u);
+  render.channels = 4000;  // vectors of 4
+  EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group, 256u);
+  EXPECT_EQ(last(render, 3), 1024u);
+  render.method = Method::kDpeptPath;  // an item has a path, whatever the channels are
+  render.channels = 100;
+  EXPECT_EQ(last(render, 3), 1024u);
+  const uint64_t usual = usual_jobs(false, kBudget);
+  EXPECT_EQ(last(render, 1), usual << 4);
+  render.paths = 2 * usual - 5;
+  EXPECT_EQ(last(render, 1), 2 * usual);
+  render.paths = 1000;  // the usual size stays, as the place where the search begins
+  EXPECT_EQ(last(render, 1), usual);
 }
 
 /// A clock that has its least time with one size of everything.
