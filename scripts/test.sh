@@ -17,4 +17,4 @@ if [ "$preset" = release ]; then
   scripts/tidy.sh
   scripts/fuzz.sh 60
 fi
-ctest --preset "$preset" --parallel "$(nproc)"
+ctest --preset "$preset" --parallel "$(($(nproc) + 1))"  # some wait for browsers, devices and time limits
