@@ -18,21 +18,18 @@ void three_sums(const std::array<const float*, 3>& weights, const float* values,
   constexpr hn::ScalableTag<float> kWide;
   const std::size_t lanes = hn::Lanes(kWide), whole = count / lanes * lanes;
   auto red = hn::Zero(kWide), green = red, blue = red;
-  const auto add = [&](std::size_t k, auto value, auto load) HWY_ATTR {
-    red = hn::MulAdd(load(weights[0] + k), value, red);
-    green = hn::MulAdd(load(weights[1] + k), value, green);
-    blue = hn::MulAdd(load(weights[2] + k), value, blue);
-  };
-  for (std::size_t k = 0; k < whole; k += lanes)
-    add(k, hn::LoadU(kWide, values + k), [&](const float* from) HWY_ATTR { return hn::LoadU(kWide, from); });
-  if (whole < count) {
-    const auto rest = hn::FirstN(kWide, count - whole);
-    const auto some = [&](const float* from) HWY_ATTR { return hn::MaskedLoad(rest, kWide, from); };
-    add(whole, some(values + whole), some);
+  for (std::size_t k = 0; k < whole; k += lanes) {
+    const auto value = hn::LoadU(kWide, values + k);
+    red = hn::MulAdd(hn::LoadU(kWide, weights[0] + k), value, red);
+    green = hn::MulAdd(hn::LoadU(kWide, weights[1] + k), value, green);
+    blue = hn::MulAdd(hn::LoadU(kWide, weights[2] + k), value, blue);
   }
   out[0] = hn::GetLane(hn::SumOfLanes(kWide, red));
   out[1] = hn::GetLane(hn::SumOfLanes(kWide, green));
   out[2] = hn::GetLane(hn::SumOfLanes(kWide, blue));
+  // No MaskedLoad: for SSE4.2 that is an aligned load of a whole vector.
+  for (std::size_t k = whole; k < count; ++k)
+    for (std::size_t c = 0; c < 3; ++c) out[c] += weights[c][k] * values[k];
 }
 
 }  // namespace HWY_NAMESPACE

@@ -2,13 +2,16 @@
 #include "film/moment_kernels.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <random>
 #include <vector>
 
+#include "tests/support/every_target.hpp"
+
 namespace kiloband::film {
 namespace {
+
+using test::on_every_target;
 
 struct Arrays {
   std::vector<float> values, mean, m2;
@@ -26,19 +29,6 @@ Arrays random_arrays(std::size_t channels) {
     arrays.sums.push_back(uniform(random));
   }
   return arrays;
-}
-
-/// f for each instruction set.
-template <class F>
-void on_every_target(F&& f) {
-  for (const int64_t target : {HWY_SSE4, HWY_AVX2, HWY_AVX3}) {
-    if (!(hwy::SupportedTargets() & target)) continue;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    f();
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
 }
 
 // Vectors, groups of four and single channels.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "spectral/planck.hpp"
+#include "tests/support/every_target.hpp"
 #include "tests/support/messages.hpp"
 #include "tests/unit/viewer/array_source.hpp"
 #include "viewer/display/three_sums.hpp"
@@ -91,21 +92,25 @@ TEST(Plane, QuantilesLeaveOutWhatIsNoNumber) {
   EXPECT_EQ(quantile({1, 1, 3, {1, 7, 2}}, 0.5, -1), 7) << "the largest component of a colour";
 }
 
-/// For any number of bands: vectors are followed by what is left of them.
+/// For any number of bands, with vectors of any length, wherever a pixel's values begin and where they end.
 TEST(ThreeSums, AreSumsOfProducts) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0, 1);
-  std::vector<float> numbers[4];
-  for (std::vector<float>& some : numbers)
-    for (int i = 0; i < 70; ++i) some.push_back(uniform(random));
   for (std::size_t count = 0; count <= 70; ++count) {
+    std::vector<float> numbers[4];  // of `count` numbers behind one more: not aligned, and nothing follows
     double expected[3] = {};
+    for (std::vector<float>& some : numbers)
+      for (std::size_t k = 0; k <= count; ++k) some.push_back(uniform(random));
     for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < count; ++k) expected[c] += double{numbers[c][k]} * double{numbers[3][k]};
-    float sums[4] = {-1, -1, -1, -1};
-    three_sums({numbers[0].data(), numbers[1].data(), numbers[2].data()}, numbers[3].data(), count, sums);
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(sums[c], expected[c], 1e-6 * (1 + expected[c])) << count;
-    EXPECT_EQ(sums[3], -1);
+      for (std::size_t k = 1; k <= count; ++k) expected[c] += double{numbers[c][k]} * double{numbers[3][k]};
+    on_every_target([&] {
+      float sums[4] = {-1, -1, -1, -1};
+      three_sums({&numbers[0][0] + 1, &numbers[1][0] + 1, &numbers[2][0] + 1}, &numbers[3][0] + 1, count,
+                 sums);
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(sums[c], expected[c], 1e-6 * (1 + expected[c])) << count;
+      EXPECT_EQ(sums[3], -1);
+    });
   }
 }
 
