@@ -96,16 +96,11 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
   shape.staged = method == Method::kDpeptBatch;
   shape.width = channels >= 512 ? 4 : channels >= 128 ? 2 : 1;
   shape.vectors = 1;
-  const uint64_t wanted = largest_group.value_or(usual_evaluation_group(method));
+  const uint64_t wanted = largest_group.value_or(method == Method::kDpeptPath ? 64 : 256);
   const uint64_t most = std::min(device.max_work_group_size, wanted);
   const uint64_t items = ceil_div(ceil_div(channels, shape.width), 32) * 32;
   shape.local_size = static_cast<uint32_t>(method == Method::kDpeptPath ? most : std::min(items, most));
   return shape;
-}
-
-uint32_t usual_evaluation_group(Method method) {
-  return method == Method::kDpeptPath ? 64
-                                      : 256;  // dpept-path: work-items have a path each, the others share one
 }
 
 uint32_t fitting_local_size(uint32_t wanted, uint64_t kernel_limit) {

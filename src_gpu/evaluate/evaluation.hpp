@@ -30,10 +30,10 @@ struct EvaluationShape {
   std::vector<std::string> defines(uint32_t derived) const;
 };
 
-/// largest_group  work-items of a group of a GPU, at most; nothing: usual_evaluation_group()
+/// largest_group  work-items of a group of a GPU, at most; nothing: 64 for dpept-path, whose work-items have a
+///                path each, 256 for the others, which share one
 EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool shared_wavelengths,
                                  uint32_t channels, std::optional<uint32_t> largest_group = {});
-uint32_t usual_evaluation_group(Method method);
 
 /// Work-items of a group: no more than the compiled kernel can have, whose registers may allow fewer than the device does.
 uint32_t fitting_local_size(uint32_t wanted, uint64_t kernel_limit);
