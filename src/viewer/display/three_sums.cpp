@@ -24,12 +24,13 @@ void three_sums(const std::array<const float*, 3>& weights, const float* values,
     green = hn::MulAdd(hn::LoadU(kWide, weights[1] + k), value, green);
     blue = hn::MulAdd(hn::LoadU(kWide, weights[2] + k), value, blue);
   }
-  out[0] = hn::GetLane(hn::SumOfLanes(kWide, red));
-  out[1] = hn::GetLane(hn::SumOfLanes(kWide, green));
-  out[2] = hn::GetLane(hn::SumOfLanes(kWide, blue));
-  // No MaskedLoad: for SSE4.2 that is an aligned load of a whole vector.
+  // No MaskedLoad: for SSE4.2 that is an aligned load of a whole vector. In registers: `out` might be what is read.
+  float rest[3] = {};
   for (std::size_t k = whole; k < count; ++k)
-    for (std::size_t c = 0; c < 3; ++c) out[c] += weights[c][k] * values[k];
+    for (std::size_t c = 0; c < 3; ++c) rest[c] += weights[c][k] * values[k];
+  out[0] = hn::GetLane(hn::SumOfLanes(kWide, red)) + rest[0];
+  out[1] = hn::GetLane(hn::SumOfLanes(kWide, green)) + rest[1];
+  out[2] = hn::GetLane(hn::SumOfLanes(kWide, blue)) + rest[2];
 }
 
 }  // namespace HWY_NAMESPACE
