@@ -21,7 +21,7 @@ bool is_cpu(const DeviceState& device) {
 }
 
 uint32_t most_slots(const DeviceState& device, const Tuning& tuning) {
-  return tuning.pool_slots.value_or(usual_slots(is_cpu(device), device.memory.budget()));
+  return tuning.pool_slots.value_or(usual_slots(is_cpu(device), device.memory.budget(), device.slot_bytes()));
 }
 
 uint64_t most_jobs(const DeviceState& device, const Tuning& tuning, uint32_t slots) {

@@ -25,8 +25,10 @@ constexpr uint64_t kTablesOfBlock = 4u << 20;
 constexpr uint64_t kFewestGpuSlots = 1u << 16, kMostGpuSlots = 1u << 21, kMostGpuJobs = 1u << 24;
 constexpr uint64_t kSlotBytes = 256, kJobBytes = 512;
 
-/// A CPU device keeps what a round touches in its caches.
-constexpr uint32_t kCpuSlots = 1u << 13;
+/// Of a CPU device. Launches that are long beside what it costs to begin one; what pt keeps of every channel for the
+/// paths in flight should stay in caches, until launches become too short (bench_methods --pool, validation/README.md).
+constexpr uint32_t kFewestCpuSlots = 1u << 13, kMostCpuSlots = 1u << 15;
+constexpr uint64_t kCpuStateBytes = 8u << 20;
 constexpr uint64_t kCpuJobs = 1u << 16;
 
 uint64_t share(uint64_t bytes, double part) {
@@ -137,8 +139,13 @@ uint64_t gpu_jobs(uint64_t budget) {
   return std::clamp<uint64_t>(fitting, gpu_slots(budget), kMostGpuJobs);
 }
 
-uint32_t usual_slots(bool cpu_device, uint64_t budget) {
-  return cpu_device ? kCpuSlots : gpu_slots(budget);
+uint32_t cpu_slots(uint64_t slot_bytes) {
+  const uint64_t fitting = std::bit_floor(kCpuStateBytes / std::max<uint64_t>(slot_bytes, 1));
+  return static_cast<uint32_t>(std::clamp<uint64_t>(fitting, kFewestCpuSlots, kMostCpuSlots));
+}
+
+uint32_t usual_slots(bool cpu_device, uint64_t budget, uint64_t slot_bytes) {
+  return cpu_device ? cpu_slots(slot_bytes) : gpu_slots(budget);
 }
 
 uint64_t usual_jobs(bool cpu_device, uint64_t budget) {

@@ -59,8 +59,9 @@ inline constexpr uint32_t kSamplesInRegisters = 32;
 uint32_t gpu_slots(uint64_t budget);
 uint64_t gpu_jobs(uint64_t budget);
 
-/// Paths in flight and paths of a round that a device has where nobody says otherwise. budget: bytes of its memory
-uint32_t usual_slots(bool cpu_device, uint64_t budget);
+/// Paths in flight and paths of a round that a device has where nobody says otherwise. budget: bytes of its memory;
+/// slot_bytes: PlanRequest::slot_bytes
+uint32_t usual_slots(bool cpu_device, uint64_t budget, uint64_t slot_bytes);
 uint64_t usual_jobs(bool cpu_device, uint64_t budget);
 
 /// How the film is summed where rounds have at most `round_samples`: in chunks of a round, and of what

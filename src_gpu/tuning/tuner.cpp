@@ -86,14 +86,16 @@ std::vector<Ladder> tuning_ladders(const TuningBounds& bounds) {
 }
 
 TuningBounds tuning_bounds(const DeviceInfo& device, const TunedRender& render, uint64_t memory_budget) {
-  const auto group = [&](std::optional<uint32_t> largest) {
-    return evaluation_shape(device, render.method, render.shared_wavelengths, render.channels, largest)
-        .local_size;
+  const auto shape = [&](std::optional<uint32_t> largest) {
+    return evaluation_shape(device, render.method, render.shared_wavelengths, render.channels, largest);
   };
+  const auto group = [&](std::optional<uint32_t> largest) { return shape(largest).local_size; };
+  KbSpectraLayout layout{};
+  layout.stride = render.channels;
   TuningBounds bounds;
   bounds.method = render.method;
   bounds.cpu_device = device.type == DeviceType::kCpu;
-  bounds.pool_slots = usual_slots(bounds.cpu_device, memory_budget);
+  bounds.pool_slots = usual_slots(bounds.cpu_device, memory_budget, slot_bytes(layout, shape({})));
   bounds.round_paths = usual_jobs(bounds.cpu_device, memory_budget);
   bounds.path_group = kPoolLocalSize;
   bounds.evaluation_group = group({});

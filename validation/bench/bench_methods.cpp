@@ -1,8 +1,8 @@
-// The three methods of the OpenCL backend against the number of channels, at a fixed pool, in one run, with a
+// The three methods of the OpenCL backend against the number of channels, in one run, with a
 // model of bytes and operations beside the measurement.
 //
-//   bench_methods [--device N|NAME] [--pool 8192] [--size 128] [--spp 16] [--rounds 3] [--json FILE]
-//                 [SCENE.xml]
+//   bench_methods [--device N|NAME] [--pool SLOTS] [--size 128] [--spp 16] [--rounds 3] [--json FILE]
+//                 [SCENE.xml]      --pool: of all methods, else each has what it usually has
 //
 // Paths per second are wall time of whole renders (compiled kernels; median of the rounds). Evaluation is
 // device time of the kernels that evaluate (pt_update; dpept_path; dpept_batch) per channel and vertex.
@@ -32,7 +32,8 @@ namespace {
 struct Settings {
   std::string scene = std::string(KILOBAND_SOURCE_DIR) + "/scenes/cornell_box/cornell_box.xml";
   std::optional<std::string> device;
-  uint32_t pool = 8192, size = 128, spp = 16, rounds = 3;
+  std::optional<uint32_t> pool;
+  uint32_t size = 128, spp = 16, rounds = 3;
   std::optional<std::string> json;
 };
 
@@ -40,6 +41,7 @@ struct Settings {
 struct Timing {
   double seconds = 0, evaluation = 0, generation = 0;
   double paths = 0, vertices = 0;
+  uint32_t slots = 0;  // paths in flight
 };
 
 double seconds_now() {
@@ -77,6 +79,7 @@ Timing render_once(Backend& backend, const FlatScene& scene, uint32_t spp) {
   };
   timing.evaluation = spent({"pt_update", "dpept_path", "dpept_batch"});
   timing.generation = spent({"generate", "closest_hits", "shade", "any_hits", "compact"});
+  timing.slots = after.pool_slots;
   timing.paths = static_cast<double>(after.paths - before.paths);
   timing.vertices = static_cast<double>(after.vertices - before.vertices);
   return timing;
@@ -121,7 +124,7 @@ nlohmann::json row(opencl::DeviceContext& context, const Settings& settings, uin
   const Timing path = measure(scene, settings, opencl::Method::kDpeptPath);
   const Timing batch = measure(scene, settings, opencl::Method::kDpeptBatch);
   const double padded = (channels + 15) / 16 * 16;
-  const double triad = speed::triad_bandwidth(context, static_cast<uint64_t>(8 * padded * settings.pool));
+  const double triad = speed::triad_bandwidth(context, static_cast<uint64_t>(8 * padded * pt.slots));
   const auto ns = [&](const Timing& t) { return t.evaluation / (t.vertices * channels) * 1e9; };
   const double bandwidth = 16 * padded * pt.vertices / pt.evaluation;
   nlohmann::json r;
@@ -129,6 +132,7 @@ nlohmann::json row(opencl::DeviceContext& context, const Settings& settings, uin
   r["paths_per_second"] = {{"pt", pt.paths / pt.seconds},
                            {"dpept_path", path.paths / path.seconds},
                            {"dpept_batch", batch.paths / batch.seconds}};
+  r["paths_in_flight"] = {{"pt", pt.slots}, {"dpept_path", path.slots}, {"dpept_batch", batch.slots}};
   r["evaluation_ns"] = {{"pt", ns(pt)}, {"dpept_path", ns(path)}, {"dpept_batch", ns(batch)}};
   r["generation_share_of_batch"] = batch.generation / batch.seconds;
   r["pt_bandwidth"] = bandwidth;
@@ -166,11 +170,9 @@ int run(int argc, char** argv) {
   nlohmann::json json;
   json["device"] = context.device().name;
   json["driver"] = context.device().driver_version;
-  json["pool"] = settings.pool;
   json["image"] = fmt::format("{0} x {0} pixels, {1} samples", settings.size, settings.spp);
   json["triad_in_cache"] = cache;
-  fmt::print("{}, pool of {} paths; a triad in the cache: {:.0f} GB/s\n", context.device().name,
-             settings.pool, cache * 1e-9);
+  fmt::print("{}; a triad in the cache: {:.0f} GB/s\n", context.device().name, cache * 1e-9);
   fmt::print("{:>5} {:^26}   {:^23}   {:^19}   {:^20}\n", "", "Mpaths/s", "evaluation, ns", "GB/s",
              "batch over pt");
   fmt::print("{:>5} {:>8} {:>8} {:>8}   {:>7} {:>7} {:>7}   {:>6} {:>6} {:>5}   {:>6} {:>6} {:>6}\n", "K",

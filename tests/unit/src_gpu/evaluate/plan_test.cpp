@@ -24,6 +24,19 @@ TEST(GpuPlan, SlotsAndJobsByMemory) {
   EXPECT_EQ(gpu_jobs(80 * kGiB), 1u << 24);
 }
 
+/// What pt keeps of every channel for the paths in flight stays within 8 MiB where launches are long enough with that.
+TEST(GpuPlan, SlotsOfCpusByTheStateOfTheirPaths) {
+  const auto slots = [](uint64_t channels) { return usual_slots(true, kGiB, 2 * sizeof(float) * channels); };
+  EXPECT_EQ(slots(0), 1u << 15);  // dpept
+  EXPECT_EQ(slots(8), 1u << 15);
+  EXPECT_EQ(slots(32), 1u << 15);
+  EXPECT_EQ(slots(33), 1u << 14);
+  EXPECT_EQ(slots(64), 1u << 14);
+  EXPECT_EQ(slots(65), 1u << 13);
+  EXPECT_EQ(slots(4096), 1u << 13);
+  EXPECT_EQ(usual_slots(false, kGiB, 0), gpu_slots(kGiB));
+}
+
 TEST(GpuPlan, WorkGroupsFitTheKernel) {
   EXPECT_EQ(fitting_local_size(128, 256), 128u);
   EXPECT_EQ(fitting_local_size(256, 256), 256u);
