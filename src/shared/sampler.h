@@ -82,11 +82,11 @@ KB_FN KbSamplerKey kb_sampler_key(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_
   return k;
 }
 
-/* The four numbers of a block. */
-KB_FN KbFloat4 kb_sampler_block(KbSamplerKey key, kb_u32 block) {
-  if (key.sampler == KB_SAMPLER_INDEPENDENT)
-    return kb_philox_floats(key.seed, key.pixel, key.sample, block, KB_STREAM_BLOCKS);
-  return kb_unit_float4(kb_sobol_block(key.table, key.reversed_index, key.key0, key.key1, block));
+/* The four numbers of a block. By its address: a copy of a key that has just been made would wait for it to reach memory. */
+KB_FN KbFloat4 kb_sampler_block(const KbSamplerKey* key, kb_u32 block) {
+  if (key->sampler == KB_SAMPLER_INDEPENDENT)
+    return kb_philox_floats(key->seed, key->pixel, key->sample, block, KB_STREAM_BLOCKS);
+  return kb_unit_float4(kb_sobol_block(key->table, key->reversed_index, key->key0, key->key1, block));
 }
 
 /* Wavelength offset of one path (per-path wavelengths). sobol: a scrambled van der Corput point, so that the

@@ -226,7 +226,7 @@ TEST(LaneSampler, RandomNumbersAreThoseOfTheSharedSampler) {
     key.sampler = KB_SAMPLER_INDEPENDENT;
     key.pixel = first;
     key.sample = second;
-    const KbFloat4 u = kb_sampler_block(key, 7);
+    const KbFloat4 u = kb_sampler_block(&key, 7);
     ASSERT_TRUE(u.x == philox[0][i] && u.y == philox[1][i] && u.z == philox[2][i] && u.w == philox[3][i])
         << i;
     key.sampler = KB_SAMPLER_SOBOL;
@@ -234,7 +234,7 @@ TEST(LaneSampler, RandomNumbersAreThoseOfTheSharedSampler) {
     key.reversed_index = first;
     key.key0 = second;
     key.key1 = second ^ 0x9e3779b9u;
-    const KbFloat4 s = kb_sampler_block(key, 5);
+    const KbFloat4 s = kb_sampler_block(&key, 5);
     ASSERT_TRUE(s.x == sobol[0][i] && s.y == sobol[1][i] && s.z == sobol[2][i] && s.w == sobol[3][i]) << i;
   }
 }

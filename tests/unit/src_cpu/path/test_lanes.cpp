@@ -135,7 +135,7 @@ TEST(StartOfLanes, CameraRaysAreThoseOfTheirPixels) {
         const uint32_t x = block.x0 + i % block.width, y = block.y0 + i / block.width;
         const KbSamplerKey key =
             kb_sampler_key(KB_SAMPLER_SOBOL, settings.seed, y * 45 + x, 7, 1, 3, kb_sobol_table);
-        const CameraRay ray = sample_camera_ray(scene.camera, x, y, kb_sampler_block(key, KB_BLOCK_CAMERA));
+        const CameraRay ray = sample_camera_ray(scene.camera, x, y, kb_sampler_block(&key, KB_BLOCK_CAMERA));
         const TraceRay& traced = recording.closest[i];
         ASSERT_EQ(traced.origin(), ray.origin) << x << " " << y;
         ASSERT_EQ(traced.direction(), ray.direction) << x << " " << y;
