@@ -62,14 +62,21 @@ KB_FN kb_u64 kb_domain_key(kb_u64 seed, kb_u64 domain) {
   return kb_mix64(kb_mix64(seed ^ domain) + domain);
 }
 
-/* pixel               y * width + x of the FULL film, whatever is cropped or tiled
+/* What all keys of a seed begin with. */
+KB_FN kb_u64 kb_sampler_root(kb_u64 seed) {
+  return kb_domain_key(seed, KB_DOMAIN_SOBOL);
+}
+
+/* root                kb_sampler_root(seed)
+   pixel               y * width + x of the FULL film, whatever is cropped or tiled
    sample              index among all samples of the pixel
    replicate           and index_in_replicate: where the sample was dealt to; not read by the independent
                        sampler
    table               kb_sobol_table */
-KB_FN KbSamplerKey kb_sampler_key(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample, kb_u32 replicate,
-                                  kb_u32 index_in_replicate, KB_GLOBAL const kb_u32* table) {
-  const kb_u64 key = kb_hash_pair(kb_domain_key(seed, KB_DOMAIN_SOBOL), replicate, pixel);
+KB_FN KbSamplerKey kb_sampler_key(kb_u32 sampler, kb_u64 seed, kb_u64 root, kb_u32 pixel, kb_u32 sample,
+                                  kb_u32 replicate, kb_u32 index_in_replicate,
+                                  KB_GLOBAL const kb_u32* table) {
+  const kb_u64 key = kb_hash_pair(root, replicate, pixel);
   KbSamplerKey k;
   k.seed = seed;
   k.sampler = sampler;

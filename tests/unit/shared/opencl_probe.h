@@ -24,9 +24,11 @@ KB_FN void kb_probe_random(kb_u32 i, KB_GLOBAL const kb_u32* table, KB_GLOBAL kb
   out[5] = kb_u32x4_y(s);
   out[6] = kb_u32x4_z(s);
   out[7] = kb_u32x4_w(s);
+  const kb_u64 seed = 0x123456789abcdeful;
   const KbSamplerKey independent =
-      kb_sampler_key(KB_SAMPLER_INDEPENDENT, 0x123456789abcdeful, i, 5u, 1u, 2u, table);
-  const KbSamplerKey sobol = kb_sampler_key(KB_SAMPLER_SOBOL, 0x123456789abcdeful, i, 5u, 1u, i >> 3, table);
+      kb_sampler_key(KB_SAMPLER_INDEPENDENT, seed, kb_sampler_root(seed), i, 5u, 1u, 2u, table);
+  const KbSamplerKey sobol =
+      kb_sampler_key(KB_SAMPLER_SOBOL, seed, kb_sampler_root(seed), i, 5u, 1u, i >> 3, table);
   const KbFloat4 a = kb_sampler_block(&independent, i & 7u), b = kb_sampler_block(&sobol, i & 7u);
   out[8] = kb_as_u32(a.x);
   out[9] = kb_as_u32(a.w);

@@ -21,8 +21,8 @@ bool same(const KbFloat4& a, const KbFloat4& b) {
 
 KbFloat4 sample_block(uint32_t sampler, uint64_t seed, uint32_t pixel, uint32_t sample, uint32_t replicate,
                       uint32_t index_in_replicate, uint32_t block) {
-  const KbSamplerKey key =
-      kb_sampler_key(sampler, seed, pixel, sample, replicate, index_in_replicate, kb_sobol_table);
+  const KbSamplerKey key = kb_sampler_key(sampler, seed, kb_sampler_root(seed), pixel, sample, replicate,
+                                          index_in_replicate, kb_sobol_table);
   return kb_sampler_block(&key, block);
 }
 

@@ -243,8 +243,9 @@ TEST(LaneSampler, KeysAreThoseOfTheSharedSampler) {
   const std::vector<float> pixels = random_bits(41);
   const Arrays keys = apply_one_lane("sampler_keys", {pixels});
   for (std::size_t i = 0; i < kCount; ++i) {
-    const KbSamplerKey key = kb_sampler_key(KB_SAMPLER_SOBOL, 0xfedcba9876543210ull, kb_as_u32(pixels[i]), 5,
-                                            3, 11, kb_sobol_table);
+    const KbSamplerKey key =
+        kb_sampler_key(KB_SAMPLER_SOBOL, 0xfedcba9876543210ull, kb_sampler_root(0xfedcba9876543210ull),
+                       kb_as_u32(pixels[i]), 5, 3, 11, kb_sobol_table);
     const kb_u32 expected[] = {key.pixel, key.sample, key.reversed_index, key.key0, key.key1};
     for (std::size_t k = 0; k < 5; ++k) ASSERT_EQ(kb_as_u32(keys[k][i]), expected[k]) << k << " " << i;
   }

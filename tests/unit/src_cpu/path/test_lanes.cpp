@@ -134,7 +134,8 @@ TEST(StartOfLanes, CameraRaysAreThoseOfTheirPixels) {
         ASSERT_EQ(recording.closest_path[i], i);
         const uint32_t x = block.x0 + i % block.width, y = block.y0 + i / block.width;
         const KbSamplerKey key =
-            kb_sampler_key(KB_SAMPLER_SOBOL, settings.seed, y * 45 + x, 7, 1, 3, kb_sobol_table);
+            kb_sampler_key(KB_SAMPLER_SOBOL, settings.seed, kb_sampler_root(settings.seed), y * 45 + x, 7, 1,
+                           3, kb_sobol_table);
         const CameraRay ray = sample_camera_ray(scene.camera, x, y, kb_sampler_block(&key, KB_BLOCK_CAMERA));
         const TraceRay& traced = recording.closest[i];
         ASSERT_EQ(traced.origin(), ray.origin) << x << " " << y;
