@@ -77,9 +77,10 @@ class DeviceState {
   /// Means [pixel][channels + derived] and valid samples.
   void finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 
-  /// What the rays of a round find and the vertices that are saved, by job.
+  /// What the rays of a round find and the vertices that are saved, by job. hits: without, nothing is said of rays, and the stages
+  /// are launched as for an image.
   std::vector<TracedPath> trace(const KbRound& round, std::span<const KbRoundPixel> pixels,
-                                std::span<const float> mu);
+                                std::span<const float> mu, bool hits);
 
   std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect);
 

@@ -67,8 +67,9 @@ class GroupRenderer {
                      const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples,
                      RunTally& tally);
 
-  /// The paths of one sample of each pixel (methods dpept: with pt vertices are not kept).
-  std::vector<TracedPath> trace(std::span<const ImagePixel> pixels, const SampleRange& range);
+  /// The paths of one sample of each pixel (methods dpept: with pt vertices are not kept). hits: as DeviceState::trace.
+  std::vector<TracedPath> trace(std::span<const ImagePixel> pixels, const SampleRange& range,
+                                bool hits = true);
 
  private:
   void prepare(uint64_t pixels, bool open = false);

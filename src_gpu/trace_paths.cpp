@@ -54,10 +54,10 @@ std::vector<KbPathVertex> DeviceState::saved_entries(const KbSavedPath& saved,
 }
 
 std::vector<TracedPath> DeviceState::trace(const KbRound& round, std::span<const KbRoundPixel> pixels,
-                                           std::span<const float> mu) {
+                                           std::span<const float> mu, bool hits) {
   if (method == Method::kPt) throw std::logic_error("trace: the method pt does not keep vertices");
   std::vector<TracedPath> traced(std::size_t{round.samples} * round.padded_pixels);
-  pool_->observe_hits(HitObserver(*pool_, host_.bvh, traced));
+  if (hits) pool_->observe_hits(HitObserver(*pool_, host_.bvh, traced));
   pool_->begin(round, pixels, mu);
   const RoundOutcome outcome = pool_->run(round);
   pool_->observe_hits({});
@@ -73,12 +73,13 @@ std::vector<TracedPath> DeviceState::trace(const KbRound& round, std::span<const
   return traced;
 }
 
-std::vector<TracedPath> GroupRenderer::trace(std::span<const ImagePixel> pixels, const SampleRange& range) {
+std::vector<TracedPath> GroupRenderer::trace(std::span<const ImagePixel> pixels, const SampleRange& range,
+                                             bool hits) {
   prepare(pixels.size());
   KbRound round = make_round(range, pixels.size());
   fill_pixels(pixels, round);
   fill_mu(round);
-  return device_.trace(round, round_pixels_, mu_);
+  return device_.trace(round, round_pixels_, mu_, hits);
 }
 
 }  // namespace kiloband::opencl

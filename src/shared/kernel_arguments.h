@@ -128,7 +128,8 @@
   X(auxiliary, VALUE, kb_u32, count)
 
 /* The groups of each kernel, in the order of its parameters: X(GROUP, Group).
-     path        reset_pool, generate, closest_hits, shade, any_hits, shadow_walks, compact
+     path        reset_pool, generate, closest_hits, shade, any_hits, shadow_walks, whole_bounces,
+                 compact, add_tallies
      auxiliary   auxiliary
      evaluation  resample_rows, dpept_batch, dpept_path, derived_add; pt_update, pt_derived, which have a queue
      film        film_clear, film_close, film_pack, film_unpack, film_finish */

@@ -213,6 +213,9 @@ typedef struct {
 } KbAuxiliary;
 KB_STATIC_ASSERT(sizeof(KbAuxiliary) == 24, auxiliary_size);
 
+/* Iterations of the pool after which finished slots leave the queue. */
+#define KB_ITERATIONS_PER_PACKING 8u
+
 /* What a slot has done in a round. */
 typedef struct {
   kb_u32 rays, vertices;

@@ -7,9 +7,9 @@ namespace kiloband::opencl {
 namespace {
 
 constexpr uint32_t kCpuSlotsPerItem = 64;
-/// Iterations between two compactions of the queue. After so many the host looks whether the round is over, which waits for the
-/// device; not before it expects that, by the rounds before.
-constexpr uint32_t kIterationsPerLook = 8;
+/// After so many iterations the host looks whether the round is over, which waits for the device; not before it expects that, by the
+/// rounds before.
+constexpr uint32_t kIterationsPerLook = KB_ITERATIONS_PER_PACKING;
 /// So many rounds that were over when the host looked first, and it looks earlier.
 constexpr uint32_t kEarlyRounds = 8;
 
@@ -76,10 +76,16 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
       any_(program.kernel(size.gas ? "shadow_walks" : "any_hits")),
       compact_(program.kernel("compact")),
       tallies_(program.kernel("add_tallies")) {
-  for (PathKernel* kernel : {&reset_, &generate_, &closest_, &shade_, &any_, &compact_, &tallies_}) {
-    (*kernel)->set_scale(LaunchScale::kSlots);
-    kernel->set(scene, spectra, bvh, buffers_);
-  }
+  if (slots_per_item(context.device()) > 1) whole_.emplace(program.kernel("whole_bounces"));
+  for (PathKernel* kernel : {&reset_, &generate_, &closest_, &shade_, &any_, &compact_, &tallies_})
+    set_arguments(*kernel, scene, spectra, bvh);
+  if (whole_) set_arguments(*whole_, scene, spectra, bvh);
+}
+
+void PathPool::set_arguments(PathKernel& kernel, const DeviceScene& scene, const DeviceSpectra& spectra,
+                             const DeviceBvh& bvh) {
+  kernel->set_scale(LaunchScale::kSlots);
+  kernel.set(scene, spectra, bvh, buffers_);
 }
 
 void PathPool::launch(PathKernel& kernel) {
@@ -90,12 +96,23 @@ void PathPool::launch(PathKernel& kernel) {
 }
 
 void PathPool::iterate(const AfterBounce& after_bounce) {
-  launch(generate_);
-  launch(closest_);
-  if (on_hits_) on_hits_(queue());
-  launch(shade_);
-  launch(any_);
+  const bool whole = whole_ && !on_hits_;
+  if (whole) {
+    launch(*whole_);
+  } else {
+    launch(generate_);
+    launch(closest_);
+    if (on_hits_) on_hits_(queue());
+    launch(shade_);
+    launch(any_);
+  }
   if (after_bounce) after_bounce(queue());
+}
+
+/// The iterations until the queue is packed. What takes whole bounces and has not to stop after each is launched once for all of them.
+void PathPool::iterate_until_packing(const AfterBounce& after_bounce) {
+  const bool at_once = whole_ && !on_hits_ && !after_bounce;
+  for (uint32_t i = 0; i < (at_once ? 1 : KB_ITERATIONS_PER_PACKING); ++i) iterate(after_bounce);
 }
 
 /// Drops the finished slots from the queue; how many are left only the device knows.
@@ -163,7 +180,7 @@ RoundOutcome PathPool::run(const KbRound& round, const AfterBounce& after_bounce
   const uint32_t expected = expected_iterations(jobs_each);
   RoundOutcome outcome;
   for (bool more = true; more;) {
-    for (uint32_t i = 0; i < kIterationsPerLook; ++i) iterate(after_bounce);
+    iterate_until_packing(after_bounce);
     outcome.iterations += kIterationsPerLook;
     compact();
     if (outcome.iterations >= expected) more = look(outcome);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -77,7 +78,7 @@ class PathPool {
   ///        DeviceLost ...
   using AfterBounce = std::function<void(const LaunchQueue& queue)>;
   RoundOutcome run(const KbRound& round, const AfterBounce& after_bounce = {});
-  /// Called between tracing and shading of every iteration (debugging, parity tests).
+  /// Called between tracing and shading of every iteration (debugging, parity tests); the stages are launched one by one then.
   void observe_hits(AfterBounce observer) { on_hits_ = std::move(observer); }
 
   const PoolBuffers& buffers() const { return buffers_; }
@@ -86,7 +87,10 @@ class PathPool {
   }
 
  private:
+  void set_arguments(PathKernel& kernel, const DeviceScene& scene, const DeviceSpectra& spectra,
+                     const DeviceBvh& bvh);
   void iterate(const AfterBounce& after_bounce);
+  void iterate_until_packing(const AfterBounce& after_bounce);
   void launch(PathKernel& kernel);
   void compact();
   bool look(RoundOutcome& outcome);
@@ -99,6 +103,7 @@ class PathPool {
   PoolBuffers buffers_;
   DeviceBuffer<uint32_t> queue_, length_, packed_, packed_length_;
   PathKernel reset_, generate_, closest_, shade_, any_, compact_, tallies_;
+  std::optional<PathKernel> whole_;  // of CPU devices: the four of an iteration in one
   AfterBounce on_hits_;
   uint32_t count_ = 0;  // slots in the queue, at most
   // What the device may still be reading or writing.

@@ -78,7 +78,8 @@ Timing render_once(Backend& backend, const FlatScene& scene, uint32_t spp) {
     return kernel_sum(after.kernel_seconds, names) - kernel_sum(before.kernel_seconds, names);
   };
   timing.evaluation = spent({"pt_update", "dpept_path", "dpept_batch"});
-  timing.generation = spent({"generate", "closest_hits", "shade", "any_hits", "compact"});
+  timing.generation =
+      spent({"generate", "closest_hits", "shade", "any_hits", "shadow_walks", "whole_bounces", "compact"});
   timing.slots = after.pool_slots;
   timing.paths = static_cast<double>(after.paths - before.paths);
   timing.vertices = static_cast<double>(after.vertices - before.vertices);
