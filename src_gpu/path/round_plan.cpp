@@ -27,8 +27,8 @@ constexpr uint64_t kSlotBytes = 256, kJobBytes = 512;
 
 /// Of a CPU device. Launches that are long beside what it costs to begin one; what pt keeps of every channel for the
 /// paths in flight should stay in caches, until launches become too short (bench_methods --pool, validation/README.md).
-constexpr uint32_t kFewestCpuSlots = 1u << 13, kMostCpuSlots = 1u << 15;
-constexpr uint64_t kCpuStateBytes = 8u << 20;
+constexpr uint32_t kFewestCpuSlots = 1u << 11, kMostCpuSlots = 1u << 15;
+constexpr uint64_t kCpuStateBytes = 4u << 20;
 constexpr uint64_t kCpuJobs = 1u << 16;
 
 uint64_t share(uint64_t bytes, double part) {

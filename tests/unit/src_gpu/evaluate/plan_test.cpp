@@ -24,16 +24,15 @@ TEST(GpuPlan, SlotsAndJobsByMemory) {
   EXPECT_EQ(gpu_jobs(80 * kGiB), 1u << 24);
 }
 
-/// What pt keeps of every channel for the paths in flight stays within 8 MiB where launches are long enough with that.
+/// What pt keeps of every channel for the paths in flight stays within 4 MiB where launches are long enough with that.
 TEST(GpuPlan, SlotsOfCpusByTheStateOfTheirPaths) {
   const auto slots = [](uint64_t channels) { return usual_slots(true, kGiB, 2 * sizeof(float) * channels); };
   EXPECT_EQ(slots(0), 1u << 15);  // dpept
-  EXPECT_EQ(slots(8), 1u << 15);
-  EXPECT_EQ(slots(32), 1u << 15);
-  EXPECT_EQ(slots(33), 1u << 14);
-  EXPECT_EQ(slots(64), 1u << 14);
-  EXPECT_EQ(slots(65), 1u << 13);
-  EXPECT_EQ(slots(4096), 1u << 13);
+  EXPECT_EQ(slots(16), 1u << 15);
+  EXPECT_EQ(slots(17), 1u << 14);
+  EXPECT_EQ(slots(100), 1u << 12);
+  EXPECT_EQ(slots(256), 1u << 11);
+  EXPECT_EQ(slots(4096), 1u << 11);
   EXPECT_EQ(usual_slots(false, kGiB, 0), gpu_slots(kGiB));
 }
 
