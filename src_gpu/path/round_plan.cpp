@@ -97,6 +97,11 @@ uint64_t arena_chunks(const PlanRequest& r, const PoolSize& others, uint64_t job
   return std::min(std::max(expected_chunks(r, jobs), kLongestPath), std::max<uint64_t>(most, 1));
 }
 
+uint32_t cpu_slots(uint64_t slot_bytes) {
+  const uint64_t fitting = std::bit_floor(kCpuStateBytes / std::max<uint64_t>(slot_bytes, 1));
+  return static_cast<uint32_t>(std::clamp<uint64_t>(fitting, kFewestCpuSlots, kMostCpuSlots));
+}
+
 }  // namespace
 
 const char* to_string(Method method) {
@@ -137,11 +142,6 @@ uint32_t gpu_slots(uint64_t budget) {
 uint64_t gpu_jobs(uint64_t budget) {
   const uint64_t fitting = std::bit_floor(std::max<uint64_t>(share(budget, kPathShare) / kJobBytes, 1));
   return std::clamp<uint64_t>(fitting, gpu_slots(budget), kMostGpuJobs);
-}
-
-uint32_t cpu_slots(uint64_t slot_bytes) {
-  const uint64_t fitting = std::bit_floor(kCpuStateBytes / std::max<uint64_t>(slot_bytes, 1));
-  return static_cast<uint32_t>(std::clamp<uint64_t>(fitting, kFewestCpuSlots, kMostCpuSlots));
 }
 
 uint32_t usual_slots(bool cpu_device, uint64_t budget, uint64_t slot_bytes) {
