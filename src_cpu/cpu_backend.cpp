@@ -6,6 +6,7 @@
 #include <exception>
 #include <fstream>
 #include <mutex>
+#include <optional>
 
 #include "base/threads.hpp"
 #include "src_cpu/block_worker.hpp"
@@ -50,7 +51,9 @@ class CpuBackend final : public Backend {
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
     records_ = make_triangle_records(scene_);
     light_triangles_ = make_light_triangles(scene_);
-    tracer_scene_ = {&scene_, embree_.get(), records_, light_triangles_};
+    few_triangles_ = find_few_triangles(scene_);
+    tracer_scene_ = {&scene_, embree_.get(), records_, light_triangles_,
+                     few_triangles_ ? &*few_triangles_ : nullptr};
     for (int i = 0; i < threads_; ++i) {
       workers_.push_back(std::make_unique<BlockWorker>(tracer_scene_, derived_, settings_, isa_));
     }
@@ -95,6 +98,7 @@ class CpuBackend final : public Backend {
   int threads_;
   std::vector<TriangleRecord> records_;
   std::vector<LightTriangle> light_triangles_;
+  std::optional<FewTriangles> few_triangles_;
   TracerScene tracer_scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<std::unique_ptr<BlockWorker>> workers_;

@@ -1,6 +1,7 @@
 // The stages of a wave that are compiled for every instruction set.
 #pragma once
 
+#include "src_cpu/geometry/few_triangles.hpp"
 #include "src_cpu/lanes/isa.hpp"
 #include "src_cpu/path/wave.hpp"
 
@@ -13,6 +14,9 @@ struct PathKernels {
   /// Answers of wave.rays -> saved vertices, wave.shadow_rays, wave.next_rays and the states of the paths; what has hit a shape of
   /// Bounce::rare_shapes is left in wave.rare_rays.
   void (*shade)(const Bounce& bounce, Wave& wave);
+  /// Answer all rays of a queue in scenes that have few triangles.
+  void (*closest_of_few)(const FewTriangles& few, RayQueue& rays);
+  void (*occlusions_of_few)(const FewTriangles& few, ShadowQueue& rays);
 };
 
 /// For an instruction set that this machine has (resolve_isa()). All give the same bits for the same answers.

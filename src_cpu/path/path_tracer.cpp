@@ -80,7 +80,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
                                               : nullptr),
       parts_(rare_ && !rare_->gas()),
       kernels_(rare_ && !parts_ ? one_lane_path_kernels() : kernels),
-      sorts_(!rare_ && !flat_.features.thermal && scene.embree->sorting_pays()) {}
+      sorts_(!scene.few && !rare_ && !flat_.features.thermal && scene.embree->sorting_pays()) {}
 
 PathTracer::~PathTracer() = default;
 
@@ -144,7 +144,11 @@ void PathTracer::trace_closest(uint32_t bounce, bool in_part) {
   RayQueue& rays = wave_.rays();
   wave_.traced_rays += rays.count;
   if (wave_.recording) record_closest(wave_, rays);
-  scene_.embree->closest_hits(rays, sorted || bounce == 0 ? RayPackets::kCoherent : RayPackets::kIncoherent);
+  if (scene_.few)
+    kernels_.closest_of_few(*scene_.few, rays);
+  else
+    scene_.embree->closest_hits(rays,
+                                sorted || bounce == 0 ? RayPackets::kCoherent : RayPackets::kIncoherent);
   if (wave_.recording) record_answers(wave_, rays);
   if (bounce == 0 && !sorts_ && in_part) drop_paths_outside();
   if (rare_ && rare_->gas()) rare_->gas()->walk_boundaries(wave_);
@@ -156,7 +160,10 @@ const ShadowQueue& PathTracer::answered_shadows() {
   ShadowQueue& rays = sorts_ ? wave_.sorted_shadow_rays : wave_.shadow_rays;
   wave_.traced_rays += rays.count;
   if (wave_.recording) record_shadows(wave_, rays);
-  scene_.embree->occlusions(rays, sorts_ ? RayPackets::kCoherent : RayPackets::kIncoherent);
+  if (scene_.few)
+    kernels_.occlusions_of_few(*scene_.few, rays);
+  else
+    scene_.embree->occlusions(rays, sorts_ ? RayPackets::kCoherent : RayPackets::kIncoherent);
   return rays;
 }
 

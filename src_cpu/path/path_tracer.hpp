@@ -6,7 +6,7 @@
 // probability (channel_choice.hpp); at rough boundaries all may go on (spectral_mis.hpp).
 //
 // A block of 32 x 32 pixels is a wave: its paths advance together, bounce by bounce. Their rays are traced in packets
-// (embree_scene.hpp); what they have hit is shaded a vector of paths at a time (shade-inl.hpp), paths that have ended
+// (embree_scene.hpp), or tried against all triangles where there are few (few_triangles.hpp); what they have hit is shaded a vector of paths at a time (shade-inl.hpp), paths that have ended
 // leave the queues. Scenes with gas are shaded one path after another, by the same code compiled for one lane; so is, in others,
 // what has hit a dispersive surface.
 //
@@ -34,6 +34,7 @@ struct TracerScene {
   const EmbreeScene* embree = nullptr;
   std::span<const TriangleRecord> records{};  // or none
   std::span<const LightTriangle> lights{};    // or none
+  const FewTriangles* few = nullptr;          // null: rays are Embree's
 };
 
 /// Builds the paths of one block and sample. One object per thread: it owns all scratch memory.

@@ -43,7 +43,8 @@ BareScene::BareScene(std::shared_ptr<const FlatScene> scene) : compiled(std::mov
   embree = std::make_unique<EmbreeScene>(flat, embree_isa(), 1);
   records = make_triangle_records(flat);
   lights = make_light_triangles(flat);
-  tracer = {&flat, embree.get(), records, lights};
+  few = find_few_triangles(flat);
+  tracer = {&flat, embree.get(), records, lights, few ? &*few : nullptr};
   blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
 }
 

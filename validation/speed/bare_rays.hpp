@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "src_cpu/block_worker.hpp"
@@ -15,6 +16,7 @@ struct BareScene {
   std::unique_ptr<cpu::EmbreeScene> embree;
   std::vector<cpu::TriangleRecord> records;
   std::vector<cpu::LightTriangle> lights;
+  std::optional<cpu::FewTriangles> few;
   cpu::TracerScene tracer;
   std::vector<PixelRect> blocks;
 

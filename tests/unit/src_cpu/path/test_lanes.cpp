@@ -24,8 +24,8 @@ struct Traced {
 
 Traced trace(const FlatScene& scene, const EmbreeScene& embree, SamplerType sampler,
              const PathKernels& kernels, std::span<const TriangleRecord> records = {},
-             std::span<const LightTriangle> lights = {}) {
-  const TracerScene tracer_scene{&scene, &embree, records, lights};
+             std::span<const LightTriangle> lights = {}, const FewTriangles* few = nullptr) {
+  const TracerScene tracer_scene{&scene, &embree, records, lights, few};
   SamplingSettings settings;
   settings.sampler = sampler;
   settings.replicates = 1;
@@ -66,17 +66,22 @@ void expect_same_bits(const Traced& expected, const Traced& traced) {
 
 class PathsOfLanes : public testing::TestWithParam<ZooScene> {};
 
+/// By Embree's hits, and by those of few triangles where the scene has no more.
 TEST_P(PathsOfLanes, AreThoseOfOneLane) {
   const ZooFolder folder;
   const FlatScene scene = folder.flatten(GetParam());
   const EmbreeScene embree(scene, "sse4.2", 1);
-  for (const SamplerType sampler : {SamplerType::kSobol, SamplerType::kIndependent}) {
-    const Traced one = trace(scene, embree, sampler, one_lane_path_kernels());
-    for (const Isa isa : {Isa::kSse4, Isa::kAvx2, Isa::kAvx512}) {
-      if (!is_available(isa)) continue;
-      SCOPED_TRACE(to_string(isa));
-      expect_same_bits(one, trace(scene, embree, sampler, path_kernels(isa)));
+  const std::optional<FewTriangles> few = find_few_triangles(scene);
+  for (const FewTriangles* list : {static_cast<const FewTriangles*>(nullptr), few ? &*few : nullptr}) {
+    for (const SamplerType sampler : {SamplerType::kSobol, SamplerType::kIndependent}) {
+      const Traced one = trace(scene, embree, sampler, one_lane_path_kernels(), {}, {}, list);
+      for (const Isa isa : {Isa::kSse4, Isa::kAvx2, Isa::kAvx512}) {
+        if (!is_available(isa)) continue;
+        SCOPED_TRACE(to_string(isa));
+        expect_same_bits(one, trace(scene, embree, sampler, path_kernels(isa), {}, {}, list));
+      }
     }
+    if (!few) break;
   }
 }
 
