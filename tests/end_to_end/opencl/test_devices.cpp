@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <map>
-
 #include "src_gpu/device/device.hpp"
 #include "tests/end_to_end/support/program.hpp"
 
@@ -78,28 +76,37 @@ TEST_F(ProgramDevices, GoOnInACheckpointOfOneAndTheOtherWayRound) {
   }
 }
 
+/// A call of one of the devices from which on all fail.
+struct DeviceFault {
+  std::string function, call;
+  bool
+      surely;  // among those of the first work that a device is given; it may be given no more on a busy machine
+};
+
 /// One of the devices is lost for good, at its first launch or a later one: the other renders what it had.
 TEST_F(ProgramDevices, OneMayFail) {
-  const Names options{"--spp", "40"};  // in parts
-  const std::string image = expected(options);
+  const std::string image = expected({"--spp", "40"});  // in parts
   for (const std::string device : {"1", "2"}) {
-    for (const auto& [function, nth] : std::map<std::string, std::vector<std::string>>{
-             {"clEnqueueNDRangeKernel", {"1", "40", "100"}}, {"clEnqueueReadBuffer", {"2", "10"}}}) {
-      for (const std::string& call : nth) {
-        const Outcome outcome = run({"--spp", "40", "--device", "0/2", "--stats", "s.json"},
-                                    {.environment = {{"LD_PRELOAD", SHIM_LIBRARY},
-                                                     {"ASAN_OPTIONS", "verify_asan_link_order=0"},
-                                                     {"KILOBAND_SHIM_DEVICE", device},
-                                                     {"KILOBAND_SHIM_FUNCTION", function},
-                                                     {"KILOBAND_SHIM_NTH", call},
-                                                     {"KILOBAND_SHIM_CODE", "-36"},
-                                                     {"KILOBAND_SHIM_REPEAT", "1"}}});
-        EXPECT_EQ(outcome.code, 0) << outcome.err;
-        EXPECT_TRUE(folder_.read("a.img") == image) << device << ", " << function << " " << call;
-        expect_text(outcome.err, ": device " + device + " of 2 is left out, its work goes to the others\n");
-        const nlohmann::json failed = read_json(folder_, "s.json")["devices"][std::stoul(device) - 1];
-        EXPECT_NE(failed["failure"].get<std::string>().find(function), std::string::npos);
-      }
+    for (const auto& [function, call, surely] :
+         {DeviceFault{"clEnqueueNDRangeKernel", "1", true}, DeviceFault{"clEnqueueNDRangeKernel", "4", true},
+          DeviceFault{"clEnqueueNDRangeKernel", "40", false}, DeviceFault{"clEnqueueReadBuffer", "2", true},
+          DeviceFault{"clEnqueueReadBuffer", "10", false}}) {
+      SCOPED_TRACE(device + ", " + function + " " + call);
+      const Outcome outcome = run({"--spp", "40", "--device", "0/2", "--stats", "s.json"},
+                                  {.environment = {{"LD_PRELOAD", SHIM_LIBRARY},
+                                                   {"ASAN_OPTIONS", "verify_asan_link_order=0"},
+                                                   {"KILOBAND_SHIM_DEVICE", device},
+                                                   {"KILOBAND_SHIM_FUNCTION", function},
+                                                   {"KILOBAND_SHIM_NTH", call},
+                                                   {"KILOBAND_SHIM_CODE", "-36"},
+                                                   {"KILOBAND_SHIM_REPEAT", "1"}}});
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      EXPECT_TRUE(folder_.read("a.img") == image);
+      const nlohmann::json stats = read_json(folder_, "s.json")["devices"][std::stoul(device) - 1];
+      if (!surely && stats["failure"].is_null()) continue;
+      expect_text(outcome.err, ": device " + device + " of 2 is left out, its work goes to the others\n");
+      ASSERT_TRUE(stats["failure"].is_string());
+      EXPECT_NE(stats["failure"].get<std::string>().find(function), std::string::npos);
     }
   }
 }
