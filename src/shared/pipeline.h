@@ -216,6 +216,9 @@ KB_STATIC_ASSERT(sizeof(KbAuxiliary) == 24, auxiliary_size);
 /* Iterations of the pool after which finished slots leave the queue. */
 #define KB_ITERATIONS_PER_PACKING 8u
 
+/* Work-items of a group at most, of the kernels that work on slots. */
+#define KB_LARGEST_PATH_GROUP 1024u
+
 /* What a slot has done in a round. */
 typedef struct {
   kb_u32 rays, vertices;

@@ -91,7 +91,8 @@ void PathPool::set_arguments(PathKernel& kernel, const DeviceScene& scene, const
 void PathPool::launch(PathKernel& kernel) {
   kernel.set(queue().slots);
   const uint64_t each = slots_per_item(context_.device());
-  const uint64_t group = each > 1 ? 1 : std::min<uint64_t>(group_, kernel->max_work_group_size());
+  const uint64_t group =
+      each > 1 ? 1 : std::min<uint64_t>({group_, kernel->max_work_group_size(), KB_LARGEST_PATH_GROUP});
   kernel->launch((count_ + each - 1) / each, group);
 }
 

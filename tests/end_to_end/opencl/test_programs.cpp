@@ -54,6 +54,38 @@ TEST(OpenclProgram, AutoFallsBackToTheCpu) {
   EXPECT_EQ(read_json(folder, "s.json")["backend"], "cpu");
 }
 
+/// The kernels as GPUs get them, with a work-item for each slot and groups that evaluate together: on processors, too, the bytes are those of
+/// the form for processors, by every method.
+TEST(OpenclProgram, TheFormForGpusGivesTheSameBytes) {
+  const auto as = [](const std::string& type) -> Treatment {
+    return {.environment = {{"LD_PRELOAD", SHIM_LIBRARY},
+                            {"ASAN_OPTIONS", "verify_asan_link_order=0"},
+                            {"KILOBAND_SHIM_TYPE", type}}};
+  };
+  expect_text(run_program(TemporaryFolder(), {"devices"}, as("gpu")).out, "  gpu  ");
+  const std::string lenses = std::string(KILOBAND_SOURCE_DIR) + "/validation/scenes/lens_and_glass.xml";
+  using SceneAndBands = std::pair<std::string, std::string>;
+  for (const auto& [scene, bands] :
+       {SceneAndBands{cornell_box(), "400:700:20"}, SceneAndBands{lenses, "400:700:150"}}) {
+    for (const std::string method : {"dpept-batch", "dpept-path", "pt"}) {
+      SCOPED_TRACE(scene + ", " + bands + ", " + method);
+      const TemporaryFolder folder;
+      const auto image = [&](const std::string& type) {
+        const Outcome outcome =
+            run_program(folder,
+                        {"render", scene, "--size", "40x40", "--bands", bands, "--spp", "5", "--backend",
+                         "opencl", "--method", method, "--device-memory", "256MiB", "-o", "a.hdr"},
+                        as(type));
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return folder.read("a.img");
+      };
+      const std::string expected = image("");
+      ASSERT_FALSE(expected.empty());
+      EXPECT_TRUE(image("gpu") == expected);
+    }
+  }
+}
+
 /// A cache folder of its own, so that every program is built from source.
 TEST(OpenclProgram, BuildError) {
   const TemporaryFolder cache;

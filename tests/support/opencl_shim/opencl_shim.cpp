@@ -10,6 +10,7 @@
 //                           the references to buffers that were not released, and "failed N", the calls that
 //                           were failed
 //   KILOBAND_SHIM_PLATFORM  the name that platforms give
+//   KILOBAND_SHIM_TYPE      gpu: devices say that they are GPUs
 //
 // In sanitizer builds run with ASAN_OPTIONS=verify_asan_link_order=0.
 #define CL_TARGET_OPENCL_VERSION 120
@@ -148,6 +149,16 @@ cl_int clGetPlatformInfo(cl_platform_id platform, cl_platform_info what, size_t 
   if (value && size < length) return CL_INVALID_VALUE;
   if (value) std::memcpy(value, name, length);
   return CL_SUCCESS;
+}
+
+cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* needed) {
+  const cl_int code = REAL(clGetDeviceInfo)(device, what, size, value, needed);
+  const char* type = std::getenv("KILOBAND_SHIM_TYPE");
+  if (code != CL_SUCCESS || !type || std::strcmp(type, "gpu") != 0 || what != CL_DEVICE_TYPE || !value)
+    return code;
+  const cl_device_type gpu = CL_DEVICE_TYPE_GPU;
+  std::memcpy(value, &gpu, sizeof gpu);
+  return code;
 }
 
 cl_context clCreateContext(const cl_context_properties* properties, cl_uint count,
