@@ -9,6 +9,7 @@
 //   single   path by path in the order of a scalar tracer (closest hit and shadow ray of each bounce), single rays
 //   packets  bounce by bounce: camera rays in coherent packets of 16, secondary rays in packets of 8, shadow rays 16
 //   sorted   the same with secondary and shadow rays sorted (not timed) and coherent
+//   few      against all triangles, as scenes of few triangles are traced
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -101,8 +102,8 @@ void bare(benchmark::State& state, const std::string& name) {
   count_paths(state, bench_of(name, 8).pixels());
 }
 
-void bare_packets(benchmark::State& state, const std::string& name, bool sorted) {
-  const speed::BarePackets rays(bench_of(name, 8), sorted);
+void bare_packets(benchmark::State& state, const std::string& name, speed::BareWay way) {
+  const speed::BarePackets rays(bench_of(name, 8), way);
   for (auto _ : state) rays.query();
   count_paths(state, bench_of(name, 8).pixels());
 }
@@ -155,11 +156,14 @@ void register_all(std::span<char*> files) {
   if (std::filesystem::exists(data_directory() / "meshes" / "conference.ply"))
     names.insert(names.end(), {"conference", "matpreview"});
   names.insert(names.end(), files.begin(), files.end());
+  benchmark::RegisterBenchmark("bare/cornell/few", bare_packets, "cornell", speed::BareWay::kFew);
   for (const std::string& name : names) {
     benchmark::RegisterBenchmark(("frames/" + name).c_str(), frames, name)->Arg(8)->Arg(100);
     benchmark::RegisterBenchmark(("bare/" + name + "/single").c_str(), bare, name);
-    benchmark::RegisterBenchmark(("bare/" + name + "/packets").c_str(), bare_packets, name, false);
-    benchmark::RegisterBenchmark(("bare/" + name + "/sorted").c_str(), bare_packets, name, true);
+    benchmark::RegisterBenchmark(("bare/" + name + "/packets").c_str(), bare_packets, name,
+                                 speed::BareWay::kPackets);
+    benchmark::RegisterBenchmark(("bare/" + name + "/sorted").c_str(), bare_packets, name,
+                                 speed::BareWay::kSorted);
     benchmark::RegisterBenchmark(("paths/" + name + "/independent").c_str(), generate, name,
                                  SamplerType::kIndependent);
     benchmark::RegisterBenchmark(("paths/" + name + "/sobol").c_str(), generate, name, SamplerType::kSobol);

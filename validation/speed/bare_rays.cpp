@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -121,7 +122,7 @@ struct BarePackets::Queue {
 template <class Ray>
 void BarePackets::append(const std::vector<Ray>& rays, const std::vector<uint32_t>& path,
                          const std::vector<std::size_t>& ends) {
-  const RayGrid* grid = sorted_ ? &scene_.embree->grid() : nullptr;
+  const RayGrid* grid = way_ == BareWay::kSorted ? &scene_.embree->grid() : nullptr;
   std::size_t first = 0;
   for (const std::size_t end : ends) {
     if (end > first) queues_.emplace_back(rays, path, first, end, grid);
@@ -129,11 +130,17 @@ void BarePackets::append(const std::vector<Ray>& rays, const std::vector<uint32_
   }
 }
 
-BarePackets::BarePackets(const BareScene& scene, bool sorted)
+BareWay way_of_paths(const BareScene& scene) {
+  if (scene.few) return BareWay::kFew;
+  return scene.embree->sorting_pays() ? BareWay::kSorted : BareWay::kPackets;
+}
+
+BarePackets::BarePackets(const BareScene& scene, BareWay way)
     : scene_(scene),
-      sorted_(sorted),
+      way_(way),
       rays_(std::make_unique<RayQueue>()),
       shadows_(std::make_unique<ShadowQueue>()) {
+  if (way == BareWay::kFew && !scene.few) throw std::logic_error("BarePackets: too many triangles");
   record_rays(scene, [&](const Recording& r) {
     append(r.closest, r.closest_path, r.closest_ends);
     append(r.shadow, r.shadow_path, r.shadow_ends);
@@ -142,16 +149,30 @@ BarePackets::BarePackets(const BareScene& scene, bool sorted)
 
 BarePackets::~BarePackets() = default;
 
+void BarePackets::trace(const Queue& queue) const {
+  const bool coherent = way_ == BareWay::kSorted || queue.camera;
+  const RayPackets packets = coherent ? RayPackets::kCoherent : RayPackets::kIncoherent;
+  if (queue.shadow)
+    scene_.embree->occlusions(*shadows_, packets);
+  else
+    scene_.embree->closest_hits(*rays_, packets);
+}
+
+void BarePackets::try_all(const Queue& queue) const {
+  const PathKernels& kernels = path_kernels(resolve_isa(Isa::kAuto));
+  if (queue.shadow)
+    kernels.occlusions_of_few(*scene_.few, *shadows_);
+  else
+    kernels.closest_of_few(*scene_.few, *rays_);
+}
+
 void BarePackets::query() const {
   for (const Queue& queue : queues_) {
-    const RayPackets packets = sorted_ || queue.camera ? RayPackets::kCoherent : RayPackets::kIncoherent;
-    if (queue.shadow) {
+    if (queue.shadow)
       queue.load(*shadows_);
-      scene_.embree->occlusions(*shadows_, packets);
-    } else {
+    else
       queue.load(*rays_);
-      scene_.embree->closest_hits(*rays_, packets);
-    }
+    way_ == BareWay::kFew ? try_all(queue) : trace(queue);
   }
 }
 

@@ -43,22 +43,33 @@ class BareSingles {
   std::vector<uint32_t> order_;  // index << 1 | is_shadow
 };
 
-/// The same rays bounce by bounce: camera rays in coherent packets of 16, secondary rays in packets of 8, shadow rays 16.
-/// sorted: secondary and shadow rays sorted (which query() does not do again) and coherent
+/// How the rays of a bounce are traced.
+enum class BareWay {
+  kPackets,  // by Embree: camera rays in coherent packets of 16, secondary rays in packets of 8, shadow rays 16
+  kSorted,  // the same with secondary and shadow rays sorted (which query() does not do again) and coherent
+  kFew      // against all triangles; the scene has few
+};
+/// In which the paths of the scene have theirs traced.
+BareWay way_of_paths(const BareScene& scene);
+
+/// The same rays bounce by bounce.
 class BarePackets {
  public:
-  BarePackets(const BareScene& scene, bool sorted);
+  /// throws std::logic_error  kFew, and the scene has more triangles
+  BarePackets(const BareScene& scene, BareWay way);
   ~BarePackets();
   void query() const;
 
  private:
   struct Queue;
+  void trace(const Queue& queue) const;
+  void try_all(const Queue& queue) const;
   template <class Ray>
   void append(const std::vector<Ray>& rays, const std::vector<uint32_t>& path,
               const std::vector<std::size_t>& ends);
 
   const BareScene& scene_;
-  bool sorted_;
+  BareWay way_;
   std::vector<Queue> queues_;
   std::unique_ptr<cpu::RayQueue> rays_;
   std::unique_ptr<cpu::ShadowQueue> shadows_;

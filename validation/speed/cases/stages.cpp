@@ -129,7 +129,7 @@ void measure_cpu(Bench& bench, const SceneFile& file, uint32_t channels) {
   cpu::BlockWorker worker(scene.tracer, {}, sampling, isa);
   const auto pixels = static_cast<double>(scene.pixels());
   const BareSingles singles(scene);
-  const BarePackets packets(scene, scene.embree->sorting_pays());
+  const BarePackets packets(scene, way_of_paths(scene));
   constexpr uint32_t kSamples = 16;
   const std::vector<std::pair<std::string, Estimate>> stages{
       {"bare rays, single", time_per_path(bench, pixels, [&] { singles.query(); })},
