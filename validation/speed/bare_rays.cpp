@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "src_cpu/path/denormals.hpp"
 #include "src_cpu/path/path_tracer.hpp"
 
 namespace kiloband::speed {
@@ -68,6 +69,7 @@ void BareSingles::append(const Recording& recording) {
 }
 
 std::size_t BareSingles::query() const {
+  const DenormalsToZero mode;  // as paths are traced
   std::size_t hits = 0;
   for (const uint32_t code : order_) {
     if (code & 1) {
@@ -138,6 +140,7 @@ BareWay way_of_paths(const BareScene& scene) {
 BarePackets::BarePackets(const BareScene& scene, BareWay way)
     : scene_(scene),
       way_(way),
+      kernels_(path_kernels(resolve_isa(Isa::kAuto))),
       rays_(std::make_unique<RayQueue>()),
       shadows_(std::make_unique<ShadowQueue>()) {
   if (way == BareWay::kFew && !scene.few) throw std::logic_error("BarePackets: too many triangles");
@@ -159,14 +162,14 @@ void BarePackets::trace(const Queue& queue) const {
 }
 
 void BarePackets::try_all(const Queue& queue) const {
-  const PathKernels& kernels = path_kernels(resolve_isa(Isa::kAuto));
   if (queue.shadow)
-    kernels.occlusions_of_few(*scene_.few, *shadows_);
+    kernels_.occlusions_of_few(*scene_.few, *shadows_);
   else
-    kernels.closest_of_few(*scene_.few, *rays_);
+    kernels_.closest_of_few(*scene_.few, *rays_);
 }
 
 void BarePackets::query() const {
+  const DenormalsToZero mode;  // as paths are traced
   for (const Queue& queue : queues_) {
     if (queue.shadow)
       queue.load(*shadows_);

@@ -70,6 +70,7 @@ class BarePackets {
 
   const BareScene& scene_;
   BareWay way_;
+  const cpu::PathKernels& kernels_;
   std::vector<Queue> queues_;
   std::unique_ptr<cpu::RayQueue> rays_;
   std::unique_ptr<cpu::ShadowQueue> shadows_;
