@@ -64,18 +64,19 @@ TEST(OpenclProgram, TheFormForGpusGivesTheSameBytes) {
   };
   expect_text(run_program(TemporaryFolder(), {"devices"}, as("gpu")).out, "  gpu  ");
   const std::string lenses = std::string(KILOBAND_SOURCE_DIR) + "/validation/scenes/lens_and_glass.xml";
-  using SceneAndBands = std::pair<std::string, std::string>;
-  for (const auto& [scene, bands] :
-       {SceneAndBands{cornell_box(), "400:700:20"}, SceneAndBands{lenses, "400:700:150"}}) {
+  struct Scene {
+    std::string file, bands;
+  };
+  for (const Scene& scene : {Scene{cornell_box(), "400:700:20"}, Scene{lenses, "400:700:150"}}) {
     for (const std::string method : {"dpept-batch", "dpept-path", "pt"}) {
-      SCOPED_TRACE(scene + ", " + bands + ", " + method);
+      SCOPED_TRACE(scene.file + ", " + scene.bands + ", " + method);
       const TemporaryFolder folder;
       const auto image = [&](const std::string& type) {
-        const Outcome outcome =
-            run_program(folder,
-                        {"render", scene, "--size", "40x40", "--bands", bands, "--spp", "5", "--backend",
-                         "opencl", "--method", method, "--device-memory", "256MiB", "-o", "a.hdr"},
-                        as(type));
+        const Outcome outcome = run_program(
+            folder,
+            {"render", scene.file, "--size", "40x40", "--bands", scene.bands, "--spp", "5", "--backend",
+             "opencl", "--method", method, "--device-memory", "256MiB", "-o", "a.hdr"},
+            as(type));
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return folder.read("a.img");
       };
