@@ -131,7 +131,7 @@ Object* refuse(cl_int code, cl_int* error) {
 
 }  // namespace
 
-#define REAL(name) real(&name, #name)
+#define REAL(name) real(&(name), #name)
 
 extern "C" {
 

@@ -141,8 +141,10 @@ TEST_P(ClosedBodies, AreMetAlikeByEveryInstructionSet) {
   for (const PathKernels* kernels : all_kernels()) {
     auto traced = std::make_unique<RayQueue>(*rays);
     kernels->closest_of_few(*few, *traced);
-    if (!first) first = std::move(traced);
-    if (!traced) continue;
+    if (!first) {
+      first = std::move(traced);
+      continue;
+    }
     for (uint32_t i = 0; i < rays->count; ++i) {
       ASSERT_EQ(traced->shape[i], first->shape[i]);
       ASSERT_EQ(std::bit_cast<uint32_t>(traced->t_max[i]), std::bit_cast<uint32_t>(first->t_max[i]));
