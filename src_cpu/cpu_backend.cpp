@@ -49,11 +49,8 @@ class CpuBackend final : public Backend {
         threads_(options.threads > 0 ? options.threads : omp_get_num_procs()) {
     check_threads(threads_);
     embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
-    records_ = make_triangle_records(scene_);
-    light_triangles_ = make_light_triangles(scene_);
-    few_triangles_ = find_few_triangles(scene_);
-    tracer_scene_ = {&scene_, embree_.get(), records_, light_triangles_,
-                     few_triangles_ ? &*few_triangles_ : nullptr};
+    tables_.emplace(scene_);
+    tracer_scene_ = tracer_scene(scene_, *embree_, *tables_);
     for (int i = 0; i < threads_; ++i) {
       workers_.push_back(std::make_unique<BlockWorker>(tracer_scene_, derived_, settings_, isa_));
     }
@@ -96,9 +93,7 @@ class CpuBackend final : public Backend {
   SamplingSettings settings_;
   Isa isa_;
   int threads_;
-  std::vector<TriangleRecord> records_;
-  std::vector<LightTriangle> light_triangles_;
-  std::optional<FewTriangles> few_triangles_;
+  std::optional<TracerTables> tables_;
   TracerScene tracer_scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<std::unique_ptr<BlockWorker>> workers_;

@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,18 @@
 
 namespace kiloband::cpu {
 
+/// What is computed of a scene before its paths are traced, where it wins.
+struct TracerTables {
+  std::vector<TriangleRecord> records;
+  std::vector<LightTriangle> lights;
+  std::optional<FewTriangles> few;
+
+  explicit TracerTables(const FlatScene& scene)
+      : records(make_triangle_records(scene)),
+        lights(make_light_triangles(scene)),
+        few(find_few_triangles(scene)) {}
+};
+
 /// What all threads share.
 struct TracerScene {
   const FlatScene* flat = nullptr;
@@ -36,6 +49,12 @@ struct TracerScene {
   std::span<const LightTriangle> lights{};    // or none
   const FewTriangles* few = nullptr;          // null: rays are Embree's
 };
+
+/// Refers to its arguments, which must outlive it.
+inline TracerScene tracer_scene(const FlatScene& flat, const EmbreeScene& embree,
+                                const TracerTables& tables) {
+  return {&flat, &embree, tables.records, tables.lights, tables.few ? &*tables.few : nullptr};
+}
 
 /// Builds the paths of one block and sample. One object per thread: it owns all scratch memory.
 class PathTracer {

@@ -40,13 +40,10 @@ void record_rays(const BareScene& scene, const Use& use) {
 
 }  // namespace
 
-BareScene::BareScene(std::shared_ptr<const FlatScene> scene) : compiled(std::move(scene)) {
+BareScene::BareScene(std::shared_ptr<const FlatScene> scene) : compiled(std::move(scene)), tables(*compiled) {
   const FlatScene& flat = *compiled;
   embree = std::make_unique<EmbreeScene>(flat, embree_isa(), 1);
-  records = make_triangle_records(flat);
-  lights = make_light_triangles(flat);
-  few = find_few_triangles(flat);
-  tracer = {&flat, embree.get(), records, lights, few ? &*few : nullptr};
+  tracer = tracer_scene(flat, *embree, tables);
   blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
 }
 
@@ -133,7 +130,7 @@ void BarePackets::append(const std::vector<Ray>& rays, const std::vector<uint32_
 }
 
 BareWay way_of_paths(const BareScene& scene) {
-  if (scene.few) return BareWay::kFew;
+  if (scene.tables.few) return BareWay::kFew;
   return scene.embree->sorting_pays() ? BareWay::kSorted : BareWay::kPackets;
 }
 
@@ -143,7 +140,7 @@ BarePackets::BarePackets(const BareScene& scene, BareWay way)
       kernels_(path_kernels(resolve_isa(Isa::kAuto))),
       rays_(std::make_unique<RayQueue>()),
       shadows_(std::make_unique<ShadowQueue>()) {
-  if (way == BareWay::kFew && !scene.few) throw std::logic_error("BarePackets: too many triangles");
+  if (way == BareWay::kFew && !scene.tables.few) throw std::logic_error("BarePackets: too many triangles");
   record_rays(scene, [&](const Recording& r) {
     append(r.closest, r.closest_path, r.closest_ends);
     append(r.shadow, r.shadow_path, r.shadow_ends);
@@ -163,9 +160,9 @@ void BarePackets::trace(const Queue& queue) const {
 
 void BarePackets::try_all(const Queue& queue) const {
   if (queue.shadow)
-    kernels_.occlusions_of_few(*scene_.few, *shadows_);
+    kernels_.occlusions_of_few(*scene_.tables.few, *shadows_);
   else
-    kernels_.closest_of_few(*scene_.few, *rays_);
+    kernels_.closest_of_few(*scene_.tables.few, *rays_);
 }
 
 void BarePackets::query() const {

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "src_cpu/block_worker.hpp"
@@ -14,9 +13,7 @@ namespace kiloband::speed {
 struct BareScene {
   std::shared_ptr<const FlatScene> compiled;
   std::unique_ptr<cpu::EmbreeScene> embree;
-  std::vector<cpu::TriangleRecord> records;
-  std::vector<cpu::LightTriangle> lights;
-  std::optional<cpu::FewTriangles> few;
+  cpu::TracerTables tables;
   cpu::TracerScene tracer;
   std::vector<PixelRect> blocks;
 
