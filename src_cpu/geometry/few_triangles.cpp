@@ -4,12 +4,10 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "scene/compile/record_vectors.hpp"
+
 namespace kiloband::cpu {
 namespace {
-
-glm::dvec3 to_double(const KbFloat3& p) {
-  return {p.x, p.y, p.z};
-}
 
 /// Index of a place, which is added where it is new.
 uint32_t corner_at(std::vector<KbFloat3>& corners, const KbFloat3& place) {
@@ -26,7 +24,7 @@ void add_triangle(FewTriangles& few, const FlatScene& scene, uint32_t shape, uin
   glm::dvec3 p[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const KbFloat3& place = scene.positions[scene.triangles[first + i]];
-    p[i] = to_double(place);
+    p[i] = to_glm(place);
     triangle.corners[i] = corner_at(few.corners, place);
   }
   const glm::dvec3 product = cross(p[1] - p[0], p[2] - p[0]);

@@ -7,6 +7,8 @@
 #include <limits>
 #include <map>
 
+#include "scene/compile/record_vectors.hpp"
+
 namespace kiloband {
 namespace {
 
@@ -22,10 +24,6 @@ struct Ray {
 
 /// A direction that no edge of a scene made by hand is likely to meet.
 const glm::dvec3 kDirection = glm::normalize(glm::dvec3(0.60311, 0.28393, 0.74549));
-
-glm::dvec3 to_glm(const KbFloat3& p) {
-  return {p.x, p.y, p.z};
-}
 
 /// source  Moeller, Trumbore: Fast, Minimum Storage Ray/Triangle Intersection (1997)
 void cross_triangle(const Ray& ray, const glm::dvec3& p0, const glm::dvec3& e1, const glm::dvec3& e2,

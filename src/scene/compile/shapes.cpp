@@ -6,6 +6,7 @@
 
 #include "scene/compile/flattener.hpp"
 #include "scene/compile/light/lattice_cdf.hpp"
+#include "scene/compile/record_vectors.hpp"
 #include "scene/compile/shape_bounds.hpp"
 
 namespace kiloband {
@@ -13,10 +14,6 @@ namespace {
 
 KbFloat3 to_record(const glm::dvec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-glm::dvec3 to_glm(const KbFloat3& v) {
-  return {v.x, v.y, v.z};
 }
 
 bool mirrors(const Transform& to_world) {

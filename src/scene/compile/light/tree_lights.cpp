@@ -6,6 +6,7 @@
 #include "scene/compile/flattener.hpp"
 #include "scene/compile/light/lattice_cdf.hpp"
 #include "scene/compile/light/light_tree.hpp"
+#include "scene/compile/record_vectors.hpp"
 #include "scene/compile/shape_bounds.hpp"
 
 namespace kiloband {
@@ -13,10 +14,6 @@ namespace {
 
 /// Fewer lights than this are chosen by power alone: as measured, the walk down the tree costs more than it saves.
 constexpr std::size_t kFewestTreeLights = 16;
-
-glm::dvec3 vector_of(const KbFloat3& v) {
-  return {v.x, v.y, v.z};
-}
 
 glm::dvec3 column(const float (&m)[12], int i) {
   return {m[i], m[4 + i], m[8 + i]};
@@ -33,8 +30,8 @@ bool on_shape(uint32_t type) {
 /// Shines where its vertex normals point to, which may lean away from its own.
 LightBounds triangle_bounds(const FlatScene& scene, const KbShape& shape, uint32_t triangle) {
   const uint32_t* index = &scene.triangles[3 * (std::size_t{shape.first_triangle} + triangle)];
-  const glm::dvec3 p0 = vector_of(scene.positions[index[0]]), p1 = vector_of(scene.positions[index[1]]),
-                   p2 = vector_of(scene.positions[index[2]]);
+  const glm::dvec3 p0 = to_glm(scene.positions[index[0]]), p1 = to_glm(scene.positions[index[1]]),
+                   p2 = to_glm(scene.positions[index[2]]);
   LightBounds bounds;
   bounds.low = glm::min(p0, glm::min(p1, p2));
   bounds.high = glm::max(p0, glm::max(p1, p2));
@@ -44,7 +41,7 @@ LightBounds triangle_bounds(const FlatScene& scene, const KbShape& shape, uint32
   bounds.axis = normal * ((kb_winding_is_turned(shape.flags) ? -1 : 1) / length);
   bounds.cone = 0;
   for (int i = 0; i < 3 && (shape.flags & KB_SHAPE_HAS_NORMALS); ++i) {
-    const glm::dvec3 n = vector_of(scene.normals[index[i]]);
+    const glm::dvec3 n = to_glm(scene.normals[index[i]]);
     bounds.cone =
         std::max(bounds.cone, glm::length(n) > 0 ? angle_between(bounds.axis, n) : std::numbers::pi);
   }
@@ -53,9 +50,9 @@ LightBounds triangle_bounds(const FlatScene& scene, const KbShape& shape, uint32
 
 double triangle_area(const FlatScene& scene, const KbShape& shape, uint32_t triangle) {
   const uint32_t* index = &scene.triangles[3 * (std::size_t{shape.first_triangle} + triangle)];
-  const glm::dvec3 p0 = vector_of(scene.positions[index[0]]);
-  return 0.5 * glm::length(glm::cross(vector_of(scene.positions[index[1]]) - p0,
-                                      vector_of(scene.positions[index[2]]) - p0));
+  const glm::dvec3 p0 = to_glm(scene.positions[index[0]]);
+  return 0.5 * glm::length(glm::cross(to_glm(scene.positions[index[1]]) - p0,
+                                      to_glm(scene.positions[index[2]]) - p0));
 }
 
 LightBounds shape_bounds(const KbShape& shape) {
