@@ -242,8 +242,10 @@ void LiveState::measure(std::size_t blocks, double seconds) {
   status_.frames_per_second = static_cast<double>(film_->passes()) / busy_seconds_;
 }
 
+/// Now and then, and once more of the last sample: what stands there while the render rests belongs to its samples.
 void LiveState::update_error() {
-  if (!variance_ || film_ != full_.get() || seconds_since(last_error_) < kErrorInterval) return;
+  if (!variance_ || film_ != full_.get()) return;
+  if (!is_done() && seconds_since(last_error_) < kErrorInterval) return;
   last_error_ = Clock::now();
   const std::size_t bands = channels_.size(), width = film_->width();
   ErrorSums sums(bands);

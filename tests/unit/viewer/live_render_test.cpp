@@ -81,6 +81,9 @@ TEST_F(LiveWall, RefinesUntilItIsDone) {
   wait_for("done");
   EXPECT_EQ(image_->status().newest.samples, 40u);
   EXPECT_GE(image_->status().newest.frame, 40u);
+  ASSERT_TRUE(image_->status().error) << "of the last sample, however short the render was";
+  EXPECT_GT(*image_->status().error, 0);
+  EXPECT_LT(*image_->status().error, 0.5);
   const Curve curve = middle();
   EXPECT_EQ(curve.pixels, 24u * 20u);
   expect_radiance(0.5);
