@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <thread>
 
+#include "base/deal_ranges.hpp"
 #include "base/text.hpp"
 #include "viewer/display/brightness.hpp"
 #include "viewer/display/three_sums.hpp"
@@ -15,27 +14,15 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// Deals rows to threads; work(first, end) is called once per thread.
-void deal_rows(uint32_t rows, unsigned threads, const std::function<void(uint32_t, uint32_t)>& work) {
-  const uint32_t parts = std::clamp(threads, 1u, std::max(rows, 1u));
-  std::vector<std::jthread> others;
-  for (uint32_t i = 1; i < parts; ++i) {
-    const auto first = static_cast<uint32_t>(uint64_t{rows} * i / parts);
-    const auto end = static_cast<uint32_t>(uint64_t{rows} * (i + 1) / parts);
-    others.emplace_back(work, first, end);
-  }
-  work(0, rows / parts);
-}
-
 /// A plane of one component whose pixels are functions of their bands' means.
 template <class Value>
 Plane plane_of_means(const PixelSource& source, unsigned threads, const Value& value) {
   Plane plane{source.width(), source.height(), 1, {}};
   plane.values.resize(std::size_t{plane.width} * plane.height);
   const std::size_t bands = source.bands().size();
-  deal_rows(plane.height, threads, [&](uint32_t first, uint32_t end) {
+  deal_ranges(plane.height, threads, [&](std::size_t first, std::size_t end) {
     std::vector<float> row(plane.width * bands);
-    for (uint32_t y = first; y < end; ++y) {
+    for (auto y = static_cast<uint32_t>(first); y < end; ++y) {
       source.means(y, row);
       for (uint32_t x = 0; x < plane.width; ++x)
         plane.values[std::size_t{y} * plane.width + x] = static_cast<float>(value(&row[x * bands]));
@@ -69,8 +56,8 @@ Plane weighted_plane(const PixelSource& source, const RgbWeights& weights, unsig
   const ThreeSums sums(source, weights);
   source.prepare(sums);
   const std::size_t row = std::size_t{plane.width} * 3;
-  deal_rows(plane.height, threads, [&](uint32_t first, uint32_t end) {
-    for (uint32_t y = first; y < end; ++y)
+  deal_ranges(plane.height, threads, [&](std::size_t first, std::size_t end) {
+    for (auto y = static_cast<uint32_t>(first); y < end; ++y)
       source.sums(y, sums, std::span(plane.values).subspan(y * row, row));
   });
   return plane;
@@ -93,9 +80,9 @@ Plane error_plane(const PixelSource& source, unsigned threads) {
   const std::size_t bands = source.bands().size();
   Plane plane{source.width(), source.height(), 1, {}};
   plane.values.resize(std::size_t{plane.width} * plane.height);
-  deal_rows(plane.height, threads, [&](uint32_t first, uint32_t end) {
+  deal_ranges(plane.height, threads, [&](std::size_t first, std::size_t end) {
     std::vector<float> means(plane.width * bands), variances(plane.width * bands);
-    for (uint32_t y = first; y < end; ++y) {
+    for (auto y = static_cast<uint32_t>(first); y < end; ++y) {
       source.means(y, means);
       source.variances(y, variances);
       for (uint32_t x = 0; x < plane.width; ++x) {
