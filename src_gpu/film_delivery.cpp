@@ -5,18 +5,27 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/deal_ranges.hpp"
+
 namespace kiloband::opencl {
 namespace {
 
+/// What a thread has to do for a film value, in bytes of memory.
+constexpr uint64_t kBytesOfValue = 16;
+
 template <class Value>
-void append(std::vector<Value>& to, std::vector<Value>& from) {
-  if (to.empty()) return to.swap(from);
+void append(std::vector<Value>& to, const std::vector<Value>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-template <class Value>
-void erase_front(std::vector<Value>& values, std::size_t number) {
-  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(std::min(number, values.size())));
+void append(GroupResult& to, const GroupResult& from) {
+  append(to.means, from.means);
+  append(to.counts, from.counts);
+  append(to.sums.sum, from.sums.sum);
+  append(to.sums.lost, from.sums.lost);
+  append(to.sums.open, from.sums.open);
+  append(to.sums.counts, from.sums.counts);
+  to.attempted = from.attempted;
 }
 
 }  // namespace
@@ -54,47 +63,56 @@ FilmSums FilmDelivery::sums_of(std::span<const ImagePixel> pixels) const {
   return sums;
 }
 
-/// The block's pixels are those from `first` on of what is collected.
-void FilmDelivery::put_sums(std::size_t first, const PixelRect& block) {
+/// The block's pixels are those from `first` on.
+void FilmDelivery::put_sums(const FilmSums& sums, std::size_t first, const PixelRect& block) {
   for (std::size_t i = 0; i < block.pixels(); ++i) {
     const PixelSums to = film_.pixel_sums(range_.replicate, film_.pixel_index(block, i));
     const std::size_t values = (first + i) * channels_;
-    to.count = sums_.counts[first + i];
-    std::copy_n(&sums_.open[values], channels_, to.open.begin());
+    to.count = sums.counts[first + i];
+    std::copy_n(&sums.open[values], channels_, to.open.begin());
     for (std::size_t c = 0; c < to.closed.size(); ++c)
-      to.closed[c] = std::bit_cast<ClosedSum>(CompensatedSum{sums_.sum[values + c], sums_.lost[values + c]});
+      to.closed[c] = std::bit_cast<ClosedSum>(CompensatedSum{sums.sum[values + c], sums.lost[values + c]});
   }
 }
 
-void FilmDelivery::add(std::span<const ImagePixel> pixels, GroupResult result) {
-  append(means_, result.means);
-  append(counts_, result.counts);
-  append(sums_.sum, result.sums.sum);
-  append(sums_.lost, result.sums.lost);
-  append(sums_.open, result.sums.open);
-  append(sums_.counts, result.sums.counts);
-  attempted_.insert(attempted_.end(), pixels.size(), result.attempted);
+void FilmDelivery::add(const GroupResult& result) {
+  if (!in_block()) {
+    if (finish_blocks(result) == 0) collected_ = result;
+    return;
+  }
+  append(collected_, result);
+  if (finish_blocks(collected_) > 0) collected_ = {};
+}
+
+/// The blocks that are complete. Returns their number.
+std::size_t FilmDelivery::finish_blocks(const GroupResult& result) {
+  std::vector<std::size_t> firsts;
   std::size_t first = 0;
-  while (next_block_ < blocks_.size()) {
-    const std::size_t in_block = film_.blocks()[blocks_[next_block_]].pixels();
-    if (first + in_block > attempted_.size()) break;
-    if (film_.keeps_sums()) put_sums(first, film_.blocks()[blocks_[next_block_]]);
-    finish_block(first, in_block);
+  for (std::size_t next = next_block_; next < blocks_.size(); ++next) {
+    const std::size_t in_block = film_.blocks()[blocks_[next]].pixels();
+    if (first + in_block > result.pixels()) break;
+    firsts.push_back(first);
     first += in_block;
-    ++next_block_;
   }
-  for (std::vector<float>* values : {&means_, &sums_.sum, &sums_.lost, &sums_.open})
-    erase_front(*values, first * channels_);
-  for (std::vector<uint32_t>* values : {&counts_, &sums_.counts, &attempted_}) erase_front(*values, first);
+  if (!firsts.empty() && first != result.pixels())
+    throw std::logic_error("OpenCL backend: pixels of a block that is not complete follow whole blocks");
+  const unsigned threads = threads_for(kBytesOfValue * channels_ * first);
+  deal_ranges(firsts.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) finish_block(result, firsts[b], blocks_[next_block_ + b]);
+  });
+  next_block_ += firsts.size();
+  return firsts.size();
 }
 
-/// Pixels first .. first + pixels - 1 of what is collected are the next block.
-void FilmDelivery::finish_block(std::size_t first, std::size_t pixels) {
-  const uint32_t block = blocks_[next_block_];
-  if (film_.keeps_sums())
-    return film_.set_attempted(range_.replicate, block, range_.first + attempted_[first]);
-  const auto block_means = std::span(means_).subspan(first * channels_, pixels * channels_);
-  film_.add({block, range_.replicate, std::span(counts_).subspan(first, pixels), block_means, channels_});
+/// The block's pixels are those from `first` on.
+void FilmDelivery::finish_block(const GroupResult& result, std::size_t first, uint32_t block) {
+  if (film_.keeps_sums()) {
+    put_sums(result.sums, first, film_.blocks()[block]);
+    return film_.set_attempted(range_.replicate, block, range_.first + result.attempted);
+  }
+  const std::size_t pixels = film_.blocks()[block].pixels();
+  const auto means = std::span(result.means).subspan(first * channels_, pixels * channels_);
+  film_.add({block, range_.replicate, std::span(result.counts).subspan(first, pixels), means, channels_});
 }
 
 }  // namespace kiloband::opencl

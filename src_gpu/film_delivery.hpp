@@ -21,28 +21,26 @@ class FilmDelivery {
 
   /// A block is delivered in part: the samples per pixel that its first part has,
   /// and the pixels that it lacks.
-  bool in_block() const { return !attempted_.empty(); }
-  uint32_t attempted() const { return attempted_.front(); }
-  std::size_t missing() const { return film_.blocks()[blocks_[next_block_]].pixels() - attempted_.size(); }
+  bool in_block() const { return collected_.pixels() > 0; }
+  uint32_t attempted() const { return collected_.attempted; }
+  std::size_t missing() const { return film_.blocks()[blocks_[next_block_]].pixels() - collected_.pixels(); }
 
   /// The film's sums of these pixels, of the samples before the range.
   FilmSums sums_of(std::span<const ImagePixel> pixels) const;
-  /// The pixels follow those that were added before.
-  void add(std::span<const ImagePixel> pixels, GroupResult result);
+  /// The pixels follow those that were added before: the rest of a block, or whole blocks, or a part of one. Blocks are dealt to threads.
+  void add(const GroupResult& result);
 
  private:
   std::size_t index(const ImagePixel& pixel) const;
-  void put_sums(std::size_t first, const PixelRect& block);
-  void finish_block(std::size_t first, std::size_t pixels);
+  void put_sums(const FilmSums& sums, std::size_t first, const PixelRect& block);
+  std::size_t finish_blocks(const GroupResult& result);
+  void finish_block(const GroupResult& result, std::size_t first, uint32_t block);
 
   SpectralFilm& film_;
   const SampleRange& range_;
   const std::vector<uint32_t>& blocks_;
   std::size_t channels_, next_block_ = 0;
-  std::vector<float> means_;
-  std::vector<uint32_t> counts_;
-  FilmSums sums_;
-  std::vector<uint32_t> attempted_;  // by pixel of the open block and those after it
+  GroupResult collected_;  // of the block that is open
 };
 
 }  // namespace kiloband::opencl

@@ -29,6 +29,18 @@ uint64_t most_jobs(const DeviceState& device, const Tuning& tuning, uint32_t slo
                             slots);
 }
 
+/// What is not asked for; what is keeps its size: values would be set to 0 before they are overwritten.
+void clear_other(GroupResult& result, bool sums) {
+  if (sums) {
+    result.means.clear();
+    result.counts.clear();
+  } else {
+    for (auto* values : {&result.sums.open, &result.sums.sum, &result.sums.lost}) values->clear();
+    result.sums.counts.clear();
+  }
+  result.attempted = 0;
+}
+
 uint64_t round_up(uint64_t n, uint64_t multiple) {
   return (n + multiple - 1) / multiple * multiple;
 }
@@ -244,13 +256,14 @@ SampleCut GroupRenderer::next_round(const SampleRange& range, uint32_t done, boo
   return {std::min(round_samples_, range.count - done), false};
 }
 
-GroupResult GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
-                                  const FilmSums* before, const std::atomic<bool>& stop,
-                                  const std::function<void(uint64_t)>& on_samples, RunTally& tally) {
+void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
+                           const FilmSums* before, const std::atomic<bool>& stop,
+                           const std::function<void(uint64_t)>& on_samples, RunTally& tally,
+                           GroupResult& result) {
   prepare(pixels.size(), before != nullptr);
   device_.clear_film(pixels.size());
   if (before && range.first > 0) device_.load_film(*before);
-  GroupResult result;
+  clear_other(result, before != nullptr);
   // All pixels of the group get the same samples, so that a stopped render is even.
   while (result.attempted < range.count && !stop) {
     const SampleCut cut = next_round(range, result.attempted, before != nullptr);
@@ -272,7 +285,6 @@ GroupResult GroupRenderer::render(std::span<const ImagePixel> pixels, const Samp
   learn_evaluation(tally);
   tally.longest_launch_seconds =
       std::max(tally.longest_launch_seconds, device_.context.take_longest(LaunchScale::kOther));
-  return result;
 }
 
 }  // namespace kiloband::opencl

@@ -2,6 +2,7 @@
 // paths that are generated and evaluated.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -42,6 +43,8 @@ struct GroupResult {
   std::vector<uint32_t> counts;  // valid samples
   FilmSums sums;
   uint32_t attempted = 0;  // samples per pixel
+
+  std::size_t pixels() const { return std::max(counts.size(), sums.counts.size()); }
 };
 
 class GroupRenderer {
@@ -62,10 +65,11 @@ class GroupRenderer {
   /// Renders range.count samples of every pixel (fewer if stop becomes true). At most group_pixels() of them.
   /// The pixels of a block stand together. on_samples gets the pixel samples done.
   /// before  the sums of the pixels' samples before the range, which are gone on with; null: means are wanted
+  /// result  becomes what was rendered, in the memory that it has: pages that are new cost more than the download
   /// throws DeviceLost (everything of the device is to be made anew), DeviceOutOfMemory, DeviceError
-  GroupResult render(std::span<const ImagePixel> pixels, const SampleRange& range, const FilmSums* before,
-                     const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples,
-                     RunTally& tally);
+  void render(std::span<const ImagePixel> pixels, const SampleRange& range, const FilmSums* before,
+              const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples, RunTally& tally,
+              GroupResult& result);
 
   /// The paths of one sample of each pixel (methods dpept: with pt vertices are not kept). hits: as DeviceState::trace.
   std::vector<TracedPath> trace(std::span<const ImagePixel> pixels, const SampleRange& range,

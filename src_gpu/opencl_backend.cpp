@@ -78,9 +78,8 @@ class Renderer final : public Backend {
   /// Calls `work` until it gets through without losing the device, which is set up where need be.
   template <class Work>
   std::invoke_result_t<Work> repeated(const Work& work);
-  GroupResult render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
-                           const FilmSums* before, const std::atomic<bool>& stop,
-                           const std::function<void(uint64_t)>& progress);
+  void render_group(std::span<const ImagePixel> pixels, const SampleRange& range, const FilmSums* before,
+                    const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress);
   void count(const RunTally& tally);
 
   Options options_;
@@ -90,6 +89,7 @@ class Renderer final : public Backend {
   DeviceContext context_;
   std::unique_ptr<DeviceState> state_;
   std::unique_ptr<GroupRenderer> groups_;
+  GroupResult result_;      // of the group that was rendered last
   BackendStatistics done_;  // but for what the context and the device memory know
   uint32_t retreats_ = 0;
 };
@@ -193,11 +193,11 @@ void Renderer::count(const RunTally& tally) {
   }
 }
 
-GroupResult Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
-                                   const FilmSums* before, const std::atomic<bool>& stop,
-                                   const std::function<void(uint64_t)>& progress) {
+void Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
+                            const FilmSums* before, const std::atomic<bool>& stop,
+                            const std::function<void(uint64_t)>& progress) {
   uint64_t reported = 0;  // by an attempt that was lost: not to be reported again
-  return repeated([&] {
+  repeated([&] {
     RunTally tally;
     uint64_t done = 0;
     const auto on_samples = [&](uint64_t samples) {
@@ -206,9 +206,8 @@ GroupResult Renderer::render_group(std::span<const ImagePixel> pixels, const Sam
       progress(done - reported);
       reported = done;
     };
-    GroupResult result = groups_->render(pixels, range, before, stop, on_samples, tally);
+    groups_->render(pixels, range, before, stop, on_samples, tally, result_);
     count(tally);
-    return result;
   });
 }
 
@@ -245,8 +244,8 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
     std::optional<FilmSums> before;
     if (film.keeps_sums()) before = delivery.sums_of(group);
     try {
-      delivery.add(group,
-                   render_group(group, part, before ? &*before : nullptr, in_block ? never : stop, told));
+      render_group(group, part, before ? &*before : nullptr, in_block ? never : stop, told);
+      delivery.add(result_);
       at += number;
     } catch (const DeviceOutOfMemory& refusal) {
       retreat(refusal);  // and the same pixels again, fewer at a time

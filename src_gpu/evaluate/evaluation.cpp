@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/deal_ranges.hpp"
+
 namespace kiloband::opencl {
 namespace {
 
@@ -238,7 +240,11 @@ void Evaluation::download_packed(FilmKernel& kernel, const DeviceBuffer<float>& 
   std::optional<Piece> before;
   const auto put = [&](const Piece& piece) {
     means_.wait_for(piece.done);
-    std::ranges::copy(piece.from, piece.to);
+    deal_ranges(piece.from.size(), threads_for(piece.from.size_bytes()),
+                [&](std::size_t begin, std::size_t end) {
+                  std::copy(piece.from.begin() + static_cast<std::ptrdiff_t>(begin),
+                            piece.from.begin() + static_cast<std::ptrdiff_t>(end), piece.to + begin);
+                });
   };
   for (uint64_t first = 0, number = 0; first < pixels; first += means_pixels_, ++number) {
     const uint64_t some = std::min(means_pixels_, pixels - first);
