@@ -24,7 +24,7 @@ assemble() {
   local out=$folder/$1 file=$2 kernels
   shift 2
   clang-14 -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -target nvptx64-unknown-nvcl -DFP_FAST_FMAF=1 \
-    -cl-fp32-correctly-rounded-divide-sqrt -Dcl_clang_storage_class_specifiers -Ikernels -Isrc -I. "$@" -O3 \
+    -cl-fp32-correctly-rounded-divide-sqrt -Dcl_clang_storage_class_specifiers -Ikernels -Isrc -I. -include scripts/nvidia_functions.h "$@" -O3 \
     -Xclang -disable-llvm-passes -Xclang -target-cpu -Xclang sm_75 -Xclang -target-feature -Xclang +ptx75 \
     -emit-llvm -c -o "$out.bc" "$file"
   kernels=$("$llvm/llvm-nm" --defined-only "$out.bc" | awk '$2 == "T" { print $3 }' | paste -sd,)

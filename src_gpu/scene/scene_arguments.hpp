@@ -10,6 +10,7 @@
 #include "shared/pipeline.h"
 #include "shared/sobol_table.h"
 #include "src_gpu/device/kernel_groups.hpp"
+#include "src_gpu/scene/centred_texels.hpp"
 
 namespace kiloband::opencl {
 
@@ -80,7 +81,7 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .shapes = up("shapes", scene.shapes),
           .textures = up("textures", scene.textures),
           .checkerboards = up("checkerboards", scene.checkerboards),
-          .texels = up("texels", scene.texels),
+          .texels = up("texels", centred_texels(scene)),
           .texel_values = {},
           .texel_bounds = up("texel bounds", scene.texel_bounds),
           .spectrum_bounds = up("spectrum bounds", bounds_of_rows(scene)),
