@@ -54,7 +54,7 @@ for set in "$@"; do
   evaluation="-DKB_WIDTH=4 -DKB_VECTORS=1 -DKB_DERIVED=0 -DKB_PIXELS=1 -DKB_PER_PATH=0"
   # shellcheck disable=SC2086
   {
-    limit=80 row "$set" paths kernels/path/paths.cl $defines # kPathRegisters of src_gpu/device_state.cpp
+    limit=128 row "$set" paths kernels/path/paths.cl $defines # kPathRegisters of src_gpu/device_state.cpp
     row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation -DKB_STAGED=1
     row "$set" path kernels/evaluate/evaluate.cl $defines $evaluation -DKB_FILM_TRANSPOSED=1 | grep dpept_path
     row "$set" pt kernels/evaluate/pt.cl $defines $evaluation -DKB_METHOD_PT=1

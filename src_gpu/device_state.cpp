@@ -10,9 +10,9 @@ namespace {
 
 /// Rays of a launch that cannot be measured beforehand: short on any device.
 constexpr uint32_t kAuxiliaryPixels = 1u << 15;
-/// Of the kernels of path generation: 24 warps per multiprocessor, where `shade` would take registers for 16 and have 2 % fewer
-/// instructions (validation/results/gpu_static.md).
-constexpr uint32_t kPathRegisters = 80;
+/// Of the kernels of path generation: 16 warps per multiprocessor at least. An H100 takes 0.74 to 0.99 of the time for `shade` that it takes
+/// with 80 registers, which gives 24 warps and spills (validation/results/gpu_h100.md).
+constexpr uint32_t kPathRegisters = 128;
 
 /// A program's chunks where they are not the usual ones.
 void add_chunk_define(std::vector<std::string>& defines, const HostScene& host, Method method) {
@@ -32,6 +32,7 @@ std::vector<std::string> path_defines(const DeviceInfo& device, const HostScene&
   // In steps of 8: scenes whose trees differ a little share a program.
   defines.push_back("KB_BVH_STACK=" + std::to_string(host.bvh.stack_entries() / 8 * 8 + 8));
   defines.push_back("KB_SLOTS_PER_ITEM=" + std::to_string(slots_per_item(device)));
+  defines.push_back("KB_SHADING_KEYS=" + std::to_string(shading_keys(device, host.scene.features)) + "u");
   if (settings.method == Method::kPt) defines.push_back("KB_METHOD_PT=1");
   add_chunk_define(defines, host, settings.method);
   return defines;

@@ -62,6 +62,7 @@ class DeviceState {
   uint32_t derived_channels() const { return host_.spectra.layout.derived; }
   bool has_gas() const { return host_.scene.features.gas; }
   bool has_instances() const { return host_.scene.features.instances; }
+  const SceneFeatures& features() const { return host_.scene.features; }
 
   void clear_film(uint64_t pixels);
   /// As Evaluation's of these names.

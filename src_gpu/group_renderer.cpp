@@ -75,6 +75,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels, bool open) const {
   r.chunk_entries = device_.chunk_entries();
   r.gas = device_.has_gas();
   r.instances = device_.has_instances();
+  r.shading_keys = shading_keys(device_.context.device(), device_.features());
   return r;
 }
 

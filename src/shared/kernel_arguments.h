@@ -92,7 +92,9 @@
   X(queue, OUT, kb_u32, slots) SEP                                                                               \
   X(queue, OUT, kb_u32, length) SEP                                                                              \
   X(queue, OUT, kb_u32, packed) SEP                                                                              \
-  X(queue, OUT, kb_u32, packed_length)
+  X(queue, OUT, kb_u32, packed_length) SEP                                                                       \
+  X(queue, OUT, kb_u32, ordered) SEP          /* [key][slot of the pool]: shading_order.clh */                   \
+  X(queue, OUT, kb_u32, ordered_lengths)      /* by key */
 
 /* What evaluation writes on its way to the film. */
 #define KB_EVALUATION_ARGUMENTS(X, SEP)                                                                          \

@@ -13,6 +13,9 @@ constexpr uint32_t kIterationsPerLook = KB_ITERATIONS_PER_PACKING;
 /// So many rounds that were over when the host looked first, and it looks earlier.
 constexpr uint32_t kEarlyRounds = 8;
 
+/// KB_LANES of kernels/path/shading_order.clh, which leaves as many places open behind each key, at most.
+constexpr uint64_t kLanes = 32;
+
 uint64_t wide(const kb_u32 (&words)[2]) {
   return uint64_t{words[1]} << 32 | words[0];
 }
@@ -27,7 +30,7 @@ void throw_for_bugs(const KbFaults& faults) {
 
 uint64_t path_pool_bytes(const PoolSize& size) {
   const uint64_t per_slot = sizeof(KbPathState) + sizeof(KbRay) + sizeof(KbHit) + sizeof(KbShadowRay) +
-                            sizeof(KbTally) + 2 * sizeof(uint32_t) +
+                            sizeof(KbTally) + (2 + size.shading_keys) * sizeof(uint32_t) +
                             (size.dispersion ? sizeof(KbDispersionState) : 0) +
                             (size.gas ? sizeof(KbGasState) : 0) + (size.instances ? sizeof(uint32_t) : 0);
   const uint64_t per_chunk = size.chunk_entries * sizeof(KbPathVertex) + sizeof(uint32_t);
@@ -37,6 +40,12 @@ uint64_t path_pool_bytes(const PoolSize& size) {
 
 uint32_t slots_per_item(const DeviceInfo& device) {
   return device.type == DeviceType::kCpu ? kCpuSlotsPerItem : 1;
+}
+
+uint32_t shading_keys(const DeviceInfo& device, const SceneFeatures& f) {
+  const int kinds = f.diffuse + f.conductor + f.rough_conductor + f.dielectric + f.rough_dielectric +
+                    f.plastic + f.rough_plastic + f.principled;
+  return device.type == DeviceType::kCpu || kinds < 2 ? 0 : KB_MATERIAL_COUNT + 1;
 }
 
 PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& program,
@@ -69,6 +78,8 @@ PathPool::PathPool(DeviceContext& context, DeviceMemory& memory, const Program& 
       length_(memory.allocate<uint32_t>("queue", 1)),
       packed_(memory.allocate<uint32_t>("queue", size.slots)),
       packed_length_(memory.allocate<uint32_t>("queue", 1)),
+      ordered_(memory.allocate<uint32_t>("shading order", uint64_t{size.slots} * size.shading_keys)),
+      ordered_lengths_(memory.allocate<uint32_t>("shading order", size.shading_keys)),
       reset_(program.kernel("reset_pool")),
       generate_(program.kernel("generate")),
       closest_(program.kernel("closest_hits")),
@@ -88,12 +99,13 @@ void PathPool::set_arguments(PathKernel& kernel, const DeviceScene& scene, const
   kernel.set(scene, spectra, bvh, buffers_);
 }
 
-void PathPool::launch(PathKernel& kernel) {
+/// more: work-items beyond those of the queue
+void PathPool::launch(PathKernel& kernel, uint64_t more) {
   kernel.set(queue().slots);
   const uint64_t each = slots_per_item(context_.device());
   const uint64_t group =
       each > 1 ? 1 : std::min<uint64_t>({group_, kernel->max_work_group_size(), KB_LARGEST_PATH_GROUP});
-  kernel->launch((count_ + each - 1) / each, group);
+  kernel->launch((count_ + more + each - 1) / each, group);
 }
 
 void PathPool::iterate(const AfterBounce& after_bounce) {
@@ -104,7 +116,7 @@ void PathPool::iterate(const AfterBounce& after_bounce) {
     launch(generate_);
     launch(closest_);
     if (on_hits_) on_hits_(queue());
-    launch(shade_);
+    launch(shade_, uint64_t{size_.shading_keys} * kLanes);
     launch(any_);
   }
   if (after_bounce) after_bounce(queue());

@@ -24,6 +24,7 @@ struct PoolSize {
   bool dispersion = false;                    // the scene has boundaries whose index depends on wavelength
   bool gas = false;                           // the scene has gas
   bool instances = false;                     // the scene has instances
+  uint32_t shading_keys = 0;                  // shading_keys()
 };
 
 uint64_t path_pool_bytes(const PoolSize& size);
@@ -31,6 +32,10 @@ uint64_t path_pool_bytes(const PoolSize& size);
 /// Slots that a work-item of path generation takes (KB_SLOTS_PER_ITEM): CPU devices have groups of one work-item with a loop
 /// (kernels/path/path.clh).
 uint32_t slots_per_item(const DeviceInfo& device);
+
+/// Kinds of material that GPUs shade one after the other, with a kind for rays that hit nothing (KB_SHADING_KEYS); 0: paths are shaded as
+/// they stand in the queue, on CPU devices and in scenes of one kind.
+uint32_t shading_keys(const DeviceInfo& device, const SceneFeatures& features);
 
 /// Slots of a launch on the device, and how many work-items are enough for them.
 struct LaunchQueue {
@@ -83,7 +88,13 @@ class PathPool {
 
   const PoolBuffers& buffers() const { return buffers_; }
   LaunchQueue queue() const {
-    return {{.slots = queue_, .length = length_, .packed = packed_, .packed_length = packed_length_}, count_};
+    return {{.slots = queue_,
+             .length = length_,
+             .packed = packed_,
+             .packed_length = packed_length_,
+             .ordered = ordered_,
+             .ordered_lengths = ordered_lengths_},
+            count_};
   }
 
  private:
@@ -91,7 +102,7 @@ class PathPool {
                      const DeviceBvh& bvh);
   void iterate(const AfterBounce& after_bounce);
   void iterate_until_packing(const AfterBounce& after_bounce);
-  void launch(PathKernel& kernel);
+  void launch(PathKernel& kernel, uint64_t more = 0);
   void compact();
   bool look(RoundOutcome& outcome);
   uint32_t expected_iterations(double jobs_each) const;
@@ -101,7 +112,7 @@ class PathPool {
   PoolSize size_;
   uint32_t group_;
   PoolBuffers buffers_;
-  DeviceBuffer<uint32_t> queue_, length_, packed_, packed_length_;
+  DeviceBuffer<uint32_t> queue_, length_, packed_, packed_length_, ordered_, ordered_lengths_;
   PathKernel reset_, generate_, closest_, shade_, any_, compact_, tallies_;
   std::optional<PathKernel> whole_;  // of CPU devices: the four of an iteration in one
   AfterBounce on_hits_;

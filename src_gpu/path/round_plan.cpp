@@ -53,6 +53,7 @@ uint64_t bytes_of_jobs(const PlanRequest& r, uint64_t jobs, uint64_t slots) {
   size.dispersion = r.dispersion;
   size.gas = r.gas;
   size.instances = r.instances;
+  size.shading_keys = r.shading_keys;
   size.slots = to_u32(slots);
   size.jobs = to_u32(jobs);
   size.pixels = to_u32(jobs);
@@ -186,6 +187,7 @@ RoundPlan plan_rounds(const PlanRequest& r) {
   plan.pool.jobs = pt ? 1 : to_u32(plan.round_jobs);
   plan.pool.gas = r.gas;
   plan.pool.instances = r.instances;
+  plan.pool.shading_keys = r.shading_keys;
   plan.pool.arena_chunks = pt ? plan.pool.slots : to_u32(arena_chunks(r, plan.pool, plan.round_jobs));
   return plan;
 }

@@ -37,6 +37,7 @@ struct PlanRequest {
   uint32_t chunk_entries = KB_CHUNK_ENTRIES;
   bool gas = false;  // the scene has gas
   bool instances = false;
+  uint32_t shading_keys = 0;
 };
 
 struct RoundPlan {
