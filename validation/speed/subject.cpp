@@ -110,6 +110,21 @@ SceneFile bench_scene(const Settings& settings, const std::string& name) {
   return *found;
 }
 
+uint32_t image_side(bool gpu, bool quick, uint32_t channels) {
+  if (!gpu) return quick ? 64 : 128;
+  constexpr uint64_t kMostValues = uint64_t{1} << 27;
+  uint32_t side = quick ? 256 : 512;
+  while (side > 64 && uint64_t{side} * side * channels > kMostValues) side /= 2;
+  return side;
+}
+
+uint32_t image_side(const Bench& bench, uint32_t channels) {
+  const Settings& settings = bench.settings();
+  const bool gpu =
+      settings.opencl() && opencl::select_device(settings.device).type == opencl::DeviceType::kGpu;
+  return image_side(gpu, bench.quick(), channels);
+}
+
 std::string bands_text(const SceneFile& scene, uint32_t channels) {
   return fmt::format("{:g}:{:g}:{}", scene.first_nm, scene.last_nm, channels);
 }

@@ -24,6 +24,12 @@ std::vector<SceneFile> bench_scenes(const Settings& settings);
 /// One of them.
 SceneFile bench_scene(const Settings& settings, const std::string& name);
 
+/// Pixels of a side of images whose rates are measured, so that every contender has enough to do: a GPU has a million paths in flight.
+/// With many channels fewer: films stay below 1 GiB.
+uint32_t image_side(bool gpu, bool quick, uint32_t channels);
+/// The same for whoever takes part in the run.
+uint32_t image_side(const Bench& bench, uint32_t channels);
+
 /// "400:700:64"; first, count: of the channels [first, first + count) of `channels` alone
 std::string bands_text(const SceneFile& scene, uint32_t channels);
 std::string bands_text(const SceneFile& scene, uint32_t channels, uint32_t first, uint32_t count);

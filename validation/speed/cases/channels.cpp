@@ -24,7 +24,7 @@ Setup setup_of(const Bench& bench, const SceneFile& scene, const BackendName& na
   setup.scene = scene.name, setup.backend = name.backend, setup.method = name.method;
   setup.wavelengths = "shared", setup.sampler = "sobol";
   setup.channels = channels;
-  setup.width = setup.height = bench.pick(64u, 128u);
+  setup.width = setup.height = image_side(bench, channels);
   setup.replicates = 1;
   return setup;
 }

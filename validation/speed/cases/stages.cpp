@@ -98,7 +98,7 @@ Setup cpu_setup(const Bench& bench, const SceneFile& file, uint32_t channels) {
   Setup setup;
   setup.scene = file.name, setup.backend = "cpu", setup.wavelengths = "shared", setup.sampler = "independent";
   setup.channels = channels;
-  setup.width = setup.height = bench.pick(64u, 128u);
+  setup.width = setup.height = image_side(bench, channels);
   setup.replicates = 1;
   return setup;
 }
