@@ -108,6 +108,11 @@ void PathPool::launch(PathKernel& kernel, uint64_t more) {
   kernel->launch((count_ + more + each - 1) / each, group);
 }
 
+/// Of the shading order, at most.
+uint64_t PathPool::open_places() const {
+  return uint64_t{size_.shading_keys} * kLanes;
+}
+
 void PathPool::iterate(const AfterBounce& after_bounce) {
   const bool whole = whole_ && !on_hits_;
   if (whole) {
@@ -116,8 +121,8 @@ void PathPool::iterate(const AfterBounce& after_bounce) {
     launch(generate_);
     launch(closest_);
     if (on_hits_) on_hits_(queue());
-    launch(shade_, uint64_t{size_.shading_keys} * kLanes);
-    launch(any_);
+    launch(shade_, open_places());
+    launch(any_, open_places());
   }
   if (after_bounce) after_bounce(queue());
 }

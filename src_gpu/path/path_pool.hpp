@@ -103,6 +103,7 @@ class PathPool {
   void iterate(const AfterBounce& after_bounce);
   void iterate_until_packing(const AfterBounce& after_bounce);
   void launch(PathKernel& kernel, uint64_t more = 0);
+  uint64_t open_places() const;
   void compact();
   bool look(RoundOutcome& outcome);
   uint32_t expected_iterations(double jobs_each) const;
