@@ -99,8 +99,11 @@ int bench(const BenchOptions& options) {
   catch_stop_signals();
   RunProgress progress(!options.quiet);
   const speed::Watch watch{&stop_requested, [&](double fraction) { progress.update(fraction); }};
-  const speed::RunOutcome run =
-      speed::run_cases(cases, settings, watch, [&](const std::string& name) { progress.begin(name); });
+  const speed::RunOutcome run = speed::run_cases(
+      cases, settings, watch, [&](const std::string& name) { progress.begin(name); },
+      [&](const speed::RunOutcome& so_far) {
+        speed::write_results(options.output, so_far, settings, machine);
+      });
   progress.end();
   speed::write_results(options.output, run, settings, machine);
   print_outcome(run);

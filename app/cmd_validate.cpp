@@ -165,8 +165,9 @@ int validate(const ValidateOptions& options) {
   catch_stop_signals();
   RunProgress progress(!options.quiet);
   const Watch watch{&stop_requested, [&](double fraction) { progress.update(fraction); }};
-  const SuiteResult result =
-      run_suite(settings, watch, [&](const std::string& name) { progress.begin(name); });
+  const SuiteResult result = run_suite(
+      settings, watch, [&](const std::string& name) { progress.begin(name); },
+      [&](const SuiteResult& so_far) { write_verdicts(options.output, so_far, record); });
   progress.end();
   write_results(options.output, result, record);
   print_verdict(result);

@@ -96,9 +96,10 @@ struct RunOutcome {
 };
 
 /// One case after the other; a case that fails leaves the others alone.
-/// begun: called with each case's name
+/// begun: called with each case's name; kept: with what there is whenever one is done, as an interrupted run
 RunOutcome run_cases(const std::vector<Case>& cases, const Settings& settings, const Watch& watch,
-                     const std::function<void(const std::string& name)>& begun);
+                     const std::function<void(const std::string& name)>& begun,
+                     const std::function<void(const RunOutcome& run)>& kept = {});
 
 /// bench.csv and bench.json, whole or not at all.
 /// machine: machine_json()

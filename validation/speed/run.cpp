@@ -82,8 +82,10 @@ std::vector<Case> chosen_cases(const std::vector<std::string>& names) {
 }
 
 RunOutcome run_cases(const std::vector<Case>& cases, const Settings& settings, const Watch& watch,
-                     const std::function<void(const std::string& name)>& begun) {
+                     const std::function<void(const std::string& name)>& begun,
+                     const std::function<void(const RunOutcome& run)>& kept) {
   RunOutcome run;
+  run.interrupted = true;  // until all is done
   double all = 0, done = 0;
   const auto share = [&](const Case& c) { return settings.quick ? c.quick : c.full; };
   for (const Case& c : cases) all += share(c);
@@ -97,6 +99,7 @@ RunOutcome run_cases(const std::vector<Case>& cases, const Settings& settings, c
     run.cases.push_back(outcome_of(c, settings, {watch.stop, progress}));
     run.seconds += run.cases.back().seconds;
     done += share(c);
+    if (kept) kept(run);
   }
   if (watch.progress) watch.progress(done / all);
   run.interrupted = watch.stopped();

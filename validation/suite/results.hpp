@@ -32,7 +32,12 @@ std::string to_junit(const SuiteResult& result);
 /// throws DeviceError  the folder cannot be written to
 void prepare_results(const std::filesystem::path& directory);
 
-/// Writes all of it.
+/// results.json and junit.xml alone.
+/// throws DeviceError  a file cannot be written
+void write_verdicts(const std::filesystem::path& directory, const SuiteResult& result,
+                    const RunRecord& record);
+
+/// Writes all of it, the cubes too.
 /// throws DeviceError  a file cannot be written
 void write_results(const std::filesystem::path& directory, const SuiteResult& result,
                    const RunRecord& record);

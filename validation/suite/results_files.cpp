@@ -145,6 +145,11 @@ void prepare_results(const fs::path& directory) {
   }
 }
 
+void write_verdicts(const fs::path& directory, const SuiteResult& result, const RunRecord& record) {
+  write_file_atomically(directory / "results.json", to_json(result, record).dump(1) + "\n");
+  write_file_atomically(directory / "junit.xml", to_junit(result));
+}
+
 void write_results(const fs::path& directory, const SuiteResult& result, const RunRecord& record) {
   std::error_code error;
   for (const CaseResult& c : result.cases) {
@@ -155,8 +160,7 @@ void write_results(const fs::path& directory, const SuiteResult& result, const R
       write_cube(file, side.image, c.channels);
     }
   }
-  write_file_atomically(directory / "results.json", to_json(result, record).dump(1) + "\n");
-  write_file_atomically(directory / "junit.xml", to_junit(result));
+  write_verdicts(directory, result, record);
 }
 
 }  // namespace kiloband::validation

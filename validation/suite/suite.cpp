@@ -137,13 +137,20 @@ std::vector<std::string> planned_names(const SuiteSettings& settings) {
 }
 
 SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
-                      const std::function<void(const std::string&)>& say) {
+                      const std::function<void(const std::string&)>& say,
+                      const std::function<void(const SuiteResult&)>& keep) {
   const auto start = std::chrono::steady_clock::now();
   const Plan plan = plan_of(settings);
   SuiteResult result;
   result.settings = settings;
   result.comparisons = family_of(plan, settings);
+  result.interrupted = true;  // until all is done
   Counter counter(plan.parts(), watch);
+  const auto finish_part = [&] {
+    counter.finish_part();
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (keep) keep(result);
+  };
   CaseSettings case_settings{settings.backends, settings.effort, settings.seed, 32, settings.rule,
                              std::max<std::size_t>(result.comparisons, 1),
                              // to compile kernels for every scene would take most of a quick run's time
@@ -152,7 +159,7 @@ SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
     if (watch.stopped()) break;
     say(c.name);
     result.cases.push_back(run_case(c, case_settings, counter.part()));
-    counter.finish_part();
+    finish_part();
   }
   for (const auto& [hard, backend] : plan.hard_cases) {
     if (watch.stopped()) break;
@@ -160,7 +167,7 @@ SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
     HardCaseResult figures = run_hard_case(*hard, backend, settings, watch);
     if (watch.stopped()) break;  // of images that were not finished
     result.hard_cases.push_back(std::move(figures));
-    counter.finish_part();
+    finish_part();
   }
   bound_statistical_figures(result.hard_cases);
   for (const ConvergenceCase& c : plan.convergence) {
@@ -168,12 +175,12 @@ SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
     say(c.name);
     result.convergence.push_back(run_convergence(
         c, {settings.backends, settings.effort, settings.seed, plan.convergence.size()}, counter.part()));
-    counter.finish_part();
+    finish_part();
   }
   if (!plan.mitsuba.empty() && !watch.stopped()) {
     say("mitsuba");
     result.mitsuba = run_mitsuba(*settings.mitsuba, mitsuba_run(plan, settings), counter.part());
-    counter.finish_part();
+    finish_part();
   }
   result.interrupted = watch.stopped();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -56,10 +56,12 @@ std::vector<std::string> planned_names(const SuiteSettings& settings);
 /// beyond that many has failed.
 void bound_statistical_figures(std::vector<HardCaseResult>& hard_cases);
 
-/// `say` is told when something begins; watch.progress: fraction of the whole run.
+/// `say` is told when something begins; watch.progress: fraction of the whole run. `keep` gets what there is whenever a case is done, as
+/// an interrupted run: a process that is ended while a driver compiles, which no signal gets through to, leaves that behind.
 /// What a case throws is its failure, and the run goes on.
 /// throws InputError  a name of none of the cases that there are with these settings
 SuiteResult run_suite(const SuiteSettings& settings, const Watch& watch,
-                      const std::function<void(const std::string&)>& say);
+                      const std::function<void(const std::string&)>& say,
+                      const std::function<void(const SuiteResult&)>& keep = {});
 
 }  // namespace kiloband::validation

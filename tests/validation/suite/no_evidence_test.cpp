@@ -1,6 +1,7 @@
 // Results that say nothing must not pass: invalid samples, black images, runs that were stopped.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
 
 #include "tests/support/temporary_folder.hpp"
@@ -71,6 +72,29 @@ TEST_F(NoEvidence, AStoppedCaseHasNoVerdict) {
   EXPECT_TRUE(result.interrupted);
   EXPECT_TRUE(result.pairings.empty() && result.images.empty());
   EXPECT_EQ(result.error, "");
+}
+
+/// What is kept on the way says of itself that it is not all.
+TEST_F(NoEvidence, WhatIsKeptOnTheWayIsInterrupted) {
+  validation::SuiteSettings settings;
+  settings.names = {"analytic/blend", "analytic/disk_light"};
+  settings.effort = Effort::kQuick;
+  const std::filesystem::path root = KILOBAND_SOURCE_DIR;
+  settings.folders = {root / "scenes", root / "validation/scenes", folder.path() / "scenes", {}};
+  settings.output = folder.path();
+  std::vector<std::size_t> kept;
+  const validation::SuiteResult result = validation::run_suite(
+      settings, watch, [](const std::string&) {},
+      [&](const validation::SuiteResult& so_far) {
+        EXPECT_TRUE(so_far.interrupted);
+        EXPECT_FALSE(so_far.passed());
+        kept.push_back(so_far.cases.size());
+        validation::write_verdicts(folder.path(), so_far, {});
+      });
+  EXPECT_EQ(kept, (std::vector<std::size_t>{1, 2}));
+  EXPECT_FALSE(result.interrupted);
+  EXPECT_TRUE(std::filesystem::exists(folder / "results.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "cubes"));
 }
 
 TEST_F(NoEvidence, ConvergenceOfBlackImagesFails) {

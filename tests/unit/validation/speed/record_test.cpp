@@ -58,8 +58,15 @@ TEST(SpeedCases, AFailureIsTheCasesOwn) {
                    throw DeviceError("it broke");
                  }};
   std::vector<std::string> begun;
-  const RunOutcome run =
-      run_cases({bad, good}, {}, {}, [&](const std::string& name) { begun.push_back(name); });
+  std::vector<std::size_t> kept;
+  const RunOutcome run = run_cases(
+      {bad, good}, {}, {}, [&](const std::string& name) { begun.push_back(name); },
+      [&](const RunOutcome& so_far) {
+        EXPECT_TRUE(so_far.interrupted);
+        kept.push_back(so_far.cases.size());
+      });
+  EXPECT_EQ(kept, (std::vector<std::size_t>{1, 2}));
+  EXPECT_FALSE(run.interrupted);
   EXPECT_EQ(begun, (std::vector<std::string>{"bad", "good"}));
   ASSERT_EQ(run.cases.size(), 2u);
   EXPECT_EQ(run.cases[0].failure, "it broke");
