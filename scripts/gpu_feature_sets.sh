@@ -1,6 +1,6 @@
 # Sourced by scripts that compile the kernels for devices that are not there: defines_of SET prints the defines of a specialised build.
 # SET: diffuse (diffuse surfaces, area lights), textured (with conductors, dielectrics, plastics, bitmaps, environment map), all
-# (every feature). Every feature is named in kernels/base/scene.clh.
+# (every feature), unspecialised (the program that is compiled for no scene). Every feature is named in kernels/base/scene.clh.
 defines_of() {
   case $1 in
     diffuse | textured | all)
@@ -13,6 +13,7 @@ defines_of() {
         esac
       done
       echo "-DKB_SPECIALISED -DKB_BVH_STACK=$([ "$1" = diffuse ] && echo 16 || echo 48)" ;;
+    unspecialised) echo "-DKB_BVH_STACK=48" ;;
     *) echo "no feature set '$1'" >&2; return 1 ;;
   esac
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What a GPU's assembler says of the kernels, without a GPU: registers, stack, spills, warps, instructions, as a Markdown table.
 # usage: scripts/gpu_static.sh [SET...]     SET: diffuse (diffuse surfaces, area lights; the default), textured (with conductors,
-# dielectrics, plastics, bitmaps, environment map)
+# dielectrics, plastics, bitmaps, environment map), all, unspecialised (gpu_feature_sets.sh)
 # Needs clang-14, llvm-14, libclc-14, and ptxas (12 or later) and nvdisasm in PATH; no build and no test needs it. ARCH=sm_90.
 set -euo pipefail
 cd "$(dirname "$0")/.."
