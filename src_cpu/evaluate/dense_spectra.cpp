@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "shared/spectra_layout.h"
 #include "spectral/planck.hpp"
 
 namespace kiloband::cpu {
@@ -50,7 +51,7 @@ DenseSpectra::DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kerne
       channels_(scene.channels.size()),
       padded_(pad_channels(channels_)),
       lambda_(aligned_zeros<double>(padded_)),
-      texture_lambda_(aligned_zeros<double>(padded_)),
+      texture_offsets_(aligned_zeros<float>(padded_)),
       unit_emission_(aligned_zeros<float>(padded_)),
       rows_(scene.spectra.size()),
       material_rows_(scene.materials.size()),
@@ -89,12 +90,13 @@ float* DenseSpectra::new_row() {
   return pool_[used_++].get();
 }
 
-const double* DenseSpectra::texture_lambda() {
+const float* DenseSpectra::texture_offsets() {
   if (texture_generation_ != generation_) {
-    for (std::size_t k = 0; k < channels_; ++k) texture_lambda_[k] = std::clamp(lambda_[k], 360.0, 830.0);
+    for (std::size_t k = 0; k < channels_; ++k)
+      texture_offsets_[k] = static_cast<float>(std::clamp(lambda_[k], 360.0, 830.0) - KB_TEXTURE_CENTRE_NM);
     texture_generation_ = generation_;
   }
-  return texture_lambda_.get();
+  return texture_offsets_.get();
 }
 
 const float* DenseSpectra::planck_second() {

@@ -77,8 +77,8 @@ struct DenseSpectra {
   /// out  padded_channels() floats
   void fill_planck(double temperature_k, const float* emissivity, float* out);
   std::size_t padded_channels() const { return padded_; }
-  /// clamp(lambda_k, 360, 830), nm, in double: where textures are evaluated.
-  const double* texture_lambda();
+  /// clamp(lambda_k, 360, 830) - KB_TEXTURE_CENTRE_NM, nm: where textures are evaluated.
+  const float* texture_offsets();
 
   /// hc / (k lambda_k) in kelvin, 1 in the padding: what Planck's law at other temperatures needs.
   const float* planck_second();
@@ -126,7 +126,8 @@ struct DenseSpectra {
   std::vector<double> min_nm_, max_nm_,
       emission_factor_;            // emission_factor: width_k / channel_scale_k, padded
   std::vector<bool> is_emission_;  // of a spectrum
-  hwy::AlignedFreeUniquePtr<double[]> lambda_, texture_lambda_;
+  hwy::AlignedFreeUniquePtr<double[]> lambda_;
+  hwy::AlignedFreeUniquePtr<float[]> texture_offsets_;
   uint64_t planck_second_generation_ = 0;
   hwy::AlignedFreeUniquePtr<float[]> unit_emission_, planck_second_;
   std::vector<Row> rows_;                                 // by spectrum

@@ -16,11 +16,12 @@ inline constexpr std::size_t kRowPadding = 64;
 inline constexpr std::size_t kMaxLanes = 16;
 
 /// A bilinear texture lookup:
-///   value(lambda) = (constant + sum_i weight_i S(c_i0 x^2 + c_i1 x + c_i2)) * factor.
-/// Texels that are spectrally flat are summed in `constant`; weights include the texels' scales.
+///   value(lambda) = (constant + sum_i weight_i S((a_i y + b_i) y + c_i)) * factor,   y = lambda - KB_TEXTURE_CENTRE_NM.
+/// A texel's parabola is moved there in double: the terms of saturated colours are a thousand times their sum, those about the middle
+/// of the spectrum are not. Texels that are spectrally flat are summed in `constant`; weights include the texels' scales.
 struct TextureTerms {
   uint32_t count = 0;
-  double coefficients[4][3];
+  float coefficients[4][3];  // a, b, c
   float weights[4];
   float constant = 0;
   const float* factor = nullptr;  // dense row, or null for 1
@@ -109,7 +110,7 @@ struct PathProgram {
   std::size_t step_count = 0;
   const float* light = nullptr;  // emission row of S after the last step; null: S is 0
   std::size_t channels = 0;
-  const double* texture_lambda = nullptr;  // padded, nm
+  const float* texture_offsets = nullptr;  // of TextureTerms, padded, nm
   const DerivedPlan* derived = nullptr;    // null: none
   bool gas = false;                        // has vertices of gas
   std::size_t film_channels = 0;           // of the film's row that may be written: `channels`, or padded

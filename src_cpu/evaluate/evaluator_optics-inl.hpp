@@ -124,19 +124,13 @@ HWY_INLINE Floats sigmoid(Floats v) {
   return hn::IfThenElse(hn::Lt(v, hn::Zero(kTag)), tail, hn::Sub(constant(1), tail));
 }
 
-/// c0 x^2 + c1 x + c2 in double: the terms of saturated colours are a thousand times their sum.
-HWY_INLINE hn::Vec<HalfTag> parabola(const double (&c)[3], Doubles x) {
-  const Doubles inner = hn::MulAdd(hn::Set(kDoubleTag, c[0]), x, hn::Set(kDoubleTag, c[1]));
-  return hn::DemoteTo(HalfTag(), hn::MulAdd(inner, x, hn::Set(kDoubleTag, c[2])));
-}
-
-HWY_INLINE Floats texture_value(const TextureTerms& terms, const double* lambda, std::size_t k) {
+/// offsets: of the channels from KB_TEXTURE_CENTRE_NM
+HWY_INLINE Floats texture_value(const TextureTerms& terms, const float* offsets, std::size_t k) {
+  const Floats y = hn::LoadU(kTag, offsets + k);
   Floats sum = constant(terms.constant);
   for (uint32_t i = 0; i < terms.count; ++i) {
-    const Doubles lower = hn::LoadU(kDoubleTag, lambda + k);
-    const Doubles upper = hn::LoadU(kDoubleTag, lambda + k + hn::Lanes(kDoubleTag));
-    const Floats v =
-        hn::Combine(kTag, parabola(terms.coefficients[i], upper), parabola(terms.coefficients[i], lower));
+    const float(&c)[3] = terms.coefficients[i];
+    const Floats v = hn::MulAdd(hn::MulAdd(constant(c[0]), y, constant(c[1])), y, constant(c[2]));
     sum = hn::MulAdd(constant(terms.weights[i]), sigmoid(v), sum);
   }
   return terms.factor ? hn::Mul(sum, hn::LoadU(kTag, terms.factor + k)) : sum;

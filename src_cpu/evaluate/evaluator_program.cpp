@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "shared/rough_transmission.h"
+#include "shared/spectra_layout.h"
 
 namespace kiloband::cpu {
 namespace {
@@ -22,9 +23,11 @@ void add_texel(TextureTerms& terms, double& constant, const KbFloat4& texel, dou
     return;
   }
   const uint32_t i = terms.count++;
+  constexpr double kCentre = KB_TEXTURE_CENTRE_NM;
+  const double product = texel.x * kCentre, slope = product + texel.y;
   terms.coefficients[i][0] = texel.x;
-  terms.coefficients[i][1] = texel.y;
-  terms.coefficients[i][2] = texel.z;
+  terms.coefficients[i][1] = static_cast<float>(slope + product);
+  terms.coefficients[i][2] = static_cast<float>(slope * kCentre + texel.z);
   terms.weights[i] = static_cast<float>(weight * texel.w);
 }
 
@@ -171,7 +174,7 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSp
   program.light = writer_.light();
   program.channels = spectra.channels();
   program.gas = gas_;
-  program.texture_lambda = textured_ ? spectra.texture_lambda() : nullptr;
+  program.texture_offsets = textured_ ? spectra.texture_offsets() : nullptr;
   return program;
 }
 
