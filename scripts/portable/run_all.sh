@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Tries what the portable folder has on this machine, within 9 minutes: devices, images of both backends, tests of kernels, `validate
+# Tries what the portable folder has on this machine, within 9 minutes or SECONDS: devices, images of both backends, tests of kernels, `validate
 # --quick`, `bench --quick`. OUT gets index.html and JSON files. Goes on after a failure; exit code 1 if there was one.
-# usage: ./run_all.sh OUT          OCL_ICD_VENDORS, a folder or a file, chooses the OpenCL drivers
+# usage: ./run_all.sh OUT [SECONDS]          OCL_ICD_VENDORS, a folder or a file, chooses the OpenCL drivers
 set -uo pipefail
 
-[ $# -eq 1 ] || { echo "usage: $0 OUT" >&2; exit 2; }
+{ [ $# -eq 1 ] || [ $# -eq 2 ]; } && [[ ${2:-525} =~ ^[0-9]+$ ]] && [ "${2:-525}" -ge 120 ] ||
+  { echo "usage: $0 OUT [SECONDS, at least 120]" >&2; exit 2; }
 mkdir -p "$1" && out=$(cd "$1" && pwd) || exit 2
 here=$(cd "$(dirname "$(readlink -f "$0")")" && pwd)
 data=$here/share/kiloband
@@ -12,8 +13,9 @@ work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
 export XDG_CACHE_HOME=$work/cache POCL_CACHE_DIR=$work/pocl KILOBAND_SOURCES=$data
 mkdir -p "$XDG_CACHE_HOME" "$POCL_CACHE_DIR"
-# What is left for `validate` and `bench`, whatever comes before.
-seconds_for_all=525 reserve=340 failures=0 steps=0
+seconds_for_all=${2:-525} failures=0 steps=0
+# What is left for `validate` and `bench`, whatever comes before; below, for `bench`.
+reserve=$((seconds_for_all * 65 / 100))
 SECONDS=0
 
 html() { sed 's/&/\&amp;/g; s/</\&lt;/g; s/>/\&gt;/g' "$@"; }
@@ -89,7 +91,7 @@ if grep -qE '^ *[0-9]+ ' "$work/devices"; then
     [ ! -x "$here/bin/$test" ] || test_step "$test" 60
   done
 fi
-reserve=90
+reserve=$((seconds_for_all * 17 / 100))
 # Every method where there is a GPU; OpenCL on processors is too slow for more than one in the time.
 backends=cpu,opencl:dpept-batch
 if grep -qwi gpu "$work/devices"; then backends=cpu,opencl:dpept-batch,opencl:dpept-path,opencl:pt; fi
