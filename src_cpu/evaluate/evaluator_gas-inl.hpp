@@ -42,7 +42,7 @@ HWY_INLINE Floats far_share(Floats x, const Absorbed& a) {
 /// The cells of a plume, from near to far. `scale`: what stands before the sum;
 /// tau is multiplied by the transmittance.
 HWY_INLINE Floats plume_radiance(const GeneralVertex& v, Floats scale, std::size_t k, Floats& tau) {
-  const Floats kappa = hn::LoadU(kTag, v.a.row + k), reference = hn::LoadU(kTag, v.emit.row + k);
+  const Floats kappa = hn::LoadU(kTag, v.a + k), reference = hn::LoadU(kTag, v.emit + k);
   const PlanckReference planck = planck_reference(hn::LoadU(kTag, v.second_k + k), v.reference_k);
   Floats near = planck_ratio(planck, v.cells.front().temperature_k), sum = hn::Zero(kTag);
   Floats passed = constant(1);
@@ -62,7 +62,7 @@ HWY_INLINE Floats plume_radiance(const GeneralVertex& v, Floats scale, std::size
 /// tau, radiance, aside: a vector each.
 HWY_INLINE void medium_vector(const GeneralVertex& v, std::size_t k, float* tau, float* radiance,
                               float* aside) {
-  const Floats kappa = hn::LoadU(kTag, v.a.row + k);
+  const Floats kappa = hn::LoadU(kTag, v.a + k);
   Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance), q = hn::Load(kTag, aside);
   if (v.flags & KB_VERTEX_NEE) {
     q = hn::Mul(q, hn::Exp(kTag, hn::Neg(hn::Mul(kappa, constant(v.nee0)))));
@@ -79,7 +79,7 @@ HWY_INLINE void medium_vector(const GeneralVertex& v, std::size_t k, float* tau,
   } else {
     const Absorbed a = absorbed(hn::Mul(kappa, constant(v.scatter0)));
     if (v.flags & KB_VERTEX_EMIT) {
-      const Floats emitted = hn::Mul(hn::Mul(q, constant(v.emit_weight)), hn::LoadU(kTag, v.emit.row + k));
+      const Floats emitted = hn::Mul(hn::Mul(q, constant(v.emit_weight)), hn::LoadU(kTag, v.emit + k));
       l = hn::MulAdd(hn::Mul(t, a.stays), emitted, l);
       q = constant(1);
     }

@@ -34,10 +34,6 @@ namespace HWY_NAMESPACE {
 inline constexpr std::size_t kBlockVectors = 4;
 static_assert(kBlockVectors * kLanes <= kRowPadding && kLanes <= kMaxLanes);
 
-HWY_INLINE Floats source(const SpectralSource& s, const float* offsets, std::size_t k) {
-  return s.texture ? texture_value(*s.texture, offsets, k) : load(s.row, k);
-}
-
 /// B(w0, w1) of path_vertex.h from S_a and the second factor (S_b, or S_b / (1 - S_b fdr_int)).
 HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, float w1,
                           const FresnelTerms* f, std::size_t k) {
@@ -60,20 +56,17 @@ HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, 
 
 /// One vertex for the vector of channels at k. aside: the third register of scenes
 /// with gas, see path_vertex.h.
-HWY_INLINE void general_vector(const GeneralVertex& v, const float* offsets, std::size_t k, float* tau,
-                               float* radiance, float* aside) {
+HWY_INLINE void general_vector(const GeneralVertex& v, std::size_t k, float* tau, float* radiance,
+                               float* aside) {
   Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance);
-  if (v.flags & KB_VERTEX_EMIT) {
-    l = hn::MulAdd(hn::Mul(t, constant(v.emit_weight)), source(v.emit, offsets, k), l);
-  }
   if (v.flags & (KB_VERTEX_NEE | KB_VERTEX_SCATTER)) {
-    const Floats a = source(v.a, offsets, k);
+    const Floats a = load(v.a, k);
     Floats b = hn::Zero(kTag);
-    if (kb_has_two_spectra(v.kind)) b = source(v.b, offsets, k);
+    if (kb_has_two_spectra(v.kind)) b = load(v.b, k);
     if (v.kind == KB_KIND_NONLINEAR) b = hn::Div(b, hn::NegMulAdd(b, constant(v.fdr_int), constant(1)));
     if (v.flags & KB_VERTEX_NEE) {
       const Floats f = reflect(v, a, b, v.nee0, v.nee1, v.nee_fresnel, k);
-      const Floats light = source(v.nee, offsets, k);
+      const Floats light = load(v.nee, k);
       if (v.flags & KB_VERTEX_DEFER)
         hn::Store(hn::Mul(hn::Mul(t, f), light), kTag, aside);
       else
@@ -87,15 +80,15 @@ HWY_INLINE void general_vector(const GeneralVertex& v, const float* offsets, std
 }
 
 /// One vertex for `vectors` vectors of channels from k on. Returns false if no channel of the block goes on.
-HWY_NOINLINE bool general_step(const GeneralVertex& v, const float* offsets, std::size_t k,
-                               std::size_t vectors, float* tau, float* radiance, float* aside) {
+HWY_NOINLINE bool general_step(const GeneralVertex& v, std::size_t k, std::size_t vectors, float* tau,
+                               float* radiance, float* aside) {
   if (v.kind == KB_KIND_MEDIUM) {
     for (std::size_t i = 0; i < vectors * kLanes; i += kLanes)
       medium_vector(v, k + i, tau + i, radiance + i, aside + i);
     return true;
   }
   for (std::size_t i = 0; i < vectors * kLanes; i += kLanes)
-    general_vector(v, offsets, k + i, tau + i, radiance + i, aside + i);
+    general_vector(v, k + i, tau + i, radiance + i, aside + i);
   if (!(v.flags & KB_VERTEX_DEGRADE)) return true;
   if (v.survivor < k || v.survivor >= k + vectors * kLanes) return false;
   const float kept = tau[v.survivor - k];
@@ -141,13 +134,13 @@ struct Block {
     each([&](auto i) HWY_ATTR { product[i] = hn::Mul(product[i], constant(step.weight)); });
   }
 
-  HWY_INLINE bool general(const PathStep& step, const float* offsets, std::size_t k, float* aside) {
+  HWY_INLINE bool general(const PathStep& step, std::size_t k, float* aside) {
     alignas(64) float t[V * kLanes], l[V * kLanes];
     each([&](auto i) HWY_ATTR {
       hn::Store(hn::Mul(product[i], constant(step.weight)), kTag, t + i * kLanes);
       hn::Store(radiance[i], kTag, l + i * kLanes);
     });
-    const bool goes_on = general_step(*step.general, offsets, k, V, t, l, aside);
+    const bool goes_on = general_step(*step.general, k, V, t, l, aside);
     each([&](auto i) HWY_ATTR {
       product[i] = hn::Load(kTag, t + i * kLanes);
       radiance[i] = hn::Load(kTag, l + i * kLanes);
@@ -181,7 +174,7 @@ HWY_INLINE void run_steps(Block<V>& block, const PathProgram& path, std::size_t 
       block.close(step->row, k);
     } else if (step->kind == StepKind::kScale) {
       block.scale(*step);
-    } else if (!block.general(*step, path.texture_offsets, k, aside)) {
+    } else if (!block.general(*step, k, aside)) {
       return;
     }
   }
@@ -244,8 +237,8 @@ void evaluate_path(const PathProgram& path, float* film) {
   if (path.derived) finish_derived(*path.derived, film + path.derived_offset);
 }
 
-inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, sample_exact, weighted_sum,
-                                           mix_bands};
+inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, sample_exact,
+                                           weighted_sum,  mix_bands,    colour_row};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kiloband::cpu

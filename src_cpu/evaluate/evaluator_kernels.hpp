@@ -15,22 +15,17 @@ inline constexpr std::size_t kRowPadding = 64;
 /// Lanes of the widest vector.
 inline constexpr std::size_t kMaxLanes = 16;
 
-/// A bilinear texture lookup:
+/// A bilinear lookup in a texture of colours:
 ///   value(lambda) = (constant + sum_i weight_i S((a_i y + b_i) y + c_i)) * factor,   y = lambda - KB_TEXTURE_CENTRE_NM.
 /// A texel's parabola is moved there in double: the terms of saturated colours are a thousand times their sum, those about the middle
 /// of the spectrum are not. Texels that are spectrally flat are summed in `constant`; weights include the texels' scales.
-struct TextureTerms {
-  uint32_t count = 0;
-  float coefficients[4][3];  // a, b, c
-  float weights[4];
+struct ColourTerms {
+  static constexpr uint32_t kMost = 4;
+  uint32_t count = 0;            // even: a last term may have weight 0
+  float coefficients[kMost][3];  // a, b, c
+  float weights[kMost];
   float constant = 0;
   const float* factor = nullptr;  // dense row, or null for 1
-};
-
-/// A spectral factor of a vertex: a dense row, or a texture if that is not null.
-struct SpectralSource {
-  const float* row = nullptr;
-  const TextureTerms* texture = nullptr;
 };
 
 /// Fresnel reflectance at a fixed angle. Quantities of cancellation are stored as sums of two floats:
@@ -59,11 +54,11 @@ struct TransmissionTerms {
   bool ggx = false;
 };
 
-/// A vertex that the fast steps do not cover; see KbPathVertex. Emission from named rows is a step before it.
+/// A vertex that the fast steps do not cover; see KbPathVertex. Emission of surfaces is a step before it.
 struct GeneralVertex {
   uint32_t kind = 0;   // KbVertexKind
-  uint32_t flags = 0;  // KB_VERTEX_EMIT (textured, or gas), _NEE, _SCATTER, _DEGRADE, _DEFER
-  SpectralSource a, b, emit, nee;
+  uint32_t flags = 0;  // KB_VERTEX_EMIT (gas), _NEE, _SCATTER, _DEGRADE, _DEFER
+  const float *a = nullptr, *b = nullptr, *emit = nullptr, *nee = nullptr;  // dense rows
   float emit_weight = 0, nee0 = 0, nee1 = 0, scatter0 = 0, scatter1 = 0;
   float fdr_int = 0;
   const FresnelTerms* nee_fresnel = nullptr;  // KB_KIND_CONDUCTOR, _DISPERSIVE
@@ -72,7 +67,7 @@ struct GeneralVertex {
   uint32_t survivor = 0;                            // channel that goes on if KB_VERTEX_DEGRADE
   // Gas, KB_KIND_MEDIUM. A plume's first cell has no column and the temperature of the near end.
   std::span<const KbPlumeCell> cells;
-  float reference_k = 0;            // plume: where emit.row is Planck's law
+  float reference_k = 0;            // plume: where emit is Planck's law
   const float* second_k = nullptr;  // plume: row of hc / (k lambda), K
 };
 
@@ -110,12 +105,11 @@ struct PathProgram {
   std::size_t step_count = 0;
   const float* light = nullptr;  // emission row of S after the last step; null: S is 0
   std::size_t channels = 0;
-  const float* texture_offsets = nullptr;  // of TextureTerms, padded, nm
-  const DerivedPlan* derived = nullptr;    // null: none
-  bool gas = false;                        // has vertices of gas
-  std::size_t film_channels = 0;           // of the film's row that may be written: `channels`, or padded
-  std::size_t derived_offset = 0;          // of derived channels in the film's row
-  const float* next_film = nullptr;        // row of the following path, to be fetched ahead; never read
+  const DerivedPlan* derived = nullptr;  // null: none
+  bool gas = false;                      // has vertices of gas
+  std::size_t film_channels = 0;         // of the film's row that may be written: `channels`, or padded
+  std::size_t derived_offset = 0;        // of derived channels in the film's row
+  const float* next_film = nullptr;      // row of the following path, to be fetched ahead; never read
 };
 
 /// A table with regular step, as RegularTable but float.
@@ -152,6 +146,9 @@ struct EvaluatorKernels {
   /// i < count rounded up to kMaxLanes.
   void (*mix_bands)(const float* values, const int32_t* index, const float* first, const float* second,
                     std::size_t count, float* out);
+  /// out[i] = terms(offsets[i]), nm from KB_TEXTURE_CENTRE_NM, for i < count rounded up to the lanes of a vector.
+  /// out may be the terms' factor.
+  void (*colour_row)(const ColourTerms& terms, const float* offsets, std::size_t count, float* out);
 };
 
 /// isa: resolved, not kAuto.

@@ -1,4 +1,4 @@
-// Fresnel reflectances and texture values of one vector of channels; compiled once per instruction set.
+// Fresnel reflectances of one vector of channels; compiled once per instruction set.
 //
 // No include guard of the usual kind: evaluator_kernels.cpp includes itself, and this file, once per target.
 #if defined(KILOBAND_EVALUATOR_OPTICS_INL) == defined(HWY_TARGET_TOGGLE)
@@ -113,27 +113,6 @@ HWY_INLINE Floats pane(const FresnelTerms& terms, std::size_t k) {
 HWY_INLINE Floats fresnel(const FresnelTerms& terms, std::size_t k) {
   if (terms.nk) return conductor_fresnel(terms, k);
   return terms.of == FresnelTerms::Of::kBoundary ? dielectric_fresnel(terms, k) : pane(terms, k);
-}
-
-/// S(v) = 1/2 + v / (2 sqrt(1 + v^2)). For v < 0 the difference is expanded: S(-|v|) = 1 / (2 r (r + |v|)),
-/// r^2 = 1 + v^2, which keeps relative precision where S is small; S(|v|) = 1 - S(-|v|).
-/// An infinite r gives 0 or 1.
-HWY_INLINE Floats sigmoid(Floats v) {
-  const Floats r = hn::Sqrt(hn::MulAdd(v, v, constant(1)));
-  const Floats tail = hn::Div(constant(0.5f), hn::Mul(r, hn::Add(r, hn::Abs(v))));
-  return hn::IfThenElse(hn::Lt(v, hn::Zero(kTag)), tail, hn::Sub(constant(1), tail));
-}
-
-/// offsets: of the channels from KB_TEXTURE_CENTRE_NM
-HWY_INLINE Floats texture_value(const TextureTerms& terms, const float* offsets, std::size_t k) {
-  const Floats y = hn::LoadU(kTag, offsets + k);
-  Floats sum = constant(terms.constant);
-  for (uint32_t i = 0; i < terms.count; ++i) {
-    const float(&c)[3] = terms.coefficients[i];
-    const Floats v = hn::MulAdd(hn::MulAdd(constant(c[0]), y, constant(c[1])), y, constant(c[2]));
-    sum = hn::MulAdd(constant(terms.weights[i]), sigmoid(v), sum);
-  }
-  return terms.factor ? hn::Mul(sum, hn::LoadU(kTag, terms.factor + k)) : sum;
 }
 
 }  // namespace HWY_NAMESPACE

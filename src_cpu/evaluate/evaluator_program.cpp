@@ -15,7 +15,7 @@ namespace kiloband::cpu {
 namespace {
 
 /// One term of a lookup. A flat texel is evaluated here, in double: S(1e10) is exactly 1.
-void add_texel(TextureTerms& terms, double& constant, const KbFloat4& texel, double weight) {
+void add_texel(ColourTerms& terms, double& constant, const KbFloat4& texel, double weight) {
   if (weight == 0) return;
   if (texel.x == 0 && texel.y == 0) {
     const double v = texel.z;
@@ -29,6 +29,12 @@ void add_texel(TextureTerms& terms, double& constant, const KbFloat4& texel, dou
   terms.coefficients[i][1] = static_cast<float>(slope + product);
   terms.coefficients[i][2] = static_cast<float>(slope * kCentre + texel.z);
   terms.weights[i] = static_cast<float>(weight * texel.w);
+}
+
+/// Their number becomes even.
+void add_empty_term(ColourTerms& terms) {
+  std::ranges::fill(terms.coefficients[terms.count], 0.0f);
+  terms.weights[terms.count++] = 0;
 }
 
 /// B = w0 S_a and nothing else that steps do not have. A light sample without a scattering event multiplies
@@ -79,10 +85,10 @@ FresnelTerms fresnel_terms(float cosine) {
 
 /// Pointers into these arrays must stay valid while the program is built.
 void ProgramBuilder::reserve(std::size_t entries) {
-  general_count_ = texture_count_ = 0;
+  general_count_ = 0;
   fresnels_.clear();
   transmissions_.clear();
-  textured_ = gas_ = false;
+  gas_ = false;
   spectral_.begin_path();
   scratch_used_ = 0;
   cells_.clear();
@@ -93,7 +99,6 @@ void ProgramBuilder::reserve(std::size_t entries) {
 void ProgramBuilder::grow(std::size_t entries) {
   steps_.resize(StepWriter::kMostSteps * entries);
   generals_.resize(entries);
-  textures_.resize(4 * entries);
   fresnels_.reserve(2 * entries);
   transmissions_.reserve(entries);
   cells_.reserve(5 * entries);
@@ -102,14 +107,6 @@ void ProgramBuilder::grow(std::size_t entries) {
 /// What its kind does not use is that of a vertex before.
 GeneralVertex& ProgramBuilder::new_general() {
   return generals_[general_count_++];
-}
-
-/// Its coefficients and weights are those of a lookup before.
-TextureTerms& ProgramBuilder::new_texture() {
-  TextureTerms& terms = textures_[texture_count_++];
-  terms.count = 0;
-  terms.factor = nullptr;
-  return terms;
 }
 
 /// The vertices from `first` on that refer to nothing but spectra, as most do. Returns where the first other one is.
@@ -165,7 +162,7 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSp
     const std::size_t samples = sample_count(vertex.head);
     KbTextureSample copies[4];
     if (samples > 0) std::memcpy(copies, &entries[i] + 1, samples * sizeof(KbTextureSample));
-    add_vertex(vertex, sources(vertex, copies, spectra), next == entries.size(), spectra);
+    add_vertex(vertex, factors(vertex, copies, spectra), next == entries.size(), spectra);
     i = next;
   }
   PathProgram program;
@@ -174,47 +171,44 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSp
   program.light = writer_.light();
   program.channels = spectra.channels();
   program.gas = gas_;
-  program.texture_offsets = textured_ ? spectra.texture_offsets() : nullptr;
   return program;
 }
 
-ProgramBuilder::Sources ProgramBuilder::sources(const KbPathVertex& vertex, const KbTextureSample* samples,
+ProgramBuilder::Factors ProgramBuilder::factors(const KbPathVertex& vertex, const KbTextureSample* samples,
                                                 DenseSpectra& spectra) {
   const uint32_t head = vertex.head, kind = head & KB_VERTEX_KIND_MASK;
   const bool reflects = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
-  const auto source = [&](uint32_t flag, bool used, uint32_t row, bool emission) -> SpectralSource {
+  const auto row = [&](uint32_t flag, bool used, uint32_t named, bool emission) -> const float* {
     if (head & flag) return texture(*samples++, emission, spectra);
-    return {used ? spectra.spectrum(row) : nullptr, nullptr};
+    return used ? spectra.spectrum(named) : nullptr;
   };
   const bool two = kb_has_two_spectra(kind);
-  Sources from;
-  from.a = source(KB_VERTEX_TEX_A, reflects, vertex.row_a, false);
-  from.b = source(KB_VERTEX_TEX_B, reflects && two, vertex.row_b, false);
-  from.emit = source(KB_VERTEX_TEX_EMIT, head & KB_VERTEX_EMIT, vertex.emit_row, true);
-  from.nee = source(KB_VERTEX_TEX_NEE, head & KB_VERTEX_NEE, vertex.nee_row, true);
+  Factors from;
+  from.a = row(KB_VERTEX_TEX_A, reflects, vertex.row_a, false);
+  from.b = row(KB_VERTEX_TEX_B, reflects && two, vertex.row_b, false);
+  from.emit = row(KB_VERTEX_TEX_EMIT, head & KB_VERTEX_EMIT, vertex.emit_row, true);
+  from.nee = row(KB_VERTEX_TEX_NEE, head & KB_VERTEX_NEE, vertex.nee_row, true);
   return from;
 }
 
-void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const Sources& from, bool last,
+void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const Factors& from, bool last,
                                 DenseSpectra& spectra) {
   const uint32_t head = vertex.head;
-  if ((head & KB_VERTEX_EMIT) && !from.emit.texture) writer_.emit(from.emit.row, vertex.emit_weight);
-  if (from.any_colour() || !is_scaled(head, last)) return add_general(vertex, from, spectra);
+  if (head & KB_VERTEX_EMIT) writer_.emit(from.emit, vertex.emit_weight);
+  if (!is_scaled(head, last)) return add_general(vertex, from, spectra);
   if (head & KB_VERTEX_NEE)
-    writer_.reflect(from.a.row, from.nee.row, vertex.nee0);
+    writer_.reflect(from.a, from.nee, vertex.nee0);
   else if (head & KB_VERTEX_SCATTER)
-    writer_.reflect(from.a.row);
+    writer_.reflect(from.a);
   if (head & KB_VERTEX_SCATTER) writer_.scatter(vertex.scatter0);
 }
 
-void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra) {
+void ProgramBuilder::add_general(const KbPathVertex& vertex, const Factors& from, DenseSpectra& spectra) {
   const uint32_t head = vertex.head;
   const uint32_t material = head >> KB_VERTEX_MATERIAL_SHIFT;
   GeneralVertex& out = new_general();
   out.kind = head & KB_VERTEX_KIND_MASK;
   out.flags = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE | KB_VERTEX_DEFER);
-  if (from.emit.texture) out.flags |= head & KB_VERTEX_EMIT;
-  out.emit_weight = vertex.emit_weight;
   out.nee0 = vertex.nee0;
   out.nee1 = vertex.nee1;
   out.scatter0 = vertex.scatter0;
@@ -222,7 +216,6 @@ void ProgramBuilder::add_general(const KbPathVertex& vertex, const Sources& from
   if (head & KB_VERTEX_DEGRADE) out.survivor = kb_surviving_channel(vertex.scatter1);
   out.a = from.a;
   out.b = from.b;
-  out.emit = from.emit;
   out.nee = from.nee;
 
   const bool reflects = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
@@ -242,9 +235,9 @@ void ProgramBuilder::add_medium(const KbPathVertex& vertex, const KbPathVertex* 
   GeneralVertex& out = new_general();
   out.kind = KB_KIND_MEDIUM;
   out.flags = vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEFER);
-  out.a = {spectra.spectrum(vertex.row_a), nullptr};
+  out.a = spectra.spectrum(vertex.row_a);
   out.cells = {};
-  if (out.flags & KB_VERTEX_EMIT) out.emit = {spectra.spectrum(vertex.emit_row), nullptr};
+  if (out.flags & KB_VERTEX_EMIT) out.emit = spectra.spectrum(vertex.emit_row);
   out.emit_weight = vertex.emit_weight;
   out.nee0 = vertex.nee0;
   out.scatter0 = vertex.scatter0;
@@ -308,13 +301,18 @@ void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& ve
   out.transmission = &terms;
 }
 
-/// corners: of texels of colours.
-void ProgramBuilder::add_texels(TextureTerms& terms, uint32_t texture, const TexelCorners& corners) const {
+/// The lookup as a row. corners: of texels of colours; factor: null is 1.
+void ProgramBuilder::colour(uint32_t texture, const TexelCorners& corners, const float* factor,
+                            DenseSpectra& spectra, float* out) const {
   const std::size_t first = scene_.textures[texture].first_texel;
+  ColourTerms terms;
   double constant = 0;
   for (int c = 0; c < 4; ++c)
     add_texel(terms, constant, scene_.texels[first + corners.texel[c]], corners.weight[c]);
   terms.constant = static_cast<float>(constant);
+  terms.factor = factor;
+  if (terms.count % 2 == 1) add_empty_term(terms);
+  kernels_.colour_row(terms, spectra.texture_offsets(), spectra.channels(), out);
 }
 
 float* ProgramBuilder::scratch_row(const DenseSpectra& spectra) {
@@ -323,27 +321,24 @@ float* ProgramBuilder::scratch_row(const DenseSpectra& spectra) {
 }
 
 /// An emissivity, a row or a lookup, times Planck's law at a temperature of its own.
-SpectralSource ProgramBuilder::thermal(const KbThermalSample& sample, DenseSpectra& spectra) {
+const float* ProgramBuilder::thermal(const KbThermalSample& sample, DenseSpectra& spectra) {
   const uint32_t index = sample.source & KB_SAMPLE_INDEX_MASK;
-  float* factor = scratch_row(spectra);
+  float* out = scratch_row(spectra);
   if (sample.source & KB_SAMPLE_ROW) {
-    spectra.fill_planck(sample.temperature_k, spectra.spectrum(index), factor);
-    return {factor, nullptr};
+    spectra.fill_planck(sample.temperature_k, spectra.spectrum(index), out);
+    return out;
   }
   if (index >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
   constexpr float kUnit = 1.0f / 65535;
   const KbTextureSample lookup{index, sample.xy, static_cast<float>(sample.fractions & 0xffffu) * kUnit,
                                static_cast<float>(sample.fractions >> 16) * kUnit};
-  TextureTerms& terms = new_texture();
-  add_texels(terms, index, TexelCorners(scene_.textures[index], lookup));
-  spectra.fill_planck(sample.temperature_k, nullptr, factor);
-  terms.factor = factor;
-  textured_ |= terms.count > 0;
-  return {nullptr, &terms};
+  spectra.fill_planck(sample.temperature_k, nullptr, out);
+  colour(index, TexelCorners(scene_.textures[index], lookup), out, spectra, out);
+  return out;
 }
 
 /// emission: the value stands for radiance, and its factor brings it to film units.
-SpectralSource ProgramBuilder::texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra) {
+const float* ProgramBuilder::texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra) {
   if (emission && (sample.texture & KB_SAMPLE_THERMAL)) {
     KbThermalSample hot;
     std::memcpy(&hot, &sample, sizeof hot);
@@ -351,15 +346,12 @@ SpectralSource ProgramBuilder::texture(const KbTextureSample& sample, bool emiss
   }
   if (sample.texture >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
   const KbTexture& t = scene_.textures[sample.texture];
-  if (t.flags & KB_TEXTURE_SPECTRAL) return {spectral_.row(sample, spectra), nullptr};
-  TextureTerms& terms = new_texture();
-  add_texels(terms, sample.texture, TexelCorners(t, sample));
-  if (t.illuminant_row != KB_NONE)
-    terms.factor = spectra.spectrum(t.illuminant_row);
-  else if (emission)
-    terms.factor = spectra.unit_emission();
-  textured_ |= terms.count > 0;
-  return {nullptr, &terms};
+  if (t.flags & KB_TEXTURE_SPECTRAL) return spectral_.row(sample, spectra);
+  const float* factor = emission ? spectra.unit_emission() : nullptr;
+  if (t.illuminant_row != KB_NONE) factor = spectra.spectrum(t.illuminant_row);
+  float* out = scratch_row(spectra);
+  colour(sample.texture, TexelCorners(t, sample), factor, spectra, out);
+  return out;
 }
 
 }  // namespace kiloband::cpu

@@ -16,7 +16,7 @@ namespace kiloband::cpu {
 class ProgramBuilder {
  public:
   ProgramBuilder(const FlatScene& scene, const EvaluatorKernels& kernels)
-      : scene_(scene), spectral_(scene, kernels) {}
+      : scene_(scene), kernels_(kernels), spectral_(scene, kernels) {}
 
   /// The program of the path in `entries` at the offset of `spectra`; valid until the next call.
   /// throws std::logic_error if the path refers to what the scene does not have
@@ -25,36 +25,33 @@ class ProgramBuilder {
   void fetch_texels(std::span<const KbPathVertex> entries) const;
 
  private:
-  /// The spectral factors that a vertex uses.
-  struct Sources {
-    SpectralSource a, b, emit, nee;
-
-    /// Colours of bitmaps are evaluated channel by channel; all else are rows.
-    bool any_colour() const { return a.texture || b.texture || emit.texture || nee.texture; }
+  /// The spectral factors that a vertex uses, as dense rows; null: not used.
+  struct Factors {
+    const float *a, *b, *emit, *nee;
   };
 
   void reserve(std::size_t entries);
   void grow(std::size_t entries);
-  Sources sources(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
-  void add_vertex(const KbPathVertex& vertex, const Sources& from, bool last, DenseSpectra& spectra);
+  Factors factors(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
+  void add_vertex(const KbPathVertex& vertex, const Factors& from, bool last, DenseSpectra& spectra);
   std::size_t add_plain(std::span<const KbPathVertex> entries, std::size_t first, DenseSpectra& spectra);
   GeneralVertex& new_general();
-  TextureTerms& new_texture();
-  void add_general(const KbPathVertex& vertex, const Sources& from, DenseSpectra& spectra);
+  void add_general(const KbPathVertex& vertex, const Factors& from, DenseSpectra& spectra);
   void add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions, DenseSpectra& spectra);
   void add_fresnel(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra);
   void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra);
-  SpectralSource texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
-  SpectralSource thermal(const KbThermalSample& sample, DenseSpectra& spectra);
-  void add_texels(TextureTerms& terms, uint32_t texture, const TexelCorners& corners) const;
+  const float* texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
+  const float* thermal(const KbThermalSample& sample, DenseSpectra& spectra);
+  void colour(uint32_t texture, const TexelCorners& corners, const float* factor, DenseSpectra& spectra,
+              float* out) const;
   float* scratch_row(const DenseSpectra& spectra);
 
   const FlatScene& scene_;
+  const EvaluatorKernels& kernels_;
   // Of the path at hand; these arrays have room for all that its entries can need, and others point into them.
   std::vector<PathStep> steps_;
   std::vector<GeneralVertex> generals_;
-  std::vector<TextureTerms> textures_;
-  std::size_t general_count_ = 0, texture_count_ = 0;
+  std::size_t general_count_ = 0;
   StepWriter writer_;
   std::vector<FresnelTerms> fresnels_;
   std::vector<TransmissionTerms> transmissions_;
@@ -63,7 +60,7 @@ class ProgramBuilder {
       scratch_;  // rows of this path; the first scratch_used_ are taken
   std::size_t scratch_used_ = 0;
   std::vector<KbPlumeCell> cells_;  // reserved: generals point into it
-  bool textured_ = false, gas_ = false;
+  bool gas_ = false;
 };
 
 }  // namespace kiloband::cpu

@@ -1,4 +1,4 @@
-// Resampling in vectors against RegularTable, bit by bit.
+// Resampling in vectors against RegularTable, bit by bit; lookups of colours against double precision.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -60,6 +60,89 @@ TEST_P(Tables, ExactSamplesHaveTheBitsOfRegularTable) {
         EXPECT_EQ(scaled[i], static_cast<float>(value * factor[i])) << lambda_nm[i] << " nm";
       }
     }
+  }
+}
+
+struct Sigmoid {
+  double value, tail;  // tail: what is left to 1, if that is less
+};
+
+Sigmoid sigmoid(double v) {
+  const double r = std::sqrt(1 + v * v), tail = 0.5 / (r * (r + std::abs(v)));
+  return {v < 0 ? tail : 1 - tail, tail};
+}
+
+/// Parabolas whose values at the offsets are up to `size` (and a hundred times less).
+ColourTerms random_terms(uint32_t count, float size, std::mt19937& random) {
+  std::uniform_real_distribution<float> uniform(-1, 1), weight(0.1f, 2);
+  ColourTerms terms;
+  terms.count = count;
+  for (uint32_t i = 0; i < count; ++i) {
+    const float of_term = size * std::pow(10.0f, uniform(random) - 1);
+    terms.coefficients[i][0] = of_term * uniform(random) * 1e-5f;
+    terms.coefficients[i][1] = of_term * uniform(random) * 1e-3f;
+    terms.coefficients[i][2] = of_term * uniform(random);
+    terms.weights[i] = weight(random);
+  }
+  return terms;
+}
+
+double parabola(const float (&c)[3], float y) {
+  return std::fma(std::fma(c[0], y, c[1]), y, c[2]);
+}
+
+TEST_P(Tables, ColoursAreAccurateUpToTheSmallestOfSigmoids) {
+  constexpr double kSmallest = 0.5 / 0x1p31;
+  const EvaluatorKernels& kernels = evaluator_kernels(GetParam());
+  std::mt19937 random(3);
+  std::vector<float> offsets(kMaxLanes), row(kMaxLanes);
+  for (std::size_t k = 0; k < kMaxLanes; ++k) offsets[k] = -235 + 30 * static_cast<float>(k);
+  for (const uint32_t count : {0u, 2u, 4u}) {
+    for (const float size : {1.0f, 10.0f, 1e3f, 1e6f, 1e18f, 1e30f}) {
+      for (int repetition = 0; repetition < 50; ++repetition) {
+        ColourTerms terms = random_terms(count, size, random);
+        kernels.colour_row(terms, offsets.data(), kMaxLanes, row.data());
+        for (std::size_t k = 0; k < kMaxLanes; ++k) {
+          double sum = 0, error = 1e-12;
+          for (uint32_t i = 0; i < count; ++i) {
+            const double v = parabola(terms.coefficients[i], offsets[k]);
+            const Sigmoid s = sigmoid(v);
+            sum += terms.weights[i] * s.value;
+            // Of v: two roundings of terms that may cancel.
+            const double of_v = 1.2e-7 * (std::abs(terms.coefficients[i][2]) + std::abs(v));
+            error += terms.weights[i] *
+                     (2 * s.tail * of_v / std::sqrt(1 + v * v) + kSmallest * (s.tail < kSmallest));
+          }
+          EXPECT_NEAR(row[k], sum, error + 6e-7 * sum) << count << " terms of up to " << size;
+        }
+      }
+    }
+  }
+}
+
+TEST_P(Tables, ColoursTakeFactorsInPlace) {
+  const EvaluatorKernels& kernels = evaluator_kernels(GetParam());
+  std::mt19937 random(4);
+  ColourTerms terms = random_terms(4, 3, random);
+  terms.constant = 0.25f;
+  std::vector<float> offsets(kMaxLanes), plain(kMaxLanes), row(kMaxLanes);
+  for (std::size_t k = 0; k < kMaxLanes; ++k)
+    offsets[k] = 20 * static_cast<float>(k), row[k] = 1 + offsets[k];
+  const std::vector<float> factor = row;
+  kernels.colour_row(terms, offsets.data(), kMaxLanes, plain.data());
+  terms.factor = row.data();
+  kernels.colour_row(terms, offsets.data(), kMaxLanes, row.data());
+  for (std::size_t k = 0; k < kMaxLanes; ++k) EXPECT_EQ(row[k], plain[k] * factor[k]);
+}
+
+TEST_P(Tables, AColourThatIsNoNumberStaysOne) {
+  std::mt19937 random(6);
+  for (uint32_t i = 0; i < 4; ++i) {
+    ColourTerms terms = random_terms(4, 1, random);
+    terms.coefficients[i][2] = std::numeric_limits<float>::quiet_NaN();
+    std::vector<float> offsets(kMaxLanes), row(kMaxLanes);
+    evaluator_kernels(GetParam()).colour_row(terms, offsets.data(), kMaxLanes, row.data());
+    for (const float value : row) EXPECT_TRUE(std::isnan(value));
   }
 }
 
