@@ -102,13 +102,15 @@ typedef struct {
 KB_STATIC_ASSERT(sizeof(KbSurface) == 48, surface_size);
 
 /* ---- textures --------------------------------------------------------------------------------------------------
-   A texel is (c0, c1, c2, scale): value(lambda) = scale * S(c0 x^2 + c1 x + c2), S(v) = 1/2 + v / (2 sqrt(1 + v^2)),
-   with x = clamp(lambda_nm, 360, 830). A flat texel has c0 = c1 = 0, c2 = 1e10 (S == 1), scale = value. Lookups are
+   A texel is (c0, c1, c2, scale): value(lambda) = scale * S((c0 y + c1) y + c2), S(v) = 1/2 + v / (2 sqrt(1 + v^2)),
+   with y = clamp(lambda_nm, 360, 830) - KB_TEXTURE_CENTRE_NM: about any other wavelength the terms of saturated colours are a thousand
+   times their sum, and no coefficients in single precision would do. A flat texel has c0 = c1 = 0, c2 = 1e10 (S == 1), scale = value. Lookups are
    bilinear in the evaluated spectra, as in Mitsuba 3.
 
    Spectral texels are `values` floats in an array of their own. KB_TEXTURE_BANDS: the spectrum at the band centres of
    a band set, linear between them. KB_TEXTURE_WEIGHTS: weights of the spectra first_row, first_row + 1 ...; they carry
    the unit of emission themselves. */
+#define KB_TEXTURE_CENTRE_NM 595.0f
 #define KB_WRAP_REPEAT 0u
 #define KB_WRAP_MIRROR 1u
 #define KB_WRAP_CLAMP 2u

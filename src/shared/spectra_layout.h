@@ -33,9 +33,6 @@ KB_STATIC_ASSERT(sizeof(KbSpectraLayout) == 64, spectra_layout_size);
 #define KB_PLANCK_LOG2_SCALE 4u
 #define KB_PLANCK_ROWS 5u
 
-/* Texture parabolas are expanded around this wavelength, so that their terms stay small in float. */
-#define KB_TEXTURE_CENTRE_NM 595.0f
-
 /* Channels are put into this many bins to choose the one that survives a dispersive refraction: bin b holds the channels
    k with k * KB_CHANNEL_BINS / K == b, some hold none if K is smaller. */
 #define KB_CHANNEL_BINS 16u

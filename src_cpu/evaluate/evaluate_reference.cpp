@@ -43,8 +43,8 @@ uint32_t wrapped(uint32_t i, uint32_t size, uint32_t rule) {
 }
 
 double texel_value(const KbFloat4& texel, double lambda_nm) {
-  const double x = std::clamp(lambda_nm, 360.0, 830.0);
-  const double v = (static_cast<double>(texel.x) * x + texel.y) * x + texel.z;
+  const double y = std::clamp(lambda_nm, 360.0, 830.0) - KB_TEXTURE_CENTRE_NM;
+  const double v = (static_cast<double>(texel.x) * y + texel.y) * y + texel.z;
   return texel.w * (0.5 + v / (2 * std::sqrt(1 + v * v)));
 }
 

@@ -17,8 +17,7 @@ inline constexpr std::size_t kMaxLanes = 16;
 
 /// A bilinear lookup in a texture of colours:
 ///   value(lambda) = (constant + sum_i weight_i S((a_i y + b_i) y + c_i)) * factor,   y = lambda - KB_TEXTURE_CENTRE_NM.
-/// A texel's parabola is moved there in double: the terms of saturated colours are a thousand times their sum, those about the middle
-/// of the spectrum are not. Texels that are spectrally flat are summed in `constant`; weights include the texels' scales.
+/// Texels that are spectrally flat are summed in `constant`; weights include the texels' scales.
 struct ColourTerms {
   static constexpr uint32_t kMost = 4;
   uint32_t count = 0;            // even: a last term may have weight 0

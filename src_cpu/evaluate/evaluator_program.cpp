@@ -23,11 +23,9 @@ void add_texel(ColourTerms& terms, double& constant, const KbFloat4& texel, doub
     return;
   }
   const uint32_t i = terms.count++;
-  constexpr double kCentre = KB_TEXTURE_CENTRE_NM;
-  const double product = texel.x * kCentre, slope = product + texel.y;
   terms.coefficients[i][0] = texel.x;
-  terms.coefficients[i][1] = static_cast<float>(slope + product);
-  terms.coefficients[i][2] = static_cast<float>(slope * kCentre + texel.z);
+  terms.coefficients[i][1] = texel.y;
+  terms.coefficients[i][2] = texel.z;
   terms.weights[i] = static_cast<float>(weight * texel.w);
 }
 

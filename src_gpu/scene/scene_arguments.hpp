@@ -10,7 +10,6 @@
 #include "shared/pipeline.h"
 #include "shared/sobol_table.h"
 #include "src_gpu/device/kernel_groups.hpp"
-#include "src_gpu/scene/centred_texels.hpp"
 
 namespace kiloband::opencl {
 
@@ -81,7 +80,7 @@ SceneArguments::Of<Buffer> scene_arguments(const FlatScene& scene, const Upload&
           .shapes = up("shapes", scene.shapes),
           .textures = up("textures", scene.textures),
           .checkerboards = up("checkerboards", scene.checkerboards),
-          .texels = up("texels", centred_texels(scene)),
+          .texels = up("texels", scene.texels),
           .texel_values = {},
           .texel_bounds = up("texel bounds", scene.texel_bounds),
           .spectrum_bounds = up("spectrum bounds", bounds_of_rows(scene)),

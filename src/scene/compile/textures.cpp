@@ -4,12 +4,15 @@
 #include <cmath>
 
 #include "scene/compile/flattener.hpp"
+#include "spectral/colour/cie_tables.hpp"
 #include "spectral/colour/colour.hpp"
 #include "spectral/colour/rgb.hpp"
 
 namespace kiloband {
 namespace {
 
+// SigmoidTable's coefficients are about the middle of the colour matching functions.
+static_assert(KB_TEXTURE_CENTRE_NM == (kCieMinNm + kCieMaxNm) / 2);
 constexpr float kFlatCoefficient = 1e10f;  // S(1e10) == 1: a spectrally flat texel, see records.h
 
 KbFloat4 flat_texel(float value) {

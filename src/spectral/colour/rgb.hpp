@@ -23,6 +23,7 @@ Spectrum rgb_reflectance(const Rgb& rgb);
 /// Emission as in Mitsuba 3: D65 * sigmoid(rgb / (2 max)) * 2 max; components >= 0, InputError otherwise.
 Spectrum rgb_emission(const Rgb& rgb);
 
+/// As solve_sigmoid(), but of S(c0 y^2 + c1 y + c2), y in nm from the middle of the colour matching functions, 595 nm.
 /// Solves many colours at once (textures), over a million per second and core: a coarse table of solutions
 /// over the RGB cube in the paper's parametrisation (built once per process, 0.1 s), interpolated
 /// trilinearly, then Newton steps per colour until the residual is below 1e-3. components in [0,1],

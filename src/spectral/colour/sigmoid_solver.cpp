@@ -249,10 +249,13 @@ double flat_sigmoid(double value) {
   return std::clamp((2 * value - 1) / spread, -kLargestSigmoid, kLargestSigmoid);
 }
 
+Vec3 to_centred_nanometres(const Vec3& q) {
+  return {q[0] / (kHalfNm * kHalfNm), q[1] / kHalfNm, q[2]};
+}
+
 Vec3 to_nanometres(const Vec3& q) {
-  const double a = q[0] / (kHalfNm * kHalfNm);
-  const double b = q[1] / kHalfNm;
-  return {a, b - 2 * a * kCentreNm, (a * kCentreNm - b) * kCentreNm + q[2]};
+  const auto [a, b, c] = to_centred_nanometres(q);
+  return {a, b - 2 * a * kCentreNm, (a * kCentreNm - b) * kCentreNm + c};
 }
 
 }  // namespace kiloband

@@ -54,7 +54,8 @@ inline constexpr double kLargestSigmoid = 1e5;
 /// and cost digits in single precision.
 inline constexpr double kLargestPolynomial = 2000;
 
-/// From the polynomial in u to the one in nm.
+/// From the polynomial in u to the one in nm from the middle of the colour matching functions, and to the one in nm.
+Vec3 to_centred_nanometres(const Vec3& q);
 Vec3 to_nanometres(const Vec3& q);
 
 }  // namespace kiloband

@@ -139,12 +139,12 @@ std::array<float, 3> SigmoidTable::operator()(const std::array<float, 3>& compon
     Vec3 have;
     Mat3 jacobian;
     quadrature().evaluate(q, have, jacobian);
-    if (is_close(rgb, have)) return to_float(to_nanometres(q));
+    if (is_close(rgb, have)) return to_float(to_centred_nanometres(q));
     if (!newton_step(rgb, have, jacobian, q)) break;
   }
   q = interpolate(coefficients_, rgb, axis);
   fit_sigmoid(quadrature(), rgb, q, kGoal, 60);
-  return to_float(to_nanometres(q));
+  return to_float(to_centred_nanometres(q));
 }
 
 }  // namespace kiloband

@@ -116,10 +116,10 @@ Rgb colour_of(const std::array<float, 3>& c) {
                                       Spectrum::product(illuminant_d65(), cie_z())};
   std::array<double, 3> xyz{};
   for (int i = 0; i < 470; ++i) {
-    const float x = 360.5f + static_cast<float>(i);
-    const float v = (c[0] * x + c[1]) * x + c[2];
+    const float y = -234.5f + static_cast<float>(i);
+    const float v = (c[0] * y + c[1]) * y + c[2];
     const double s = 0.5f + 0.5f * v / std::sqrt(1 + v * v);
-    for (int k = 0; k < 3; ++k) xyz[k] += s * weights[k](x) / d65_luminance();
+    for (int k = 0; k < 3; ++k) xyz[k] += s * weights[k](595 + y) / d65_luminance();
   }
   return xyz_to_linear_srgb(xyz);
 }
@@ -144,9 +144,11 @@ TEST(SigmoidTable, AgreesWithTheSolver) {
   const SigmoidTable table;
   const std::array<float, 3> rgb = {0.3f, 0.5f, 0.2f};
   const auto c = table(rgb);
-  const Spectrum fast = Spectrum::sigmoid({c[0], c[1], c[2]}, 1), exact = rgb_reflectance({0.3f, 0.5f, 0.2f});
-  for (double lambda_nm = 360; lambda_nm <= 830; lambda_nm += 10)
-    EXPECT_NEAR(fast(lambda_nm), exact(lambda_nm), 5e-3);
+  const Spectrum exact = rgb_reflectance({0.3f, 0.5f, 0.2f});
+  for (double lambda_nm = 360; lambda_nm <= 830; lambda_nm += 10) {
+    const double y = lambda_nm - 595, v = (c[0] * y + c[1]) * y + c[2];
+    EXPECT_NEAR(0.5 + v / (2 * std::sqrt(1 + v * v)), exact(lambda_nm), 5e-3);
+  }
 }
 
 TEST(SigmoidTable, GreyIsFlat) {

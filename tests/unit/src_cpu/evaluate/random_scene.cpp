@@ -85,7 +85,8 @@ void add_materials(FlatScene& scene) {
 /// The parabola a ((x - x0) / 100)^2 + b, with terms far larger than their sum.
 KbFloat4 random_texel(std::mt19937& random) {
   if (chance(random, 0.3)) return {0, 0, 1e10f, uniform_float(random, 0, 1)};
-  const double a = uniform(random, -5, 5) * 1e-4, x0 = uniform(random, 350, 850), b = uniform(random, -2, 2);
+  const double a = uniform(random, -5, 5) * 1e-4, x0 = uniform(random, 350, 850) - KB_TEXTURE_CENTRE_NM,
+               b = uniform(random, -2, 2);
   return {static_cast<float>(a), static_cast<float>(-2 * a * x0), static_cast<float>(a * x0 * x0 + b),
           uniform_float(random, 0.2, 1)};
 }

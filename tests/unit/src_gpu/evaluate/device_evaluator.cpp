@@ -4,7 +4,6 @@
 #include <random>
 
 #include "shared/sampler.h"
-#include "src_gpu/scene/centred_texels.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -111,7 +110,7 @@ DeviceEvaluator::DeviceEvaluator(EvaluatorProgram& program, const FlatScene& sce
   spectra_.cover_breaks = probe.upload(t.cover_breaks);
   scene_.materials = probe.upload(scene.materials);
   scene_.textures = probe.upload(scene.textures);
-  scene_.texels = probe.upload(opencl::centred_texels(scene));
+  scene_.texels = probe.upload(scene.texels);
   scene_.texel_values = probe.upload(texel_values(scene));
   const std::size_t floats = std::size_t{film_pixels} * layout_.film_columns;
   film_.sum = probe.upload(std::vector<float>(floats, 7.0f));  // clear() must do something
