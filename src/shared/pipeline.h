@@ -216,6 +216,9 @@ KB_STATIC_ASSERT(sizeof(KbAuxiliary) == 24, auxiliary_size);
 /* Iterations of the pool after which finished slots leave the queue. */
 #define KB_ITERATIONS_PER_PACKING 8u
 
+/* Paths of a kind of material begin at a multiple of it in the order of shading, so that no group of lanes has two kinds. */
+#define KB_SHADING_LANES 32u
+
 /* Work-items of a group at most, of the kernels that work on slots. */
 #define KB_LARGEST_PATH_GROUP 1024u
 

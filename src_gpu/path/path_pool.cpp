@@ -13,9 +13,6 @@ constexpr uint32_t kIterationsPerLook = KB_ITERATIONS_PER_PACKING;
 /// So many rounds that were over when the host looked first, and it looks earlier.
 constexpr uint32_t kEarlyRounds = 8;
 
-/// KB_LANES of kernels/path/shading_order.clh, which leaves as many places open behind each key, at most.
-constexpr uint64_t kLanes = 32;
-
 uint64_t wide(const kb_u32 (&words)[2]) {
   return uint64_t{words[1]} << 32 | words[0];
 }
@@ -110,7 +107,7 @@ void PathPool::launch(PathKernel& kernel, uint64_t more) {
 
 /// Of the shading order, at most.
 uint64_t PathPool::open_places() const {
-  return uint64_t{size_.shading_keys} * kLanes;
+  return uint64_t{size_.shading_keys} * KB_SHADING_LANES;
 }
 
 void PathPool::iterate(const AfterBounce& after_bounce) {
