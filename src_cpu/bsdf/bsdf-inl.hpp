@@ -4,7 +4,7 @@
 // branch. Lanes outside `active`, and those without a value or sample, get pdf and weights of 0. Without a value, too,
 // is a rough dispersive dielectric that is not degraded; a rough plastic has to have its table.
 //
-// The heroes of spectral MIS are asked for one path at a time (path/spectral_mis.hpp): few paths are at a rough
+// The heroes of spectral MIS are asked for one path at a time (bsdf/spectral_mis.hpp): few paths are at a rough
 // dispersive boundary together, and each evaluates it for up to 8 indices.
 //
 // For one lane or a vector of them: see lanes/one_lane.hpp and lanes/highway_lanes-inl.hpp, one of which comes first.

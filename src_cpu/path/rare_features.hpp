@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "src_cpu/bsdf/spectral_mis.hpp"
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
 #include "src_cpu/lanes/one_lane_glm.hpp"
 #include "src_cpu/path/channel_choice.hpp"
 #include "src_cpu/path/medium_stack.hpp"
-#include "src_cpu/path/spectral_mis.hpp"
 // After the lanes that it is to be compiled for.
 #include "src_cpu/path/shading-inl.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cases.hpp"
-#include "src_cpu/path/spectral_mis.hpp"
+#include "src_cpu/bsdf/spectral_mis.hpp"
 
 namespace kiloband::test {
 

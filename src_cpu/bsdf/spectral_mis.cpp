@@ -1,4 +1,4 @@
-#include "src_cpu/path/spectral_mis.hpp"
+#include "src_cpu/bsdf/spectral_mis.hpp"
 
 #include <algorithm>
 #include <cmath>
