@@ -4,8 +4,8 @@
 // branch. Lanes outside `active`, and those without a value or sample, get pdf and weights of 0. Without a value, too,
 // is a rough dispersive dielectric that is not degraded; a rough plastic has to have its table.
 //
-// The heroes of spectral MIS are asked for one path at a time (bsdf/spectral_mis.hpp): few paths are at a rough
-// dispersive boundary together, and each evaluates it for up to 8 indices.
+// The heroes of spectral MIS are asked for one path at a time, each in a lane (bsdf/spectral_mis-inl.hpp): few paths are at a
+// rough dispersive boundary together, and each evaluates it for up to 8 indices.
 //
 // For one lane or a vector of them: see lanes/one_lane.hpp and lanes/highway_lanes-inl.hpp, one of which comes first.
 #if defined(KILOBAND_BSDF_INL) == defined(HWY_TARGET_TOGGLE)

@@ -1,6 +1,7 @@
 // The BSDFs of one path at a time: those over lanes, for one lane.
 #include "src_cpu/bsdf/bsdf.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "src_cpu/lanes/one_lane.hpp"
@@ -20,14 +21,9 @@ one_lane::V3 lane_of(glm::vec3 v) {
   return {v.x, v.y, v.z};
 }
 
-one_lane::Material lane_of(const KbMaterial& m) {
-  return {m.type,    m.flags,   m.ref_a,   m.ref_b,    m.alpha_u,  m.alpha_v, m.eta,   m.specular_weight,
-          m.fdr_int, m.bound_a, m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr, nullptr};
-}
-
 /// Offsets count from the first of its tables.
 one_lane::Material lane_of(const MaterialContext& context) {
-  one_lane::Material m = lane_of(*context.material);
+  one_lane::Material m = one_lane::one_material(*context.material);
   m.tables = context.table ? context.table : context.compensation;
   if (context.table) m.table = U(0u);
   if (context.compensation) m.compensation = U(static_cast<uint32_t>(context.compensation - m.tables));
@@ -164,19 +160,22 @@ BsdfSample sample_bsdf(const MaterialContext& context, glm::vec3 wi, float u_lob
 
 BsdfSample transmit_dispersive(const KbMaterial& material, glm::vec3 wi, float eta_channel,
                                float probability) {
-  return sample_of(
-      one_lane::transmit_dispersive(lane_of(material), lane_of(wi), eta_channel, probability, kActive));
+  return sample_of(one_lane::transmit_dispersive(one_lane::one_material(material), lane_of(wi), eta_channel,
+                                                 probability, kActive));
 }
 
 BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo) {
   if (wi.z == 0 || wo.z == 0) return {};
   const one_lane::BoundaryPair pair =
-      one_lane::rough_boundary_pair(lane_of(material), lane_of(wi), lane_of(wo), kActive);
+      one_lane::rough_boundary_pair(one_lane::one_material(material), lane_of(wi), lane_of(wo), kActive);
   return {pair.weight.v, pair.cosine.v, pair.transmission.v};
 }
 
-bool acts_smooth(const KbMaterial& material, float eta) {
-  return one_lane::acts_smooth(one_lane::facets_of(lane_of(material)), eta).v;
+bool acts_smooth(const KbMaterial& material, std::span<const float> etas) {
+  const one_lane::Facets facets = one_lane::facets_of(one_lane::one_material(material));
+  return std::ranges::any_of(etas, [&](float eta) {
+    return one_lane::acts_smooth(facets, eta).v || one_lane::acts_smooth(facets, 1 / eta).v;
+  });
 }
 
 glm::vec3 cosine_direction(glm::vec2 u) {

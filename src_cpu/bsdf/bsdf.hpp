@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 
 #include "shared/records.h"
 
@@ -93,9 +94,10 @@ struct BoundaryPair {
 };
 BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo);
 
-/// Is a rough boundary's lobe too narrow for float directions, so that it is treated as smooth?
-/// eta  either ratio of the two indices
-bool acts_smooth(const KbMaterial& material, float eta);
+/// Is a rough boundary's lobe too narrow for float directions, so that it is treated as smooth, with one of these indices, from
+/// one of its sides?
+/// etas  interior over exterior
+bool acts_smooth(const KbMaterial& material, std::span<const float> etas);
 
 /// Cosine-weighted direction around +z, of density cos / pi. u uniform in [0,1)^2.
 glm::vec3 cosine_direction(glm::vec2 u);

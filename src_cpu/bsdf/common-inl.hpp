@@ -33,6 +33,12 @@ struct Material {
   const Principled* principled;  // of lanes that have a principled material; null: none has
 };
 
+/// The same material in every lane, without its tables.
+KB_INLINE Material one_material(const KbMaterial& m) {
+  return {m.type,    m.flags,   m.ref_a,   m.ref_b,    m.alpha_u,  m.alpha_v, m.eta,   m.specular_weight,
+          m.fdr_int, m.bound_a, m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr, nullptr};
+}
+
 struct BsdfValue {
   F w0, w1, pdf;
   M lobe_b;

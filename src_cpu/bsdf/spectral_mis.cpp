@@ -17,17 +17,19 @@ uint32_t hero_channel(uint32_t c, uint32_t heroes, uint32_t channels, float offs
   return std::min(static_cast<uint32_t>(position * static_cast<float>(channels)), channels - 1);
 }
 
-HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec3 wo) {
+HeroDensity hero_density(EvalHeroes eval, const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi,
+                         glm::vec3 wo) {
   HeroDensity density;
+  HeroValues values;
+  eval(material, heroes, wi, wo, values);
   const float even = KB_NO_HERO * std::abs(wo.z) * (0.5f * KB_INV_PI);
   const bool transmission = wi.z * wo.z < 0;
   for (uint32_t c = 0; c < heroes.count; ++c) {
-    const BsdfValue value = eval_bsdf(seen_by(material, heroes.eta[c]), wi, wo);
-    const float eta = wi.z < 0 ? 1 / heroes.eta[c] : heroes.eta[c];
-    density.hero[c] = (1 - KB_NO_HERO) * value.pdf + even;
+    const float eta = wi.z < 0 ? 1 / heroes.eta[c] : heroes.eta[c], w0 = values.w0[c];
+    density.hero[c] = (1 - KB_NO_HERO) * values.pdf[c] + even;
     density.pdf += heroes.q[c] * density.hero[c];
-    density.value = std::max(density.value, value.w0);
-    density.bound = std::max(density.bound, transmission ? value.w0 * eta * eta : value.w0);
+    density.value = std::max(density.value, w0);
+    density.bound = std::max(density.bound, transmission ? w0 * eta * eta : w0);
   }
   return density;
 }

@@ -31,6 +31,14 @@ struct HeroSet {
   std::array<float, KB_MAX_HEROES> q{};    // sums to 1
 };
 
+/// BSDF values of a pair of directions by heroes: f_c |cos theta_o| without spectral factors, and p_c [1/sr].
+struct HeroValues {
+  std::array<float, KB_MAX_HEROES> w0{}, pdf{};
+};
+/// Of a rough dispersive boundary with each hero's index: PathKernels::eval_heroes.
+using EvalHeroes = void (*)(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec3 wo,
+                            HeroValues& values);
+
 /// A direction as the heroes see it.
 struct HeroDensity {
   float pdf = 0;    // p [1/sr]
@@ -38,7 +46,8 @@ struct HeroDensity {
   float bound = 0;  // the same without the radiance scaling of transmission
   std::array<float, KB_MAX_HEROES> hero{};  // p'_c
 };
-HeroDensity hero_density(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec3 wo);
+HeroDensity hero_density(EvalHeroes eval, const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi,
+                         glm::vec3 wo);
 
 /// A direction of density p; 0 where the sampled facet loses it. u_hero: .x chooses the hero, .y whether any.
 glm::vec3 sample_heroes(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec2 u_hero,

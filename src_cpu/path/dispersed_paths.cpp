@@ -40,7 +40,8 @@ bool RareFeatures::shade_dispersive(Shading& s) {
   return dispersion_ && dispersion_->shade(s, *this);
 }
 
-DispersedPaths::DispersedPaths(const FlatScene& scene) : scene_(scene) {
+DispersedPaths::DispersedPaths(const FlatScene& scene, EvalHeroes eval_heroes)
+    : scene_(scene), eval_heroes_(eval_heroes) {
   std::vector<uint32_t> surfaces;
   for (const KbSurface& surface : scene.surfaces) surfaces.push_back(may_disperse(scene, surface));
   for (const KbShape& shape : scene.shapes) shapes_.push_back(surfaces[shape.surface]);
@@ -160,10 +161,9 @@ HeroSet DispersedPaths::choose_heroes(const Shading& s, const KbMaterial& materi
   }
   heroes.q = own.hero_weights;
   const float offset = kb_hero_offset(s.bounce.settings.seed, path.film_pixel, s.bounce.id.sample);
-  for (uint32_t c = 0; c < heroes.count; ++c) {
+  for (uint32_t c = 0; c < heroes.count; ++c)
     heroes.eta[c] = channel_eta(material, hero_channel(c, heroes.count, channels, offset), mu_of(path));
-    if (cpu::acts_smooth(material, heroes.eta[c]) || cpu::acts_smooth(material, 1 / heroes.eta[c])) return {};
-  }
+  if (cpu::acts_smooth(material, std::span(heroes.eta).first(heroes.count))) return {};
   return heroes;
 }
 
@@ -196,7 +196,7 @@ void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSe
   if (!(light.pdf.v > 0) || !(light.factor.v > 0)) return;
   const glm::vec3 wo = to_glm(s.frame.to_local(light.direction));
   const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
-  const HeroDensity density = hero_density(at.material, heroes, at.wi, wo);
+  const HeroDensity density = hero_density(eval_heroes_, at.material, heroes, at.wi, wo);
   const float opacity = s.opacity.v;
   const float mis = light.delta.v ? 1 : power_heuristic(light.pdf, F(density.pdf * opacity)).v;
   const float share = scene_.features.bump ? bump_share(s, light.direction).v : 1;
@@ -220,7 +220,7 @@ bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSe
       kb_hero_sample(s.bounce.settings.seed, path.film_pixel, s.bounce.id.sample, s.bounce.number);
   const glm::vec3 wo = sample_heroes(at.material, heroes, at.wi, {h.x, h.y}, s.u.x.v, {s.u.y.v, s.u.z.v});
   const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
-  const HeroDensity density = hero_density(at.material, heroes, at.wi, wo);
+  const HeroDensity density = hero_density(eval_heroes_, at.material, heroes, at.wi, wo);
   const V3 direction = s.frame.to_world(to_lane(wo));
   const float share = scene_.features.bump ? bump_share(s, direction).v : 1;
   if (!(density.pdf > 0) || !(pair.weight > 0) || !(share > 0)) return false;

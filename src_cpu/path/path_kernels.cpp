@@ -10,6 +10,7 @@
 // After foreach_target.h, as Highway asks for.
 #include "src_cpu/lanes/highway_lanes-inl.hpp"
 // After the lanes that it is to be compiled for.
+#include "src_cpu/bsdf/spectral_mis-inl.hpp"
 #include "src_cpu/geometry/few_triangles-inl.hpp"
 #include "src_cpu/path/shade-inl.hpp"
 #include "src_cpu/path/start-inl.hpp"
@@ -17,7 +18,8 @@
 namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
-inline constexpr PathKernels kPathKernels{start_wave, shade_wave, closest_of_few, occlusions_of_few};
+inline constexpr PathKernels kPathKernels{start_wave, shade_wave, closest_of_few, occlusions_of_few,
+                                          eval_heroes};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kiloband::cpu

@@ -1,6 +1,7 @@
 // The stages of a wave that are compiled for every instruction set.
 #pragma once
 
+#include "src_cpu/bsdf/spectral_mis.hpp"
 #include "src_cpu/geometry/few_triangles.hpp"
 #include "src_cpu/lanes/isa.hpp"
 #include "src_cpu/path/wave.hpp"
@@ -17,6 +18,7 @@ struct PathKernels {
   /// Answer all rays of a queue in scenes that have few triangles.
   void (*closest_of_few)(const FewTriangles& few, RayQueue& rays);
   void (*occlusions_of_few)(const FewTriangles& few, ShadowQueue& rays);
+  EvalHeroes eval_heroes;
 };
 
 /// For an instruction set that this machine has (resolve_isa()). All give the same bits for the same answers.

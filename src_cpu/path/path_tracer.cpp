@@ -76,8 +76,9 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
     : scene_(scene),
       flat_(*scene.flat),
       settings_(settings),
-      rare_(has_rare_features(flat_.features) ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree)
-                                              : nullptr),
+      rare_(has_rare_features(flat_.features)
+                ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree, kernels.eval_heroes)
+                : nullptr),
       parts_(rare_ && !rare_->gas()),
       kernels_(rare_ && !parts_ ? one_lane_path_kernels() : kernels),
       sorts_(!scene.few && !rare_ && !flat_.features.thermal && scene.embree->sorting_pays()) {}

@@ -89,7 +89,7 @@ struct Boundary {
 /// Boundaries whose index depends on wavelength: degradation to one channel, spectral MIS for all.
 class DispersedPaths {
  public:
-  explicit DispersedPaths(const FlatScene& scene);
+  DispersedPaths(const FlatScene& scene, EvalHeroes eval_heroes);
 
   /// mu: wavelength offset per pixel, or one for all
   void start(std::span<const float> mu);
@@ -119,6 +119,7 @@ class DispersedPaths {
   bool scatter_heroes(Shading& s, const Boundary& at, const HeroSet& heroes);
 
   const FlatScene& scene_;
+  EvalHeroes eval_heroes_;
   std::span<const float> mu_;
   std::vector<DispersedPath> paths_;
   std::vector<uint32_t> shapes_;
@@ -127,9 +128,9 @@ class DispersedPaths {
 /// All of them, as far as the scene has them.
 class RareFeatures {
  public:
-  RareFeatures(const FlatScene& scene, const EmbreeScene& embree) {
+  RareFeatures(const FlatScene& scene, const EmbreeScene& embree, EvalHeroes eval_heroes) {
     if (scene.features.gas) gas_.emplace(scene, embree);
-    if (scene.features.dispersion) dispersion_.emplace(scene);
+    if (scene.features.dispersion) dispersion_.emplace(scene, eval_heroes);
   }
 
   void start(Wave& wave, std::span<const float> mu) {

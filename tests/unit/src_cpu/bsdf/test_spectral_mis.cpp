@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cases.hpp"
-#include "src_cpu/bsdf/spectral_mis.hpp"
+#include "src_cpu/path/path_kernels.hpp"
 
 namespace kiloband::test {
 
@@ -48,6 +48,10 @@ std::vector<HeroCase> hero_cases() {
   return cases;
 }
 
+HeroDensity density_of(const HeroCase& c, glm::vec3 wo) {
+  return hero_density(one_lane_path_kernels().eval_heroes, c.material, c.heroes, c.wi, wo);
+}
+
 glm::vec3 draw_direction(const HeroCase& c, Uniform& uniform) {
   const glm::vec2 hero = uniform.pair();
   const float lobe = uniform();
@@ -68,7 +72,7 @@ TEST(SpectralMis, DirectionsFollowTheDensity) {
       if (wo.z == 0) return {};
       return {wo};
     };
-    const auto pdf = [&](glm::vec3 wo) { return double(hero_density(c.material, c.heroes, c.wi, wo).pdf); };
+    const auto pdf = [&](glm::vec3 wo) { return double(density_of(c, wo).pdf); };
     const ChiSquare result = chi_square(draw, pdf, 0, 150000);
     EXPECT_GT(result.p_value, level) << result.cells << " bins, integral " << result.integral;
     EXPECT_GE(result.cells, 20);
@@ -94,7 +98,7 @@ Estimate albedo(const HeroCase& c, float eta, bool alone, uint64_t seed) {
       const BsdfSample s = sample_bsdf(context, c.wi, lobe, uniform.pair());
       if (s.pdf > 0) value = s.w0;
     } else if (const glm::vec3 wo = draw_direction(c, uniform); wo.z != 0) {
-      value = eval_bsdf(context, c.wi, wo).w0 / hero_density(c.material, c.heroes, c.wi, wo).pdf;
+      value = eval_bsdf(context, c.wi, wo).w0 / density_of(c, wo).pdf;
     }
     sum += value;
     squares += value * value;
@@ -137,6 +141,31 @@ TEST(SpectralMis, PairsAreReflections) {
       ASSERT_LE(value.w0, pair.weight * (1 + 1e-5f));
     }
   }
+}
+
+// Heroes side by side in the lanes of a vector, however many it has, and their BSDF alone.
+TEST(SpectralMis, HeroesHaveTheBitsOfTheirOwnBsdf) {
+  std::vector<EvalHeroes> evaluations{one_lane_path_kernels().eval_heroes};
+  for (const Isa isa : {Isa::kSse4, Isa::kAvx2, Isa::kAvx512})
+    if (is_available(isa)) evaluations.push_back(path_kernels(isa).eval_heroes);
+  Uniform uniform(7);
+  int not_zero = 0;
+  for (const HeroCase& c : hero_cases()) {
+    for (int i = 0; i < 200; ++i) {
+      const glm::vec3 wo = i == 0 ? glm::vec3(1, 0, 0) : draw_direction(c, uniform);
+      for (const EvalHeroes eval : evaluations) {
+        HeroValues values;
+        eval(c.material, c.heroes, c.wi, wo, values);
+        for (uint32_t h = 0; h < c.heroes.count; ++h) {
+          const BsdfValue alone = eval_bsdf({&c.material, nullptr, {c.heroes.eta[h]}}, c.wi, wo);
+          ASSERT_EQ(values.w0[h], alone.w0) << c.name << " hero " << h;
+          ASSERT_EQ(values.pdf[h], alone.pdf) << c.name << " hero " << h;
+          not_zero += alone.w0 > 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(not_zero, 30000);
 }
 
 }  // namespace
