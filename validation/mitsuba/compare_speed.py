@@ -7,7 +7,9 @@ Mitsuba renders with llvm_ad_spectral, whose LLVM must be 16 or later: Debian's 
 one sample of one pixel. Medians over the rounds; the first round of Mitsuba, which compiles, does not count, nor do reading the
 scene and writing the image. kiloband traces with Embree's flag ROBUST, without which rays may pass between two triangles;
 Mitsuba does only with --robust (https://github.com/mitsuba-renderer/mitsuba3/pull/1300). Means: kiloband's over Mitsuba's, less
-1, with the standard error of Mitsuba's, which is that of its rounds.
+1, with the standard error of Mitsuba's, which is that of its rounds. Errors of a pixel, whose squares are variances over the rounds,
+averaged over the image: a path of kiloband serves all channels, and so an error is reached that many times sooner (median channel,
+least and most; the ratio of variance times seconds).
 """
 
 import argparse
@@ -26,7 +28,7 @@ SAMPLERS = ("independent", "sobol")
 
 
 def time_kiloband(program, scene, options, sampler, seed, folder):
-    """Returns seconds of rendering and the mean of every channel."""
+    """Returns seconds of rendering and the image, [channel][pixel]."""
     output = folder / "image.hdr"
     size = f"{options.size[0]}x{options.size[1]}"
     command = [program, "render", scene, "--backend", "cpu", "--bands", options.bands, "--size", size, "--spp", str(options.spp)]
@@ -36,15 +38,15 @@ def time_kiloband(program, scene, options, sampler, seed, folder):
     if ended.returncode != 0 or not seconds:
         sys.exit(f"compare_speed.py: {ended.stderr.strip()}")
     channels = len(render_mitsuba.parse_bands(options.bands))
-    image = numpy.fromfile(output.with_suffix(".img"), "<f4").reshape(channels, -1)
-    return float(seconds.group(1)), image.mean(axis=1, dtype=float)
+    return float(seconds.group(1)), numpy.fromfile(output.with_suffix(".img"), "<f4").reshape(channels, -1)
 
 
 def time_mitsuba(mitsuba, scene, options, seed):
     begin = time.perf_counter()
     image = numpy.array(mitsuba.render(scene, spp=options.spp, seed=seed))
     seconds = time.perf_counter() - begin
-    return seconds, image[..., : len(render_mitsuba.parse_bands(options.bands))].mean(axis=(0, 1), dtype=float)
+    channels = len(render_mitsuba.parse_bands(options.bands))
+    return seconds, image[..., :channels].reshape(-1, channels).T
 
 
 def load(mitsuba, name, options):
@@ -54,19 +56,34 @@ def load(mitsuba, name, options):
     return mitsuba.load_string(text)
 
 
+def means_of(rounds):
+    return numpy.array([image.mean(axis=1, dtype=float) for _, image in rounds])
+
+
+def pixel_error(rounds):
+    """The relative error of a pixel, root mean square over the image, by channel."""
+    variance = numpy.var([image for _, image in rounds], axis=0, ddof=1, dtype=float).mean(axis=1)
+    return numpy.sqrt(variance) / means_of(rounds).mean(axis=0)
+
+
 def report(scene, options, theirs, ours):
-    """theirs: (seconds, means) of each round; ours: the same by sampler"""
+    """theirs: (seconds, image) of each round; ours: the same by sampler"""
     paths = options.size[0] * options.size[1] * options.spp / 1e6
     seconds = [round_[0] for round_ in theirs[1:]]
     print(f"{scene}: Mitsuba {paths / statistics.median(seconds):.2f} million paths per second")
-    means = numpy.array([round_[1] for round_ in theirs])
+    means, noise = means_of(theirs), pixel_error(theirs)
     error = means.std(axis=0, ddof=1) / len(means) ** 0.5 / means.mean(axis=0)
     for sampler, rounds in ours.items():
         own = [round_[0] for round_ in rounds[1:]]
         ratio = statistics.median(theirs_ / own_ for theirs_, own_ in zip(seconds, own))
         print(f"  kiloband {sampler}: {paths / statistics.median(own):.2f}, ratio {ratio:.2f}")
-        difference = numpy.mean([round_[1] for round_ in rounds], axis=0) / means.mean(axis=0) - 1
-        print("    means, %: " + ", ".join(f"{100 * d:+.2f} ({100 * e:.2f})" for d, e in zip(difference, error)), flush=True)
+        difference = means_of(rounds).mean(axis=0) / means.mean(axis=0) - 1
+        print("    means, %: " + ", ".join(f"{100 * d:+.2f} ({100 * e:.2f})" for d, e in zip(difference, error)))
+        own_noise = pixel_error(rounds)
+        sooner = ratio * (noise / own_noise) ** 2
+        errors = f"{100 * statistics.median(own_noise):.1f} % beside {100 * statistics.median(noise):.1f} %"
+        times = f"{statistics.median(sooner):.1f} times sooner ({min(sooner):.1f} to {max(sooner):.1f})"
+        print(f"    error of a pixel: {errors}, {times}", flush=True)
 
 
 def main():
