@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "shared/spectra_layout.h"
+#include "shared/records.h"
 #include "spectral/planck.hpp"
 
 namespace kiloband::cpu {

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "shared/rough_transmission.h"
-#include "shared/spectra_layout.h"
 
 namespace kiloband::cpu {
 namespace {
