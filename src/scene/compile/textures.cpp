@@ -149,10 +149,13 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
 float Flattener::texel_bound(const KbFloat4& texel) const {
   if (texel.x == 0 && texel.y == 0) return texel.w;
   const Channel channels = hull(out_.channels), guide = hull(out_.guide);
-  const double low = std::clamp(std::min(channels.min_nm, guide.min_nm), kCieMinNm, kCieMaxNm);
-  const double high = std::clamp(std::max(channels.max_nm, guide.max_nm), kCieMinNm, kCieMaxNm);
-  const auto value = [&](double x) {
-    const double v = (texel.x * x + texel.y) * x + texel.z;
+  const auto from_centre = [](double nm) {
+    return std::clamp(nm, kCieMinNm, kCieMaxNm) - KB_TEXTURE_CENTRE_NM;
+  };
+  const double low = from_centre(std::min(channels.min_nm, guide.min_nm));
+  const double high = from_centre(std::max(channels.max_nm, guide.max_nm));
+  const auto value = [&](double y) {
+    const double v = (texel.x * y + texel.y) * y + texel.z;
     return 0.5 + 0.5 * v / std::sqrt(1 + v * v);
   };
   double largest = std::max(value(low), value(high));
