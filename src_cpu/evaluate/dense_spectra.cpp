@@ -32,6 +32,15 @@ double value_at(const SpectrumRow& row, double lambda_nm) {
   return planck_factor(row, lambda_nm) * planck_radiance(lambda_nm, row.temperature_k);
 }
 
+/// Whether metal_fresnel() has the reflectance of index n + ik at any angle to some units in the last place: R >= 1/4 (it is least, in
+/// R_s, at normal incidence), |(n + ik)^2 - s^2| >= 1/2 for all sines, and no product of its terms leaves the range of floats.
+bool is_metallic(double n, double k) {
+  const double square = n * n + k * k, real = n * n - k * k;  // of (n + ik)^2
+  if (square + 1 - 2 * n < 0.25 * (square + 1 + 2 * n) || square > 1e8) return false;
+  const double nearest = real - std::clamp(real, 0.0, 1.0);
+  return std::hypot(nearest, 2 * n * k) >= 0.5;
+}
+
 }  // namespace
 
 template <class T>
@@ -207,7 +216,7 @@ std::array<const float*, 3> DenseSpectra::conductor(uint32_t material) {
       const double n = value_at(scene_.spectra[record.eta_row], lambda_[k]);
       const double absorption = value_at(scene_.spectra[record.k_row], lambda_[k]);
       split((n - 1) * (n + 1) - absorption * absorption, rows.data[0][0][k], rows.data[0][1][k]);
-      rows.data[0][2][k] = static_cast<float>(n * absorption);
+      rows.data[0][2][k] = static_cast<float>(is_metallic(n, absorption) ? n * absorption : -n * absorption);
     }
     rows.generation[0] = generation_;
   }

@@ -83,7 +83,7 @@ struct DenseSpectra {
   /// hc / (k lambda_k) in kelvin, 1 in the padding: what Planck's law at other temperatures needs.
   const float* planck_second();
 
-  /// T = n^2 - 1 - k^2 as a sum of two floats, and n k, of a conductor.
+  /// T = n^2 - 1 - k^2 as a sum of two floats, and n k, of a conductor; n k has a negative sign where metal_fresnel() would lose digits.
   std::array<const float*, 3> conductor(uint32_t material);
   /// E = e^2 - 1 as a sum of two floats, where e is the relative index of a dispersive dielectric: interior
   /// over exterior seen from outside, the reciprocal seen from `inside`.

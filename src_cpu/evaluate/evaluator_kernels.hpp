@@ -28,7 +28,7 @@ struct ColourTerms {
 };
 
 /// Fresnel reflectance at a fixed angle. Quantities of cancellation are stored as sums of two floats:
-/// conductor (nk != null): T = n^2 - 1 - k^2;  dielectric: E = e^2 - 1, e = transmitted over incident index.
+/// conductor (nk != null, see DenseSpectra::conductor()): T = n^2 - 1 - k^2;  dielectric: E = e^2 - 1, e = transmitted over incident index.
 struct FresnelTerms {
   const float* high = nullptr;
   const float* low = nullptr;

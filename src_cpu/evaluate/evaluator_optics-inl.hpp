@@ -43,10 +43,9 @@ inline constexpr float kTiny = 1e-18f;
 /// Without cancellation: of a and b the larger comes from sqrt((|a+ib|^2 + |t|) / 2), the other from ab = nk.
 /// Where a >= b, a - c = (T + b^2) / (a + c), which is accurate for n near 1; elsewhere b^2 outweighs the
 /// rounding of a - c.
-HWY_INLINE Floats conductor_fresnel(const FresnelTerms& f, std::size_t k) {
+HWY_INLINE Floats any_conductor_fresnel(const FresnelTerms& f, std::size_t k, Floats nk) {
   const Floats c = constant(f.cosine), s2 = constant(f.sine2);
   const Floats big_t = hn::LoadU(kTag, f.high + k);
-  const Floats nk = hn::LoadU(kTag, f.nk + k);
   const Floats t = hn::Add(hn::Add(big_t, constant(f.cosine2_high)),
                            hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
   const Floats modulus = hn::Sqrt(hn::MulAdd(t, t, hn::Mul(constant(4), square(nk))));
@@ -65,6 +64,32 @@ HWY_INLINE Floats conductor_fresnel(const FresnelTerms& f, std::size_t k) {
   const Floats ratio =
       hn::Div(hn::MulAdd(minus, minus, b2c2), hn::Max(hn::MulAdd(plus, plus, b2c2), constant(kTiny)));
   return hn::Mul(hn::Mul(constant(0.5f), rs), hn::Add(constant(1), ratio));
+}
+
+/// The same where is_metallic(): with A = |a + ib|^2 and a = u / w, of which u = nk, w = b where b is the larger, else u = a, w = 1,
+///   R = (R_s + R_p) / 2 = (A + c^2 - 2ac) (A c^2 + s^4) / ((A + c^2 + 2ac) (A c^2 + 2ac s^2 + s^4)),
+/// of whose terms only the first cancels, by no more than 1 / R. One division instead of four.
+HWY_INLINE Floats metal_fresnel(const FresnelTerms& f, std::size_t k, Floats nk) {
+  const Floats c2 = constant(f.cosine2_high), s2 = constant(f.sine2);
+  const Floats t = hn::Add(hn::LoadU(kTag, f.high + k), c2);
+  const Floats modulus = hn::Sqrt(hn::MulAdd(t, t, hn::Mul(constant(4), square(nk))));
+  const Floats larger = hn::Sqrt(hn::Mul(constant(0.5f), hn::Add(modulus, hn::Abs(t))));
+  const auto a_is_larger = hn::Ge(t, hn::Zero(kTag));
+  const Floats u = hn::IfThenElse(a_is_larger, larger, nk),
+               w = hn::IfThenElse(a_is_larger, constant(1), larger);
+  const Floats middle = hn::Mul(w, hn::Add(modulus, c2)), cross = hn::Mul(constant(2 * f.cosine), u);
+  const Floats parallel = hn::Mul(w, hn::MulAdd(modulus, c2, square(s2)));
+  const Floats above = hn::Mul(hn::Sub(middle, cross), parallel);
+  return hn::Div(above, hn::Mul(hn::Add(middle, cross), hn::MulAdd(s2, cross, parallel)));
+}
+
+HWY_INLINE Floats conductor_fresnel(const FresnelTerms& f, std::size_t k) {
+  const Floats nk = hn::LoadU(kTag, f.nk + k);
+  const hn::RebindToSigned<Tag> signed_tag;
+  const auto other = hn::RebindMask(kTag, hn::Lt(hn::BitCast(signed_tag, nk), hn::Zero(signed_tag)));
+  const Floats metal = metal_fresnel(f, k, nk);
+  if (HWY_LIKELY(hn::AllFalse(kTag, other))) return metal;
+  return hn::IfThenElse(other, any_conductor_fresnel(f, k, hn::Abs(nk)), metal);
 }
 
 /// Unpolarised reflectance of a dielectric boundary of relative index e (transmitted over incident) for the

@@ -95,6 +95,31 @@ TEST_P(Fresnel, ConductorsOfAllKinds) {
   }
 }
 
+/// Four units in the last place and the rounding of a cosine's square. Indices from alkali metals' to those of metals in the thermal infrared,
+/// silicon's and silver's among them.
+TEST_P(Fresnel, MetalsKeepTheirDigits) {
+  std::vector<double> n, k;
+  for (double index : {1e-3, 0.05, 0.15, 0.5, 0.8, 1.0, 1.4, 2.5, 4.0, 30.0, 300.0, 5000.0}) {
+    for (double absorption : {1.5, 2.2, 3.4, 5.0, 7.0, 20.0, 100.0, 1000.0, 5000.0}) {
+      n.push_back(index);
+      k.push_back(absorption);
+    }
+  }
+  n.push_back(4.1), k.push_back(0.04);
+  const std::vector<float> cosines = {1,     0.9999f, 0.99f,  0.9f,   0.7f,  0.5f,  0.3f, 0.1f,
+                                      0.03f, 0.01f,   0.003f, 0.001f, 1e-4f, 1e-5f, 0};
+  const FresnelCase grid(n, k, KB_KIND_CONDUCTOR, cosines);
+  const Evaluator layout(grid.scene, {}, GetParam());
+  const std::vector<float> sums = evaluate(grid.scene, {}, grid.paths, GetParam(), 0);
+  for (std::size_t p = 0; p < cosines.size(); ++p) {
+    const std::vector<double> expected = evaluate_path_reference(grid.scene, {}, grid.paths, p, 0);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_NEAR(sums[p * layout.stride() + i], expected[i], 5e-7 * expected[i])
+          << "n " << n[i] << " k " << k[i] << " cos " << cosines[p];
+    }
+  }
+}
+
 TEST_P(Fresnel, DielectricsNearTheCriticalAngle) {
   std::vector<double> n;
   for (int i = 0; i < 200; ++i) n.push_back(1.0001 + 0.01 * i);
