@@ -99,13 +99,18 @@ float* DenseSpectra::new_row() {
   return pool_[used_++].get();
 }
 
-const float* DenseSpectra::texture_offsets() {
+ColourOffsets DenseSpectra::texture_offsets() {
   if (texture_generation_ != generation_) {
+    float* const offsets = texture_offsets_.get();
     for (std::size_t k = 0; k < channels_; ++k)
-      texture_offsets_[k] = static_cast<float>(std::clamp(lambda_[k], 360.0, 830.0) - KB_TEXTURE_CENTRE_NM);
+      offsets[k] = static_cast<float>(std::clamp(lambda_[k], 360.0, 830.0) - KB_TEXTURE_CENTRE_NM);
+    std::fill(offsets + channels_, offsets + padded_, offsets[channels_ - 1]);
+    distinct_offsets_ = channels_;
+    while (distinct_offsets_ > 0 && offsets[distinct_offsets_ - 1] == offsets[channels_ - 1])
+      --distinct_offsets_;
     texture_generation_ = generation_;
   }
-  return texture_offsets_.get();
+  return {texture_offsets_.get(), distinct_offsets_};
 }
 
 const float* DenseSpectra::planck_second() {

@@ -78,7 +78,7 @@ struct DenseSpectra {
   void fill_planck(double temperature_k, const float* emissivity, float* out);
   std::size_t padded_channels() const { return padded_; }
   /// clamp(lambda_k, 360, 830) - KB_TEXTURE_CENTRE_NM, nm: where textures are evaluated.
-  const float* texture_offsets();
+  ColourOffsets texture_offsets();
 
   /// hc / (k lambda_k) in kelvin, 1 in the padding: what Planck's law at other temperatures needs.
   const float* planck_second();
@@ -128,6 +128,7 @@ struct DenseSpectra {
   std::vector<bool> is_emission_;  // of a spectrum
   hwy::AlignedFreeUniquePtr<double[]> lambda_;
   hwy::AlignedFreeUniquePtr<float[]> texture_offsets_;
+  std::size_t distinct_offsets_ = 0;
   uint64_t planck_second_generation_ = 0;
   hwy::AlignedFreeUniquePtr<float[]> unit_emission_, planck_second_;
   std::vector<Row> rows_;                                 // by spectrum

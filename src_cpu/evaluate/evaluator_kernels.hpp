@@ -27,6 +27,13 @@ struct ColourTerms {
   const float* factor = nullptr;  // dense row, or null for 1
 };
 
+/// Wavelengths of lookups, nm from KB_TEXTURE_CENTRE_NM, by channel; padded with the last one. From `distinct` on all are the same:
+/// beyond 830 nm, where a colour says nothing, its spectrum goes on as it is there.
+struct ColourOffsets {
+  const float* nm;
+  std::size_t distinct;
+};
+
 /// Fresnel reflectance at a fixed angle. Quantities of cancellation are stored as sums of two floats:
 /// conductor (nk != null, see DenseSpectra::conductor()): T = n^2 - 1 - k^2;  dielectric: E = e^2 - 1, e = transmitted over incident index.
 struct FresnelTerms {
@@ -145,9 +152,8 @@ struct EvaluatorKernels {
   /// i < count rounded up to kMaxLanes.
   void (*mix_bands)(const float* values, const int32_t* index, const float* first, const float* second,
                     std::size_t count, float* out);
-  /// out[i] = terms(offsets[i]), nm from KB_TEXTURE_CENTRE_NM, for i < count rounded up to the lanes of a vector.
-  /// out may be the terms' factor.
-  void (*colour_row)(const ColourTerms& terms, const float* offsets, std::size_t count, float* out);
+  /// out[i] = terms(offsets.nm[i]) for i < count rounded up to the lanes of a vector. out may be the terms' factor.
+  void (*colour_row)(const ColourTerms& terms, const ColourOffsets& offsets, std::size_t count, float* out);
 };
 
 /// isa: resolved, not kAuto.

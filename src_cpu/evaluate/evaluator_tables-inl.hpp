@@ -141,19 +141,26 @@ HWY_INLINE Quotient tail(const ColourTerms& terms, std::size_t i, Floats y, Floa
 }
 
 /// Roots and divisions share a unit (10 and 6 cycles for 16 lanes on Zen 4, where all else takes 1): one division for all terms.
-/// A whole row at a time: where the next vertex follows after a block of channels, the unit waits for what depends on it.
-inline void colour_row(const ColourTerms& terms, const float* offsets, std::size_t count, float* out) {
+HWY_INLINE Floats colour_at(const ColourTerms& terms, Floats y) {
   static_assert(ColourTerms::kMost == 4);
-  for (std::size_t k = 0; k < count; k += kLanes) {
-    const Floats y = load(offsets, k);
-    Floats whole = constant(terms.constant);
-    if (terms.count > 0) {
-      Quotient sum = sum_of(tail(terms, 0, y, whole), tail(terms, 1, y, whole));
-      if (terms.count > 2) sum = sum_of(sum, sum_of(tail(terms, 2, y, whole), tail(terms, 3, y, whole)));
-      whole = hn::Add(whole, hn::Div(sum.numerator, sum.divisor));
-    }
-    hn::StoreU(terms.factor ? hn::Mul(whole, load(terms.factor, k)) : whole, kTag, out + k);
-  }
+  Floats whole = constant(terms.constant);
+  if (terms.count == 0) return whole;
+  Quotient sum = sum_of(tail(terms, 0, y, whole), tail(terms, 1, y, whole));
+  if (terms.count > 2) sum = sum_of(sum, sum_of(tail(terms, 2, y, whole), tail(terms, 3, y, whole)));
+  return hn::Add(whole, hn::Div(sum.numerator, sum.divisor));
+}
+
+/// A whole row at a time: where the next vertex follows after a block of channels, the unit waits for what depends on it.
+inline void colour_row(const ColourTerms& terms, const ColourOffsets& offsets, std::size_t count,
+                       float* out) {
+  const auto store = [&](Floats value, std::size_t k) {
+    hn::StoreU(terms.factor ? hn::Mul(value, load(terms.factor, k)) : value, kTag, out + k);
+  };
+  std::size_t k = 0;
+  for (; k < offsets.distinct; k += kLanes) store(colour_at(terms, load(offsets.nm, k)), k);
+  if (k >= count) return;
+  const Floats last = colour_at(terms, load(offsets.nm, k));
+  for (; k < count; k += kLanes) store(last, k);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -101,7 +101,7 @@ TEST_P(Tables, ColoursAreAccurateUpToTheSmallestOfSigmoids) {
     for (const float size : {1.0f, 10.0f, 1e3f, 1e6f, 1e18f, 1e30f}) {
       for (int repetition = 0; repetition < 50; ++repetition) {
         ColourTerms terms = random_terms(count, size, random);
-        kernels.colour_row(terms, offsets.data(), kMaxLanes, row.data());
+        kernels.colour_row(terms, {offsets.data(), kMaxLanes}, kMaxLanes, row.data());
         for (std::size_t k = 0; k < kMaxLanes; ++k) {
           double sum = 0, error = 1e-12;
           for (uint32_t i = 0; i < count; ++i) {
@@ -129,10 +129,29 @@ TEST_P(Tables, ColoursTakeFactorsInPlace) {
   for (std::size_t k = 0; k < kMaxLanes; ++k)
     offsets[k] = 20 * static_cast<float>(k), row[k] = 1 + offsets[k];
   const std::vector<float> factor = row;
-  kernels.colour_row(terms, offsets.data(), kMaxLanes, plain.data());
+  kernels.colour_row(terms, {offsets.data(), kMaxLanes}, kMaxLanes, plain.data());
   terms.factor = row.data();
-  kernels.colour_row(terms, offsets.data(), kMaxLanes, row.data());
+  kernels.colour_row(terms, {offsets.data(), kMaxLanes}, kMaxLanes, row.data());
   for (std::size_t k = 0; k < kMaxLanes; ++k) EXPECT_EQ(row[k], plain[k] * factor[k]);
+}
+
+/// Beyond the visible, channels have what is computed once for them, with their bits.
+TEST_P(Tables, ColoursBeyondTheVisibleAreThoseOfItsEnd) {
+  const EvaluatorKernels& kernels = evaluator_kernels(GetParam());
+  std::mt19937 random(7);
+  ColourTerms terms = random_terms(4, 3, random);
+  terms.constant = 0.25f;
+  constexpr std::size_t kCount = 4 * kMaxLanes;
+  std::vector<float> offsets(kCount), factor(kCount);
+  for (std::size_t k = 0; k < kCount; ++k) factor[k] = 1 + static_cast<float>(k);
+  terms.factor = factor.data();
+  for (std::size_t distinct = 0; distinct <= kCount; ++distinct) {
+    for (std::size_t k = 0; k < kCount; ++k) offsets[k] = 3 * static_cast<float>(std::min(k, distinct)) - 100;
+    std::vector<float> each(kCount), row(kCount);
+    kernels.colour_row(terms, {offsets.data(), kCount}, kCount, each.data());
+    kernels.colour_row(terms, {offsets.data(), distinct}, kCount, row.data());
+    EXPECT_EQ(row, each) << distinct << " wavelengths";
+  }
 }
 
 TEST_P(Tables, AColourThatIsNoNumberStaysOne) {
@@ -141,7 +160,7 @@ TEST_P(Tables, AColourThatIsNoNumberStaysOne) {
     ColourTerms terms = random_terms(4, 1, random);
     terms.coefficients[i][2] = std::numeric_limits<float>::quiet_NaN();
     std::vector<float> offsets(kMaxLanes), row(kMaxLanes);
-    evaluator_kernels(GetParam()).colour_row(terms, offsets.data(), kMaxLanes, row.data());
+    evaluator_kernels(GetParam()).colour_row(terms, {offsets.data(), kMaxLanes}, kMaxLanes, row.data());
     for (const float value : row) EXPECT_TRUE(std::isnan(value));
   }
 }
