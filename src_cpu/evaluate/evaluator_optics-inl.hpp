@@ -80,16 +80,17 @@ HWY_INLINE Floats metal_fresnel(const FresnelTerms& f, std::size_t k, Floats nk)
   const Floats middle = hn::Mul(w, hn::Add(modulus, c2)), cross = hn::Mul(constant(2 * f.cosine), u);
   const Floats parallel = hn::Mul(w, hn::MulAdd(modulus, c2, square(s2)));
   const Floats above = hn::Mul(hn::Sub(middle, cross), parallel);
-  return hn::Div(above, hn::Mul(hn::Add(middle, cross), hn::MulAdd(s2, cross, parallel)));
+  const Floats below = hn::Mul(hn::Add(middle, cross), hn::MulAdd(s2, cross, parallel));
+  return hn::Div(above, hn::Max(below, constant(kTiny)));  // 0 where the padding of rows is 0 and c, too
 }
 
 HWY_INLINE Floats conductor_fresnel(const FresnelTerms& f, std::size_t k) {
   const Floats nk = hn::LoadU(kTag, f.nk + k);
   const hn::RebindToSigned<Tag> signed_tag;
   const auto other = hn::RebindMask(kTag, hn::Lt(hn::BitCast(signed_tag, nk), hn::Zero(signed_tag)));
-  const Floats metal = metal_fresnel(f, k, nk);
-  if (HWY_LIKELY(hn::AllFalse(kTag, other))) return metal;
-  return hn::IfThenElse(other, any_conductor_fresnel(f, k, hn::Abs(nk)), metal);
+  if (HWY_LIKELY(hn::AllFalse(kTag, other))) return metal_fresnel(f, k, nk);
+  const Floats careful = any_conductor_fresnel(f, k, hn::Abs(nk));
+  return hn::AllTrue(kTag, other) ? careful : hn::IfThenElse(other, careful, metal_fresnel(f, k, nk));
 }
 
 /// Unpolarised reflectance of a dielectric boundary of relative index e (transmitted over incident) for the

@@ -87,6 +87,7 @@ void ProgramBuilder::reserve(std::size_t entries) {
   transmissions_.clear();
   gas_ = false;
   spectral_.begin_path();
+  survivor_ = kAll;
   scratch_used_ = 0;
   cells_.clear();
   if (generals_.size() < entries) grow(std::max<std::size_t>(64, 2 * entries));
@@ -176,8 +177,9 @@ ProgramBuilder::Factors ProgramBuilder::factors(const KbPathVertex& vertex, cons
   const uint32_t head = vertex.head, kind = head & KB_VERTEX_KIND_MASK;
   const bool reflects = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
   const auto row = [&](uint32_t flag, bool used, uint32_t named, bool emission) -> const float* {
-    if (head & flag) return texture(*samples++, emission, spectra);
-    return used ? spectra.spectrum(named) : nullptr;
+    const KbTextureSample* sample = head & flag ? samples++ : nullptr;
+    if (!used) return nullptr;
+    return sample ? texture(*sample, emission, spectra) : spectra.spectrum(named);
   };
   const bool two = kb_has_two_spectra(kind);
   Factors from;
@@ -210,7 +212,7 @@ void ProgramBuilder::add_general(const KbPathVertex& vertex, const Factors& from
   out.nee1 = vertex.nee1;
   out.scatter0 = vertex.scatter0;
   out.scatter1 = vertex.scatter1;
-  if (head & KB_VERTEX_DEGRADE) out.survivor = kb_surviving_channel(vertex.scatter1);
+  if (out.flags & KB_VERTEX_DEGRADE) survivor_ = out.survivor = kb_surviving_channel(vertex.scatter1);
   out.a = from.a;
   out.b = from.b;
   out.nee = from.nee;
@@ -298,7 +300,8 @@ void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& ve
   out.transmission = &terms;
 }
 
-/// The lookup as a row. corners: of texels of colours; factor: null is 1.
+/// The lookup as a row, of which a path that has kept one channel gets that one's group: blocks of others have ended.
+/// corners: of texels of colours; factor: null is 1.
 void ProgramBuilder::colour(uint32_t texture, const TexelCorners& corners, const float* factor,
                             DenseSpectra& spectra, float* out) const {
   const std::size_t first = scene_.textures[texture].first_texel;
@@ -307,9 +310,16 @@ void ProgramBuilder::colour(uint32_t texture, const TexelCorners& corners, const
   for (int c = 0; c < 4; ++c)
     add_texel(terms, constant, scene_.texels[first + corners.texel[c]], corners.weight[c]);
   terms.constant = static_cast<float>(constant);
-  terms.factor = factor;
   if (terms.count % 2 == 1) add_empty_term(terms);
-  kernels_.colour_row(terms, spectra.texture_offsets(), spectra.channels(), out);
+  ColourOffsets offsets = spectra.texture_offsets();
+  std::size_t begin = 0, end = spectra.channels();
+  if (survivor_ < end) {
+    begin = survivor_ / kRowPadding * kRowPadding;
+    end = std::min(end, begin + kRowPadding);
+  }
+  terms.factor = factor ? factor + begin : nullptr;
+  offsets = {offsets.nm + begin, std::clamp(offsets.distinct, begin, end) - begin};
+  kernels_.colour_row(terms, offsets, end - begin, out + begin);
 }
 
 float* ProgramBuilder::scratch_row(const DenseSpectra& spectra) {

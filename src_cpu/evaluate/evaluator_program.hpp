@@ -61,6 +61,8 @@ class ProgramBuilder {
   std::size_t scratch_used_ = 0;
   std::vector<KbPlumeCell> cells_;  // reserved: generals point into it
   bool gas_ = false;
+  static constexpr std::size_t kAll = std::size_t(-1);
+  std::size_t survivor_ = kAll;  // the only channel that the path still has
 };
 
 }  // namespace kiloband::cpu

@@ -120,6 +120,24 @@ TEST_P(Fresnel, MetalsKeepTheirDigits) {
   }
 }
 
+/// What stands behind the last channel is no number at a cosine whose square is 0, if nothing sees to it, and 0 times that is none.
+TEST_P(Fresnel, MetalsAtGrazingIncidenceLeaveThePaddingAlone) {
+  for (const std::size_t count : {1u, 3u, 20u, 64u, 109u}) {
+    const FresnelCase grazing(std::vector<double>(count, 0.5), std::vector<double>(count, 3),
+                              KB_KIND_CONDUCTOR, {0, 1e-23f, 1e-10f});
+    DerivedChannels derived;
+    derived.names = {"all"};
+    derived.responses = {table(400, 1000, {1, 1}, true)};
+    const Evaluator layout(grazing.scene, derived, GetParam());
+    const std::vector<float> sums = evaluate(grazing.scene, derived, grazing.paths, GetParam(), 0);
+    for (std::size_t p = 0; p < 3; ++p) {
+      const float* film = &sums[p * layout.stride()];
+      for (std::size_t k = 0; k < count; ++k) EXPECT_NEAR(film[k], 1, 1e-6);
+      EXPECT_NEAR(film[layout.derived_offset()], count, 1e-5 * count);
+    }
+  }
+}
+
 TEST_P(Fresnel, DielectricsNearTheCriticalAngle) {
   std::vector<double> n;
   for (int i = 0; i < 200; ++i) n.push_back(1.0001 + 0.01 * i);
