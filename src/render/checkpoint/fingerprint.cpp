@@ -73,6 +73,7 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   add_spectra(hash, scene.spectra);
   hash.add_all(scene.textures);
   hash.add_all(scene.texels);
+  hash.add_all(scene.texel_bounds);
   add_spectral_textures(hash, scene);
   hash.add_all(scene.checkerboards);
   hash.add_all(scene.materials);
