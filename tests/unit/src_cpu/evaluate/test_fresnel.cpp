@@ -48,6 +48,23 @@ double reflectance(double n, double k, uint32_t kind, float cosine, Isa isa) {
   return value;
 }
 
+/// Of channels with indices n + ik, at each cosine, against the oracle.
+void expect_conductors(const std::vector<double>& n, const std::vector<double>& k,
+                       const std::vector<float>& cosines, Isa isa, double tolerance) {
+  const FresnelCase grid(n, k, KB_KIND_CONDUCTOR, cosines);
+  const Evaluator layout(grid.scene, {}, isa);
+  const std::vector<float> sums = evaluate(grid.scene, {}, grid.paths, isa, 0);
+  for (std::size_t p = 0; p < cosines.size(); ++p) {
+    const std::vector<double> expected = evaluate_path_reference(grid.scene, {}, grid.paths, p, 0);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      // Without a boundary the oracle returns its own rounding.
+      const double floor = n[i] == 1 && k[i] == 0 ? 1e-14 : 1e-30;
+      EXPECT_NEAR(sums[p * layout.stride() + i], expected[i], tolerance * expected[i] + floor)
+          << "n " << n[i] << " k " << k[i] << " cos " << cosines[p];
+    }
+  }
+}
+
 class Fresnel : public EachIsa {};
 
 TEST_P(Fresnel, ClosedForms) {
@@ -81,18 +98,7 @@ TEST_P(Fresnel, ConductorsOfAllKinds) {
   std::vector<float> cosines = {1, 0.9999f, 0.99f, 0.9f, 0.7f, 0.5f, 0.3f, 0.1f, 0.01f, 0.001f, 1e-5f};
   // Critical angles of 0.9 and 0.3: the square root of a difference.
   for (double index : {0.9, 0.3}) cosines.push_back(static_cast<float>(std::sqrt(1 - index * index)));
-  const FresnelCase grid(n, k, KB_KIND_CONDUCTOR, cosines);
-  const Evaluator layout(grid.scene, {}, GetParam());
-  const std::vector<float> sums = evaluate(grid.scene, {}, grid.paths, GetParam(), 0);
-  for (std::size_t p = 0; p < cosines.size(); ++p) {
-    const std::vector<double> expected = evaluate_path_reference(grid.scene, {}, grid.paths, p, 0);
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      // Without a boundary the oracle returns its own rounding.
-      const double floor = n[i] == 1 && k[i] == 0 ? 1e-14 : 1e-30;
-      EXPECT_NEAR(sums[p * layout.stride() + i], expected[i], 1e-5 * expected[i] + floor)
-          << "n " << n[i] << " k " << k[i] << " cos " << cosines[p];
-    }
-  }
+  expect_conductors(n, k, cosines, GetParam(), 1e-5);
 }
 
 /// Four units in the last place and the rounding of a cosine's square. Indices from alkali metals' to those of metals in the thermal infrared,
@@ -108,16 +114,7 @@ TEST_P(Fresnel, MetalsKeepTheirDigits) {
   n.push_back(4.1), k.push_back(0.04);
   const std::vector<float> cosines = {1,     0.9999f, 0.99f,  0.9f,   0.7f,  0.5f,  0.3f, 0.1f,
                                       0.03f, 0.01f,   0.003f, 0.001f, 1e-4f, 1e-5f, 0};
-  const FresnelCase grid(n, k, KB_KIND_CONDUCTOR, cosines);
-  const Evaluator layout(grid.scene, {}, GetParam());
-  const std::vector<float> sums = evaluate(grid.scene, {}, grid.paths, GetParam(), 0);
-  for (std::size_t p = 0; p < cosines.size(); ++p) {
-    const std::vector<double> expected = evaluate_path_reference(grid.scene, {}, grid.paths, p, 0);
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      EXPECT_NEAR(sums[p * layout.stride() + i], expected[i], 5e-7 * expected[i])
-          << "n " << n[i] << " k " << k[i] << " cos " << cosines[p];
-    }
-  }
+  expect_conductors(n, k, cosines, GetParam(), 5e-7);
 }
 
 /// What stands behind the last channel is no number at a cosine whose square is 0, if nothing sees to it, and 0 times that is none.
