@@ -35,6 +35,16 @@ HWY_INLINE Floats constant(float x) {
 /// Smallest divisor that is used: 0 / 0 at grazing incidence on a matched boundary comes to 0.
 inline constexpr float kTiny = 1e-18f;
 
+/// |a + ib|^2, and of a and b the larger, where (a + ib)^2 = t + 2i nk.
+struct ConductorRoot {
+  Floats modulus, larger;
+};
+
+HWY_INLINE ConductorRoot conductor_root(Floats t, Floats nk) {
+  const Floats modulus = hn::Sqrt(hn::MulAdd(t, t, hn::Mul(constant(4), square(nk))));
+  return {modulus, hn::Sqrt(hn::Mul(constant(0.5f), hn::Add(modulus, hn::Abs(t))))};
+}
+
 /// Unpolarised reflectance of a conductor with index n + ik for the cosine c.
 /// With (a + ib)^2 = (n + ik)^2 - s^2, s^2 = 1 - c^2 and T = n^2 - 1 - k^2
 /// (so a^2 - b^2 = T + c^2 =: t, ab = nk):
@@ -48,8 +58,7 @@ HWY_INLINE Floats any_conductor_fresnel(const FresnelTerms& f, std::size_t k, Fl
   const Floats big_t = hn::LoadU(kTag, f.high + k);
   const Floats t = hn::Add(hn::Add(big_t, constant(f.cosine2_high)),
                            hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
-  const Floats modulus = hn::Sqrt(hn::MulAdd(t, t, hn::Mul(constant(4), square(nk))));
-  const Floats larger = hn::Sqrt(hn::Mul(constant(0.5f), hn::Add(modulus, hn::Abs(t))));
+  const Floats larger = conductor_root(t, nk).larger;
   const Floats smaller = hn::Div(nk, hn::Max(larger, constant(kTiny)));
   const auto a_is_larger = hn::Ge(t, hn::Zero(kTag));
   const Floats a = hn::IfThenElse(a_is_larger, larger, smaller);
@@ -72,8 +81,7 @@ HWY_INLINE Floats any_conductor_fresnel(const FresnelTerms& f, std::size_t k, Fl
 HWY_INLINE Floats metal_fresnel(const FresnelTerms& f, std::size_t k, Floats nk) {
   const Floats c2 = constant(f.cosine2_high), s2 = constant(f.sine2);
   const Floats t = hn::Add(hn::LoadU(kTag, f.high + k), c2);
-  const Floats modulus = hn::Sqrt(hn::MulAdd(t, t, hn::Mul(constant(4), square(nk))));
-  const Floats larger = hn::Sqrt(hn::Mul(constant(0.5f), hn::Add(modulus, hn::Abs(t))));
+  const auto [modulus, larger] = conductor_root(t, nk);
   const auto a_is_larger = hn::Ge(t, hn::Zero(kTag));
   const Floats u = hn::IfThenElse(a_is_larger, larger, nk),
                w = hn::IfThenElse(a_is_larger, constant(1), larger);
