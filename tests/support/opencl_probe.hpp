@@ -44,20 +44,26 @@ class OpenclProbe {
     program = build(source, options);
   }
 
-  /// One more program on the device, of source text as above.
+  /// One more program on the device, of source text as above, with divisions and roots rounded as in the renderer's programs
+  /// (src_gpu/device/program.cpp): correctly where the device can.
   cl::Program build(const std::string& source, const std::string& options) const {
     cl::Program built(context, source);
     const char* named =
         std::getenv("KILOBAND_SOURCES");  // of a program that is away from its sources (docs/portable.md)
     const std::string root = named ? named : KILOBAND_SOURCE_DIR;
-    const std::string flags =
-        "-cl-std=CL1.2 -I" + root + "/kernels -I" + root + "/src -I" + root + " " + options;
+    const std::string flags = "-cl-std=CL1.2 -I" + root + "/kernels -I" + root + "/src -I" + root + " " +
+                              (rounds_correctly() ? "-cl-fp32-correctly-rounded-divide-sqrt " : "") + options;
     try {
       built.build(flags.c_str());
     } catch (const cl::Error&) {
       throw std::runtime_error("kernel build:\n" + built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device));
     }
     return built;
+  }
+
+  /// Whether divisions and roots of the programs are correctly rounded; else within 2.5 and 3 units of the last place (OpenCL 1.2, 7.4).
+  bool rounds_correctly() const {
+    return (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
   }
 
   /// A device copy of `values` (of one byte if there are none).

@@ -117,8 +117,14 @@ TEST(GpuSurface, HitsOfMeshesAndShapes) {
     const float side = glm::dot(expected.geometric_normal, get3(in[i], 3));
     if (mesh && std::fabs(side) > 1e-5f) {
       const glm::vec3 n = side >= 0 ? get3(out[i], 3) : -get3(out[i], 3);
-      ASSERT_EQ(get3(out[i], 14), offset_ray_origin(expected.departure, n, out[i].f[17])) << i;
-      ASSERT_EQ(out[i].f[17], expected.offset) << i;
+      // A point that was moved off an edge: a device's dot products may round less often. That is a unit of the last place, half
+      // of the least offset.
+      const bool moved = expected.departure != expected.point;
+      const glm::vec3 origin = offset_ray_origin(expected.departure, n, out[i].f[17]);
+      ASSERT_LE(difference(get3(out[i], 14), origin), moved ? 0x1p-23 * size : 0) << i;
+      // The offset goes with the normal: bit for bit where both have the same one.
+      const bool same_normal = get3(out[i], 3) == expected.geometric_normal;
+      ASSERT_LE(relative(out[i].f[17], expected.offset), same_normal ? 0 : 2e-6) << i;
     }
   }
 }
