@@ -58,12 +58,13 @@ GroupRenderer::GroupRenderer(DeviceState& device, const SamplingSettings& settin
       slots_pace_(launch_seconds, most_slots_ / kFirstPart, kFewestSlots, most_slots_),
       paths_pace_(launch_seconds, most_jobs_ / kFirstPart, 1, most_jobs_) {}
 
-PlanRequest GroupRenderer::request(uint64_t pixels, bool open) const {
+PlanRequest GroupRenderer::request(uint64_t pixels, bool open, uint32_t rounds) const {
   PlanRequest r;
   r.budget = device_.memory.available();
   r.largest = device_.memory.largest();
   r.pixels = pixels;
   r.samples = round_samples_;
+  r.rounds = rounds;
   r.method = device_.method;
   r.film_bytes = device_.film_bytes_per_pixel(open);
   r.table_bytes = device_.table_bytes();
@@ -86,10 +87,11 @@ void GroupRenderer::make_pool(const PlanRequest& r, bool open) {
 }
 
 /// Allocates what the plan says, and less where the device has less than the budget promises.
-void GroupRenderer::prepare(uint64_t pixels, bool open) {
-  if (plan_ && device_.has_pool() && planned_pixels_ >= pixels && (planned_open_ || !open)) return;
+void GroupRenderer::prepare(uint64_t pixels, bool open, uint32_t rounds) {
+  const bool fits = planned_pixels_ >= pixels && (planned_open_ || !open) && planned_rounds_ >= rounds;
+  if (plan_ && device_.has_pool() && fits) return;
   device_.release_pool();
-  PlanRequest r = request(pixels, open);
+  PlanRequest r = request(pixels, open, rounds);
   std::exception_ptr refusal;  // the first one: it says what the matter is
   for (int attempt = 0;; ++attempt) {
     try {
@@ -110,6 +112,7 @@ void GroupRenderer::prepare(uint64_t pixels, bool open) {
   }
   planned_pixels_ = pixels;
   planned_open_ = open;
+  planned_rounds_ = rounds;
 }
 
 uint64_t GroupRenderer::group_pixels(uint64_t pixels, bool open) {
@@ -119,6 +122,21 @@ uint64_t GroupRenderer::group_pixels(uint64_t pixels, bool open) {
 
 SumRule GroupRenderer::sum_rule() const {
   return sum_rule_of(device_.method, round_samples_, device_.derived_channels() > 0);
+}
+
+uint32_t GroupRenderer::rounds_as_one(uint64_t pixels, uint32_t samples) const {
+  return opencl::rounds_as_one({sum_rule(), samples_in_registers(is_cpu(device_)), device_.table_bytes(),
+                                most_slots_, pixels, samples});
+}
+
+/// Of the rounds that the plan has room for: as many as launches have time for.
+uint32_t GroupRenderer::fitting_rounds(std::span<const ImagePixel> pixels) const {
+  if (planned_rounds_ == 1) return 1;
+  uint64_t blocks = 1;
+  for (std::size_t i = 1; i < pixels.size(); ++i) blocks += !same_block(pixels[i - 1], pixels[i]);
+  const uint64_t paths = std::min(plan_->round_jobs, paths_pace_.limit());
+  const uint64_t fitting = std::min(paths / pixels.size(), plan_->pool.tables / blocks) / round_samples_;
+  return static_cast<uint32_t>(std::clamp<uint64_t>(fitting, 1, planned_rounds_));
 }
 
 uint32_t GroupRenderer::blocks_at_once(uint32_t samples) const {
@@ -191,7 +209,7 @@ void GroupRenderer::learn_evaluation(RunTally& tally) {
   tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, longest);
 }
 
-/// A round that is too large in two: by pixels, which changes no bit of the image. A pixel alone whose
+/// A round that is too large in two: by pixels, which changes no bit of the image, nor do rounds apart that were one. A pixel alone whose
 /// samples do not fit together is split by samples; only its last bits may differ from those of a larger
 /// arena (of an open round, only those of derived channels).
 void GroupRenderer::split(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
@@ -202,7 +220,8 @@ void GroupRenderer::split(std::span<const ImagePixel> pixels, uint64_t at, uint6
     return;
   }
   if (samples.count == 1) throw DeviceError("one path with all its vertices does not fit the device memory");
-  const uint32_t half = samples.count / 2;
+  const uint32_t rounds = samples.count / 2 / round_samples_,
+                 half = rounds > 0 ? rounds * round_samples_ : samples.count / 2;
   render_part(pixels, at, number, {samples.replicate, samples.first, half}, open, tally);
   render_part(pixels, at, number, {samples.replicate, samples.first + half, samples.count - half}, open,
               tally);
@@ -251,23 +270,24 @@ uint64_t GroupRenderer::round_pixels(uint32_t samples) const {
 }
 
 /// The next round of a range of which `done` samples are through.
-SampleCut GroupRenderer::next_round(const SampleRange& range, uint32_t done, bool goes_on) const {
+SampleCut GroupRenderer::next_round(const SampleRange& range, uint32_t done, bool goes_on,
+                                    uint32_t rounds) const {
   const bool chunks = goes_on && device_.method != Method::kPt;  // pt: every sample is a chunk
-  if (chunks) return next_cut(range.first + done, range.first + range.count, sum_rule());
-  return {std::min(round_samples_, range.count - done), false};
+  if (chunks) return next_cut(range.first + done, range.first + range.count, sum_rule(), rounds);
+  return {std::min(round_samples_ * rounds, range.count - done), false};
 }
 
 void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
                            const FilmSums* before, const std::atomic<bool>& stop,
                            const std::function<void(uint64_t)>& on_samples, RunTally& tally,
                            GroupResult& result) {
-  prepare(pixels.size(), before != nullptr);
+  prepare(pixels.size(), before != nullptr, rounds_as_one(pixels.size(), range.count));
   device_.clear_film(pixels.size());
   if (before && range.first > 0) device_.load_film(*before);
   clear_other(result, before != nullptr);
   // All pixels of the group get the same samples, so that a stopped render is even.
   while (result.attempted < range.count && !stop) {
-    const SampleCut cut = next_round(range, result.attempted, before != nullptr);
+    const SampleCut cut = next_round(range, result.attempted, before != nullptr, fitting_rounds(pixels));
     const SampleRange samples{range.replicate, range.first + result.attempted, cut.samples};
     if (before && samples.first > 0 && begins_chunk(samples.first, sum_rule()))
       device_.close_chunk(pixels.size());

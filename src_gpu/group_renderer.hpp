@@ -76,10 +76,13 @@ class GroupRenderer {
                                 bool hits = true);
 
  private:
-  void prepare(uint64_t pixels, bool open = false);
+  /// rounds  that are to be one
+  void prepare(uint64_t pixels, bool open = false, uint32_t rounds = 1);
   void make_pool(const PlanRequest& request, bool open);
-  PlanRequest request(uint64_t pixels, bool open) const;
-  SampleCut next_round(const SampleRange& range, uint32_t done, bool goes_on) const;
+  PlanRequest request(uint64_t pixels, bool open, uint32_t rounds) const;
+  uint32_t rounds_as_one(uint64_t pixels, uint32_t samples) const;
+  uint32_t fitting_rounds(std::span<const ImagePixel> pixels) const;
+  SampleCut next_round(const SampleRange& range, uint32_t done, bool goes_on, uint32_t rounds) const;
   /// Renders samples [first, first + count) of pixels [at, at + number) of the group;
   /// splits where the arena is too small.
   void render_part(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
@@ -100,6 +103,7 @@ class GroupRenderer {
   std::optional<RoundPlan> plan_;
   uint64_t planned_pixels_ = 0;
   bool planned_open_ = false;
+  uint32_t planned_rounds_ = 1;
   uint32_t round_samples_;
   uint32_t most_slots_;
   uint64_t most_jobs_;

@@ -77,6 +77,7 @@ std::vector<std::string> EvaluationShape::defines(uint32_t derived) const {
       std::string("KB_PER_PATH=") + (shared_wavelengths ? "0" : "1"),
       std::string("KB_STAGED=") + (staged ? "1" : "0")};
   if (film_transposed) d.emplace_back("KB_FILM_TRANSPOSED=1");
+  d.push_back("KB_SAMPLES_IN_REGISTERS=" + std::to_string(registers) + "u");
   return d;
 }
 
@@ -85,6 +86,7 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
   EvaluationShape shape;
   shape.method = method;
   shape.shared_wavelengths = shared_wavelengths;
+  shape.registers = samples_in_registers(device.type == DeviceType::kCpu);
   if (device.type == DeviceType::kCpu) {
     // SIMD comes from the vectors, not from the group: one work-item takes up to 128 channels at a time, and
     // walks a tile of pixels sample by sample while their dense spectra are

@@ -19,6 +19,10 @@ constexpr uint64_t kLongestPath = 100000 * 3 / KB_CHUNK_ENTRIES + 1;
 
 /// Dense spectra of a block that a round may need.
 constexpr uint64_t kTablesOfBlock = 4u << 20;
+/// Samples of a round at most.
+constexpr uint32_t kCpuSamples = 16, kGpuSamples = 64;
+/// Rounding of a sum of so many floats stays below 32 * 2^-24 of it.
+constexpr uint32_t kSamplesInRegisters = 32;
 
 /// Of a GPU. Many paths hide its latency (Laine et al. 2013; the peak of the DPEPT paper lies between 1024^2 and 2048^2), and long
 /// rounds have few beginnings and ends. Bytes: of a slot, and of a path with its vertices, as in most scenes.
@@ -62,7 +66,7 @@ uint64_t bytes_of_jobs(const PlanRequest& r, uint64_t jobs, uint64_t slots) {
 
 /// Paths of a round, at least all samples of one pixel. pt keeps none: its rounds have pixels for all slots.
 uint64_t fitting_jobs(const PlanRequest& r, uint64_t group) {
-  const uint64_t limit = share(r.budget, kPathShare), most = group * r.samples;
+  const uint64_t limit = share(r.budget, kPathShare), most = group * r.samples * r.rounds;
   if (r.method == Method::kPt)
     return std::min(std::max<uint64_t>(r.most_jobs, uint64_t{r.most_slots} * r.samples), most);
   uint64_t jobs = std::min(r.most_jobs, most);
@@ -74,8 +78,8 @@ uint64_t fitting_jobs(const PlanRequest& r, uint64_t group) {
 /// A round of pixels may touch this many blocks of 32 x 32: whole ones, or parts at its two ends. Clipped
 /// blocks may have a pixel each. One block is needed.
 uint64_t fitting_tables(const PlanRequest& r, uint64_t jobs) {
-  const uint64_t pixels = std::max<uint64_t>(jobs / r.samples, 1);
-  const uint64_t tables = std::min<uint64_t>(pixels, pixels / 256 + 4) * r.samples;
+  const uint64_t samples = uint64_t{r.samples} * r.rounds, pixels = std::max<uint64_t>(jobs / samples, 1);
+  const uint64_t tables = std::min<uint64_t>(pixels, pixels / 256 + 4) * samples;
   if (r.table_bytes == 0) return tables;
   return std::min(tables, std::max<uint64_t>(share(r.budget, kTableShare) / r.table_bytes, r.samples));
 }
@@ -129,8 +133,12 @@ uint32_t chunk_entries(Method method, const SceneFeatures& features) {
   return (features.dispersion ? KB_PT_DISPERSION_CHUNK_ENTRIES : KB_CHUNK_ENTRIES) + suns;
 }
 
+uint32_t samples_in_registers(bool cpu_device) {
+  return cpu_device ? kCpuSamples : kSamplesInRegisters;
+}
+
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {
-  const uint64_t most = cpu_device ? 16 : 64;
+  const uint64_t most = cpu_device ? kCpuSamples : kGpuSamples;
   return static_cast<uint32_t>(table_bytes > 0 ? std::clamp<uint64_t>(kTablesOfBlock / table_bytes, 1, most)
                                                : most);
 }
@@ -163,11 +171,21 @@ bool begins_chunk(uint32_t first, const SumRule& rule) {
   return rule.chunk > 0 && first % rule.period % rule.chunk == 0;
 }
 
-SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule) {
+SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule, uint32_t rounds) {
   const uint32_t left = end - first, place = first % rule.period;
   const bool several = rule.period > rule.chunk;  // chunks in a round
-  if (place == 0 && (left > rule.period || (several && left == rule.period))) return {rule.period, false};
+  const uint32_t closed = (several ? left : left - 1) / rule.period;
+  if (place == 0 && closed > 0) return {std::min(closed, rounds) * rule.period, false};
   return {std::min({left, rule.period - place, rule.chunk - place % rule.chunk}), true};
+}
+
+uint32_t rounds_as_one(const RoundsAsOne& wanted) {
+  const SumRule& rule = wanted.rule;
+  if (rule.step != 1 || rule.chunk != wanted.registers || rule.period % rule.chunk != 0) return 1;
+  const uint64_t filling = wanted.slots / (std::max<uint64_t>(wanted.pixels, 1) * rule.period);
+  const uint64_t of_tables = kTablesOfBlock / (std::max<uint64_t>(wanted.table_bytes, 1) * rule.period);
+  const uint64_t rounds = (uint64_t{wanted.samples} + rule.period - 1) / rule.period;
+  return to_u32(std::max<uint64_t>(std::min({filling, of_tables, rounds}), 1));
 }
 
 RoundPlan plan_rounds(const PlanRequest& r) {

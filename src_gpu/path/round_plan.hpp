@@ -26,6 +26,7 @@ struct PlanRequest {
   uint64_t largest = 0;  // bytes of the largest buffer
   uint64_t pixels = 0;   // of the image part
   uint32_t samples = 1;  // per pixel and round
+  uint32_t rounds = 1;   // that may be one, if they fit: rounds_as_one()
   Method method = Method::kDpeptBatch;
   uint64_t film_bytes = 0;     // per pixel: sums, compensation, counts, what finishing needs
   uint64_t table_bytes = 0;    // per block and sample: dense spectra; 0 with per-path wavelengths
@@ -53,8 +54,9 @@ struct RoundPlan {
 /// table_bytes  of a block and sample: dense spectra
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes);
 
-/// Samples that kernels sum in registers before they add them to the film (kernels/evaluate/evaluate_tile.clh).
-inline constexpr uint32_t kSamplesInRegisters = 32;
+/// Samples that kernels sum in registers before they add them to the film, at most
+/// (KB_SAMPLES_IN_REGISTERS, kernels/evaluate/evaluate_tile.clh): no more than a round has.
+uint32_t samples_in_registers(bool cpu_device);
 
 /// Paths in flight and paths of a round that a GPU gains from and that its memory has room for, powers of two.
 uint32_t gpu_slots(uint64_t budget);
@@ -77,9 +79,24 @@ struct SampleCut {
 };
 /// The next round of the samples [first, end) of a replicate. Chunks that are rendered as a whole go to the
 /// film; the one at the end stays open, so that the samples after it find its sums.
-SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule);
+/// rounds  that may be one, where all of their chunks go to the film
+SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule, uint32_t rounds = 1);
 /// Whether sample `first` begins a chunk: that before it is complete.
 bool begins_chunk(uint32_t first, const SumRule& rule);
+
+/// What decides how many rounds may be one.
+struct RoundsAsOne {
+  SumRule rule;            // sum_rule_of()
+  uint32_t registers = 1;  // samples_in_registers()
+  uint64_t table_bytes = 0;
+  uint32_t slots = 1;    // paths in flight that the device gains from
+  uint64_t pixels = 1;   // of the image part
+  uint32_t samples = 1;  // that are wanted
+};
+/// Rounds that follow each other and may be one, at least 1. A round of few pixels does not fill a device, and costs it as many launches
+/// as one of many. Kernels add what is in registers to the film, and begin anew: rounds whose samples are a multiple of those
+/// leave the same bits as one after the other. So where they are not (large tables, derived channels, pt), rounds stay alone.
+uint32_t rounds_as_one(const RoundsAsOne& wanted);
 
 /// throws DeviceOutOfMemory  not even a pixel fits: says what would be needed
 RoundPlan plan_rounds(const PlanRequest& request);

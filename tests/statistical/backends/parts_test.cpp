@@ -101,7 +101,9 @@ TEST_F(SumsInParts, WithDerivedChannelsEndWhereTheRuleSays) {
 }
 
 /// Chunks as lists of samples, as rounds with these rules would add them, the open one at the end.
-std::vector<Parts> chunks_after(const Parts& parts, const SumRule& rule) {
+/// rounds  that may be one
+std::vector<Parts> chunks_after(const Parts& parts, const SumRule& rule, uint32_t rounds = 1) {
+  const uint32_t registers = opencl::samples_in_registers(false);
   std::vector<Parts> closed;
   Parts open;
   const auto close = [&] {
@@ -111,12 +113,12 @@ std::vector<Parts> chunks_after(const Parts& parts, const SumRule& rule) {
   uint32_t first = 0;
   for (const uint32_t count : parts) {
     for (const uint32_t end = first + count; first < end;) {
-      const opencl::SampleCut cut = opencl::next_cut(first, end, rule);
+      const opencl::SampleCut cut = opencl::next_cut(first, end, rule, rounds);
       if (first > 0 && opencl::begins_chunk(first, rule)) close();
       EXPECT_TRUE(cut.open || open.empty());
-      EXPECT_LE(cut.samples, cut.open ? opencl::kSamplesInRegisters : rule.period);
+      EXPECT_LE(cut.samples, cut.open ? registers : rounds * rule.period);
       for (const uint32_t last = first + cut.samples; first < last; ++first) {
-        if (!cut.open && open.size() == opencl::kSamplesInRegisters) close();  // as kernels do
+        if (!cut.open && open.size() == registers) close();  // as kernels do
         open.push_back(first);
       }
       if (!cut.open) close();
@@ -145,6 +147,21 @@ TEST(SampleCuts, GiveTheChunksOfOneDelivery) {
     }
   }
   EXPECT_EQ(sum_rule_of(Method::kPt, 16, true), (SumRule{SumRule::Kind::kCompensated, 0, 1, 1}));
+}
+
+/// Where rounds may be one (opencl::rounds_as_one), however many: the same chunks.
+TEST(SampleCuts, OfRoundsThatAreOneGiveTheSameChunks) {
+  for (const uint32_t round : {32u, 64u, 96u}) {
+    const SumRule rule = opencl::sum_rule_of(opencl::Method::kDpeptBatch, round, false);
+    for (const uint32_t total : {1u, 32u, 64u, 96u, 97u, 640u, 1000u}) {
+      const std::vector<Parts> alone = chunks_after({total}, rule);
+      for (const uint32_t rounds : {2u, 3u, 1000u}) {
+        EXPECT_EQ(chunks_after({total}, rule, rounds), alone) << round << ", " << total << ", " << rounds;
+        EXPECT_EQ(chunks_after({total / 3, total - total / 3}, rule, rounds), alone)
+            << round << ", " << total << ", " << rounds;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -36,6 +36,45 @@ TEST(GpuPlan, SlotsOfCpusByTheStateOfTheirPaths) {
   EXPECT_EQ(usual_slots(false, kGiB, 0), gpu_slots(kGiB));
 }
 
+/// A sensor of 8 x 8 pixels: 16 rounds of 64 samples are one; many pixels, large tables and what would sum otherwise have rounds as before.
+TEST(GpuPlan, RoundsOfFewPixelsAreOne) {
+  const SumRule gpu = sum_rule_of(Method::kDpeptBatch, 64, false);
+  EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 64, 1024}), 16u);
+  EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 64, 1025}), 17u);
+  EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 64, 1u << 30}), 512u);
+  EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 1, 1u << 30}), 1u << 15);
+  EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 1u << 15, 1u << 30}), 1u);
+  EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 1u << 20, 1u << 30}), 1u);
+  EXPECT_EQ(rounds_as_one({gpu, 32, 1u << 10, 1u << 21, 1, 1u << 30}), 64u) << "4 MiB of tables";
+  EXPECT_EQ(rounds_as_one({gpu, 32, 1u << 16, 1u << 21, 1, 1u << 30}), 1u);
+  EXPECT_EQ(rounds_as_one({sum_rule_of(Method::kDpeptBatch, 50, false), 32, 0, 1u << 21, 1, 1000}), 1u);
+  EXPECT_EQ(rounds_as_one({sum_rule_of(Method::kDpeptBatch, 20, false), 32, 0, 1u << 21, 1, 1000}), 1u);
+  EXPECT_EQ(rounds_as_one({sum_rule_of(Method::kDpeptBatch, 64, true), 32, 0, 1u << 21, 1, 1000}), 1u)
+      << "derived channels";
+  EXPECT_EQ(rounds_as_one({sum_rule_of(Method::kPt, 64, false), 32, 0, 1u << 21, 1, 1000}), 1u);
+  const SumRule cpu = sum_rule_of(Method::kDpeptPath, samples_of_round(true, 0), false);
+  EXPECT_EQ(rounds_as_one({cpu, samples_in_registers(true), 0, 1u << 15, 64, 1u << 20}), 32u);
+}
+
+/// One pixel, rounds of 64 samples: the pool has room for as many as are one.
+TEST(GpuPlan, PoolsHaveRoomForRoundsThatAreOne) {
+  PlanRequest request;
+  request.budget = request.largest = kGiB;
+  request.pixels = 2, request.samples = 64, request.film_bytes = 100, request.table_bytes = 100;
+  request.most_slots = 1u << 15, request.most_jobs = 1u << 17;
+  const RoundPlan alone = plan_rounds(request);
+  EXPECT_EQ(alone.round_jobs, 128u);
+  EXPECT_EQ(alone.pool.tables, 128u);
+  request.rounds = 10;
+  const RoundPlan as_one = plan_rounds(request);
+  EXPECT_EQ(as_one.round_jobs, 1280u);
+  EXPECT_EQ(as_one.pool.jobs, 1280u);
+  EXPECT_EQ(as_one.pool.slots, 640u);
+  EXPECT_EQ(as_one.pool.tables, 1280u);
+  request.table_bytes = 1u << 20;  // a fifth of the budget: 204 tables
+  EXPECT_EQ(plan_rounds(request).pool.tables, 204u);
+}
+
 TEST(GpuPlan, WorkGroupsFitTheKernel) {
   EXPECT_EQ(fitting_local_size(128, 256), 128u);
   EXPECT_EQ(fitting_local_size(256, 256), 256u);
