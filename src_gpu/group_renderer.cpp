@@ -13,6 +13,8 @@ namespace {
 constexpr uint32_t kFewestSlots = 64;
 /// What the first launches have of it: their times say how many the next ones may have.
 constexpr uint64_t kFirstPart = 16;
+/// Rounds that are one should not need more chunks than there are.
+constexpr double kChunkMargin = 1.1;
 /// Halvings of a pool before the failure is given up on.
 constexpr int kMostRetries = 12;
 
@@ -56,7 +58,8 @@ GroupRenderer::GroupRenderer(DeviceState& device, const SamplingSettings& settin
       most_slots_(most_slots(device, tuning)),
       most_jobs_(most_jobs(device, tuning, most_slots_)),
       slots_pace_(launch_seconds, most_slots_ / kFirstPart, kFewestSlots, most_slots_),
-      paths_pace_(launch_seconds, most_jobs_ / kFirstPart, 1, most_jobs_) {}
+      paths_pace_(launch_seconds, most_jobs_ / kFirstPart, 1, most_jobs_),
+      samples_pace_(launch_seconds, round_samples_, round_samples_, most_slots_) {}
 
 PlanRequest GroupRenderer::request(uint64_t pixels, bool open, uint32_t rounds) const {
   PlanRequest r;
@@ -88,8 +91,8 @@ void GroupRenderer::make_pool(const PlanRequest& r, bool open) {
 
 /// Allocates what the plan says, and less where the device has less than the budget promises.
 void GroupRenderer::prepare(uint64_t pixels, bool open, uint32_t rounds) {
-  const bool fits = planned_pixels_ >= pixels && (planned_open_ || !open) && planned_rounds_ >= rounds;
-  if (plan_ && device_.has_pool() && fits) return;
+  const bool fits = planned_pixels_ >= pixels && planned_pixels_ * planned_rounds_ >= pixels * rounds;
+  if (plan_ && device_.has_pool() && fits && (planned_open_ || !open)) return;
   device_.release_pool();
   PlanRequest r = request(pixels, open, rounds);
   std::exception_ptr refusal;  // the first one: it says what the matter is
@@ -99,6 +102,10 @@ void GroupRenderer::prepare(uint64_t pixels, bool open, uint32_t rounds) {
       break;
     } catch (const DeviceOutOfMemory&) {
       device_.release_pool();
+      if (r.rounds > 1) {  // what is given up first
+        r.rounds = 1;
+        continue;
+      }
       if (!refusal) refusal = std::current_exception();
       if (attempt == kMostRetries || r.budget / 2 < r.film_bytes) std::rethrow_exception(refusal);
     }
@@ -115,8 +122,8 @@ void GroupRenderer::prepare(uint64_t pixels, bool open, uint32_t rounds) {
   planned_rounds_ = rounds;
 }
 
-uint64_t GroupRenderer::group_pixels(uint64_t pixels, bool open) {
-  prepare(pixels, open);
+uint64_t GroupRenderer::group_pixels(uint64_t pixels, bool open, uint32_t samples) {
+  prepare(pixels, open, rounds_as_one(pixels, samples));
   return plan_->group_pixels;
 }
 
@@ -129,14 +136,18 @@ uint32_t GroupRenderer::rounds_as_one(uint64_t pixels, uint32_t samples) const {
                                 most_slots_, pixels, samples});
 }
 
-/// Of the rounds that the plan has room for: as many as launches have time for.
-uint32_t GroupRenderer::fitting_rounds(std::span<const ImagePixel> pixels) const {
-  if (planned_rounds_ == 1) return 1;
+/// Rounds of the pixels that may be one, as far as the plan has room for them (paths, vertices, tables) and launches have
+/// time: for so many paths, and for so many samples of a pixel, which evaluation takes one after the other.
+uint32_t GroupRenderer::fitting_rounds(std::span<const ImagePixel> pixels, uint32_t samples) const {
+  const uint32_t wanted = rounds_as_one(pixels.size(), samples);
+  if (wanted == 1) return 1;
   uint64_t blocks = 1;
   for (std::size_t i = 1; i < pixels.size(); ++i) blocks += !same_block(pixels[i - 1], pixels[i]);
-  const uint64_t paths = std::min(plan_->round_jobs, paths_pace_.limit());
-  const uint64_t fitting = std::min(paths / pixels.size(), plan_->pool.tables / blocks) / round_samples_;
-  return static_cast<uint32_t>(std::clamp<uint64_t>(fitting, 1, planned_rounds_));
+  const auto of_arena = static_cast<uint64_t>(plan_->pool.arena_chunks / (chunks_per_path_ * kChunkMargin));
+  const uint64_t paths = std::min({plan_->round_jobs, of_arena, paths_pace_.limit()});
+  const uint64_t fitting =
+      std::min({paths / pixels.size(), plan_->pool.tables / blocks, samples_pace_.limit()});
+  return static_cast<uint32_t>(std::clamp<uint64_t>(fitting / round_samples_, 1, wanted));
 }
 
 uint32_t GroupRenderer::blocks_at_once(uint32_t samples) const {
@@ -203,15 +214,18 @@ void GroupRenderer::learn(const RoundOutcome& outcome, const KbRound& round) {
 /// The same of the evaluation that was enqueued last, and is done.
 void GroupRenderer::learn_evaluation(RunTally& tally) {
   const double longest = device_.context.take_longest(LaunchScale::kPaths);
-  if (evaluated_paths_ > 0) paths_pace_.learn(evaluated_paths_, longest);
+  if (evaluated_paths_ > 0) {
+    paths_pace_.learn(evaluated_paths_, longest);
+    samples_pace_.learn(evaluated_samples_, longest);
+  }
   knows_paths_pace_ |= evaluated_paths_ > 0;
   evaluated_paths_ = 0;
   tally.longest_launch_seconds = std::max(tally.longest_launch_seconds, longest);
 }
 
-/// A round that is too large in two: by pixels, which changes no bit of the image, nor do rounds apart that were one. A pixel alone whose
-/// samples do not fit together is split by samples; only its last bits may differ from those of a larger
-/// arena (of an open round, only those of derived channels).
+/// A round that is too large in two: by pixels, which changes no bit of the image; of a pixel alone, where rounds are one, between
+/// rounds, which changes none either. A pixel whose single round does not fit is split by samples; only its last bits may differ from
+/// those of a larger arena (of an open round, only those of derived channels).
 void GroupRenderer::split(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
                           const SampleRange& samples, bool open, RunTally& tally) {
   if (number > 1) {
@@ -220,8 +234,7 @@ void GroupRenderer::split(std::span<const ImagePixel> pixels, uint64_t at, uint6
     return;
   }
   if (samples.count == 1) throw DeviceError("one path with all its vertices does not fit the device memory");
-  const uint32_t rounds = samples.count / 2 / round_samples_,
-                 half = rounds > 0 ? rounds * round_samples_ : samples.count / 2;
+  const uint32_t half = first_part(samples.count, round_samples_);
   render_part(pixels, at, number, {samples.replicate, samples.first, half}, open, tally);
   render_part(pixels, at, number, {samples.replicate, samples.first + half, samples.count - half}, open,
               tally);
@@ -254,6 +267,7 @@ void GroupRenderer::render_part(std::span<const ImagePixel> pixels, uint64_t at,
   tally.vertices += outcome.vertices;
   device_.evaluate(round, at);
   evaluated_paths_ = number * samples.count;
+  evaluated_samples_ = samples.count;
   tally.paths += evaluated_paths_;
   ++tally.rounds;
   if (knows_paths_pace_ || device_.method == Method::kPt) return;
@@ -281,13 +295,17 @@ void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange
                            const FilmSums* before, const std::atomic<bool>& stop,
                            const std::function<void(uint64_t)>& on_samples, RunTally& tally,
                            GroupResult& result) {
-  prepare(pixels.size(), before != nullptr, rounds_as_one(pixels.size(), range.count));
+  prepare(pixels.size(), before != nullptr);
+  if (pixels.size() > plan_->group_pixels)
+    throw DeviceOutOfMemory(
+        fmt::format("the device has room for {} of {} pixels", plan_->group_pixels, pixels.size()));
   device_.clear_film(pixels.size());
   if (before && range.first > 0) device_.load_film(*before);
   clear_other(result, before != nullptr);
   // All pixels of the group get the same samples, so that a stopped render is even.
   while (result.attempted < range.count && !stop) {
-    const SampleCut cut = next_round(range, result.attempted, before != nullptr, fitting_rounds(pixels));
+    const SampleCut cut =
+        next_round(range, result.attempted, before != nullptr, fitting_rounds(pixels, range.count));
     const SampleRange samples{range.replicate, range.first + result.attempted, cut.samples};
     if (before && samples.first > 0 && begins_chunk(samples.first, sum_rule()))
       device_.close_chunk(pixels.size());

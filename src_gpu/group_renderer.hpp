@@ -53,9 +53,9 @@ class GroupRenderer {
   GroupRenderer(DeviceState& device, const SamplingSettings& settings, double launch_seconds,
                 const Tuning& tuning, DiagnosticSink note);
 
-  /// Pixels whose film is resident at once, for an image part of this many pixels;
+  /// Pixels whose film is resident at once, for `samples` of an image part of this many pixels;
   /// open: with sums that are gone on with.
-  uint64_t group_pixels(uint64_t pixels, bool open);
+  uint64_t group_pixels(uint64_t pixels, bool open, uint32_t samples);
   SumRule sum_rule() const;
   /// Blocks of 32 x 32 pixels that fill a round of `samples` per pixel.
   uint32_t blocks_at_once(uint32_t samples) const;
@@ -76,12 +76,12 @@ class GroupRenderer {
                                 bool hits = true);
 
  private:
-  /// rounds  that are to be one
+  /// rounds  that are to be one, if the device has the memory
   void prepare(uint64_t pixels, bool open = false, uint32_t rounds = 1);
   void make_pool(const PlanRequest& request, bool open);
   PlanRequest request(uint64_t pixels, bool open, uint32_t rounds) const;
   uint32_t rounds_as_one(uint64_t pixels, uint32_t samples) const;
-  uint32_t fitting_rounds(std::span<const ImagePixel> pixels) const;
+  uint32_t fitting_rounds(std::span<const ImagePixel> pixels, uint32_t samples) const;
   SampleCut next_round(const SampleRange& range, uint32_t done, bool goes_on, uint32_t rounds) const;
   /// Renders samples [first, first + count) of pixels [at, at + number) of the group;
   /// splits where the arena is too small.
@@ -107,9 +107,10 @@ class GroupRenderer {
   uint32_t round_samples_;
   uint32_t most_slots_;
   uint64_t most_jobs_;
-  LaunchPace slots_pace_, paths_pace_;
+  LaunchPace slots_pace_, paths_pace_, samples_pace_;
   double chunks_per_path_ = 3;    // measured
   uint64_t evaluated_paths_ = 0;  // by the evaluation that was enqueued last
+  uint32_t evaluated_samples_ = 0;
   bool knows_paths_pace_ = false;
   std::vector<KbRoundPixel> round_pixels_;
   std::vector<float> mu_;

@@ -234,7 +234,7 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
   const std::atomic<bool> never{false};
   for (std::size_t at = 0; at < pixels.size();) {
     const std::size_t room =
-        repeated([&] { return groups_->group_pixels(pixels.size(), film.keeps_sums()); });
+        repeated([&] { return groups_->group_pixels(pixels.size(), film.keeps_sums(), range.count); });
     const bool in_block = delivery.in_block();
     const std::size_t number = in_block ? std::min(room, delivery.missing()) : whole_blocks(pixels, at, room);
     const std::span<const ImagePixel> group = std::span(pixels).subspan(at, number);

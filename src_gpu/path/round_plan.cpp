@@ -134,7 +134,7 @@ uint32_t chunk_entries(Method method, const SceneFeatures& features) {
 }
 
 uint32_t samples_in_registers(bool cpu_device) {
-  return cpu_device ? kCpuSamples : kSamplesInRegisters;
+  return cpu_device ? std::min(kCpuSamples, kSamplesInRegisters) : kSamplesInRegisters;
 }
 
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {
@@ -179,12 +179,17 @@ SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule, uint32_t r
   return {std::min({left, rule.period - place, rule.chunk - place % rule.chunk}), true};
 }
 
+uint32_t first_part(uint32_t samples, uint32_t round_samples) {
+  if (samples <= round_samples) return samples / 2;
+  return std::max(samples / 2 / round_samples, 1u) * round_samples;
+}
+
 uint32_t rounds_as_one(const RoundsAsOne& wanted) {
   const SumRule& rule = wanted.rule;
   if (rule.step != 1 || rule.chunk != wanted.registers || rule.period % rule.chunk != 0) return 1;
   const uint64_t filling = wanted.slots / (std::max<uint64_t>(wanted.pixels, 1) * rule.period);
   const uint64_t of_tables = kTablesOfBlock / (std::max<uint64_t>(wanted.table_bytes, 1) * rule.period);
-  const uint64_t rounds = (uint64_t{wanted.samples} + rule.period - 1) / rule.period;
+  const uint64_t rounds = std::bit_ceil((uint64_t{wanted.samples} + rule.period - 1) / rule.period);
   return to_u32(std::max<uint64_t>(std::min({filling, of_tables, rounds}), 1));
 }
 

@@ -25,7 +25,7 @@ struct PlanRequest {
   uint64_t budget = 0;   // bytes that may be used
   uint64_t largest = 0;  // bytes of the largest buffer
   uint64_t pixels = 0;   // of the image part
-  uint32_t samples = 1;  // per pixel and round
+  uint32_t samples = 1;  // per pixel and round: samples_of_round()
   uint32_t rounds = 1;   // that may be one, if they fit: rounds_as_one()
   Method method = Method::kDpeptBatch;
   uint64_t film_bytes = 0;     // per pixel: sums, compensation, counts, what finishing needs
@@ -48,14 +48,14 @@ struct RoundPlan {
   PoolSize pool;
 };
 
-/// Samples of a pixel that a round renders, as far as there are that many. Evaluation sums them before it
+/// Samples of a pixel that a round renders, as far as there are that many, and where not several are one (rounds_as_one). Evaluation sums them before it
 /// adds them to the film, so this number must not follow from memory or time: it depends on the scene and the
 /// kind of device alone, and images are the same bit by bit whatever the budget.
 /// table_bytes  of a block and sample: dense spectra
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes);
 
-/// Samples that kernels sum in registers before they add them to the film, at most
-/// (KB_SAMPLES_IN_REGISTERS, kernels/evaluate/evaluate_tile.clh): no more than a round has.
+/// Samples that kernels sum in registers before they add them to the film (KB_SAMPLES_IN_REGISTERS,
+/// kernels/evaluate/evaluate_tile.clh), if a round has as many: 32, on CPU devices the 16 that their rounds have.
 uint32_t samples_in_registers(bool cpu_device);
 
 /// Paths in flight and paths of a round that a GPU gains from and that its memory has room for, powers of two.
@@ -81,6 +81,9 @@ struct SampleCut {
 /// film; the one at the end stays open, so that the samples after it find its sums.
 /// rounds  that may be one, where all of their chunks go to the film
 SampleCut next_cut(uint32_t first, uint32_t end, const SumRule& rule, uint32_t rounds = 1);
+/// Of samples of a pixel whose vertices do not fit together: about half go first. Rounds that are one part between two of them, which
+/// leaves the bits of their sums. samples: at least 2; round_samples: of a round alone
+uint32_t first_part(uint32_t samples, uint32_t round_samples);
 /// Whether sample `first` begins a chunk: that before it is complete.
 bool begins_chunk(uint32_t first, const SumRule& rule);
 
@@ -93,9 +96,11 @@ struct RoundsAsOne {
   uint64_t pixels = 1;   // of the image part
   uint32_t samples = 1;  // that are wanted
 };
-/// Rounds that follow each other and may be one, at least 1. A round of few pixels does not fill a device, and costs it as many launches
-/// as one of many. Kernels add what is in registers to the film, and begin anew: rounds whose samples are a multiple of those
-/// leave the same bits as one after the other. So where they are not (large tables, derived channels, pt), rounds stay alone.
+/// Rounds that follow each other and may be one, at least 1: as many as fill the device and have no larger tables than a round of a block
+/// may have; a power of 2 where there is room for it, so that pools are seldom made anew. A round of few pixels does not fill a device, and
+/// costs it as many launches as one of many. Kernels add what is in registers to the film, and begin anew: rounds whose samples
+/// are a multiple of those leave the same bits as one after the other. Where they are not (large tables), where sums belong to a
+/// whole round (derived channels), and with pt, they stay alone.
 uint32_t rounds_as_one(const RoundsAsOne& wanted);
 
 /// throws DeviceOutOfMemory  not even a pixel fits: says what would be needed

@@ -40,7 +40,7 @@ TEST(GpuPlan, SlotsOfCpusByTheStateOfTheirPaths) {
 TEST(GpuPlan, RoundsOfFewPixelsAreOne) {
   const SumRule gpu = sum_rule_of(Method::kDpeptBatch, 64, false);
   EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 64, 1024}), 16u);
-  EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 64, 1025}), 17u);
+  EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 64, 1025}), 32u);
   EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 64, 1u << 30}), 512u);
   EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 1, 1u << 30}), 1u << 15);
   EXPECT_EQ(rounds_as_one({gpu, 32, 0, 1u << 21, 1u << 15, 1u << 30}), 1u);
@@ -56,7 +56,7 @@ TEST(GpuPlan, RoundsOfFewPixelsAreOne) {
   EXPECT_EQ(rounds_as_one({cpu, samples_in_registers(true), 0, 1u << 15, 64, 1u << 20}), 32u);
 }
 
-/// One pixel, rounds of 64 samples: the pool has room for as many as are one.
+/// Two pixels, rounds of 64 samples: the pool has room for as many as are one.
 TEST(GpuPlan, PoolsHaveRoomForRoundsThatAreOne) {
   PlanRequest request;
   request.budget = request.largest = kGiB;
@@ -73,6 +73,31 @@ TEST(GpuPlan, PoolsHaveRoomForRoundsThatAreOne) {
   EXPECT_EQ(as_one.pool.tables, 1280u);
   request.table_bytes = 1u << 20;  // a fifth of the budget: 204 tables
   EXPECT_EQ(plan_rounds(request).pool.tables, 204u);
+}
+
+/// Samples [first, first + samples) in parts of no more than `fitting`, as a renderer takes them.
+void take_apart(uint32_t first, uint32_t samples, uint32_t fitting, uint32_t round,
+                std::vector<uint32_t>& begins) {
+  if (samples <= fitting) return begins.push_back(first);
+  const uint32_t half = first_part(samples, round);
+  take_apart(first, half, fitting, round, begins);
+  take_apart(first + half, samples - half, fitting, round, begins);
+}
+
+/// Whatever fits, as long as a round does: parts begin with rounds.
+TEST(GpuPlan, RoundsThatWereOnePartBetweenRounds) {
+  for (const uint32_t round : {16u, 64u}) {
+    for (uint32_t samples = 2; samples <= 20 * round; ++samples) {
+      for (uint32_t fitting = round; fitting < 3 * round; fitting += 5) {
+        std::vector<uint32_t> begins;
+        take_apart(0, samples, fitting, round, begins);
+        for (const uint32_t begin : begins) ASSERT_EQ(begin % round, 0u) << samples << ", " << fitting;
+      }
+    }
+  }
+  EXPECT_EQ(first_part(16, 16), 8u);
+  EXPECT_EQ(first_part(17, 16), 16u);
+  EXPECT_EQ(first_part(100, 16), 48u);
 }
 
 TEST(GpuPlan, WorkGroupsFitTheKernel) {
