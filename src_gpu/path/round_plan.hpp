@@ -96,7 +96,7 @@ struct RoundsAsOne {
   uint64_t pixels = 1;   // of the image part
   uint32_t samples = 1;  // that are wanted
 };
-/// Rounds that follow each other and may be one, at least 1: as many as fill the device and have no larger tables than a round of a block
+/// Rounds that follow each other and may be one, at least 1: as many as the paths in flight allow, with no larger tables than a round of a block
 /// may have; a power of 2 where there is room for it, so that pools are seldom made anew. A round of few pixels does not fill a device, and
 /// costs it as many launches as one of many. Kernels add what is in registers to the film, and begin anew: rounds whose samples
 /// are a multiple of those leave the same bits as one after the other. Where they are not (large tables), where sums belong to a

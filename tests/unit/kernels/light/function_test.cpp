@@ -55,7 +55,7 @@ double units(float found, double exact) {
   return std::fabs(found - exact) / std::ldexp(1.0, exponent - 24);
 }
 
-/// Angles of two turns both ways, exponents from exp(-60) to exp(60), quotients within 2^40.
+/// Angles of two turns both ways, exponents from -60 to 60, quotients within 2^40.
 TEST(GpuFunctions, AreWithinTheBoundsOfOpencl) {
   Random random(31);
   std::vector<ItemIn> in(200000);
