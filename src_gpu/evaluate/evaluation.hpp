@@ -23,7 +23,7 @@ struct EvaluationShape {
   uint32_t vectors = 1;          // of a work-item at a time
   uint32_t local_size = 1;       // work-items that share a path
   uint32_t units_per_group = 1;  // pixels (dpept_batch) or slots (pt) that a work-group takes
-  uint32_t registers = 32;       // samples that are summed there
+  uint32_t registers = samples_in_registers(false);  // samples that are summed there
   bool film_transposed = false;
   bool staged =
       false;  // dpept_batch: work-groups bring vertices to local memory (kernels/evaluate/stage.clh)

@@ -5,7 +5,7 @@
 
 namespace kiloband::opencl {
 
-/// A limit on the units (slots, paths) of a launch: small at first, then by the time that units are measured
+/// A limit on the units (slots, paths, samples of a pixel) of a launch: small at first, then by the time that units are measured
 /// to take, at most four times more from one look to the next. Aims at half of the budget, as the next part
 /// of an image may be harder. What is rendered does not depend on it: pixels are added up sample by sample
 /// whatever the launches.

@@ -134,7 +134,8 @@ uint32_t chunk_entries(Method method, const SceneFeatures& features) {
 }
 
 uint32_t samples_in_registers(bool cpu_device) {
-  return cpu_device ? std::min(kCpuSamples, kSamplesInRegisters) : kSamplesInRegisters;
+  static_assert(kCpuSamples <= kSamplesInRegisters);  // as sum_rule_of takes it
+  return cpu_device ? kCpuSamples : kSamplesInRegisters;
 }
 
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes) {

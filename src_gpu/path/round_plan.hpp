@@ -48,8 +48,8 @@ struct RoundPlan {
   PoolSize pool;
 };
 
-/// Samples of a pixel that a round renders, as far as there are that many, and where not several are one (rounds_as_one). Evaluation sums them before it
-/// adds them to the film, so this number must not follow from memory or time: it depends on the scene and the
+/// Samples of a pixel that a round renders, as far as there are that many; of rounds that are one (rounds_as_one) each has so many.
+/// Evaluation sums them before it adds them to the film, so this number must not follow from memory or time: it depends on the scene and the
 /// kind of device alone, and images are the same bit by bit whatever the budget.
 /// table_bytes  of a block and sample: dense spectra
 uint32_t samples_of_round(bool cpu_device, uint64_t table_bytes);
