@@ -85,9 +85,9 @@ struct DenseSpectra {
 
   /// T = n^2 - 1 - k^2 as a sum of two floats, and n k, of a conductor; n k has a negative sign where metal_fresnel() would lose digits.
   std::array<const float*, 3> conductor(uint32_t material);
-  /// E = e^2 - 1 as a sum of two floats, where e is the relative index of a dispersive dielectric: interior
+  /// E = e^2 - 1 as a sum of two floats, and e - 1, where e is the relative index of a dispersive dielectric: interior
   /// over exterior seen from outside, the reciprocal seen from `inside`.
-  std::array<const float*, 2> dispersive(uint32_t material, bool inside);
+  std::array<const float*, 3> dispersive(uint32_t material, bool inside);
 
   std::size_t channels() const { return channels_; }
   /// lambda_k in nm, padded with zeros.

@@ -48,10 +48,9 @@ struct FresnelTerms {
 };
 
 /// A pair of directions on two sides of a rough boundary (shared/rough_transmission.h): wi in the upper half
-/// of the local frame, wo in the lower one. E = e^2 - 1 as for a dielectric.
+/// of the local frame, wo in the lower one.
 struct TransmissionTerms {
-  const float* high = nullptr;
-  const float* low = nullptr;
+  const float* index_less_one = nullptr;  // row of e - 1
   float sx = 0, sy = 0, sz = 0;  // wi + wo: the half vector is this + (e - 1) wo, without cancellation
   float ox = 0, oy = 0, oz = -1;
   float cosine = -1, one_plus_cosine = 0;  // of wi and wo
