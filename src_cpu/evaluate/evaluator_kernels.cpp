@@ -21,6 +21,7 @@
 // After foreach_target.h, as Highway asks for.
 #include <hwy/highway.h>
 
+#include "src_cpu/evaluate/evaluator_colours-inl.hpp"
 #include "src_cpu/evaluate/evaluator_gas-inl.hpp"
 #include "src_cpu/evaluate/evaluator_optics-inl.hpp"
 #include "src_cpu/evaluate/evaluator_tables-inl.hpp"
