@@ -61,6 +61,7 @@ DenseSpectra::DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kerne
       padded_(pad_channels(channels_)),
       lambda_(aligned_zeros<double>(padded_)),
       texture_offsets_(aligned_zeros<float>(padded_)),
+      colour_cells_(scene.channels, padded_),
       unit_emission_(aligned_zeros<float>(padded_)),
       rows_(scene.spectra.size()),
       material_rows_(scene.materials.size()),
@@ -108,9 +109,10 @@ ColourOffsets DenseSpectra::texture_offsets() {
     distinct_offsets_ = channels_;
     while (distinct_offsets_ > 0 && offsets[distinct_offsets_ - 1] == offsets[channels_ - 1])
       --distinct_offsets_;
+    placed_cells_ = fast_ ? nullptr : colour_cells_.place(offsets);
     texture_generation_ = generation_;
   }
-  return {texture_offsets_.get(), distinct_offsets_};
+  return {texture_offsets_.get(), distinct_offsets_, placed_cells_};
 }
 
 const float* DenseSpectra::planck_second() {

@@ -11,6 +11,7 @@
 
 #include "scene/compile/flat_scene.hpp"
 #include "scene/description/derived_channels.hpp"
+#include "src_cpu/evaluate/colour_cells.hpp"
 #include "src_cpu/evaluate/evaluator_kernels.hpp"
 
 namespace kiloband::cpu {
@@ -77,7 +78,8 @@ struct DenseSpectra {
   /// out  padded_channels() floats
   void fill_planck(double temperature_k, const float* emissivity, float* out);
   std::size_t padded_channels() const { return padded_; }
-  /// clamp(lambda_k, 360, 830) - KB_TEXTURE_CENTRE_NM, nm: where textures are evaluated.
+  /// clamp(lambda_k, 360, 830) - KB_TEXTURE_CENTRE_NM, nm: where textures are evaluated. In the fast mode no channel is interpolated:
+  /// a row of one path does not earn it.
   ColourOffsets texture_offsets();
 
   /// hc / (k lambda_k) in kelvin, 1 in the padding: what Planck's law at other temperatures needs.
@@ -129,6 +131,8 @@ struct DenseSpectra {
   hwy::AlignedFreeUniquePtr<double[]> lambda_;
   hwy::AlignedFreeUniquePtr<float[]> texture_offsets_;
   std::size_t distinct_offsets_ = 0;
+  ColourCellRows colour_cells_;
+  const ColourCells* placed_cells_ = nullptr;
   uint64_t planck_second_generation_ = 0;
   hwy::AlignedFreeUniquePtr<float[]> unit_emission_, planck_second_;
   std::vector<Row> rows_;                                 // by spectrum

@@ -27,11 +27,26 @@ struct ColourTerms {
   const float* factor = nullptr;  // dense row, or null for 1
 };
 
+/// Where a lookup is interpolated: each cell of wavelengths that narrow channels are in has a polynomial of degree 7 in the place t in
+/// it, -1 to 1, through values at Chebyshev's nodes. A channel wider than kNarrowNm is alone: fewer than some 30 in a cell do not earn
+/// its nodes. So is any where the cell's polynomial would not be accurate, see smooth_cells() of evaluator_colours-inl.hpp.
+struct ColourCells {
+  static constexpr std::size_t kNodes = 8, kMost = 19;
+  static constexpr double kFirstNm = 355, kWidthNm = 25, kNarrowNm = 0.8;
+  static constexpr int32_t kAlone = kMost;
+  std::size_t count = 0;           // cells that have channels
+  const float* nodes = nullptr;    // [kNodes][count], nm from KB_TEXTURE_CENTRE_NM
+  const float* centres = nullptr;  // [count], the same
+  const int32_t* cell = nullptr;   // of channels: < count, or kAlone
+  const float* place = nullptr;    // of channels: t
+};
+
 /// Wavelengths of lookups, nm from KB_TEXTURE_CENTRE_NM, by channel; padded with the last one. From `distinct` on all are the same:
 /// beyond 830 nm, where a colour says nothing, its spectrum goes on as it is there.
 struct ColourOffsets {
   const float* nm;
   std::size_t distinct;
+  const ColourCells* cells = nullptr;  // null: all channels are alone
 };
 
 /// Fresnel reflectance at a fixed angle. Quantities of cancellation are stored as sums of two floats:

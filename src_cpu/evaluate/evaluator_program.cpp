@@ -315,9 +315,9 @@ void ProgramBuilder::colour(uint32_t texture, const TexelCorners& corners, const
   if (survivor_ < end) {
     begin = survivor_ / kRowPadding * kRowPadding;
     end = std::min(end, begin + kRowPadding);
+    offsets = {offsets.nm + begin, std::clamp(offsets.distinct, begin, end) - begin, nullptr};
   }
   terms.factor = factor ? factor + begin : nullptr;
-  offsets = {offsets.nm + begin, std::clamp(offsets.distinct, begin, end) - begin};
   kernels_.colour_row(terms, offsets, end - begin, out + begin);
 }
 
