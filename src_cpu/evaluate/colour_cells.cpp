@@ -38,7 +38,7 @@ ColourCellRows::ColourCellRows(const ChannelList& channels, std::size_t padded)
       places_(aligned_zeros<float>(padded)),
       cells_of_(aligned_zeros<int32_t>(padded)) {
   for (const Channel& channel : channels) narrow_.push_back(channel.width_nm() <= ColourCells::kNarrowNm);
-  narrow_.resize(padded, narrow_.back());
+  narrow_.resize(padded, !narrow_.empty() && narrow_.back());
   cells_ = {0, nodes_.get(), centres_.get(), cells_of_.get(), places_.get()};
 }
 

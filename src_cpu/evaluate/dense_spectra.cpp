@@ -106,10 +106,13 @@ ColourOffsets DenseSpectra::texture_offsets() {
     for (std::size_t k = 0; k < channels_; ++k)
       offsets[k] = static_cast<float>(std::clamp(lambda_[k], 360.0, 830.0) - KB_TEXTURE_CENTRE_NM);
     std::fill(offsets + channels_, offsets + padded_, offsets[channels_ - 1]);
-    distinct_offsets_ = channels_;
-    while (distinct_offsets_ > 0 && offsets[distinct_offsets_ - 1] == offsets[channels_ - 1])
-      --distinct_offsets_;
     placed_cells_ = fast_ ? nullptr : colour_cells_.place(offsets);
+    const auto as_the_last = [&](std::size_t k) {
+      return offsets[k] == offsets[channels_ - 1] &&
+             (!placed_cells_ || placed_cells_->cell[k] == placed_cells_->cell[channels_ - 1]);
+    };
+    distinct_offsets_ = channels_;
+    while (distinct_offsets_ > 0 && as_the_last(distinct_offsets_ - 1)) --distinct_offsets_;
     texture_generation_ = generation_;
   }
   return {texture_offsets_.get(), distinct_offsets_, placed_cells_};

@@ -32,7 +32,7 @@ struct ColourTerms {
 /// its nodes. So is any where the cell's polynomial would not be accurate, see smooth_cells() of evaluator_colours-inl.hpp.
 struct ColourCells {
   static constexpr std::size_t kNodes = 8, kMost = 19;
-  static constexpr double kFirstNm = 355, kWidthNm = 25, kNarrowNm = 0.8;
+  static constexpr double kFirstNm = 355, kWidthNm = 25, kNarrowNm = 0.81;
   static constexpr int32_t kAlone = kMost;
   std::size_t count = 0;           // cells that have channels
   const float* nodes = nullptr;    // [kNodes][count], nm from KB_TEXTURE_CENTRE_NM
@@ -41,7 +41,7 @@ struct ColourCells {
   const float* place = nullptr;    // of channels: t
 };
 
-/// Wavelengths of lookups, nm from KB_TEXTURE_CENTRE_NM, by channel; padded with the last one. From `distinct` on all are the same:
+/// Wavelengths of lookups, nm from KB_TEXTURE_CENTRE_NM, by channel; padded with the last one. From `distinct` on all are the same, and in one cell or alone:
 /// beyond 830 nm, where a colour says nothing, its spectrum goes on as it is there.
 struct ColourOffsets {
   const float* nm;
@@ -166,7 +166,8 @@ struct EvaluatorKernels {
   /// i < count rounded up to kMaxLanes.
   void (*mix_bands)(const float* values, const int32_t* index, const float* first, const float* second,
                     std::size_t count, float* out);
-  /// out[i] = terms(offsets.nm[i]) for i < count rounded up to the lanes of a vector. out may be the terms' factor.
+  /// out[i] = terms(offsets.nm[i]), or the polynomial of its cell, for i < count rounded up to the lanes of a vector. All arrays begin at
+  /// the same channel. out may be the terms' factor.
   void (*colour_row)(const ColourTerms& terms, const ColourOffsets& offsets, std::size_t count, float* out);
 };
 

@@ -40,6 +40,16 @@ std::string spectral_parts() {
   return box_walls() + box_block() + box_light(kSpikes) + ball + glass + coat + light;
 }
 
+/// A square in colours of a picture, which narrow channels interpolate.
+std::string painted(const TemporaryFolder& folder) {
+  const std::filesystem::path file = folder.path() / "colours.ppm";
+  std::ofstream(file) << "P3 2 2 255  220 40 30  30 160 60  40 60 200  200 190 120\n";
+  return rectangle(
+      scale("0.2") + step("translate", "x='0.05' y='0.05' z='0.1'"),
+      bsdf("diffuse", "<texture type='bitmap' name='reflectance'><string name='filename' value='" +
+                          file.string() + "'/></texture>"));
+}
+
 RenderSpec base_spec(const std::string& parts, const std::string& bands) {
   RenderSpec spec;
   spec.xml = scene(5, box_sensor(size(64, 64) + crop(20, 20, 24, 24)) + parts);
@@ -75,9 +85,10 @@ const ChannelCase kCases[] = {
 class ChannelsWithGuide : public ::testing::TestWithParam<WavelengthMode> {};
 
 TEST_P(ChannelsWithGuide, EqualTheSameChannelAlone) {
+  const TemporaryFolder folder;
   for (const ChannelCase& test : kCases) {
     SCOPED_TRACE(test.bands);
-    RenderSpec spec = base_spec(spectral_parts(), test.bands);
+    RenderSpec spec = base_spec(spectral_parts() + painted(folder), test.bands);
     spec.guide = "400:700:30";
     spec.sampling.wavelengths = GetParam();
     const RenderResult together = render(spec);

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+#include <span>
 
 #include "random_scene.hpp"
 #include "spectral/colour/rgb.hpp"
@@ -20,7 +22,7 @@ struct Row {
   explicit Row(const ChannelList& list) : channels(list), cells(channels, pad_channels(channels.size())) {
     for (const Channel& c : channels)
       offsets.push_back(static_cast<float>(std::clamp(c.centre_nm(), 360.0, 830.0) - KB_TEXTURE_CENTRE_NM));
-    offsets.resize(pad_channels(channels.size()), offsets.back());
+    offsets.resize(pad_channels(channels.size()), offsets.empty() ? 0 : offsets.back());
     placed = cells.place(offsets.data());
   }
 
@@ -110,8 +112,8 @@ struct Accuracy {
 
 TEST_P(ColourCellRow, ColoursOfPicturesKeepTheirDigits) {
   std::mt19937 random(3);
-  Accuracy accuracy(4e-8);
-  constexpr float kLevels[] = {0.02f, 0.2f, 0.5f, 0.9f, 1.0f};
+  Accuracy accuracy(6e-7);
+  constexpr float kLevels[] = {0, 0.02f, 0.2f, 0.5f, 0.9f, 1};
   for (const auto& [from, to] : {std::pair{380.0, 780.0}, {400.0, 700.0}, {300.0, 900.0}}) {
     const Row row(equal_channels(from, to, 1000));
     ASSERT_NE(row.placed, nullptr);
@@ -129,7 +131,7 @@ TEST_P(ColourCellRow, SteepColoursAreEvaluated) {
   std::mt19937 random(4);
   std::uniform_real_distribution<float> exponent(-6, 1), place(-215, 185), size(-20, 20), weight(0.05f, 1);
   const Row row(equal_channels(380, 780, 1000));
-  Accuracy accuracy(8e-7);
+  Accuracy accuracy(1.6e-6);
   for (int repetition = 0; repetition < 2000; ++repetition) {
     ColourTerms terms;
     terms.count = 2;
@@ -177,6 +179,51 @@ TEST(ColourCellRows, WideChannelsAreAlone) {
   EXPECT_EQ(Row(equal_channels(380, 780, 100)).placed, nullptr);
   EXPECT_EQ(Row(equal_channels(3000, 5000, 500)).placed, nullptr);
   EXPECT_NE(Row(equal_channels(500, 501, 2)).placed, nullptr);
+  EXPECT_EQ(Row({}).placed, nullptr);
+  const Row rounded(equal_channels(380, 780, 500));  // 0.8 nm but for rounding: all or none
+  ASSERT_NE(rounded.placed, nullptr);
+  EXPECT_EQ(std::ranges::count(std::span(rounded.placed->cell, 500), ColourCells::kAlone), 0);
+}
+
+/// Rows of a whole list are those of its channels, at one offset and then at another.
+void expect_own_bits(const ChannelList& list, Isa isa, std::mt19937& random) {
+  const auto rows_of = [&](const ChannelList& channels) {
+    auto scene = std::make_unique<FlatScene>();
+    scene->channels = channels;
+    scene->channel_scale.assign(channels.size(), 1.0);
+    return scene;
+  };
+  const auto scene = rows_of(list);
+  DenseSpectra all(*scene, evaluator_kernels(isa));
+  for (const double mu : {0.25, 0.875}) {
+    std::uniform_real_distribution<float> level(0, 1);
+    const ColourTerms terms = around({level(random), level(random), level(random)}, random);
+    const auto row_of = [&](DenseSpectra& spectra) {
+      spectra.begin(mu, false);
+      std::vector<float> row(spectra.padded_channels());
+      evaluator_kernels(isa).colour_row(terms, spectra.texture_offsets(), spectra.channels(), row.data());
+      return row;
+    };
+    const std::vector<float> values = row_of(all);
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const auto one = rows_of({list[k]});
+      DenseSpectra alone(*one, evaluator_kernels(isa));
+      ASSERT_EQ(row_of(alone)[0], values[k]) << list[k].min_nm;
+    }
+  }
+}
+
+/// Beyond 830 nm channels share a wavelength: narrow ones their polynomial, wide ones their value.
+TEST_P(ColourCellRow, BitsOfAChannelAreItsOwnBeyondTheVisible) {
+  std::mt19937 random(7);
+  ChannelList narrow_first = equal_channels(800, 840, 100), wide_first = equal_channels(820, 900, 40);
+  for (const Channel& c : equal_channels(840, 960, 60)) narrow_first.push_back(c);
+  for (const Channel& c : equal_channels(900, 940, 100)) wide_first.push_back(c);
+  for (int repetition = 0; repetition < 5; ++repetition) {
+    expect_own_bits(narrow_first, GetParam(), random);
+    expect_own_bits(wide_first, GetParam(), random);
+    expect_own_bits(equal_channels(500, 530, 150), GetParam(), random);
+  }
 }
 
 }  // namespace
