@@ -44,8 +44,7 @@ HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) 
   const Floats height = p.ggx ? hn::Add(z2, q) : z2;  // of GGX, shape is a part of the quotient
   const Floats inverse = hn::Div(constant(1), hn::Max(hn::Mul(ab, height), constant(kTinyProduct)));
   Floats norm = hn::Mul(constant(2 * p.norm), e);
-  if (!p.ggx)
-    norm = hn::Mul(norm, hn::Exp(kTag, hn::Max(hn::Mul(hn::Mul(hn::Neg(q), ab), inverse), constant(-80))));
+  if (!p.ggx) norm = hn::Mul(norm, hn::Exp(kTag, hn::Mul(hn::Mul(hn::Neg(q), ab), inverse)));
   const Floats quotient = hn::Mul(hn::Mul(in, out), inverse);
   const Floats value = hn::Mul(hn::Mul(norm, quotient), hn::Mul(quotient, hn::MulAdd(a, a, square(b))));
   const auto valid = hn::And(hn::Gt(in, hn::Zero(kTag)), hn::Gt(out, hn::Zero(kTag)));

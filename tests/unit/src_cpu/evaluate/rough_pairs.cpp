@@ -13,19 +13,7 @@ double dot(const Direction& a, const Direction& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-void add_pair(RoughPairs& pairs, std::mt19937& random) {
-  std::uniform_real_distribution<double> unit(0, 1);
-  const double slope = pairs.alpha * std::sqrt(-std::log(1 - unit(random))), turn = 2 * KB_PI * unit(random);
-  const double up = 1 / std::hypot(1, slope);
-  const Direction m{slope * up * std::cos(turn), slope * up * std::sin(turn), up};
-  const double iz = 0.02 + 0.98 * unit(random), side = 2 * KB_PI * unit(random), s = std::sqrt(1 - iz * iz);
-  const Direction wi{s * std::cos(side), s * std::sin(side), iz};
-  const double c = dot(wi, m), e = pairs.inside ? 1 / 1.5 : 1.5;
-  const double g2 = e * e - 1 + c * c;
-  if (c <= 0 || g2 <= 0) return;
-  const double along = (c - std::sqrt(g2)) / e;
-  const Direction wo{along * m.x - wi.x / e, along * m.y - wi.y / e, along * m.z - wi.z / e};
-  if (wo.z >= 0) return;
+void append_pair(RoughPairs& pairs, const Direction& wi, const Direction& wo) {
   KbPathVertex vertex{};
   vertex.head = KB_KIND_ROUGH_TRANSMISSION | KB_VERTEX_NEE;
   vertex.row_a = 1;
@@ -39,6 +27,22 @@ void add_pair(RoughPairs& pairs, std::mt19937& random) {
   const auto entry = static_cast<uint32_t>(pairs.paths.entries.size());
   pairs.paths.paths.push_back({entry, 1, entry});
   pairs.paths.entries.push_back(vertex);
+}
+
+void add_pair(RoughPairs& pairs, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double slope = pairs.alpha * std::sqrt(-std::log(1 - unit(random))), turn = 2 * KB_PI * unit(random);
+  const double up = 1 / std::hypot(1, slope);
+  const Direction m{slope * up * std::cos(turn), slope * up * std::sin(turn), up};
+  const double iz = 0.02 + 0.98 * unit(random), side = 2 * KB_PI * unit(random), s = std::sqrt(1 - iz * iz);
+  const Direction wi{s * std::cos(side), s * std::sin(side), iz};
+  const double c = dot(wi, m), e = pairs.inside ? 1 / 1.5 : 1.5;
+  const double g2 = e * e - 1 + c * c;
+  if (c <= 0 || g2 <= 0) return;
+  const double along = (c - std::sqrt(g2)) / e;
+  const Direction wo{along * m.x - wi.x / e, along * m.y - wi.y / e, along * m.z - wi.z / e};
+  if (wo.z >= 0) return;
+  append_pair(pairs, wi, wo);
 }
 
 /// The pair of a vertex as unit vectors: third components are rounded where they are made, not in the vertex.
@@ -105,6 +109,13 @@ double RoughPairs::allowed(std::size_t path, std::size_t k) const {
   const double in = dot(wi, wi) + (d + 1) * dot(wi, wo), out = dot(wi, wo) + (d + 1) * dot(wo, wo);
   return 12 + ((ggx ? 4 : 2) * lean + 4 * rise) / height +
          2 * (1 + mixed) * (1 / std::abs(in) + 1 / std::abs(out));
+}
+
+RoughPairs horizontal_facet() {
+  RoughPairs pairs(0.5f, false, false);
+  pairs.paths = {};
+  append_pair(pairs, {0.8, 0, 0.6}, {-std::sqrt(0.84), 0, -0.4});
+  return pairs;
 }
 
 Errors errors_of(const RoughPairs& pairs, const std::vector<float>& values, std::size_t stride) {

@@ -30,6 +30,10 @@ struct RoughPairs {
   cpu::PathBuffer paths;
 };
 
+/// Two directions whose facet is horizontal at index 1.5, 0.2 degrees from it at the indices beside it (channels kHorizontal): T is 0 there.
+RoughPairs horizontal_facet();
+inline constexpr std::size_t kHorizontal[] = {4, 5, 6};
+
 struct Errors {
   double largest = 0;       // in units of what allowed() gives
   std::size_t counted = 0;  // values

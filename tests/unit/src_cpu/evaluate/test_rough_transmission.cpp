@@ -22,6 +22,12 @@ TEST_P(RoughTransmission, HoldsTheDigitsThatDirectionsHave) {
   }
 }
 
+TEST_P(RoughTransmission, HorizontalFacetsAreDark) {
+  const RoughPairs pairs = horizontal_facet();
+  const std::vector<float> values = evaluate(pairs.scene, {}, pairs.paths, GetParam(), 0);
+  for (const std::size_t k : kHorizontal) EXPECT_EQ(values[k], 0) << pairs.index[k];
+}
+
 INSTANTIATE_TEST_SUITE_P(, RoughTransmission, testing::ValuesIn(available_isas()), isa_name);
 
 }  // namespace

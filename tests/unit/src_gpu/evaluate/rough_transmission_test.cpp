@@ -34,5 +34,17 @@ TEST(DeviceRoughTransmission, HoldsTheDigitsThatDirectionsHave) {
   }
 }
 
+TEST(DeviceRoughTransmission, HorizontalFacetsAreDark) {
+  EvaluatorProgram program({});
+  const RoughPairs pairs = horizontal_facet();
+  const opencl::ChannelTables tables = opencl::make_channel_tables(pairs.scene, {});
+  const RoundOfPaths round = one_round(pairs.paths.paths.size());
+  DeviceEvaluator device(program, pairs.scene, tables, round.pixels);
+  device.load(pairs.paths, round, false);
+  device.batch(3, 5);
+  const std::vector<float> values = device.means();
+  for (const std::size_t k : kHorizontal) EXPECT_EQ(values[k], 0) << pairs.index[k];
+}
+
 }  // namespace
 }  // namespace kiloband::test::rough_transmission_test
