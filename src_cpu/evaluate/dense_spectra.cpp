@@ -105,7 +105,7 @@ ColourOffsets DenseSpectra::texture_offsets() {
     float* const offsets = texture_offsets_.get();
     for (std::size_t k = 0; k < channels_; ++k)
       offsets[k] = static_cast<float>(std::clamp(lambda_[k], 360.0, 830.0) - KB_TEXTURE_CENTRE_NM);
-    std::fill(offsets + channels_, offsets + padded_, offsets[channels_ - 1]);
+    if (channels_ > 0) std::fill(offsets + channels_, offsets + padded_, offsets[channels_ - 1]);
     placed_cells_ = fast_ ? nullptr : colour_cells_.place(offsets);
     const auto as_the_last = [&](std::size_t k) {
       return offsets[k] == offsets[channels_ - 1] &&

@@ -59,10 +59,10 @@ struct ColourFit {
 };
 
 /// A vector of cells: 1 where the polynomial is accurate, else 0. S(v) has branch points at v = +-i. If v(y) keeps away from them for all
-/// complex y within kReach half widths of the centre, |v'| R + |a| R^2 < |v +- i| there, S is analytic in an ellipse about the
-/// cell whose semi-axes add up to 7.9 half widths, and coefficients fall as 7.9^-n (Trefethen, Approximation Theory and Approximation
-/// Practice, theorems 8.1 and 8.2). Of colours of pictures four cells in five pass; the relative error is below 4e-8 in 997 of 1000 of these,
-/// 6e-7 at most; of parabolas 1.6e-6 at most: far from the branch points and dark, S ~ 1 / (4 v^2).
+/// complex y within R = kReach half widths of the centre, which it does if |v'| R + |a| R^2 < |v +- i| at the centre, S is analytic in
+/// an ellipse about the cell whose semi-axes add up to 7.9 half widths, and coefficients fall as 7.9^-n (Trefethen, Approximation Theory
+/// and Approximation Practice, theorems 8.1 and 8.2). Of colours of pictures four cells in five pass, with a relative error of 6e-7 at
+/// most; of parabolas 1.6e-6: far from the branch points and dark, S ~ 1 / (4 v^2).
 HWY_INLINE Whole smooth_cells(const ColourTerms& terms, Floats centre) {
   constexpr float kReach = 4, kRadius = kReach * static_cast<float>(ColourCells::kWidthNm / 2);
   auto smooth = hn::Eq(centre, centre);
@@ -197,7 +197,7 @@ inline void colour_row(const ColourTerms& terms, const ColourOffsets& offsets, s
   const hn::RebindToSigned<Tag> tag;
   fill_row(
       terms, offsets, count, out, [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
-        // In increasing order, channels of a vector are in one cell or two.
+        // In increasing order, channels of a vector are mostly in one cell or two.
         const int32_t first = cell[k], last = cell[k + kLanes - 1];
         const auto cells = hn::LoadU(tag, cell + k);
         const auto in_first = hn::Eq(cells, hn::Set(tag, first)), in_last = hn::Eq(cells, hn::Set(tag, last));

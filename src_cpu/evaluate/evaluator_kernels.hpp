@@ -32,7 +32,7 @@ struct ColourTerms {
 /// its nodes. So is any where the cell's polynomial would not be accurate, see smooth_cells() of evaluator_colours-inl.hpp.
 struct ColourCells {
   static constexpr std::size_t kNodes = 8, kMost = 19;
-  static constexpr double kFirstNm = 355, kWidthNm = 25, kNarrowNm = 0.81;
+  static constexpr double kFirstNm = 355, kWidthNm = 25, kNarrowNm = 0.81;  // 0.8, however it is rounded
   static constexpr int32_t kAlone = kMost;
   std::size_t count = 0;           // cells that have channels
   const float* nodes = nullptr;    // [kNodes][count], nm from KB_TEXTURE_CENTRE_NM

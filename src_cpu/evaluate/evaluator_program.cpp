@@ -315,6 +315,7 @@ void ProgramBuilder::colour(uint32_t texture, const TexelCorners& corners, const
   if (survivor_ < end) {
     begin = survivor_ / kRowPadding * kRowPadding;
     end = std::min(end, begin + kRowPadding);
+    // Evaluated: one group does not earn the nodes of cells.
     offsets = {offsets.nm + begin, std::clamp(offsets.distinct, begin, end) - begin, nullptr};
   }
   terms.factor = factor ? factor + begin : nullptr;

@@ -223,6 +223,7 @@ TEST_P(ColourCellRow, BitsOfAChannelAreItsOwnBeyondTheVisible) {
     expect_own_bits(narrow_first, GetParam(), random);
     expect_own_bits(wide_first, GetParam(), random);
     expect_own_bits(equal_channels(500, 530, 150), GetParam(), random);
+    expect_own_bits({{504.4, 505.1, {}}, {600, 601.5, {}}}, GetParam(), random);  // from one cell to the next
   }
 }
 
