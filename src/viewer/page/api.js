@@ -6,6 +6,8 @@ import {set, state} from './state.js';
 const kSceneSpacing_ms = 150;  // between two readings of /api/scene
 const kGone_ms = 1000;         // so long the stream of events has to say that the server has gone
 
+let losses = 0;  // of the stream of events
+
 export class ServerError extends Error {
   constructor(message, status) {
     super(message);
@@ -55,9 +57,11 @@ export async function post(path, body) {
 export function show_error(error) {
   if (error.name === 'AbortError') return;
   if (error instanceof ServerError) return notice(error.message, 'error');
-  // Where the server has gone, the stream of events says so (status.js) and this says nothing.
-  const tell = () => state.connected && notice(`The request failed: ${error.message}`, 'error');
-  setTimeout(tell, kGone_ms);
+  // Where the server has gone, the stream of events has said so (status.js), or does it now, and this says nothing,
+  // even if the server has come back meanwhile.
+  if (!state.connected) return;
+  const before = losses;
+  setTimeout(() => losses === before && notice(`The request failed: ${error.message}`, 'error'), kGone_ms);
 }
 
 let source = null;
@@ -98,6 +102,7 @@ export function connect() {
   };
   source.onerror = () => {
     disconnect();
+    ++losses;
     set({connected: false});
     setTimeout(connect, wait_ms);
     wait_ms = Math.min(2 * wait_ms, 4000);

@@ -147,6 +147,21 @@ class Pages(unittest.TestCase):
         self.assertEqual(self.browser.value("return [state.pins[0].key, state.plot.log_y]"), ["40,120", True])
         self.assertEqual(self.browser.complaints(), [])
 
+    def test_requests_that_fail_around_an_absence(self):
+        """The page has told of the absence: only a request that fails while the server is there is told of."""
+        self.browser.open(self.viewer.address)
+        self.browser.wait("return state.connected", "the page has found the server")
+        self.browser.value("""
+            const {show_error} = await import('/api.js'), {set} = await import('/state.js');
+            set({connected: false});
+            show_error(new TypeError('while it was away'));
+            set({connected: true});
+            show_error(new TypeError('while it was there'));
+            return true""")
+        self.browser.wait("return document.querySelectorAll('.notice').length > 0", "a notice")
+        self.assertEqual([text.split("\n")[0] for text in self.browser.texts(".notice")],
+                         ["The request failed: while it was there"])
+
     def test_a_server_that_comes_back(self):
         viewer = Viewer(self.cube)
         address = viewer.address
