@@ -221,7 +221,7 @@ std::array<const float*, 3> DenseSpectra::conductor(uint32_t material) {
   if (rows.generation[0] != generation_) {
     const KbMaterial& record = scene_.materials[material];
     if (record.k_row >= rows_.size()) throw_bad_row(record.k_row);
-    rows.data[0] = {new_row(), new_row(), new_row()};
+    rows.data[0] = {new_row(), new_row(), new_row(), nullptr};
     for (std::size_t k = 0; k < channels_; ++k) {
       const double n = value_at(scene_.spectra[record.eta_row], lambda_[k]);
       const double absorption = value_at(scene_.spectra[record.k_row], lambda_[k]);
@@ -235,23 +235,25 @@ std::array<const float*, 3> DenseSpectra::conductor(uint32_t material) {
   return {rows.data[0][0], rows.data[0][1], rows.data[0][2]};
 }
 
-std::array<const float*, 3> DenseSpectra::dispersive(uint32_t material, bool inside) {
+std::array<const float*, 4> DenseSpectra::dispersive(uint32_t material, bool inside) {
   MaterialRows& rows = material_rows(material);
   if (rows.generation[inside] != generation_) {
     const KbMaterial& record = scene_.materials[material];
     if (record.ext_row != KB_NONE && record.ext_row >= rows_.size()) throw_bad_row(record.ext_row);
-    rows.data[inside] = {new_row(), new_row(), new_row()};
+    rows.data[inside] = {new_row(), new_row(), new_row(), new_row()};
     for (std::size_t k = 0; k < channels_; ++k) {
       const double interior = value_at(scene_.spectra[record.eta_row], lambda_[k]);
       const double exterior =
           record.ext_row == KB_NONE ? record.eta_ext : value_at(scene_.spectra[record.ext_row], lambda_[k]);
       const double e = inside ? exterior / interior : interior / exterior;
-      split((e - 1) * (e + 1), rows.data[inside][0][k], rows.data[inside][1][k]);
+      const double big_e = (e - 1) * (e + 1);
+      split(big_e, rows.data[inside][0][k], rows.data[inside][1][k]);
       rows.data[inside][2][k] = static_cast<float>(e - 1);
+      rows.data[inside][3][k] = static_cast<float>(e / std::max(big_e * big_e, 1e-30));
     }
     rows.generation[inside] = generation_;
   }
-  return {rows.data[inside][0], rows.data[inside][1], rows.data[inside][2]};
+  return {rows.data[inside][0], rows.data[inside][1], rows.data[inside][2], rows.data[inside][3]};
 }
 
 }  // namespace kiloband::cpu

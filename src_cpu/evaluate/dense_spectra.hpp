@@ -87,9 +87,9 @@ struct DenseSpectra {
 
   /// T = n^2 - 1 - k^2 as a sum of two floats, and n k, of a conductor; n k has a negative sign where metal_fresnel() would lose digits.
   std::array<const float*, 3> conductor(uint32_t material);
-  /// E = e^2 - 1 as a sum of two floats, and e - 1, where e is the relative index of a dispersive dielectric: interior
-  /// over exterior seen from outside, the reciprocal seen from `inside`.
-  std::array<const float*, 3> dispersive(uint32_t material, bool inside);
+  /// E = e^2 - 1 as a sum of two floats, e - 1, and e / E^2 (1e30 at most), where e is the relative index of a dispersive dielectric:
+  /// interior over exterior seen from outside, the reciprocal seen from `inside`.
+  std::array<const float*, 4> dispersive(uint32_t material, bool inside);
 
   std::size_t channels() const { return channels_; }
   /// lambda_k in nm, padded with zeros.
@@ -105,7 +105,7 @@ struct DenseSpectra {
   };
   struct MaterialRows {
     uint64_t generation[2] = {0, 0};  // conductor or outside; inside
-    std::array<float*, 3> data[2] = {};
+    std::array<float*, 4> data[2] = {};
   };
 
   [[noreturn]] static void throw_bad_row(uint32_t s);

@@ -65,12 +65,13 @@ struct FresnelTerms {
 /// A pair of directions on two sides of a rough boundary (shared/rough_transmission.h): wi in the upper half
 /// of the local frame, wo in the lower one.
 struct TransmissionTerms {
-  const float* index_less_one = nullptr;  // row of e - 1
-  float sx = 0, sy = 0, sz = 0;  // wi + wo: the half vector is this + (e - 1) wo, without cancellation
+  const float* index_less_one = nullptr;  // row of d = e - 1
+  const float* index_factor = nullptr;    // row of e / (e^2 - 1)^2
+  float sx = 0, sy = 0, sz = 0;           // wi + wo: the half vector is this + d wo, without cancellation
   float ox = 0, oy = 0, oz = -1;
   float cosine = -1, one_plus_cosine = 0;  // of wi and wo
   float inverse_alpha_u = 1, inverse_alpha_v = 1;
-  float norm = 1;  // 1 / (pi alpha_u alpha_v)
+  float norm = 1;  // 2 (1 + 1 / cosine^2) / (pi alpha_u alpha_v)
   bool ggx = false;
 };
 

@@ -101,37 +101,39 @@ HWY_INLINE Floats conductor_fresnel(const FresnelTerms& f, std::size_t k) {
   return hn::AllTrue(kTag, other) ? careful : hn::IfThenElse(other, careful, metal_fresnel(f, k, nk));
 }
 
-/// Unpolarised reflectance of a dielectric boundary of relative index e (transmitted over incident) for the
-/// cosine c below total reflection. With E = e^2 - 1 and g = e cos_t = sqrt(E + c^2), numerators expanded so
-/// that E stands in front:
-///   r_s = -E / (c + g)^2,   r_p = E ((e^2 + 1) c^2 - 1) / (e^2 c + g)^2,   F = (r_s^2 + r_p^2) / 2.
-HWY_INLINE Floats partial_reflectance(Floats big_e, Floats g, Floats c, Floats c2) {
-  const Floats e2 = hn::Add(big_e, constant(1));
-  const Floats rs = hn::Div(big_e, hn::Max(square(hn::Add(c, g)), constant(kTiny)));
-  const Floats brewster = hn::MulSub(hn::Add(e2, constant(1)), c2, constant(1));
-  const Floats rp = hn::Div(hn::Mul(big_e, brewster), hn::Max(square(hn::MulAdd(e2, c, g)), constant(kTiny)));
-  return hn::Mul(constant(0.5f), hn::MulAdd(rs, rs, square(rp)));
+/// A dielectric boundary of relative index e (transmitted over incident) for the cosine c, s^2 = 1 - c^2, in one channel each: E = e^2 - 1,
+/// g = e cos_t = sqrt(E + c^2), 0 at total reflection, p = c g + s^2 and e^2 c + g = (c + g) p.
+struct Boundary {
+  Floats big_e, g2, g, cg, sum, p;
+};
+
+HWY_INLINE Boundary boundary(const FresnelTerms& f, std::size_t k) {
+  const Floats c = constant(f.cosine), big_e = hn::LoadU(kTag, f.high + k);
+  const Floats g2 = hn::Add(hn::Add(big_e, constant(f.cosine2_high)),
+                            hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
+  const Floats g = hn::Sqrt(hn::Max(g2, hn::Zero(kTag)));
+  const Floats cg = hn::Mul(c, g);
+  return {big_e, g2, g, cg, hn::Add(c, g), hn::Add(cg, constant(f.sine2))};
 }
 
+/// Unpolarised reflectance, numerators expanded so that E stands in front:
+///   r_s = -E / (c + g)^2,   r_p = r_s (c g - s^2) / p,   F = (r_s^2 + r_p^2) / 2 = (c^2 g^2 + s^4) (E / ((c + g)^2 p))^2.
 /// 1 where g^2 <= 0: total reflection.
 HWY_INLINE Floats dielectric_fresnel(const FresnelTerms& f, std::size_t k) {
-  const Floats c = constant(f.cosine), c2 = constant(f.cosine2_high);
-  const Floats big_e = hn::LoadU(kTag, f.high + k);
-  const Floats g2 = hn::Add(hn::Add(big_e, c2), hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
-  const Floats g = hn::Sqrt(hn::Max(g2, hn::Zero(kTag)));
-  return hn::IfThenElse(hn::Le(g2, hn::Zero(kTag)), constant(1), partial_reflectance(big_e, g, c, c2));
+  const Boundary b = boundary(f, k);
+  const Floats below = hn::Max(hn::Mul(square(b.sum), b.p), constant(kTiny));
+  const Floats above = hn::MulAdd(b.cg, b.cg, constant(f.sine2 * f.sine2));
+  const Floats value = hn::Mul(above, square(hn::Div(b.big_e, below)));
+  return hn::IfThenElse(hn::Le(b.g2, hn::Zero(kTag)), constant(1), value);
 }
 
-/// T = 1 - F without cancellation, c and g as in partial_reflectance:
-///   T = 2 c g (1 / (c + g)^2 + e^2 / (e^2 c + g)^2).
+/// T = 1 - F without cancellation:
+///   T = 2 c g (1 / (c + g)^2 + e^2 / (e^2 c + g)^2) = 2 c g (p^2 + e^2) / ((c + g) p)^2.
 HWY_INLINE Floats dielectric_transmittance(const FresnelTerms& f, std::size_t k) {
-  const Floats c = constant(f.cosine), c2 = constant(f.cosine2_high);
-  const Floats big_e = hn::LoadU(kTag, f.high + k), e2 = hn::Add(big_e, constant(1));
-  const Floats g2 = hn::Add(hn::Add(big_e, c2), hn::Add(hn::LoadU(kTag, f.low + k), constant(f.cosine2_low)));
-  const Floats g = hn::Sqrt(hn::Max(g2, hn::Zero(kTag)));
-  const Floats s = hn::Div(constant(1), hn::Max(square(hn::Add(c, g)), constant(kTiny)));
-  const Floats p = hn::Div(e2, hn::Max(square(hn::MulAdd(e2, c, g)), constant(kTiny)));
-  return hn::Mul(hn::Mul(hn::Add(c, c), g), hn::Add(s, p));
+  const Boundary b = boundary(f, k);
+  const Floats inverse = hn::Div(constant(1), hn::Max(hn::Mul(b.sum, b.p), constant(kTiny)));
+  const Floats above = hn::Add(square(b.p), hn::Add(b.big_e, constant(1)));
+  return hn::Mul(hn::Mul(hn::Add(b.cg, b.cg), inverse), hn::Mul(above, inverse));
 }
 
 /// What a pane of two boundaries reflects, 2 F / (1 + F), or lets through, (1 - F) / (1 + F) = T / (2 - T).

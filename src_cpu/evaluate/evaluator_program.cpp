@@ -289,12 +289,13 @@ void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& ve
   const auto rows = spectra.dispersive(material, pair.inside != 0);
   const double cosine = double{pair.ix} * pair.ox + double{pair.iy} * pair.oy + double{pair.iz} * pair.oz;
   TransmissionTerms& terms = transmissions_.emplace_back();
-  terms = {rows[2], pair.ix + pair.ox, pair.iy + pair.oy, pair.iz + pair.oz, pair.ox, pair.oy, pair.oz};
+  terms = {rows[2],           rows[3], pair.ix + pair.ox, pair.iy + pair.oy,
+           pair.iz + pair.oz, pair.ox, pair.oy,           pair.oz};
   terms.cosine = static_cast<float>(cosine);
   terms.one_plus_cosine = static_cast<float>(1 + cosine);
   terms.inverse_alpha_u = 1 / alpha_u;
   terms.inverse_alpha_v = 1 / alpha_v;
-  terms.norm = KB_INV_PI / (alpha_u * alpha_v);
+  terms.norm = static_cast<float>(2 * (1 + 1 / (cosine * cosine)) / (double{KB_PI} * alpha_u * alpha_v));
   terms.ggx = (m.flags & KB_MATERIAL_GGX) != 0;
   out.transmission = &terms;
 }
