@@ -26,12 +26,12 @@ struct Evaluator::Impl {
   Impl(const FlatScene& scene, const DerivedChannels& derived_channels, Isa isa)
       : derived(derived_channels),
         kernels(evaluator_kernels(resolve_isa(isa))),
-        evaluate_path(kernels_for_channels(resolve_isa(isa), scene.channels.size()).evaluate_path),
+        path_kernels(kernels_for_channels(resolve_isa(isa), scene.channels.size())),
         has_textures(!scene.textures.empty()),
         derived_offset(pad_channels(scene.channels.size())),
         spectra(scene, kernels),
         derived_rows(scene, derived, kernels),
-        builder(scene, kernels) {
+        builder(scene, kernels, path_kernels) {
     const std::size_t groups = (derived_offset + pad_channels(derived_rows.count())) / kRowPadding;
     stride = (groups | 1) * kRowPadding;
   }
@@ -68,12 +68,11 @@ struct Evaluator::Impl {
     program.derived_offset = rows.packed ? program.channels : derived_offset;
     program.film_channels = rows.packed ? program.channels : derived_offset;
     if (p + 1 < paths.paths.size()) program.next_film = row_of(paths.paths[p + 1], rows);
-    evaluate_path(program, row_of(paths.paths[p], rows));
+    path_kernels.evaluate_path(program, row_of(paths.paths[p], rows));
   }
 
   const DerivedChannels derived;
-  const EvaluatorKernels& kernels;
-  decltype(EvaluatorKernels::evaluate_path) evaluate_path;
+  const EvaluatorKernels &kernels, &path_kernels;
   const bool has_textures;
   std::size_t derived_offset, stride = 0;
   DenseSpectra spectra;

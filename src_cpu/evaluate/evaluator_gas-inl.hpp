@@ -41,7 +41,7 @@ HWY_INLINE Floats far_share(Floats x, const Absorbed& a) {
 
 /// The cells of a plume, from near to far. `scale`: what stands before the sum;
 /// tau is multiplied by the transmittance.
-HWY_INLINE Floats plume_radiance(const GeneralVertex& v, Floats scale, std::size_t k, Floats& tau) {
+HWY_INLINE Floats plume_radiance(const GasVertex& v, Floats scale, std::size_t k, Floats& tau) {
   const Floats kappa = hn::LoadU(kTag, v.a + k), reference = hn::LoadU(kTag, v.emit + k);
   const PlanckReference planck = planck_reference(hn::LoadU(kTag, v.second_k + k), v.reference_k);
   Floats near = planck_ratio(planck, v.cells.front().temperature_k), sum = hn::Zero(kTag);
@@ -60,8 +60,7 @@ HWY_INLINE Floats plume_radiance(const GeneralVertex& v, Floats scale, std::size
 }
 
 /// tau, radiance, aside: a vector each.
-HWY_INLINE void medium_vector(const GeneralVertex& v, std::size_t k, float* tau, float* radiance,
-                              float* aside) {
+HWY_INLINE void medium_vector(const GasVertex& v, std::size_t k, float* tau, float* radiance, float* aside) {
   const Floats kappa = hn::LoadU(kTag, v.a + k);
   Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance), q = hn::Load(kTag, aside);
   if (v.flags & KB_VERTEX_NEE) {
@@ -88,6 +87,20 @@ HWY_INLINE void medium_vector(const GeneralVertex& v, std::size_t k, float* tau,
   hn::Store(t, kTag, tau);
   hn::Store(l, kTag, radiance);
   hn::Store(q, kTag, aside);
+}
+
+/// One vertex for `lanes` channels from k on, a multiple of a vector's.
+HWY_NOINLINE void gas_step(const GasVertex& v, std::size_t k, std::size_t lanes, float* tau, float* radiance,
+                           float* aside) {
+  for (std::size_t i = 0; i < lanes; i += hn::Lanes(kTag)) {
+    if (v.of == GasVertex::Of::kMedium) {
+      medium_vector(v, k + i, tau + i, radiance + i, aside + i);
+      continue;
+    }
+    const Floats factor = hn::Mul(constant(v.emit_weight), hn::LoadU(kTag, v.a + k + i));
+    const Floats light = hn::LoadU(kTag, v.emit + k + i);
+    hn::Store(hn::Mul(hn::Mul(hn::Load(kTag, tau + i), factor), light), kTag, aside + i);
+  }
 }
 
 }  // namespace HWY_NAMESPACE

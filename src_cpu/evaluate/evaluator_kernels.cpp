@@ -22,10 +22,9 @@
 #include <hwy/highway.h>
 
 #include "src_cpu/evaluate/evaluator_colours-inl.hpp"
+#include "src_cpu/evaluate/evaluator_factors-inl.hpp"
 #include "src_cpu/evaluate/evaluator_gas-inl.hpp"
-#include "src_cpu/evaluate/evaluator_optics-inl.hpp"
 #include "src_cpu/evaluate/evaluator_tables-inl.hpp"
-#include "src_cpu/evaluate/evaluator_transmission-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace kiloband::cpu {
@@ -34,69 +33,6 @@ namespace HWY_NAMESPACE {
 /// Vectors of a full block: P, S and L take 12 of the 16 (SSE4, AVX2) or 32 registers.
 inline constexpr std::size_t kBlockVectors = 4;
 static_assert(kBlockVectors * kLanes <= kRowPadding && kLanes <= kMaxLanes);
-
-/// B(w0, w1) of path_vertex.h from S_a and the second factor (S_b, or S_b / (1 - S_b fdr_int)).
-HWY_INLINE Floats reflect(const GeneralVertex& v, Floats a, Floats b, float w0, float w1,
-                          const FresnelTerms* f, std::size_t k) {
-  const Floats scaled = hn::Mul(constant(w0), a);
-  switch (v.kind) {
-    case KB_KIND_TWO_TERM:
-    case KB_KIND_NONLINEAR:
-      return hn::MulAdd(constant(w1), b, scaled);
-    case KB_KIND_CONDUCTOR:
-    case KB_KIND_DISPERSIVE:
-      return hn::Mul(scaled, fresnel(*f, k));
-    case KB_KIND_ROUGH_TRANSMISSION:
-      return hn::Mul(scaled, rough_transmission(*v.transmission, k));
-    case KB_KIND_TINTED:
-      return w1 >= 0 ? hn::Add(scaled, constant(w1)) : hn::MulAdd(constant(-w1), hn::Sqrt(a), scaled);
-    default:
-      return scaled;
-  }
-}
-
-/// One vertex for the vector of channels at k. aside: the third register of scenes
-/// with gas, see path_vertex.h.
-HWY_INLINE void general_vector(const GeneralVertex& v, std::size_t k, float* tau, float* radiance,
-                               float* aside) {
-  Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance);
-  if (v.flags & (KB_VERTEX_NEE | KB_VERTEX_SCATTER)) {
-    const Floats a = load(v.a, k);
-    Floats b = hn::Zero(kTag);
-    if (kb_has_two_spectra(v.kind)) b = load(v.b, k);
-    if (v.kind == KB_KIND_NONLINEAR) b = hn::Div(b, hn::NegMulAdd(b, constant(v.fdr_int), constant(1)));
-    if (v.flags & KB_VERTEX_NEE) {
-      const Floats f = reflect(v, a, b, v.nee0, v.nee1, v.nee_fresnel, k);
-      const Floats light = load(v.nee, k);
-      if (v.flags & KB_VERTEX_DEFER)
-        hn::Store(hn::Mul(hn::Mul(t, f), light), kTag, aside);
-      else
-        l = hn::MulAdd(hn::Mul(t, f), light, l);
-    }
-    if (v.flags & KB_VERTEX_SCATTER)
-      t = hn::Mul(t, reflect(v, a, b, v.scatter0, v.scatter1, v.scatter_fresnel, k));
-  }
-  hn::Store(t, kTag, tau);
-  hn::Store(l, kTag, radiance);
-}
-
-/// One vertex for `vectors` vectors of channels from k on. Returns false if no channel of the block goes on.
-HWY_NOINLINE bool general_step(const GeneralVertex& v, std::size_t k, std::size_t vectors, float* tau,
-                               float* radiance, float* aside) {
-  if (v.kind == KB_KIND_MEDIUM) {
-    for (std::size_t i = 0; i < vectors * kLanes; i += kLanes)
-      medium_vector(v, k + i, tau + i, radiance + i, aside + i);
-    return true;
-  }
-  for (std::size_t i = 0; i < vectors * kLanes; i += kLanes)
-    general_vector(v, k + i, tau + i, radiance + i, aside + i);
-  if (!(v.flags & KB_VERTEX_DEGRADE)) return true;
-  if (v.survivor < k || v.survivor >= k + vectors * kLanes) return false;
-  const float kept = tau[v.survivor - k];
-  std::fill_n(tau, vectors * kLanes, 0.0f);
-  tau[v.survivor - k] = kept;
-  return true;
-}
 
 /// Calls f with the constants 0 .. N-1: array elements stay in registers.
 template <class F, std::size_t... I>
@@ -131,22 +67,41 @@ struct Block {
     });
   }
 
+  HWY_INLINE void sample(const PathStep& step, std::size_t k) {
+    const Floats weight = constant(step.weight);
+    each([&](auto i) HWY_ATTR {
+      const Floats factor = hn::Mul(load(step.row, k + i * kLanes), load(step.light, k + i * kLanes));
+      radiance[i] = hn::MulAdd(hn::Mul(product[i], weight), factor, radiance[i]);
+    });
+  }
+
   HWY_INLINE void scale(const PathStep& step) {
     each([&](auto i) HWY_ATTR { product[i] = hn::Mul(product[i], constant(step.weight)); });
   }
 
-  HWY_INLINE bool general(const PathStep& step, std::size_t k, float* aside) {
+  HWY_INLINE void gas(const PathStep& step, std::size_t k, float* aside) {
     alignas(64) float t[V * kLanes], l[V * kLanes];
     each([&](auto i) HWY_ATTR {
       hn::Store(hn::Mul(product[i], constant(step.weight)), kTag, t + i * kLanes);
       hn::Store(radiance[i], kTag, l + i * kLanes);
     });
-    const bool goes_on = general_step(*step.general, k, V, t, l, aside);
+    gas_step(*step.gas, k, V * kLanes, t, l, aside);
     each([&](auto i) HWY_ATTR {
       product[i] = hn::Load(kTag, t + i * kLanes);
       radiance[i] = hn::Load(kTag, l + i * kLanes);
     });
-    return goes_on;
+  }
+
+  /// Returns false if the block has no channel that goes on.
+  HWY_INLINE bool keep_one(const PathStep& step, std::size_t k) {
+    if (step.survivor < k || step.survivor >= k + V * kLanes) return false;
+    const hn::RebindToSigned<Tag> tag;
+    const auto lane = hn::Set(tag, static_cast<int32_t>(step.survivor - k));
+    each([&](auto i) HWY_ATTR {
+      const auto kept = hn::Eq(hn::Iota(tag, static_cast<int32_t>(i * kLanes)), lane);
+      product[i] = hn::IfThenElseZero(hn::RebindMask(kTag, kept), product[i]);
+    });
+    return true;
   }
 
   /// Adds the weighted radiances to the accumulators of the derived channels that the block's group has.
@@ -173,9 +128,13 @@ HWY_INLINE void run_steps(Block<V>& block, const PathProgram& path, std::size_t 
       block.add(*step);
     } else if (step->kind == StepKind::kLight) {
       block.close(step->row, k);
+    } else if (step->kind == StepKind::kSample) {
+      block.sample(*step, k);
     } else if (step->kind == StepKind::kScale) {
       block.scale(*step);
-    } else if (!block.general(*step, k, aside)) {
+    } else if (step->kind == StepKind::kGas) {
+      block.gas(*step, k, aside);
+    } else if (!block.keep_one(*step, k)) {
       return;
     }
   }
@@ -238,8 +197,9 @@ void evaluate_path(const PathProgram& path, float* film) {
   if (path.derived) finish_derived(*path.derived, film + path.derived_offset);
 }
 
-inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, sample_exact,
-                                           weighted_sum,  mix_bands,    colour_row};
+inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, sample_exact,     weighted_sum,
+                                           mix_bands,     fresnel_row,  transmission_row, internal_row,
+                                           tinted_row,    colour_row};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kiloband::cpu

@@ -75,19 +75,15 @@ struct TransmissionTerms {
   bool ggx = false;
 };
 
-/// A vertex that the fast steps do not cover; see KbPathVertex. Emission of surfaces is a step before it.
-struct GeneralVertex {
-  uint32_t kind = 0;   // KbVertexKind
-  uint32_t flags = 0;  // KB_VERTEX_EMIT (gas), _NEE, _SCATTER, _DEGRADE, _DEFER
-  const float *a = nullptr, *b = nullptr, *emit = nullptr, *nee = nullptr;  // dense rows
-  float emit_weight = 0, nee0 = 0, nee1 = 0, scatter0 = 0, scatter1 = 0;
-  float fdr_int = 0;
-  const FresnelTerms* nee_fresnel = nullptr;  // KB_KIND_CONDUCTOR, _DISPERSIVE
-  const FresnelTerms* scatter_fresnel = nullptr;
-  const TransmissionTerms* transmission = nullptr;  // KB_KIND_ROUGH_TRANSMISSION
-  uint32_t survivor = 0;                            // channel that goes on if KB_VERTEX_DEGRADE
-  // Gas, KB_KIND_MEDIUM. A plume's first cell has no column and the temperature of the near end.
-  std::span<const KbPlumeCell> cells;
+/// What scenes with gas do to tau, L and the third register q; see KbPathVertex.
+struct GasVertex {
+  enum class Of : uint8_t { kMedium, kDeferredLight };  // the latter: q = emit_weight tau a emit
+  Of of = Of::kMedium;
+  uint32_t flags = 0;                         // KB_VERTEX_EMIT, _NEE, _SCATTER, _DEFER
+  const float *a = nullptr, *emit = nullptr;  // dense rows
+  float emit_weight = 0, nee0 = 0, scatter0 = 0;
+  std::span<const KbPlumeCell>
+      cells;                        // a plume's: the first has no column and the temperature of the near end
   float reference_k = 0;            // plume: where emit is Planck's law
   const float* second_k = nullptr;  // plume: row of hc / (k lambda), K
 };
@@ -98,15 +94,21 @@ enum class StepKind : uint32_t {
   kReflect,  // P *= row; S += weight P
   kAdd,      // S += weight P
   kLight,    // L += S row; S = 0
+  kSample,   // L += weight P row light
   kScale,    // P *= weight
-  kGeneral   // tau = weight P; what the vertex does to tau and L; P = tau. S is 0
+  kGas,      // tau = weight P; what the vertex does to tau, L and q; P = tau
+  kKeepOne   // P = 0 but for one channel. S is 0
 };
 
 struct PathStep {
   StepKind kind;
   float weight;
   const float* row;
-  const GeneralVertex* general;
+  union {
+    const float* light;
+    const GasVertex* gas;
+    std::size_t survivor;
+  };
 };
 
 /// Weights of derived channels by group of kRowPadding channels, and the accumulators of one path.
@@ -167,6 +169,16 @@ struct EvaluatorKernels {
   /// i < count rounded up to kMaxLanes.
   void (*mix_bands)(const float* values, const int32_t* index, const float* first, const float* second,
                     std::size_t count, float* out);
+  /// out[k] = a[k] F(terms) of channel k, begin <= k < end rounded up to the lanes of a vector.
+  void (*fresnel_row)(const FresnelTerms& terms, const float* a, std::size_t begin, std::size_t end,
+                      float* out);
+  /// The same with T of a rough boundary.
+  void (*transmission_row)(const TransmissionTerms& terms, const float* a, std::size_t begin, std::size_t end,
+                           float* out);
+  /// The same with a / (1 - a fdr_int): what KB_KIND_NONLINEAR makes of S_b.
+  void (*internal_row)(float fdr_int, const float* a, std::size_t begin, std::size_t end, float* out);
+  /// The same with B(w0, w1) of KB_KIND_TINTED.
+  void (*tinted_row)(float w0, float w1, const float* a, std::size_t begin, std::size_t end, float* out);
   /// out[i] = terms(offsets.nm[i]), or the polynomial of its cell, for i < count rounded up to the lanes of a vector. All arrays begin at
   /// the same channel. out may be the terms' factor.
   void (*colour_row)(const ColourTerms& terms, const ColourOffsets& offsets, std::size_t count, float* out);

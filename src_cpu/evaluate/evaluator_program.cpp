@@ -82,29 +82,19 @@ FresnelTerms fresnel_terms(float cosine) {
 
 /// Pointers into these arrays must stay valid while the program is built.
 void ProgramBuilder::reserve(std::size_t entries) {
-  general_count_ = 0;
-  fresnels_.clear();
-  transmissions_.clear();
-  gas_ = false;
+  gas_.clear();
   spectral_.begin_path();
   survivor_ = kAll;
   scratch_used_ = 0;
   cells_.clear();
-  if (generals_.size() < entries) grow(std::max<std::size_t>(64, 2 * entries));
+  if (gas_.capacity() < entries) grow(std::max<std::size_t>(64, 2 * entries));
   writer_ = StepWriter(steps_.data());
 }
 
 void ProgramBuilder::grow(std::size_t entries) {
   steps_.resize(StepWriter::kMostSteps * entries);
-  generals_.resize(entries);
-  fresnels_.reserve(2 * entries);
-  transmissions_.reserve(entries);
+  gas_.reserve(entries);
   cells_.reserve(5 * entries);
-}
-
-/// What its kind does not use is that of a vertex before.
-GeneralVertex& ProgramBuilder::new_general() {
-  return generals_[general_count_++];
 }
 
 /// The vertices from `first` on that refer to nothing but spectra, as most do. Returns where the first other one is.
@@ -168,7 +158,7 @@ PathProgram ProgramBuilder::build(std::span<const KbPathVertex> entries, DenseSp
   program.step_count = writer_.count();
   program.light = writer_.light();
   program.channels = spectra.channels();
-  program.gas = gas_;
+  program.gas = !gas_.empty();
   return program;
 }
 
@@ -190,57 +180,98 @@ ProgramBuilder::Factors ProgramBuilder::factors(const KbPathVertex& vertex, cons
   return from;
 }
 
-void ProgramBuilder::add_vertex(const KbPathVertex& vertex, const Factors& from, bool last,
-                                DenseSpectra& spectra) {
+void ProgramBuilder::add_vertex(const KbPathVertex& vertex, Factors from, bool last, DenseSpectra& spectra) {
   const uint32_t head = vertex.head;
+  const bool light = head & KB_VERTEX_NEE, scatters = head & KB_VERTEX_SCATTER;
   if (head & KB_VERTEX_EMIT) writer_.emit(from.emit, vertex.emit_weight);
-  if (!is_scaled(head, last)) return add_general(vertex, from, spectra);
-  if (head & KB_VERTEX_NEE)
-    writer_.reflect(from.a, from.nee, vertex.nee0);
-  else if (head & KB_VERTEX_SCATTER)
-    writer_.reflect(from.a);
-  if (head & KB_VERTEX_SCATTER) writer_.scatter(vertex.scatter0);
+  if (is_scaled(head, last)) {
+    if (light)
+      writer_.reflect(from.a, from.nee, vertex.nee0);
+    else if (scatters)
+      writer_.reflect(from.a);
+    if (scatters) writer_.scatter(vertex.scatter0);
+    return;
+  }
+  if ((light || scatters) && (head & KB_VERTEX_KIND_MASK) == KB_KIND_NONLINEAR) {
+    float* const internal = scratch_row(spectra);
+    const auto [begin, end] = needed(spectra);
+    factors_.internal_row(material_of(vertex).fdr_int, from.b, begin, end, internal);
+    from.b = internal;
+  }
+  if (light) {
+    const auto [row, weight] = product(vertex, from, vertex.nee0, vertex.nee1, spectra);
+    if (head & KB_VERTEX_DEFER)
+      add_deferred_light(row, weight, from.nee);
+    else
+      writer_.sample(row, weight, from.nee);
+  }
+  if (scatters) {
+    const auto [row, weight] = product(vertex, from, vertex.scatter0, vertex.scatter1, spectra);
+    writer_.reflect(row);
+    writer_.scatter(weight);
+  }
+  if (!(head & KB_VERTEX_DEGRADE)) return;
+  survivor_ = kb_surviving_channel(vertex.scatter1);
+  writer_.keep_one(survivor_);
 }
 
-void ProgramBuilder::add_general(const KbPathVertex& vertex, const Factors& from, DenseSpectra& spectra) {
-  const uint32_t head = vertex.head;
-  const uint32_t material = head >> KB_VERTEX_MATERIAL_SHIFT;
-  GeneralVertex& out = new_general();
-  out.kind = head & KB_VERTEX_KIND_MASK;
-  out.flags = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE | KB_VERTEX_DEFER);
-  out.nee0 = vertex.nee0;
-  out.nee1 = vertex.nee1;
-  out.scatter0 = vertex.scatter0;
-  out.scatter1 = vertex.scatter1;
-  if (out.flags & KB_VERTEX_DEGRADE) survivor_ = out.survivor = kb_surviving_channel(vertex.scatter1);
-  out.a = from.a;
-  out.b = from.b;
-  out.nee = from.nee;
+/// The vertices of the gas along the shadow ray follow.
+void ProgramBuilder::add_deferred_light(const float* row, float weight, const float* light) {
+  GasVertex& out = gas_.emplace_back();
+  out.of = GasVertex::Of::kDeferredLight;
+  out.a = row;
+  out.emit = light;
+  out.emit_weight = weight;
+  writer_.gas(out);
+}
 
-  const bool reflects = head & (KB_VERTEX_NEE | KB_VERTEX_SCATTER);
-  if (reflects && out.kind == KB_KIND_NONLINEAR) {
-    if (material >= scene_.materials.size()) throw std::logic_error("saved path: material does not exist");
-    out.fdr_int = scene_.materials[material].fdr_int;
+const KbMaterial& ProgramBuilder::material_of(const KbPathVertex& vertex) const {
+  const uint32_t material = vertex.head >> KB_VERTEX_MATERIAL_SHIFT;
+  if (material >= scene_.materials.size()) throw std::logic_error("saved path: material does not exist");
+  return scene_.materials[material];
+}
+
+ProgramBuilder::Product ProgramBuilder::product(const KbPathVertex& vertex, const Factors& from, float w0,
+                                                float w1, DenseSpectra& spectra) {
+  switch (vertex.head & KB_VERTEX_KIND_MASK) {
+    case KB_KIND_TWO_TERM:
+    case KB_KIND_NONLINEAR:
+    case KB_KIND_TINTED:
+      return {blend(from, w0, w1, spectra), 1};
+    case KB_KIND_CONDUCTOR:
+    case KB_KIND_DISPERSIVE:
+      return {reflectance(vertex, from.a, w1, spectra), w0};
+    case KB_KIND_ROUGH_TRANSMISSION:
+      return {transmission(vertex, from.a, spectra), w0};
+    default:
+      return {from.a, w0};
   }
-  if (reflects && (out.kind == KB_KIND_CONDUCTOR || out.kind == KB_KIND_DISPERSIVE))
-    add_fresnel(out, vertex, spectra);
-  if (reflects && out.kind == KB_KIND_ROUGH_TRANSMISSION) add_transmission(out, vertex, spectra);
-  writer_.general(out);
+}
+
+/// w0 S_a + w1 S_b, or KB_KIND_TINTED where there is no b.
+const float* ProgramBuilder::blend(const Factors& from, float w0, float w1, const DenseSpectra& spectra) {
+  float* const out = scratch_row(spectra);
+  const auto [begin, end] = needed(spectra);
+  if (!from.b) {
+    factors_.tinted_row(w0, w1, from.a, begin, end, out);
+    return out;
+  }
+  const float* const rows[] = {from.a + begin, from.b + begin};
+  const float weights[] = {w0, w1};
+  factors_.weighted_sum(rows, weights, 2, pad_channels(end - begin), out + begin);
+  return out;
 }
 
 /// Gas along a ray. The cells get the near end's temperature in front.
 void ProgramBuilder::add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions,
                                 DenseSpectra& spectra) {
-  GeneralVertex& out = new_general();
-  out.kind = KB_KIND_MEDIUM;
+  GasVertex& out = gas_.emplace_back();
   out.flags = vertex.head & (KB_VERTEX_EMIT | KB_VERTEX_NEE | KB_VERTEX_SCATTER | KB_VERTEX_DEFER);
   out.a = spectra.spectrum(vertex.row_a);
-  out.cells = {};
   if (out.flags & KB_VERTEX_EMIT) out.emit = spectra.spectrum(vertex.emit_row);
   out.emit_weight = vertex.emit_weight;
   out.nee0 = vertex.nee0;
   out.scatter0 = vertex.scatter0;
-  gas_ = true;
   const std::size_t count = vertex.head >> KB_VERTEX_MATERIAL_SHIFT;
   if (count > 0) {
     if (!(out.flags & KB_VERTEX_EMIT)) throw std::logic_error("saved path: a plume that does not emit");
@@ -252,55 +283,59 @@ void ProgramBuilder::add_medium(const KbPathVertex& vertex, const KbPathVertex* 
     out.reference_k = vertex.nee1;
     out.second_k = spectra.planck_second();
   }
-  writer_.general(out);
+  writer_.gas(out);
 }
 
-void ProgramBuilder::add_fresnel(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) {
+const float* ProgramBuilder::reflectance(const KbPathVertex& vertex, const float* a, float cosine,
+                                         DenseSpectra& spectra) {
+  const KbMaterial& m = material_of(vertex);
+  if (m.flags & KB_MATERIAL_PERFECT_MIRROR) return a;  // F = 1
   const uint32_t material = vertex.head >> KB_VERTEX_MATERIAL_SHIFT;
-  if (material >= scene_.materials.size()) throw std::logic_error("saved path: material does not exist");
-  if (scene_.materials[material].flags & KB_MATERIAL_PERFECT_MIRROR) {
-    out.kind = KB_KIND_SCALED;  // F = 1
-    return;
+  FresnelTerms terms = fresnel_terms(cosine);
+  if ((vertex.head & KB_VERTEX_KIND_MASK) == KB_KIND_CONDUCTOR) {
+    const auto rows = spectra.conductor(material);
+    terms.high = rows[0], terms.low = rows[1], terms.nk = rows[2];
+  } else {
+    const bool thin = m.flags & KB_MATERIAL_THIN;
+    const auto rows = spectra.dispersive(material, cosine < 0 && !thin);
+    using Of = FresnelTerms::Of;
+    if (thin) terms.of = cosine < 0 ? Of::kPaneTransmittance : Of::kPaneReflectance;
+    terms.high = rows[0], terms.low = rows[1];
   }
-  const auto side = [&](float cosine) {
-    FresnelTerms& terms = fresnels_.emplace_back(fresnel_terms(cosine));
-    if (out.kind == KB_KIND_CONDUCTOR) {
-      const auto rows = spectra.conductor(material);
-      terms.high = rows[0], terms.low = rows[1], terms.nk = rows[2];
-    } else {
-      const bool thin = scene_.materials[material].flags & KB_MATERIAL_THIN;
-      const auto rows = spectra.dispersive(material, cosine < 0 && !thin);
-      using Of = FresnelTerms::Of;
-      if (thin) terms.of = cosine < 0 ? Of::kPaneTransmittance : Of::kPaneReflectance;
-      terms.high = rows[0], terms.low = rows[1];
-    }
-    return &terms;
-  };
-  if (out.flags & KB_VERTEX_NEE) out.nee_fresnel = side(vertex.nee1);
-  if (out.flags & KB_VERTEX_SCATTER) out.scatter_fresnel = side(vertex.scatter1);
+  float* const out = scratch_row(spectra);
+  const auto [begin, end] = needed(spectra);
+  factors_.fresnel_row(terms, a, begin, end, out);
+  return out;
 }
 
-void ProgramBuilder::add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra) {
-  const uint32_t material = vertex.head >> KB_VERTEX_MATERIAL_SHIFT;
-  if (material >= scene_.materials.size()) throw std::logic_error("saved path: material does not exist");
-  const KbMaterial& m = scene_.materials[material];
+const float* ProgramBuilder::transmission(const KbPathVertex& vertex, const float* a, DenseSpectra& spectra) {
+  const KbMaterial& m = material_of(vertex);
   const KbTransmissionPair pair = kb_transmission_pair(vertex);
   const float alpha_u = std::max(m.alpha_u, KB_MIN_ALPHA), alpha_v = std::max(m.alpha_v, KB_MIN_ALPHA);
-  const auto rows = spectra.dispersive(material, pair.inside != 0);
+  const auto rows = spectra.dispersive(vertex.head >> KB_VERTEX_MATERIAL_SHIFT, pair.inside != 0);
   const double cosine = double{pair.ix} * pair.ox + double{pair.iy} * pair.oy + double{pair.iz} * pair.oz;
-  TransmissionTerms& terms = transmissions_.emplace_back();
-  terms = {rows[2],           rows[3], pair.ix + pair.ox, pair.iy + pair.oy,
-           pair.iz + pair.oz, pair.ox, pair.oy,           pair.oz};
+  TransmissionTerms terms{rows[2],           rows[3], pair.ix + pair.ox, pair.iy + pair.oy,
+                          pair.iz + pair.oz, pair.ox, pair.oy,           pair.oz};
   terms.cosine = static_cast<float>(cosine);
   terms.one_plus_cosine = static_cast<float>(1 + cosine);
   terms.inverse_alpha_u = 1 / alpha_u;
   terms.inverse_alpha_v = 1 / alpha_v;
   terms.norm = static_cast<float>(2 * (1 + 1 / (cosine * cosine)) / (double{KB_PI} * alpha_u * alpha_v));
   terms.ggx = (m.flags & KB_MATERIAL_GGX) != 0;
-  out.transmission = &terms;
+  float* const out = scratch_row(spectra);
+  const auto [begin, end] = needed(spectra);
+  factors_.transmission_row(terms, a, begin, end, out);
+  return out;
 }
 
-/// The lookup as a row, of which a path that has kept one channel gets that one's group: blocks of others have ended.
+ProgramBuilder::Range ProgramBuilder::needed(const DenseSpectra& spectra) const {
+  const std::size_t channels = spectra.channels();
+  if (survivor_ >= channels) return {0, channels};
+  const std::size_t begin = survivor_ / kRowPadding * kRowPadding;
+  return {begin, std::min(channels, begin + kRowPadding)};
+}
+
+/// The lookup as a row.
 /// corners: of texels of colours; factor: null is 1.
 void ProgramBuilder::colour(uint32_t texture, const TexelCorners& corners, const float* factor,
                             DenseSpectra& spectra, float* out) const {
@@ -312,13 +347,10 @@ void ProgramBuilder::colour(uint32_t texture, const TexelCorners& corners, const
   terms.constant = static_cast<float>(constant);
   if (terms.count % 2 == 1) add_empty_term(terms);
   ColourOffsets offsets = spectra.texture_offsets();
-  std::size_t begin = 0, end = spectra.channels();
-  if (survivor_ < end) {
-    begin = survivor_ / kRowPadding * kRowPadding;
-    end = std::min(end, begin + kRowPadding);
-    // Evaluated: one group does not earn the nodes of cells.
+  const auto [begin, end] = needed(spectra);
+  // Evaluated: one group does not earn the nodes of cells.
+  if (survivor_ != kAll)
     offsets = {offsets.nm + begin, std::clamp(offsets.distinct, begin, end) - begin, nullptr};
-  }
   terms.factor = factor ? factor + begin : nullptr;
   kernels_.colour_row(terms, offsets, end - begin, out + begin);
 }

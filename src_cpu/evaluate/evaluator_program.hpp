@@ -15,8 +15,9 @@ namespace kiloband::cpu {
 
 class ProgramBuilder {
  public:
-  ProgramBuilder(const FlatScene& scene, const EvaluatorKernels& kernels)
-      : scene_(scene), kernels_(kernels), spectral_(scene, kernels) {}
+  /// factors: the kernels that make factors of vertices.
+  ProgramBuilder(const FlatScene& scene, const EvaluatorKernels& kernels, const EvaluatorKernels& factors)
+      : scene_(scene), kernels_(kernels), factors_(factors), spectral_(scene, kernels) {}
 
   /// The program of the path in `entries` at the offset of `spectra`; valid until the next call.
   /// throws std::logic_error if the path refers to what the scene does not have
@@ -33,34 +34,42 @@ class ProgramBuilder {
   void reserve(std::size_t entries);
   void grow(std::size_t entries);
   Factors factors(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
-  void add_vertex(const KbPathVertex& vertex, const Factors& from, bool last, DenseSpectra& spectra);
+  void add_vertex(const KbPathVertex& vertex, Factors from, bool last, DenseSpectra& spectra);
   std::size_t add_plain(std::span<const KbPathVertex> entries, std::size_t first, DenseSpectra& spectra);
-  GeneralVertex& new_general();
-  void add_general(const KbPathVertex& vertex, const Factors& from, DenseSpectra& spectra);
   void add_medium(const KbPathVertex& vertex, const KbPathVertex* extensions, DenseSpectra& spectra);
-  void add_fresnel(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra);
-  void add_transmission(GeneralVertex& out, const KbPathVertex& vertex, DenseSpectra& spectra);
+  void add_deferred_light(const float* row, float weight, const float* light);
+  /// B(w0, w1) of path_vertex.h: weight times row.
+  struct Product {
+    const float* row;
+    float weight;
+  };
+  Product product(const KbPathVertex& vertex, const Factors& from, float w0, float w1, DenseSpectra& spectra);
+  const float* reflectance(const KbPathVertex& vertex, const float* a, float cosine, DenseSpectra& spectra);
+  const float* transmission(const KbPathVertex& vertex, const float* a, DenseSpectra& spectra);
+  const float* blend(const Factors& from, float w0, float w1, const DenseSpectra& spectra);
+  const KbMaterial& material_of(const KbPathVertex& vertex) const;
   const float* texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
   const float* thermal(const KbThermalSample& sample, DenseSpectra& spectra);
   void colour(uint32_t texture, const TexelCorners& corners, const float* factor, DenseSpectra& spectra,
               float* out) const;
+  /// The channels that rows of this path need: all, or the group of the one that it has kept; blocks of others have ended.
+  struct Range {
+    std::size_t begin, end;
+  };
+  Range needed(const DenseSpectra& spectra) const;
   float* scratch_row(const DenseSpectra& spectra);
 
   const FlatScene& scene_;
-  const EvaluatorKernels& kernels_;
+  const EvaluatorKernels &kernels_, &factors_;
   // Of the path at hand; these arrays have room for all that its entries can need, and others point into them.
   std::vector<PathStep> steps_;
-  std::vector<GeneralVertex> generals_;
-  std::size_t general_count_ = 0;
   StepWriter writer_;
-  std::vector<FresnelTerms> fresnels_;
-  std::vector<TransmissionTerms> transmissions_;
   SpectralTextures spectral_;
   std::vector<hwy::AlignedFreeUniquePtr<float[]>>
       scratch_;  // rows of this path; the first scratch_used_ are taken
   std::size_t scratch_used_ = 0;
-  std::vector<KbPlumeCell> cells_;  // reserved: generals point into it
-  bool gas_ = false;
+  std::vector<GasVertex> gas_;
+  std::vector<KbPlumeCell> cells_;
   static constexpr std::size_t kAll = std::size_t(-1);
   std::size_t survivor_ = kAll;  // the only channel that the path still has
 };

@@ -26,6 +26,7 @@ namespace HWY_NAMESPACE {
 ///   1 - F = 2 e A B (1 / a^2 + 1 / b^2)   without cancellation.
 /// As directions have length 1, a = s.(wi - e wo) = -E and b = -c E with E = e^2 - 1, whatever they are, and
 ///   T = 2 (1 + 1 / c^2) / (pi alpha_u alpha_v)  e / E^2  shape (A B / s_z^2)^2.
+template <bool kGgx>
 HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) {
   const Floats d = hn::LoadU(kTag, p.index_less_one + k);
   const Floats x = hn::MulAdd(d, constant(p.ox), constant(p.sx));
@@ -35,11 +36,11 @@ HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) 
   const Floats product = hn::Mul(in, hn::Add(d, constant(p.one_plus_cosine)));  // -A B
   const Floats u = hn::Mul(x, constant(p.inverse_alpha_u)), v = hn::Mul(y, constant(p.inverse_alpha_v));
   const Floats q = hn::MulAdd(u, u, square(v)), z2 = hn::Max(square(z), constant(kTiny));
-  const Floats height = p.ggx ? hn::Add(z2, q) : z2;  // of GGX, shape is a part of the quotient
+  const Floats height = kGgx ? hn::Add(z2, q) : z2;  // of GGX, shape is a part of the quotient
   const Floats inverse = hn::Div(constant(1), height);
   const Floats quotient = hn::Mul(product, inverse);
   Floats norm = hn::Mul(constant(p.norm), hn::LoadU(kTag, p.index_factor + k));
-  if (!p.ggx) norm = hn::Mul(norm, hn::Exp(kTag, hn::Mul(hn::Neg(q), inverse)));
+  if constexpr (!kGgx) norm = hn::Mul(norm, hn::Exp(kTag, hn::Mul(hn::Neg(q), inverse)));
   const auto valid = hn::And(hn::Lt(product, hn::Zero(kTag)), hn::Gt(hn::Mul(in, z), hn::Zero(kTag)));
   return hn::IfThenElseZero(valid, hn::Mul(norm, square(quotient)));
 }

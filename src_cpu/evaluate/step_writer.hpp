@@ -11,8 +11,8 @@ namespace kiloband::cpu {
 /// Scalars become weights of steps: the throughput is scale P, of which P is a product of rows that steps multiply.
 class StepWriter {
  public:
-  /// Most steps of an entry: emission with another row than before, a reflection with a third, P rescaled.
-  static constexpr std::size_t kMostSteps = 5;
+  /// Most steps of an entry: emission with another row than before, a light sample, a reflection, P rescaled, one channel kept.
+  static constexpr std::size_t kMostSteps = 7;
 
   StepWriter() = default;
   /// steps: room for kMostSteps times the entries of a path
@@ -51,11 +51,23 @@ class StepWriter {
     scale_ = 1;
   }
 
-  void general(const GeneralVertex& vertex) {
+  /// L += tau weight row light
+  void sample(const float* row, float weight, const float* light) {
+    next_->light = light;
+    push(StepKind::kSample, scale_ * weight, row);
+  }
+
+  void gas(const GasVertex& vertex) {
+    next_->gas = &vertex;
+    push(StepKind::kGas, scale_, nullptr);
+    scale_ = 1;
+  }
+
+  void keep_one(std::size_t channel) {
     if (light_) push(StepKind::kLight, 0, light_);
     light_ = nullptr;
-    push(StepKind::kGeneral, scale_, nullptr, &vertex);
-    scale_ = 1;
+    next_->survivor = channel;
+    push(StepKind::kKeepOne, 0, nullptr);
   }
 
  private:
@@ -64,8 +76,10 @@ class StepWriter {
     return next_ != first_ && (next_[-1].kind == StepKind::kReflect || next_[-1].kind == StepKind::kAdd);
   }
 
-  void push(StepKind kind, float weight, const float* row, const GeneralVertex* general = nullptr) {
-    *next_++ = {kind, weight, row, general};
+  void push(StepKind kind, float weight, const float* row) {
+    next_->kind = kind;
+    next_->weight = weight;
+    next_++->row = row;
   }
 
   /// From here on S is in units of `row`.
