@@ -11,8 +11,8 @@
 
 #include "scene/compile/flat_scene.hpp"
 #include "scene/description/derived_channels.hpp"
-#include "src_cpu/evaluate/colour_cells.hpp"
 #include "src_cpu/evaluate/evaluator_kernels.hpp"
+#include "src_cpu/evaluate/texture/colour_cells.hpp"
 
 namespace kiloband::cpu {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "src_cpu/evaluate/dense_spectra.hpp"
-#include "src_cpu/evaluate/spectral_textures.hpp"
 #include "src_cpu/evaluate/step_writer.hpp"
+#include "src_cpu/evaluate/texture/spectral_textures.hpp"
 #include "src_cpu/geometry/texture/texel_corners.hpp"
 #include "src_cpu/path/path_buffer.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "random_scene.hpp"
 #include "spectral/colour/rgb.hpp"
-#include "src_cpu/evaluate/colour_cells.hpp"
 #include "src_cpu/evaluate/dense_spectra.hpp"
+#include "src_cpu/evaluate/texture/colour_cells.hpp"
 
 namespace kiloband::test::test_colour_cells {
 namespace {

@@ -1,4 +1,4 @@
-#include "src_cpu/evaluate/spectral_textures.hpp"
+#include "src_cpu/evaluate/texture/spectral_textures.hpp"
 
 #include <algorithm>
 #include <stdexcept>

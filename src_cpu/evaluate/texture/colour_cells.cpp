@@ -1,4 +1,4 @@
-#include "src_cpu/evaluate/colour_cells.hpp"
+#include "src_cpu/evaluate/texture/colour_cells.hpp"
 
 #include <algorithm>
 #include <array>
