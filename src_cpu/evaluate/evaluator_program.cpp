@@ -13,27 +13,6 @@
 namespace kiloband::cpu {
 namespace {
 
-/// One term of a lookup. A flat texel is evaluated here, in double: S(1e10) is exactly 1.
-void add_texel(ColourTerms& terms, double& constant, const KbFloat4& texel, double weight) {
-  if (weight == 0) return;
-  if (texel.x == 0 && texel.y == 0) {
-    const double v = texel.z;
-    constant += weight * texel.w * (0.5 + 0.5 * v / std::sqrt(1 + v * v));
-    return;
-  }
-  const uint32_t i = terms.count++;
-  terms.coefficients[i][0] = texel.x;
-  terms.coefficients[i][1] = texel.y;
-  terms.coefficients[i][2] = texel.z;
-  terms.weights[i] = static_cast<float>(weight * texel.w);
-}
-
-/// Their number becomes even.
-void add_empty_term(ColourTerms& terms) {
-  std::ranges::fill(terms.coefficients[terms.count], 0.0f);
-  terms.weights[terms.count++] = 0;
-}
-
 /// B = w0 S_a and nothing else that steps do not have. A light sample without a scattering event multiplies
 /// P with what the next vertices must not have.
 bool is_scaled(uint32_t head, bool last) {
@@ -194,8 +173,8 @@ void ProgramBuilder::add_vertex(const KbPathVertex& vertex, Factors from, bool l
   }
   if ((light || scatters) && (head & KB_VERTEX_KIND_MASK) == KB_KIND_NONLINEAR) {
     float* const internal = scratch_row(spectra);
-    const auto [begin, end] = needed(spectra);
-    factors_.internal_row(material_of(vertex).fdr_int, from.b, begin, end, internal);
+    const ChannelRange range = needed(spectra);
+    factors_.internal_row(material_of(vertex).fdr_int, from.b, range.begin, range.end, internal);
     from.b = internal;
   }
   if (light) {
@@ -251,14 +230,14 @@ ProgramBuilder::Product ProgramBuilder::product(const KbPathVertex& vertex, cons
 /// w0 S_a + w1 S_b, or KB_KIND_TINTED where there is no b.
 const float* ProgramBuilder::blend(const Factors& from, float w0, float w1, const DenseSpectra& spectra) {
   float* const out = scratch_row(spectra);
-  const auto [begin, end] = needed(spectra);
+  const ChannelRange range = needed(spectra);
   if (!from.b) {
-    factors_.tinted_row(w0, w1, from.a, begin, end, out);
+    factors_.tinted_row(w0, w1, from.a, range.begin, range.end, out);
     return out;
   }
-  const float* const rows[] = {from.a + begin, from.b + begin};
+  const float* const rows[] = {from.a + range.begin, from.b + range.begin};
   const float weights[] = {w0, w1};
-  factors_.weighted_sum(rows, weights, 2, pad_channels(end - begin), out + begin);
+  factors_.weighted_sum(rows, weights, 2, pad_channels(range.end - range.begin), out + range.begin);
   return out;
 }
 
@@ -303,8 +282,8 @@ const float* ProgramBuilder::reflectance(const KbPathVertex& vertex, const float
     terms.high = rows[0], terms.low = rows[1];
   }
   float* const out = scratch_row(spectra);
-  const auto [begin, end] = needed(spectra);
-  factors_.fresnel_row(terms, a, begin, end, out);
+  const ChannelRange range = needed(spectra);
+  factors_.fresnel_row(terms, a, range.begin, range.end, out);
   return out;
 }
 
@@ -323,36 +302,16 @@ const float* ProgramBuilder::transmission(const KbPathVertex& vertex, const floa
   terms.norm = static_cast<float>(2 * (1 + 1 / (cosine * cosine)) / (double{KB_PI} * alpha_u * alpha_v));
   terms.ggx = (m.flags & KB_MATERIAL_GGX) != 0;
   float* const out = scratch_row(spectra);
-  const auto [begin, end] = needed(spectra);
-  factors_.transmission_row(terms, a, begin, end, out);
+  const ChannelRange range = needed(spectra);
+  factors_.transmission_row(terms, a, range.begin, range.end, out);
   return out;
 }
 
-ProgramBuilder::Range ProgramBuilder::needed(const DenseSpectra& spectra) const {
+ChannelRange ProgramBuilder::needed(const DenseSpectra& spectra) const {
   const std::size_t channels = spectra.channels();
-  if (survivor_ >= channels) return {0, channels};
+  if (survivor_ >= channels) return {0, channels, false};
   const std::size_t begin = survivor_ / kRowPadding * kRowPadding;
-  return {begin, std::min(channels, begin + kRowPadding)};
-}
-
-/// The lookup as a row.
-/// corners: of texels of colours; factor: null is 1.
-void ProgramBuilder::colour(uint32_t texture, const TexelCorners& corners, const float* factor,
-                            DenseSpectra& spectra, float* out) const {
-  const std::size_t first = scene_.textures[texture].first_texel;
-  ColourTerms terms;
-  double constant = 0;
-  for (int c = 0; c < 4; ++c)
-    add_texel(terms, constant, scene_.texels[first + corners.texel[c]], corners.weight[c]);
-  terms.constant = static_cast<float>(constant);
-  if (terms.count % 2 == 1) add_empty_term(terms);
-  ColourOffsets offsets = spectra.texture_offsets();
-  const auto [begin, end] = needed(spectra);
-  // Evaluated: one group does not earn the nodes of cells.
-  if (survivor_ != kAll)
-    offsets = {offsets.nm + begin, std::clamp(offsets.distinct, begin, end) - begin, nullptr};
-  terms.factor = factor ? factor + begin : nullptr;
-  kernels_.colour_row(terms, offsets, end - begin, out + begin);
+  return {begin, std::min(channels, begin + kRowPadding), true};
 }
 
 float* ProgramBuilder::scratch_row(const DenseSpectra& spectra) {
@@ -373,7 +332,7 @@ const float* ProgramBuilder::thermal(const KbThermalSample& sample, DenseSpectra
   const KbTextureSample lookup{index, sample.xy, static_cast<float>(sample.fractions & 0xffffu) * kUnit,
                                static_cast<float>(sample.fractions >> 16) * kUnit};
   spectra.fill_planck(sample.temperature_k, nullptr, out);
-  colour(index, TexelCorners(scene_.textures[index], lookup), out, spectra, out);
+  colours_.evaluate(index, TexelCorners(scene_.textures[index], lookup), out, spectra, needed(spectra), out);
   return out;
 }
 
@@ -390,7 +349,9 @@ const float* ProgramBuilder::texture(const KbTextureSample& sample, bool emissio
   const float* factor = emission ? spectra.unit_emission() : nullptr;
   if (t.illuminant_row != KB_NONE) factor = spectra.spectrum(t.illuminant_row);
   float* out = scratch_row(spectra);
-  colour(sample.texture, TexelCorners(t, sample), factor, spectra, out);
+  const ChannelRange range = needed(spectra);
+  if (!range.one_group) return colours_.row(sample.texture, TexelCorners(t, sample), factor, spectra, out);
+  colours_.evaluate(sample.texture, TexelCorners(t, sample), factor, spectra, range, out);
   return out;
 }
 

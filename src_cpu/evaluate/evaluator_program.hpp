@@ -7,8 +7,8 @@
 
 #include "src_cpu/evaluate/dense_spectra.hpp"
 #include "src_cpu/evaluate/step_writer.hpp"
+#include "src_cpu/evaluate/texture/colour_lookups.hpp"
 #include "src_cpu/evaluate/texture/spectral_textures.hpp"
-#include "src_cpu/geometry/texture/texel_corners.hpp"
 #include "src_cpu/path/path_buffer.hpp"
 
 namespace kiloband::cpu {
@@ -17,7 +17,11 @@ class ProgramBuilder {
  public:
   /// factors: the kernels that make factors of vertices.
   ProgramBuilder(const FlatScene& scene, const EvaluatorKernels& kernels, const EvaluatorKernels& factors)
-      : scene_(scene), kernels_(kernels), factors_(factors), spectral_(scene, kernels) {}
+      : scene_(scene),
+        kernels_(kernels),
+        factors_(factors),
+        spectral_(scene, kernels),
+        colours_(scene, kernels) {}
 
   /// The program of the path in `entries` at the offset of `spectra`; valid until the next call.
   /// throws std::logic_error if the path refers to what the scene does not have
@@ -50,13 +54,7 @@ class ProgramBuilder {
   const KbMaterial& material_of(const KbPathVertex& vertex) const;
   const float* texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
   const float* thermal(const KbThermalSample& sample, DenseSpectra& spectra);
-  void colour(uint32_t texture, const TexelCorners& corners, const float* factor, DenseSpectra& spectra,
-              float* out) const;
-  /// The channels that rows of this path need: all, or the group of the one that it has kept; blocks of others have ended.
-  struct Range {
-    std::size_t begin, end;
-  };
-  Range needed(const DenseSpectra& spectra) const;
+  ChannelRange needed(const DenseSpectra& spectra) const;
   float* scratch_row(const DenseSpectra& spectra);
 
   const FlatScene& scene_;
@@ -65,6 +63,7 @@ class ProgramBuilder {
   std::vector<PathStep> steps_;
   StepWriter writer_;
   SpectralTextures spectral_;
+  ColourLookups colours_;
   std::vector<hwy::AlignedFreeUniquePtr<float[]>>
       scratch_;  // rows of this path; the first scratch_used_ are taken
   std::size_t scratch_used_ = 0;

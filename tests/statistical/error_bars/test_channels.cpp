@@ -40,14 +40,24 @@ std::string spectral_parts() {
   return box_walls() + box_block() + box_light(kSpikes) + ball + glass + coat + light;
 }
 
-/// A square in colours of a picture, which narrow channels interpolate.
+/// Squares in colours of pictures, which narrow channels interpolate: of four texels, which are spectra, and of 3072, which are not.
 std::string painted(const TemporaryFolder& folder) {
-  const std::filesystem::path file = folder.path() / "colours.ppm";
-  std::ofstream(file) << "P3 2 2 255  220 40 30  30 160 60  40 60 200  200 190 120\n";
-  return rectangle(
-      scale("0.2") + step("translate", "x='0.05' y='0.05' z='0.1'"),
-      bsdf("diffuse", "<texture type='bitmap' name='reflectance'><string name='filename' value='" +
-                          file.string() + "'/></texture>"));
+  const std::string colours[] = {"220 40 30 ", "30 160 60 ", "40 60 200 ", "200 190 120 "};
+  std::string squares;
+  for (const int width : {2, 64}) {
+    const int height = width == 2 ? 2 : 48;
+    const std::filesystem::path file = folder.path() / ("colours" + std::to_string(width) + ".ppm");
+    std::ofstream picture(file);
+    picture << "P3 " << width << ' ' << height << " 255\n";
+    for (int i = 0; i < width * height; ++i) picture << colours[i % 7 % 4];
+    squares += rectangle(scale("0.2") + step("translate", width == 2 ? "x='0.05' y='0.05' z='0.1'"
+                                                                     : "x='-0.1' y='-0.4' z='0.3'"),
+                         bsdf("diffuse",
+                              "<texture type='bitmap' name='reflectance'>"
+                              "<string name='filename' value='" +
+                                  file.string() + "'/></texture>"));
+  }
+  return squares;
 }
 
 RenderSpec base_spec(const std::string& parts, const std::string& bands) {

@@ -94,8 +94,9 @@ KbFloat4 random_texel(std::mt19937& random) {
 void add_textures(FlatScene& scene, std::mt19937& random) {
   for (uint32_t t = 0; t < 6; ++t) {
     KbTexture texture{};
-    texture.width = 1 + below(random, 5);
-    texture.height = 1 + below(random, 5);
+    const bool large = t == 1 || t == 4;  // more texels than have rows of their own, see ColourLookups
+    texture.width = large ? 64 : 1 + below(random, 5);
+    texture.height = large ? 40 : 1 + below(random, 5);
     texture.first_texel = static_cast<uint32_t>(scene.texels.size());
     texture.wrap = t % 3;
     texture.flags = t == 3 ? KB_TEXTURE_ENVMAP : 0;

@@ -1,0 +1,54 @@
+// Lookups in textures of colours as dense rows, so that the fast steps of evaluation can use them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src_cpu/evaluate/dense_spectra.hpp"
+#include "src_cpu/geometry/texture/texel_corners.hpp"
+
+namespace kiloband::cpu {
+
+/// The channels that rows of a path need.
+struct ChannelRange {
+  std::size_t begin, end;
+  bool one_group;  // the group of the channel that the path has kept: blocks of others have ended
+};
+
+/// A lookup blends the spectra of its four texels. Where textures have few texels, each is a spectrum like others: its row is made when it is
+/// first asked for and serves all lookups at a wavelength offset. Others are evaluated four at once, see ColourTerms.
+class ColourLookups {
+ public:
+  /// Texels that have rows, of all textures together: at 512 channels 2 MiB.
+  static constexpr std::size_t kMostRows = 1024;
+
+  ColourLookups(const FlatScene& scene, const EvaluatorKernels& kernels);
+
+  /// The lookup at the offset of `spectra` times `factor` (null: 1), in `out` or a row that lives until the next offset.
+  /// factor: of a texture always the same, or null
+  const float* row(uint32_t texture, const TexelCorners& corners, const float* factor, DenseSpectra& spectra,
+                   float* out);
+  /// The same for these channels alone, from its terms. Any factor; it may be `out`.
+  void evaluate(uint32_t texture, const TexelCorners& corners, const float* factor, DenseSpectra& spectra,
+                ChannelRange range, float* out) const;
+
+ private:
+  struct Row {
+    uint64_t generation = 0;
+    const float* data = nullptr;
+  };
+
+  const float* texel_row(std::size_t number, std::size_t texel, const float* factor, DenseSpectra& spectra);
+  float* new_row(const DenseSpectra& spectra);
+
+  const FlatScene& scene_;
+  const EvaluatorKernels& kernels_;
+  std::vector<std::size_t> first_row_;  // by texture; kNone: it has none
+  std::vector<Row> rows_;               // without, then with factor
+  uint64_t generation_ = 0;
+  std::vector<hwy::AlignedFreeUniquePtr<float[]>> pool_;  // the first used_ are taken
+  std::size_t used_ = 0;
+};
+
+}  // namespace kiloband::cpu
