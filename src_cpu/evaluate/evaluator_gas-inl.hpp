@@ -1,4 +1,4 @@
-// Vertices of gas (KB_KIND_MEDIUM of shared/path_vertex.h) for one vector of channels;
+// Vertices of gas (KB_KIND_MEDIUM of shared/path_vertex.h) for a block of channels;
 // compiled once per instruction set.
 //
 // No include guard of the usual kind: see evaluator_optics-inl.hpp.

@@ -119,8 +119,9 @@ struct Block {
   }
 };
 
+/// Returns false where a path goes on in none of the block's channels: S is 0, and what is to come has no rows for them.
 template <std::size_t V>
-HWY_INLINE void run_steps(Block<V>& block, const PathProgram& path, std::size_t k, float* aside) {
+HWY_INLINE bool run_steps(Block<V>& block, const PathProgram& path, std::size_t k, float* aside) {
   for (const PathStep *step = path.steps, *end = step + path.step_count; step != end; ++step) {
     if (step->kind == StepKind::kReflect) {
       block.reflect(*step, k);
@@ -135,9 +136,10 @@ HWY_INLINE void run_steps(Block<V>& block, const PathProgram& path, std::size_t 
     } else if (step->kind == StepKind::kGas) {
       block.gas(*step, k, aside);
     } else if (!block.keep_one(*step, k)) {
-      return;
+      return false;
     }
   }
+  return true;
 }
 
 /// What is behind belongs to another pixel, which another thread may add to.
@@ -158,8 +160,7 @@ HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* fi
     block.light[i] = block.radiance[i] = hn::Zero(kTag);
     if (path.next_film) hwy::Prefetch(path.next_film + k + i * kLanes);
   });
-  run_steps(block, path, k, aside);
-  if (path.light) block.close(path.light, k);
+  if (run_steps(block, path, k, aside) && path.light) block.close(path.light, k);
   if (path.derived) block.derive(*path.derived, k);
   block.each([&](auto i) HWY_ATTR {
     const std::size_t first = k + i * kLanes;

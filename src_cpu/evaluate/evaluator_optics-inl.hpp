@@ -146,11 +146,6 @@ HWY_INLINE Floats pane(const FresnelTerms& terms, std::size_t k) {
   return hn::Div(hn::Add(f, f), hn::Add(constant(1), f));
 }
 
-HWY_INLINE Floats fresnel(const FresnelTerms& terms, std::size_t k) {
-  if (terms.nk) return conductor_fresnel(terms, k);
-  return terms.of == FresnelTerms::Of::kBoundary ? dielectric_fresnel(terms, k) : pane(terms, k);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace kiloband::cpu
 HWY_AFTER_NAMESPACE();

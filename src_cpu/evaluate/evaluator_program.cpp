@@ -66,7 +66,7 @@ void ProgramBuilder::reserve(std::size_t entries) {
   survivor_ = kAll;
   scratch_used_ = 0;
   cells_.clear();
-  if (gas_.capacity() < entries) grow(std::max<std::size_t>(64, 2 * entries));
+  if (steps_.size() < StepWriter::kMostSteps * entries) grow(std::max<std::size_t>(64, 2 * entries));
   writer_ = StepWriter(steps_.data());
 }
 

@@ -59,7 +59,7 @@ class ProgramBuilder {
 
   const FlatScene& scene_;
   const EvaluatorKernels &kernels_, &factors_;
-  // Of the path at hand; these arrays have room for all that its entries can need, and others point into them.
+  // Of the path at hand; steps, gas and cells have room for all that its entries can need, and others point into them.
   std::vector<PathStep> steps_;
   StepWriter writer_;
   SpectralTextures spectral_;

@@ -24,7 +24,7 @@ namespace HWY_NAMESPACE {
 ///   shape = exp(-t) or 1 / (1 + t)^2.
 /// Snell's law holds at m, so that e cos_t |s| = e B, and with a = A + e B, b = e A + B
 ///   1 - F = 2 e A B (1 / a^2 + 1 / b^2)   without cancellation.
-/// As directions have length 1, a = s.(wi - e wo) = -E and b = -c E with E = e^2 - 1, whatever they are, and
+/// As directions have length 1, a = s.(wi - e wo) = -E and b = c E with E = e^2 - 1, whatever they are, and
 ///   T = 2 (1 + 1 / c^2) / (pi alpha_u alpha_v)  e / E^2  shape (A B / s_z^2)^2.
 template <bool kGgx>
 HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) {
@@ -41,7 +41,9 @@ HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) 
   const Floats quotient = hn::Mul(product, inverse);
   Floats norm = hn::Mul(constant(p.norm), hn::LoadU(kTag, p.index_factor + k));
   if constexpr (!kGgx) norm = hn::Mul(norm, hn::Exp(kTag, hn::Mul(hn::Neg(q), inverse)));
-  const auto valid = hn::And(hn::Lt(product, hn::Zero(kTag)), hn::Gt(hn::Mul(in, z), hn::Zero(kTag)));
+  const auto sides = hn::And(hn::Lt(product, hn::Zero(kTag)), hn::Gt(hn::Mul(in, z), hn::Zero(kTag)));
+  // Facets that are seen edge-on: exp is 0, and the quotient may be infinite.
+  const auto valid = hn::And(sides, hn::Gt(norm, hn::Zero(kTag)));
   return hn::IfThenElseZero(valid, hn::Mul(norm, square(quotient)));
 }
 

@@ -20,7 +20,7 @@ struct ChannelRange {
 /// first asked for and serves all lookups at a wavelength offset. Others are evaluated four at once, see ColourTerms.
 class ColourLookups {
  public:
-  /// Texels that have rows, of all textures together: at 512 channels 2 MiB.
+  /// Texels that have rows, of all textures together: at 512 channels 2 MiB a thread (twice that if all reflect and emit).
   static constexpr std::size_t kMostRows = 1024;
 
   ColourLookups(const FlatScene& scene, const EvaluatorKernels& kernels);

@@ -25,7 +25,8 @@ uint32_t below(std::mt19937& random, std::size_t n) {
 constexpr uint32_t kReflectances = 8, kFirstEmission = 8, kEmissions = 5, kFirstIndex = 13, kIndices = 6;
 constexpr uint32_t kMaterials = 8;
 constexpr uint32_t kKinds[] = {KB_KIND_SCALED,    KB_KIND_TWO_TERM,   KB_KIND_NONLINEAR,
-                               KB_KIND_CONDUCTOR, KB_KIND_DISPERSIVE, KB_KIND_ROUGH_TRANSMISSION};
+                               KB_KIND_CONDUCTOR, KB_KIND_DISPERSIVE, KB_KIND_ROUGH_TRANSMISSION,
+                               KB_KIND_TINTED};
 
 /// Values in [low, high] around the hull of the channels; some tables end inside it.
 RegularTable random_table(const Channel& range, double low, double high, bool extrapolate,
@@ -156,9 +157,9 @@ KbPathVertex random_vertex(const FlatScene& scene, std::mt19937& random) {
   v.nee0 = uniform_float(random, 0.1, 1.5);
   v.scatter0 = uniform_float(random, 0.5, 2);
   const bool angle = kind == KB_KIND_CONDUCTOR || kind == KB_KIND_DISPERSIVE;
-  const double low = kind == KB_KIND_DISPERSIVE ? -1 : 0;
-  v.nee1 = uniform_float(random, angle ? low : 0.1, 1);
-  v.scatter1 = uniform_float(random, angle ? low : 0.1, 1);
+  const double low = kind == KB_KIND_DISPERSIVE || kind == KB_KIND_TINTED ? -1 : angle ? 0 : 0.1;
+  v.nee1 = uniform_float(random, low, 1);
+  v.scatter1 = uniform_float(random, low, 1);
   if (kind == KB_KIND_SCALED && chance(random, 0.2)) {
     v.head |= KB_VERTEX_DEGRADE | KB_VERTEX_SCATTER;
     v.scatter1 = kb_channel_weight(below(random, scene.channels.size()));

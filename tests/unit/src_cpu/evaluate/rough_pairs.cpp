@@ -111,6 +111,26 @@ double RoughPairs::allowed(std::size_t path, std::size_t k) const {
          2 * (1 + mixed) * (1 / std::abs(in) + 1 / std::abs(out));
 }
 
+RoughPairs edge_on_facets() {
+  RoughPairs pairs(0.3f, false, false);
+  for (std::size_t k = 0; k < pairs.index.size(); ++k) pairs.index[k] = 1.2 + 0.6 * static_cast<double>(k);
+  std::vector<double> entries = pairs.index;
+  entries.push_back(1);
+  pairs.scene.spectra[0] = row(table(500, 2, entries));
+  pairs.paths = {};
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(0, 1);
+  while (pairs.paths.paths.size() < 4000) {
+    const double e = pairs.index[random() % pairs.index.size()], off = 1 + 2e-7 * (unit(random) - 0.5);
+    const double iz = std::pow(10, -3 * unit(random)), oz = -iz / e * off, turn = 2 * KB_PI * unit(random),
+                 bend = 0.3 * unit(random);
+    const double i = std::sqrt(1 - iz * iz), o = std::sqrt(1 - oz * oz);
+    append_pair(pairs, {i * std::cos(turn), i * std::sin(turn), iz},
+                {-o * std::cos(turn + bend), -o * std::sin(turn + bend), oz});
+  }
+  return pairs;
+}
+
 RoughPairs horizontal_facet() {
   RoughPairs pairs(0.5f, false, false);
   pairs.paths = {};

@@ -34,6 +34,9 @@ struct RoughPairs {
 RoughPairs horizontal_facet();
 inline constexpr std::size_t kHorizontal[] = {4, 5, 6};
 
+/// Pairs of Beckmann's distribution whose facet is all but vertical at one of the indices, up to 6.6: T is next to 0 there.
+RoughPairs edge_on_facets();
+
 struct Errors {
   double largest = 0;       // in units of what allowed() gives
   std::size_t counted = 0;  // values

@@ -150,6 +150,29 @@ TEST_P(Invariants, InvalidWeightsStayInTheirPixel) {
   }
 }
 
+/// Of the row of its light, the path behind an invalid one makes the channels of one group; the row's memory has been the other path's.
+TEST_P(Invariants, PathsThatKeepOneChannelReadNoOthers) {
+  std::mt19937 random(18);
+  const FlatScene scene = make_scene(make_channels(200, Layout::kRegular, random), random);
+  KbPathVertex invalid{}, keeps{}, lit{};
+  invalid.head = KB_KIND_TWO_TERM | KB_VERTEX_NEE | KB_VERTEX_SCATTER;
+  invalid.nee_row = 8;
+  invalid.nee0 = invalid.nee1 = invalid.scatter0 = invalid.scatter1 = std::numeric_limits<float>::infinity();
+  keeps.head = KB_KIND_SCALED | KB_VERTEX_SCATTER | KB_VERTEX_DEGRADE;
+  keeps.scatter0 = 1;
+  keeps.scatter1 = kb_channel_weight(70);
+  lit.head = KB_KIND_SCALED | KB_VERTEX_EMIT | KB_VERTEX_TEX_EMIT;
+  lit.emit_weight = 1;
+  const KbTextureSample sample{3, 0, 0.5f, 0.5f};
+  PathBuffer paths;
+  paths.entries = {invalid, keeps, lit, {}};
+  std::memcpy(&paths.entries[3], &sample, sizeof sample);
+  paths.paths = {{0, 1, 0}, {1, 3, 1}};
+  const std::vector<float> sums = evaluate(scene, {}, paths, GetParam(), 0.5);
+  const std::size_t stride = sums.size() / 2;
+  for (std::size_t k = 0; k < 200; ++k) EXPECT_EQ(sums[stride + k] != 0, k == 70) << sums[stride + k];
+}
+
 INSTANTIATE_TEST_SUITE_P(, Invariants, testing::ValuesIn(available_isas()), isa_name);
 
 TEST(EvaluatorErrors, BrokenPathsAreOurBugs) {

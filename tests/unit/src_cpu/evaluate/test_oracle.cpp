@@ -104,7 +104,7 @@ TEST_P(Oracle, LongPath) {
   vertex.scatter0 = 2;
   paths.entries.assign(1000, vertex);
   EXPECT_LT(largest_error(scene, {}, paths, GetParam(), 0.3, true), kLongTolerance);
-  // The general step takes the same path.
+  // The same through rows of its own.
   for (KbPathVertex& v : paths.entries) v.head = (v.head & ~KB_VERTEX_KIND_MASK) | KB_KIND_TWO_TERM;
   EXPECT_LT(largest_error(scene, {}, paths, GetParam(), 0.3, true), kLongTolerance);
 }

@@ -28,6 +28,14 @@ TEST_P(RoughTransmission, HorizontalFacetsAreDark) {
   for (const std::size_t k : kHorizontal) EXPECT_EQ(values[k], 0) << pairs.index[k];
 }
 
+TEST_P(RoughTransmission, FacetsSeenEdgeOnStayFinite) {
+  const RoughPairs pairs = edge_on_facets();
+  for (const float value : evaluate(pairs.scene, {}, pairs.paths, GetParam(), 0)) {
+    ASSERT_GE(value, 0);
+    ASSERT_LT(value, 1e6);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(, RoughTransmission, testing::ValuesIn(available_isas()), isa_name);
 
 }  // namespace
