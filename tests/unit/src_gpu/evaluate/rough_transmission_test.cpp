@@ -34,16 +34,27 @@ TEST(DeviceRoughTransmission, HoldsTheDigitsThatDirectionsHave) {
   }
 }
 
-TEST(DeviceRoughTransmission, HorizontalFacetsAreDark) {
+std::vector<float> values_of(const RoughPairs& pairs) {
   EvaluatorProgram program({});
-  const RoughPairs pairs = horizontal_facet();
   const opencl::ChannelTables tables = opencl::make_channel_tables(pairs.scene, {});
   const RoundOfPaths round = one_round(pairs.paths.paths.size());
   DeviceEvaluator device(program, pairs.scene, tables, round.pixels);
   device.load(pairs.paths, round, false);
   device.batch(3, 5);
-  const std::vector<float> values = device.means();
+  return device.means();
+}
+
+TEST(DeviceRoughTransmission, HorizontalFacetsAreDark) {
+  const RoughPairs pairs = horizontal_facet();
+  const std::vector<float> values = values_of(pairs);
   for (const std::size_t k : kHorizontal) EXPECT_EQ(values[k], 0) << pairs.index[k];
+}
+
+TEST(DeviceRoughTransmission, FacetsSeenEdgeOnStayFinite) {
+  for (const float value : values_of(edge_on_facets())) {
+    ASSERT_GE(value, 0);
+    ASSERT_LT(value, 1e6);
+  }
 }
 
 }  // namespace
