@@ -43,17 +43,6 @@ bool is_metallic(double n, double k) {
 
 }  // namespace
 
-template <class T>
-hwy::AlignedFreeUniquePtr<T[]> aligned_zeros(std::size_t n) {
-  auto memory = hwy::AllocateAligned<T>(std::max<std::size_t>(n, 1));
-  if (!memory) throw std::bad_alloc();
-  std::fill_n(memory.get(), n, T{0});
-  return memory;
-}
-template hwy::AlignedFreeUniquePtr<float[]> aligned_zeros<float>(std::size_t);
-template hwy::AlignedFreeUniquePtr<double[]> aligned_zeros<double>(std::size_t);
-template hwy::AlignedFreeUniquePtr<int32_t[]> aligned_zeros<int32_t>(std::size_t);
-
 DenseSpectra::DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kernels)
     : scene_(scene),
       kernels_(kernels),
@@ -65,7 +54,8 @@ DenseSpectra::DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kerne
       unit_emission_(aligned_zeros<float>(padded_)),
       rows_(scene.spectra.size()),
       material_rows_(scene.materials.size()),
-      float_tables_(scene.spectra.size()) {
+      float_tables_(scene.spectra.size()),
+      pool_(channels_) {
   if (scene.channel_scale.size() != channels_)
     throw std::logic_error("dense spectra: channel_scale has not K entries");
   for (std::size_t k = 0; k < channels_; ++k) {
@@ -85,19 +75,12 @@ void DenseSpectra::begin(double mu, bool fast) {
   mu_ = mu;
   fast_ = fast;
   ++generation_;
-  used_ = 0;
+  pool_.release();
   for (std::size_t k = 0; k < channels_; ++k) lambda_[k] = (1 - mu) * min_nm_[k] + mu * max_nm_[k];
 }
 
 void DenseSpectra::throw_bad_row(uint32_t s) {
   throw std::logic_error("saved path: spectrum " + std::to_string(s) + " does not exist");
-}
-
-/// A row of the pool. Its padding is zero: rows are only ever written in their first K
-/// entries, or zeros beyond.
-float* DenseSpectra::new_row() {
-  if (used_ == pool_.size()) pool_.push_back(aligned_zeros<float>(padded_));
-  return pool_[used_++].get();
 }
 
 ColourOffsets DenseSpectra::texture_offsets() {
@@ -130,7 +113,7 @@ const float* DenseSpectra::planck_second() {
 }
 
 const float* DenseSpectra::make_spectrum(uint32_t s) {
-  float* out = new_row();
+  float* out = pool_.take();
   const SpectrumRow& row = scene_.spectra[s];
   if (row.absorption) {
     for (std::size_t k = 0; k < channels_; ++k) out[k] = static_cast<float>((*row.absorption)(k, mu_));
@@ -221,7 +204,7 @@ std::array<const float*, 3> DenseSpectra::conductor(uint32_t material) {
   if (rows.generation[0] != generation_) {
     const KbMaterial& record = scene_.materials[material];
     if (record.k_row >= rows_.size()) throw_bad_row(record.k_row);
-    rows.data[0] = {new_row(), new_row(), new_row(), nullptr};
+    rows.data[0] = {pool_.take(), pool_.take(), pool_.take(), nullptr};
     for (std::size_t k = 0; k < channels_; ++k) {
       const double n = value_at(scene_.spectra[record.eta_row], lambda_[k]);
       const double absorption = value_at(scene_.spectra[record.k_row], lambda_[k]);
@@ -240,7 +223,7 @@ std::array<const float*, 4> DenseSpectra::dispersive(uint32_t material, bool ins
   if (rows.generation[inside] != generation_) {
     const KbMaterial& record = scene_.materials[material];
     if (record.ext_row != KB_NONE && record.ext_row >= rows_.size()) throw_bad_row(record.ext_row);
-    rows.data[inside] = {new_row(), new_row(), new_row(), new_row()};
+    rows.data[inside] = {pool_.take(), pool_.take(), pool_.take(), pool_.take()};
     for (std::size_t k = 0; k < channels_; ++k) {
       const double interior = value_at(scene_.spectra[record.eta_row], lambda_[k]);
       const double exterior =

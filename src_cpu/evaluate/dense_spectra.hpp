@@ -1,8 +1,6 @@
 // The spectra that paths refer to, as dense rows [spectrum][channel] at one wavelength offset mu.
 #pragma once
 
-#include <hwy/aligned_allocator.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,19 +9,10 @@
 
 #include "scene/compile/flat_scene.hpp"
 #include "scene/description/derived_channels.hpp"
-#include "src_cpu/evaluate/evaluator_kernels.hpp"
+#include "src_cpu/evaluate/rows.hpp"
 #include "src_cpu/evaluate/texture/colour_cells.hpp"
 
 namespace kiloband::cpu {
-
-/// n rounded up to a multiple of the padding of channel rows.
-inline std::size_t pad_channels(std::size_t n) {
-  return (n + kRowPadding - 1) / kRowPadding * kRowPadding;
-}
-
-/// `n` zeros, aligned for vectors.
-template <class T>
-hwy::AlignedFreeUniquePtr<T[]> aligned_zeros(std::size_t n);
 
 /// Dense spectra of one wavelength offset mu: row s holds spectrum s at lambda_k = (1 - mu) min_k + mu max_k
 /// for every channel, padded with zeros to a multiple of 64 floats and aligned to 64 bytes. Emission rows
@@ -109,7 +98,6 @@ struct DenseSpectra {
   };
 
   [[noreturn]] static void throw_bad_row(uint32_t s);
-  float* new_row();
   const float* make_spectrum(uint32_t s);
   void fill_exact(uint32_t s, float* out);
   /// Planck's law in film units, shared by the emissivities of one temperature.
@@ -135,12 +123,11 @@ struct DenseSpectra {
   const ColourCells* placed_cells_ = nullptr;
   uint64_t planck_second_generation_ = 0;
   hwy::AlignedFreeUniquePtr<float[]> unit_emission_, planck_second_;
-  std::vector<Row> rows_;                                 // by spectrum
-  std::vector<MaterialRows> material_rows_;               // by material
-  std::map<double, PlanckRow> planck_;                    // by temperature
-  std::vector<std::vector<float>> float_tables_;          // by spectrum, made when needed
-  std::vector<hwy::AlignedFreeUniquePtr<float[]>> pool_;  // memory of rows; the first used_ are taken
-  std::size_t used_ = 0;
+  std::vector<Row> rows_;                         // by spectrum
+  std::vector<MaterialRows> material_rows_;       // by material
+  std::map<double, PlanckRow> planck_;            // by temperature
+  std::vector<std::vector<float>> float_tables_;  // by spectrum, made when needed
+  RowPool pool_;  // padding is zero: rows are only ever written in their first K entries, or zeros beyond
 };
 
 }  // namespace kiloband::cpu

@@ -64,7 +64,7 @@ void ProgramBuilder::reserve(std::size_t entries) {
   gas_.clear();
   spectral_.begin_path();
   survivor_ = kAll;
-  scratch_used_ = 0;
+  scratch_.release();
   cells_.clear();
   if (steps_.size() < StepWriter::kMostSteps * entries) grow(std::max<std::size_t>(64, 2 * entries));
   writer_ = StepWriter(steps_.data());
@@ -172,7 +172,7 @@ void ProgramBuilder::add_vertex(const KbPathVertex& vertex, Factors from, bool l
     return;
   }
   if ((light || scatters) && (head & KB_VERTEX_KIND_MASK) == KB_KIND_NONLINEAR) {
-    float* const internal = scratch_row(spectra);
+    float* const internal = scratch_.take();
     const ChannelRange range = needed(spectra);
     factors_.internal_row(material_of(vertex).fdr_int, from.b, range.begin, range.end, internal);
     from.b = internal;
@@ -229,7 +229,7 @@ ProgramBuilder::Product ProgramBuilder::product(const KbPathVertex& vertex, cons
 
 /// w0 S_a + w1 S_b, or KB_KIND_TINTED where there is no b.
 const float* ProgramBuilder::blend(const Factors& from, float w0, float w1, const DenseSpectra& spectra) {
-  float* const out = scratch_row(spectra);
+  float* const out = scratch_.take();
   const ChannelRange range = needed(spectra);
   if (!from.b) {
     factors_.tinted_row(w0, w1, from.a, range.begin, range.end, out);
@@ -281,7 +281,7 @@ const float* ProgramBuilder::reflectance(const KbPathVertex& vertex, const float
     if (thin) terms.of = cosine < 0 ? Of::kPaneTransmittance : Of::kPaneReflectance;
     terms.high = rows[0], terms.low = rows[1];
   }
-  float* const out = scratch_row(spectra);
+  float* const out = scratch_.take();
   const ChannelRange range = needed(spectra);
   factors_.fresnel_row(terms, a, range.begin, range.end, out);
   return out;
@@ -301,7 +301,7 @@ const float* ProgramBuilder::transmission(const KbPathVertex& vertex, const floa
   terms.inverse_alpha_v = 1 / alpha_v;
   terms.norm = static_cast<float>(2 * (1 + 1 / (cosine * cosine)) / (double{KB_PI} * alpha_u * alpha_v));
   terms.ggx = (m.flags & KB_MATERIAL_GGX) != 0;
-  float* const out = scratch_row(spectra);
+  float* const out = scratch_.take();
   const ChannelRange range = needed(spectra);
   factors_.transmission_row(terms, a, range.begin, range.end, out);
   return out;
@@ -314,15 +314,10 @@ ChannelRange ProgramBuilder::needed(const DenseSpectra& spectra) const {
   return {begin, std::min(channels, begin + kRowPadding), true};
 }
 
-float* ProgramBuilder::scratch_row(const DenseSpectra& spectra) {
-  if (scratch_used_ == scratch_.size()) scratch_.push_back(aligned_zeros<float>(spectra.padded_channels()));
-  return scratch_[scratch_used_++].get();
-}
-
 /// An emissivity, a row or a lookup, times Planck's law at a temperature of its own.
 const float* ProgramBuilder::thermal(const KbThermalSample& sample, DenseSpectra& spectra) {
   const uint32_t index = sample.source & KB_SAMPLE_INDEX_MASK;
-  float* out = scratch_row(spectra);
+  float* out = scratch_.take();
   if (sample.source & KB_SAMPLE_ROW) {
     spectra.fill_planck(sample.temperature_k, spectra.spectrum(index), out);
     return out;
@@ -348,7 +343,7 @@ const float* ProgramBuilder::texture(const KbTextureSample& sample, bool emissio
   if (t.flags & KB_TEXTURE_SPECTRAL) return spectral_.row(sample, spectra);
   const float* factor = emission ? spectra.unit_emission() : nullptr;
   if (t.illuminant_row != KB_NONE) factor = spectra.spectrum(t.illuminant_row);
-  float* out = scratch_row(spectra);
+  float* out = scratch_.take();
   const ChannelRange range = needed(spectra);
   if (!range.one_group) return colours_.row(sample.texture, TexelCorners(t, sample), factor, spectra, out);
   colours_.evaluate(sample.texture, TexelCorners(t, sample), factor, spectra, range, out);

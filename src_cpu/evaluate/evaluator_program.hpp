@@ -18,10 +18,10 @@ class ProgramBuilder {
   /// factors: the kernels that make factors of vertices.
   ProgramBuilder(const FlatScene& scene, const EvaluatorKernels& kernels, const EvaluatorKernels& factors)
       : scene_(scene),
-        kernels_(kernels),
         factors_(factors),
         spectral_(scene, kernels),
-        colours_(scene, kernels) {}
+        colours_(scene, kernels),
+        scratch_(scene.channels.size()) {}
 
   /// The program of the path in `entries` at the offset of `spectra`; valid until the next call.
   /// throws std::logic_error if the path refers to what the scene does not have
@@ -55,18 +55,15 @@ class ProgramBuilder {
   const float* texture(const KbTextureSample& sample, bool emission, DenseSpectra& spectra);
   const float* thermal(const KbThermalSample& sample, DenseSpectra& spectra);
   ChannelRange needed(const DenseSpectra& spectra) const;
-  float* scratch_row(const DenseSpectra& spectra);
 
   const FlatScene& scene_;
-  const EvaluatorKernels &kernels_, &factors_;
+  const EvaluatorKernels& factors_;
   // Of the path at hand; steps, gas and cells have room for all that its entries can need, and others point into them.
   std::vector<PathStep> steps_;
   StepWriter writer_;
   SpectralTextures spectral_;
   ColourLookups colours_;
-  std::vector<hwy::AlignedFreeUniquePtr<float[]>>
-      scratch_;  // rows of this path; the first scratch_used_ are taken
-  std::size_t scratch_used_ = 0;
+  RowPool scratch_;  // rows of this path
   std::vector<GasVertex> gas_;
   std::vector<KbPlumeCell> cells_;
   static constexpr std::size_t kAll = std::size_t(-1);

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "shared/records.h"
-#include "src_cpu/evaluate/dense_spectra.hpp"
+#include "src_cpu/evaluate/rows.hpp"
 
 namespace kiloband::cpu {
 namespace {

@@ -37,7 +37,10 @@ void close(ColourTerms& terms, double constant) {
 }  // namespace
 
 ColourLookups::ColourLookups(const FlatScene& scene, const EvaluatorKernels& kernels)
-    : scene_(scene), kernels_(kernels), first_row_(scene.textures.size(), kNone) {
+    : scene_(scene),
+      kernels_(kernels),
+      first_row_(scene.textures.size(), kNone),
+      pool_(scene.channels.size()) {
   std::size_t rows = 0;
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     const KbTexture& t = scene.textures[i];
@@ -49,11 +52,6 @@ ColourLookups::ColourLookups(const FlatScene& scene, const EvaluatorKernels& ker
   rows_.resize(2 * rows);
 }
 
-float* ColourLookups::new_row(const DenseSpectra& spectra) {
-  if (used_ == pool_.size()) pool_.push_back(aligned_zeros<float>(spectra.padded_channels()));
-  return pool_[used_++].get();
-}
-
 const float* ColourLookups::texel_row(std::size_t number, std::size_t texel, const float* factor,
                                       DenseSpectra& spectra) {
   Row& row = rows_[factor ? rows_.size() / 2 + number : number];
@@ -63,7 +61,7 @@ const float* ColourLookups::texel_row(std::size_t number, std::size_t texel, con
   add_texel(terms, constant, scene_.texels[texel], 1);
   close(terms, constant);
   terms.factor = factor;
-  float* const out = new_row(spectra);
+  float* const out = pool_.take();
   kernels_.colour_row(terms, spectra.texture_offsets(), spectra.channels(), out);
   row = {generation_, out};
   return out;
@@ -78,7 +76,7 @@ const float* ColourLookups::row(uint32_t texture, const TexelCorners& corners, c
   }
   if (generation_ != spectra.generation()) {
     generation_ = spectra.generation();
-    used_ = 0;
+    pool_.release();
   }
   const std::size_t first = scene_.textures[texture].first_texel;
   const float* rows[4];

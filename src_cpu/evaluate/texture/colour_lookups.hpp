@@ -40,15 +40,13 @@ class ColourLookups {
   };
 
   const float* texel_row(std::size_t number, std::size_t texel, const float* factor, DenseSpectra& spectra);
-  float* new_row(const DenseSpectra& spectra);
 
   const FlatScene& scene_;
   const EvaluatorKernels& kernels_;
   std::vector<std::size_t> first_row_;  // by texture; kNone: it has none
   std::vector<Row> rows_;               // without, then with factor
   uint64_t generation_ = 0;
-  std::vector<hwy::AlignedFreeUniquePtr<float[]>> pool_;  // the first used_ are taken
-  std::size_t used_ = 0;
+  RowPool pool_;
 };
 
 }  // namespace kiloband::cpu

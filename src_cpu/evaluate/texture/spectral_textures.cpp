@@ -9,7 +9,7 @@
 namespace kiloband::cpu {
 
 SpectralTextures::SpectralTextures(const FlatScene& scene, const EvaluatorKernels& kernels)
-    : scene_(scene), kernels_(kernels) {
+    : scene_(scene), kernels_(kernels), pool_(scene.channels.size()) {
   for (const BandSet& set : scene.band_sets) rows_.push_back(make_rows(set));
 }
 
@@ -52,11 +52,6 @@ const SpectralTextures::BandRows& SpectralTextures::band_rows(uint32_t number, c
   return rows;
 }
 
-float* SpectralTextures::new_row() {
-  if (used_ == pool_.size()) pool_.push_back(aligned_zeros<float>(pad_channels(scene_.channels.size())));
-  return pool_[used_++].get();
-}
-
 void SpectralTextures::blend(const KbTexture& texture, uint32_t index, const KbTextureSample& sample) {
   if (index >= scene_.spectral_texels.size() || !scene_.spectral_texels[index])
     throw std::logic_error("saved path: texture without spectral texels");
@@ -92,7 +87,7 @@ void SpectralTextures::mixture(const KbTexture& texture, DenseSpectra& spectra, 
 const float* SpectralTextures::row(const KbTextureSample& sample, DenseSpectra& spectra) {
   const KbTexture& texture = scene_.textures[sample.texture];
   blend(texture, sample.texture, sample);
-  float* out = new_row();
+  float* out = pool_.take();
   if (texture.flags & KB_TEXTURE_BANDS)
     bands(texture, spectra, out);
   else

@@ -16,7 +16,7 @@ class SpectralTextures {
   SpectralTextures(const FlatScene& scene, const EvaluatorKernels& kernels);
 
   /// Rows that were handed out may be used again from now on.
-  void begin_path() { used_ = 0; }
+  void begin_path() { pool_.release(); }
   /// The lookup at the offset of `spectra`, padded; emission in film units, as DenseSpectra has it.
   const float* row(const KbTextureSample& sample, DenseSpectra& spectra);
 
@@ -35,15 +35,13 @@ class SpectralTextures {
   void blend(const KbTexture& texture, uint32_t index, const KbTextureSample& sample);
   void bands(const KbTexture& texture, DenseSpectra& spectra, float* out);
   void mixture(const KbTexture& texture, DenseSpectra& spectra, float* out);
-  float* new_row();
 
   const FlatScene& scene_;
   const EvaluatorKernels& kernels_;
   std::vector<BandRows> rows_;  // by band set
   std::vector<float> blended_;  // of the lookup at hand, and one more: the neighbour of the last band
   std::vector<const float*> members_;
-  std::vector<hwy::AlignedFreeUniquePtr<float[]>> pool_;
-  std::size_t used_ = 0;
+  RowPool pool_;
 };
 
 }  // namespace kiloband::cpu
