@@ -117,7 +117,7 @@ HWY_INLINE Boundary boundary(const FresnelTerms& f, std::size_t k) {
 }
 
 /// Unpolarised reflectance, numerators expanded so that E stands in front:
-///   r_s = -E / (c + g)^2,   r_p = r_s (c g - s^2) / p,   F = (r_s^2 + r_p^2) / 2 = (c^2 g^2 + s^4) (E / ((c + g)^2 p))^2.
+///   r_s = -E / (c + g)^2,   r_p = r_s (s^2 - c g) / p,   F = (r_s^2 + r_p^2) / 2 = (c^2 g^2 + s^4) (E / ((c + g)^2 p))^2.
 /// 1 where g^2 <= 0: total reflection.
 HWY_INLINE Floats dielectric_fresnel(const FresnelTerms& f, std::size_t k) {
   const Boundary b = boundary(f, k);

@@ -42,7 +42,7 @@ HWY_INLINE Floats rough_transmission(const TransmissionTerms& p, std::size_t k) 
   Floats norm = hn::Mul(constant(p.norm), hn::LoadU(kTag, p.index_factor + k));
   if constexpr (!kGgx) norm = hn::Mul(norm, hn::Exp(kTag, hn::Mul(hn::Neg(q), inverse)));
   const auto sides = hn::And(hn::Lt(product, hn::Zero(kTag)), hn::Gt(hn::Mul(in, z), hn::Zero(kTag)));
-  // Facets that are seen edge-on: exp is 0, and the quotient may be infinite.
+  // Facets that are seen edge-on: exp is 0, and the square of the quotient may be infinite.
   const auto valid = hn::And(sides, hn::Gt(norm, hn::Zero(kTag)));
   return hn::IfThenElseZero(valid, hn::Mul(norm, square(quotient)));
 }
