@@ -62,7 +62,6 @@ FresnelTerms fresnel_terms(float cosine) {
 /// Pointers into these arrays must stay valid while the program is built.
 void ProgramBuilder::reserve(std::size_t entries) {
   gas_.clear();
-  spectral_.begin_path();
   survivor_ = kAll;
   scratch_.release();
   cells_.clear();
@@ -107,7 +106,7 @@ void ProgramBuilder::fetch_texels(std::span<const KbPathVertex> entries) const {
       std::memcpy(&sample, reinterpret_cast<const char*>(&entries[i] + 1) + n * sizeof sample, sizeof sample);
       if (sample.texture >= scene_.textures.size()) continue;  // a temperature's, or none
       const KbTexture& t = scene_.textures[sample.texture];
-      if (t.flags & KB_TEXTURE_SPECTRAL) continue;
+      if ((t.flags & KB_TEXTURE_SPECTRAL) || colours_.has_rows(sample.texture)) continue;
       fetch_square(&scene_.texels[t.first_texel], t, sample.xy);
     }
     i = next;
@@ -340,14 +339,14 @@ const float* ProgramBuilder::texture(const KbTextureSample& sample, bool emissio
   }
   if (sample.texture >= scene_.textures.size()) throw std::logic_error("saved path: texture does not exist");
   const KbTexture& t = scene_.textures[sample.texture];
-  if (t.flags & KB_TEXTURE_SPECTRAL) return spectral_.row(sample, spectra);
+  float* const out = scratch_.take();
+  if (t.flags & KB_TEXTURE_SPECTRAL) {
+    spectral_.fill(sample, spectra, out);
+    return out;
+  }
   const float* factor = emission ? spectra.unit_emission() : nullptr;
   if (t.illuminant_row != KB_NONE) factor = spectra.spectrum(t.illuminant_row);
-  float* out = scratch_.take();
-  const ChannelRange range = needed(spectra);
-  if (!range.one_group) return colours_.row(sample.texture, TexelCorners(t, sample), factor, spectra, out);
-  colours_.evaluate(sample.texture, TexelCorners(t, sample), factor, spectra, range, out);
-  return out;
+  return colours_.row(sample.texture, TexelCorners(t, sample), factor, spectra, needed(spectra), out);
 }
 
 }  // namespace kiloband::cpu

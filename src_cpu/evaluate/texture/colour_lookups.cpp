@@ -6,8 +6,6 @@
 namespace kiloband::cpu {
 namespace {
 
-constexpr std::size_t kNone = std::size_t(-1);
-
 /// One term of a lookup. A flat texel is evaluated here, in double: S(1e10) is exactly 1.
 void add_texel(ColourTerms& terms, double& constant, const KbFloat4& texel, double weight) {
   if (weight == 0) return;
@@ -68,10 +66,10 @@ const float* ColourLookups::texel_row(std::size_t number, std::size_t texel, con
 }
 
 const float* ColourLookups::row(uint32_t texture, const TexelCorners& corners, const float* factor,
-                                DenseSpectra& spectra, float* out) {
-  if (first_row_[texture] == kNone ||
-      spectra.fast()) {  // a row of one path does not earn those of its texels
-    evaluate(texture, corners, factor, spectra, {0, spectra.channels(), false}, out);
+                                DenseSpectra& spectra, ChannelRange range, float* out) {
+  if (!has_rows(texture) || spectra.fast() ||
+      range.one_group) {  // one path, or one group, does not earn rows of texels
+    evaluate(texture, corners, factor, spectra, range, out);
     return out;
   }
   if (generation_ != spectra.generation()) {

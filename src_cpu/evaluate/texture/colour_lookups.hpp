@@ -25,15 +25,17 @@ class ColourLookups {
 
   ColourLookups(const FlatScene& scene, const EvaluatorKernels& kernels);
 
-  /// The lookup at the offset of `spectra` times `factor` (null: 1), in `out` or a row that lives until the next offset.
+  bool has_rows(uint32_t texture) const { return first_row_[texture] != kNone; }
+  /// The lookup at the offset of `spectra` times `factor` (null: 1) for these channels, in `out` or a row that lives until the next offset.
   /// factor: of a texture always the same, or null
   const float* row(uint32_t texture, const TexelCorners& corners, const float* factor, DenseSpectra& spectra,
-                   float* out);
-  /// The same for these channels alone, from its terms. Any factor; it may be `out`.
+                   ChannelRange range, float* out);
+  /// The same from its terms. Any factor; it may be `out`.
   void evaluate(uint32_t texture, const TexelCorners& corners, const float* factor, DenseSpectra& spectra,
                 ChannelRange range, float* out) const;
 
  private:
+  static constexpr std::size_t kNone = std::size_t(-1);
   struct Row {
     uint64_t generation = 0;
     const float* data = nullptr;

@@ -9,7 +9,7 @@
 namespace kiloband::cpu {
 
 SpectralTextures::SpectralTextures(const FlatScene& scene, const EvaluatorKernels& kernels)
-    : scene_(scene), kernels_(kernels), pool_(scene.channels.size()) {
+    : scene_(scene), kernels_(kernels) {
   for (const BandSet& set : scene.band_sets) rows_.push_back(make_rows(set));
 }
 
@@ -84,15 +84,13 @@ void SpectralTextures::mixture(const KbTexture& texture, DenseSpectra& spectra, 
                         out);
 }
 
-const float* SpectralTextures::row(const KbTextureSample& sample, DenseSpectra& spectra) {
+void SpectralTextures::fill(const KbTextureSample& sample, DenseSpectra& spectra, float* out) {
   const KbTexture& texture = scene_.textures[sample.texture];
   blend(texture, sample.texture, sample);
-  float* out = pool_.take();
   if (texture.flags & KB_TEXTURE_BANDS)
     bands(texture, spectra, out);
   else
     mixture(texture, spectra, out);
-  return out;
 }
 
 }  // namespace kiloband::cpu

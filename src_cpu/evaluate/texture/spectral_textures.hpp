@@ -15,10 +15,8 @@ class SpectralTextures {
  public:
   SpectralTextures(const FlatScene& scene, const EvaluatorKernels& kernels);
 
-  /// Rows that were handed out may be used again from now on.
-  void begin_path() { pool_.release(); }
-  /// The lookup at the offset of `spectra`, padded; emission in film units, as DenseSpectra has it.
-  const float* row(const KbTextureSample& sample, DenseSpectra& spectra);
+  /// The lookup at the offset of `spectra` in `out`, padded; emission in film units, as DenseSpectra has it.
+  void fill(const KbTextureSample& sample, DenseSpectra& spectra, float* out);
 
  private:
   /// Where the channels lie between the centres of a band set.
@@ -41,7 +39,6 @@ class SpectralTextures {
   std::vector<BandRows> rows_;  // by band set
   std::vector<float> blended_;  // of the lookup at hand, and one more: the neighbour of the last band
   std::vector<const float*> members_;
-  RowPool pool_;
 };
 
 }  // namespace kiloband::cpu

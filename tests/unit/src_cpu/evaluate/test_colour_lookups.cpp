@@ -64,7 +64,8 @@ struct Lookups {
     return {scene.textures[sample.texture], sample};
   }
   const float* row(const KbTextureSample& sample, const float* factor) {
-    return colours.row(sample.texture, corners(sample), factor, spectra, out.get());
+    return colours.row(sample.texture, corners(sample), factor, spectra, {0, spectra.channels(), false},
+                       out.get());
   }
   std::vector<float> values(const KbTextureSample& sample, const float* factor = nullptr) {
     const float* values = row(sample, factor);
