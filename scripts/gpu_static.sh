@@ -44,6 +44,9 @@ row() {
   python3 scripts/gpu_static.py "$set" "$tag" "$folder/$name.txt" "$folder/$name.sass"
 }
 
+# As most_registers() of src_gpu/evaluate/evaluation.cpp has it.
+registers_of() { if [ "$1" = diffuse ]; then echo 56; else echo 96; fi; }
+
 [ $# -gt 0 ] || set -- diffuse
 echo "| set | program | kernel | registers | stack | spills | warps | instructions |" \
   "load 4 | load 8 | load 16 | store 4 | store 8 | store 16 | local | constant | FMA | branch |"
@@ -55,7 +58,7 @@ for set in "$@"; do
   # shellcheck disable=SC2086
   {
     limit=128 row "$set" paths kernels/path/paths.cl $defines # kPathRegisters of src_gpu/device_state.cpp
-    row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation -DKB_STAGED=1
+    limit=$(registers_of "$set") row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation -DKB_STAGED=1
     row "$set" path kernels/evaluate/evaluate.cl $defines $evaluation -DKB_FILM_TRANSPOSED=1 | grep dpept_path
     row "$set" pt kernels/evaluate/pt.cl $defines $evaluation -DKB_METHOD_PT=1
   }

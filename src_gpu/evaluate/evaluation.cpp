@@ -1,6 +1,7 @@
 #include "src_gpu/evaluate/evaluation.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "base/deal_ranges.hpp"
 
@@ -35,8 +36,9 @@ const char* main_kernel(Method method) {
   return method == Method::kDpeptPath ? "dpept_path" : "dpept_batch";
 }
 
-Program build(DeviceContext& context, const char* file, std::vector<std::string> defines, bool cache) {
-  return build_program(context, file, ProgramOptions{std::move(defines), cache});
+Program build(DeviceContext& context, const char* file, std::vector<std::string> defines, bool cache,
+              uint32_t registers = 0) {
+  return build_program(context, file, ProgramOptions{std::move(defines), cache, registers});
 }
 
 /// resample_rows asks for the width, and whether the scene has gas: scenes that differ in all else share its program.
@@ -58,6 +60,35 @@ uint64_t partial_floats(const KbSpectraLayout& layout, const EvaluationShape& sh
 /// Throughputs, or radiances, of the paths in flight.
 uint64_t state_floats(const KbSpectraLayout& layout, const EvaluationShape& shape, const PoolSize& pool) {
   return shape.method == Method::kPt ? uint64_t{pool.slots} * layout.stride : 0;
+}
+
+/// The smallest groups of GPUs that are worth while. Pixels with half of that, or fewer, vectors of channels share it.
+constexpr uint64_t kWarp = 32, kHalfWarp = 16;
+/// Work-items of a GPU's group at most, usually: those that share a path, those of pixels side by side, those with a path each; and pixels side
+/// by side (measured on an H100: validation/results/gpu_h100.md).
+constexpr uint32_t kItemsOfPath = 256, kItemsSideBySide = 64, kPathsOfGroup = 64;
+constexpr uint64_t kMostPixels = 16;
+
+/// dpept_batch with the stage: pixels side by side fill the lanes that channels leave.
+void put_pixels_side_by_side(uint32_t channels, uint64_t most_items, uint64_t filled,
+                             EvaluationShape& shape) {
+  shape.width = channels >= 4 ? 4 : channels >= 2 ? 2 : 1;
+  const uint64_t vectors = ceil_div(channels, shape.width);
+  const uint64_t items = vectors <= kHalfWarp ? vectors : ceil_div(vectors, kWarp) * kWarp;
+  shape.local_size = static_cast<uint32_t>(std::min(items, most_items));
+  shape.units_per_group =
+      static_cast<uint32_t>(std::clamp<uint64_t>(filled / shape.local_size, 1, kMostPixels));
+}
+
+/// Registers that NVIDIA's compiler is held to, for more warps; 0: any number. Measured on an H100 as the sizes above; rows alone need fewer.
+uint32_t most_registers(const EvaluationShape& shape, const std::vector<std::string>& of_scene) {
+  if (!shape.staged) return 0;
+  const bool rows_alone = std::ranges::all_of(
+      std::to_array<const char*>({"KB_HAS_BITMAP=0", "KB_HAS_ENVMAP_LIGHT=0", "KB_HAS_TEMPERATURE_FIELD=0",
+                                  "KB_HAS_CONDUCTOR=0", "KB_HAS_ROUGH_CONDUCTOR=0", "KB_HAS_DISPERSION=0",
+                                  "KB_HAS_GAS=0"}),
+      [&](const char* lacks) { return std::ranges::find(of_scene, lacks) != of_scene.end(); });
+  return rows_alone ? 56 : 96;
 }
 
 uint64_t pixels_of_means(const KbSpectraLayout& layout, uint64_t film_pixels) {
@@ -98,19 +129,25 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
   }
   shape.film_transposed = method == Method::kDpeptPath;
   shape.staged = method == Method::kDpeptBatch;
-  shape.width = channels >= 512 ? 4 : channels >= 128 ? 2 : 1;
   shape.vectors = 1;
-  const uint64_t wanted = largest_group.value_or(method == Method::kDpeptPath ? 64 : 256);
-  const uint64_t most = std::min(device.max_work_group_size, wanted);
-  const uint64_t items = ceil_div(ceil_div(channels, shape.width), 32) * 32;
-  shape.local_size = static_cast<uint32_t>(method == Method::kDpeptPath ? most : std::min(items, most));
+  const auto at_most = [&](uint32_t usual) {
+    return std::min<uint64_t>(device.max_work_group_size, largest_group.value_or(usual));
+  };
+  if (shape.staged) {
+    put_pixels_side_by_side(channels, at_most(kItemsOfPath), at_most(kItemsSideBySide), shape);
+    return shape;
+  }
+  shape.width = channels >= 512 ? 4 : channels >= 128 ? 2 : 1;
+  const uint64_t items = ceil_div(ceil_div(channels, shape.width), kWarp) * kWarp;
+  shape.local_size = static_cast<uint32_t>(
+      method == Method::kDpeptPath ? at_most(kPathsOfGroup) : std::min(items, at_most(kItemsOfPath)));
   return shape;
 }
 
-uint32_t fitting_local_size(uint32_t wanted, uint64_t kernel_limit) {
-  if (wanted <= kernel_limit) return wanted;
-  return static_cast<uint32_t>(kernel_limit >= 32 ? kernel_limit / 32 * 32
-                                                  : std::max<uint64_t>(kernel_limit, 1));
+uint32_t fitting_local_size(const EvaluationShape& shape, uint64_t kernel_limit) {
+  if (shape.group_size() <= kernel_limit) return shape.local_size;
+  const uint64_t items = kernel_limit / (shape.group_size() / shape.local_size);
+  return static_cast<uint32_t>(items >= 32 ? items / 32 * 32 : std::max<uint64_t>(items, 1));
 }
 
 uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open) {
@@ -154,14 +191,14 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
                                                 : std::vector<std::string>{},
                           program_cache)),
       program_(build(context, main_file(shape.method), joined(defines, shape.defines(layout.derived)),
-                     program_cache)),
+                     program_cache, most_registers(shape, defines))),
       clear_(film_program_.kernel("film_clear")),
       finish_(film_program_.kernel("film_finish")),
       close_(film_program_.kernel("film_close")),
       pack_(film_program_.kernel("film_pack")),
       unpack_(film_program_.kernel("film_unpack")),
       main_(program_.kernel(main_kernel(shape.method))) {
-  shape_.local_size = fitting_local_size(shape.local_size, main_->max_work_group_size());
+  shape_.local_size = fitting_local_size(shape, main_->max_work_group_size());
   buffers_.parts = shape_.local_size;
   if (layout.derived > 0 && shape.method != Method::kDpeptPath)
     derived_ = program_.kernel(shape.method == Method::kPt ? "pt_derived" : "derived_add");
@@ -294,7 +331,7 @@ void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
     return;
   }
   const uint64_t groups = ceil_div(round.pixels, shape_.units_per_group);
-  main_->launch(groups * shape_.local_size, shape_.local_size);
+  main_->launch(groups * shape_.group_size(), shape_.group_size());
   if (!derived_) return;
   derived_->set(film(film_pixel, round.open != 0));
   (*derived_)->launch(uint64_t{round.pixels} * layout_.derived, kLocalSize);

@@ -19,16 +19,18 @@ namespace kiloband::opencl {
 struct EvaluationShape {
   Method method = Method::kDpeptBatch;
   bool shared_wavelengths = true;
-  uint32_t width = 1;            // channels of a vector
-  uint32_t vectors = 1;          // of a work-item at a time
-  uint32_t local_size = 1;       // work-items that share a path
-  uint32_t units_per_group = 1;  // pixels (dpept_batch) or slots (pt) that a work-group takes
+  uint32_t width = 1;       // channels of a vector
+  uint32_t vectors = 1;     // of a work-item at a time
+  uint32_t local_size = 1;  // work-items that share a path
+  uint32_t units_per_group =
+      1;  // pixels (dpept_batch) or slots (pt) that a work-group takes; staged: side by side
   uint32_t registers = samples_in_registers(false);  // samples that are summed there
   bool film_transposed = false;
   bool staged =
       false;  // dpept_batch: work-groups bring vertices to local memory (kernels/evaluate/stage.clh)
 
   std::vector<std::string> defines(uint32_t derived) const;
+  uint32_t group_size() const { return staged ? local_size * units_per_group : local_size; }
 };
 
 /// largest_group  work-items of a group of a GPU, at most; nothing: 64 for dpept-path, whose work-items have a
@@ -36,8 +38,9 @@ struct EvaluationShape {
 EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool shared_wavelengths,
                                  uint32_t channels, std::optional<uint32_t> largest_group = {});
 
-/// Work-items of a group: no more than the compiled kernel can have, whose registers may allow fewer than the device does.
-uint32_t fitting_local_size(uint32_t wanted, uint64_t kernel_limit);
+/// Work-items that share a path: no more of them in a group than the compiled kernel can have, whose registers may allow fewer than the
+/// device does.
+uint32_t fitting_local_size(const EvaluationShape& shape, uint64_t kernel_limit);
 
 /// Sums of pixels as the host keeps them, [pixel][channels + derived] (film/replicate_sums.hpp).
 struct FilmSums {

@@ -19,6 +19,8 @@ constexpr uint64_t kLongestPath = 100000 * 3 / KB_CHUNK_ENTRIES + 1;
 
 /// Dense spectra of a block that a round may need.
 constexpr uint64_t kTablesOfBlock = 4u << 20;
+/// All of a round's: kernels count them by 4 floats (spectra_key, kernels/evaluate/path_spectra.clh).
+constexpr uint64_t kMostTableBytes = uint64_t{64} << 30;
 /// Samples of a round at most.
 constexpr uint32_t kCpuSamples = 16, kGpuSamples = 64;
 /// Rounding of a sum of so many floats stays below 32 * 2^-24 of it.
@@ -81,7 +83,8 @@ uint64_t fitting_tables(const PlanRequest& r, uint64_t jobs) {
   const uint64_t samples = uint64_t{r.samples} * r.rounds, pixels = std::max<uint64_t>(jobs / samples, 1);
   const uint64_t tables = std::min<uint64_t>(pixels, pixels / 256 + 4) * samples;
   if (r.table_bytes == 0) return tables;
-  return std::min(tables, std::max<uint64_t>(share(r.budget, kTableShare) / r.table_bytes, r.samples));
+  const uint64_t bytes = std::min(share(r.budget, kTableShare), kMostTableBytes);
+  return std::min(tables, std::max<uint64_t>(bytes / r.table_bytes, r.samples));
 }
 
 uint64_t fitting_pixels(const PlanRequest& r) {

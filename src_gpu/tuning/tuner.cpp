@@ -89,7 +89,7 @@ TuningBounds tuning_bounds(const DeviceInfo& device, const TunedRender& render, 
   const auto shape = [&](std::optional<uint32_t> largest) {
     return evaluation_shape(device, render.method, render.shared_wavelengths, render.channels, largest);
   };
-  const auto group = [&](std::optional<uint32_t> largest) { return shape(largest).local_size; };
+  const auto group = [&](std::optional<uint32_t> largest) { return shape(largest).group_size(); };
   KbSpectraLayout layout{};
   layout.stride = render.channels;
   TuningBounds bounds;

@@ -195,7 +195,8 @@ cl::Kernel DeviceEvaluator::path_kernel() {
 
 void DeviceEvaluator::batch(uint32_t local_size, uint32_t groups) {
   cl::Kernel k = batch_kernel();
-  run(k, std::size_t{groups} * local_size, local_size);
+  const std::size_t items = program_.build.staged ? program_.build.tile * local_size : local_size;
+  run(k, groups * items, items);
   if (layout_.derived == 0) return;
   evaluation_.parts = local_size;
   cl::Kernel add = evaluation_kernel("derived_add");

@@ -79,6 +79,7 @@ class DeviceEvaluator {
   /// as the pool would leave them.
   void load(const PathBuffer& paths, const RoundOfPaths& round, bool scattered = true);
 
+  /// local_size: work-items that share a path
   void batch(uint32_t local_size, uint32_t groups);
   void path(uint32_t local_size = 1);
   /// Bounce by bounce with `slots` slots, as the streaming pipeline does.

@@ -101,11 +101,22 @@ TEST(GpuPlan, RoundsThatWereOnePartBetweenRounds) {
 }
 
 TEST(GpuPlan, WorkGroupsFitTheKernel) {
-  EXPECT_EQ(fitting_local_size(128, 256), 128u);
-  EXPECT_EQ(fitting_local_size(256, 256), 256u);
-  EXPECT_EQ(fitting_local_size(256, 255), 224u);
-  EXPECT_EQ(fitting_local_size(64, 40), 32u);
-  EXPECT_EQ(fitting_local_size(64, 20), 20u);
+  const auto fitting = [](uint32_t items, uint32_t pixels, uint64_t limit) {
+    EvaluationShape shape;
+    shape.local_size = items;
+    shape.units_per_group = pixels;
+    shape.staged = pixels > 1;
+    return fitting_local_size(shape, limit);
+  };
+  EXPECT_EQ(fitting(128, 1, 256), 128u);
+  EXPECT_EQ(fitting(256, 1, 256), 256u);
+  EXPECT_EQ(fitting(256, 1, 255), 224u);
+  EXPECT_EQ(fitting(64, 1, 40), 32u);
+  EXPECT_EQ(fitting(64, 1, 20), 20u);
+  EXPECT_EQ(fitting(128, 2, 256), 128u);
+  EXPECT_EQ(fitting(128, 2, 255), 96u);
+  EXPECT_EQ(fitting(8, 16, 100), 6u);
+  EXPECT_EQ(fitting(8, 16, 10), 1u);
 }
 
 /// Vertices are staged by work-groups of GPUs that evaluate a path together, and by nothing else.
@@ -120,11 +131,28 @@ TEST(GpuPlan, WhoStagesVertices) {
       EXPECT_EQ(shape.staged, staged);
       const std::vector<std::string> defines = shape.defines(0);
       EXPECT_EQ(std::ranges::count(defines, staged ? "KB_STAGED=1" : "KB_STAGED=0"), 1);
-      if (staged) {
-        EXPECT_EQ(shape.units_per_group, 1u);
-      }
     }
   }
+}
+
+/// Pixels side by side fill a group that channels alone do not fill; groups are no larger than is asked for.
+TEST(GpuPlan, PixelsSideBySide) {
+  DeviceInfo device;
+  device.type = DeviceType::kGpu;
+  device.max_work_group_size = 1024;
+  const auto shape = [&](uint32_t channels, std::optional<uint32_t> largest = {}) {
+    return evaluation_shape(device, Method::kDpeptBatch, true, channels, largest);
+  };
+  for (uint32_t channels = 1; channels < 3000; channels += 7) {
+    for (const uint32_t largest : {32u, 64u, 256u, 1024u}) {
+      const EvaluationShape s = shape(channels, largest);
+      EXPECT_LE(s.group_size(), largest);
+      EXPECT_GE(s.local_size * s.width, std::min(channels, largest * s.width));
+      EXPECT_TRUE(s.units_per_group == 16 || 2 * s.group_size() > largest) << channels << " " << largest;
+    }
+  }
+  EXPECT_EQ(shape(512, 128).units_per_group, 1u);
+  EXPECT_EQ(shape(512, 512).units_per_group, 4u);
 }
 
 }  // namespace

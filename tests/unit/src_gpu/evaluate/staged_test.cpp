@@ -1,5 +1,5 @@
-// dpept_batch with the stage (kernels/evaluate/stage.clh), as GPUs run it, against dpept_batch without, as CPU devices run it: the same
-// bits. Derived channels too: a work-item adds its channels in the same order.
+// dpept_batch with the stage (kernels/evaluate/stage.clh), as GPUs run it, pixels side by side too, against dpept_batch without, as CPU
+// devices run it: the same bits. Derived channels too: a work-item adds its channels in the same order.
 #include <algorithm>
 
 #include "device_scene.hpp"
@@ -19,16 +19,18 @@ struct Result {
 };
 
 Result evaluated(EvaluatorProgram& program, const FlatScene& scene, const opencl::ChannelTables& tables,
-                 const PathBuffer& paths, const RoundOfPaths& round, uint32_t local_size) {
+                 const PathBuffer& paths, const RoundOfPaths& round, uint32_t items) {
   DeviceEvaluator device(program, scene, tables, round.pixels);
   device.load(paths, round);
-  device.batch(local_size, 5);
+  device.batch(items, program.build.tile > 1 ? 1 : 5);  // groups have more than one turn
   return {device.means(), device.counts()};
 }
 
-EvaluatorBuild with_stage(EvaluatorBuild build, uint32_t entries) {
+/// pixels: side by side in a work-group
+EvaluatorBuild with_stage(EvaluatorBuild build, uint32_t entries, uint32_t pixels = 1) {
   build.staged = true;
   build.stage_entries = entries;
+  build.tile = pixels;
   return build;
 }
 
@@ -36,7 +38,8 @@ class StagedEvaluation : public testing::TestWithParam<EvaluatorBuild> {};
 
 /// Textures, temperatures, dispersion; groups with fewer work-items than paths, and with items that have no channels.
 TEST_P(StagedEvaluation, SameBitsAsWithout) {
-  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), 256));
+  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), 256)),
+      side_by_side(with_stage(GetParam(), kFewestEntries, 4));
   std::mt19937 random(41);
   for (const std::size_t channels : {1u, 7u, 100u, 300u}) {
     FlatScene scene = make_device_scene(channels, Layout::kRegular, random);
@@ -50,13 +53,16 @@ TEST_P(StagedEvaluation, SameBitsAsWithout) {
       EXPECT_GT(*std::ranges::max_element(expected.means), 0);
       EXPECT_EQ(evaluated(staged, scene, tables, paths, round, local_size), expected)
           << channels << " channels, " << local_size << " items";
+      EXPECT_EQ(evaluated(side_by_side, scene, tables, paths, round, local_size), expected)
+          << channels << " channels, " << local_size << " items of a pixel";
     }
   }
 }
 
 /// Paths of hundreds of vertices on a stage of 48 entries: they come in parts, and begin where others have ended.
 TEST_P(StagedEvaluation, PathsLongerThanTheStage) {
-  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), kFewestEntries));
+  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), kFewestEntries)),
+      side_by_side(with_stage(GetParam(), kFewestEntries, 3));
   std::mt19937 random(42);
   const FlatScene scene = make_device_scene(100, Layout::kRegular, random);
   const opencl::ChannelTables tables = opencl::make_channel_tables(scene, make_responses());
@@ -70,23 +76,26 @@ TEST_P(StagedEvaluation, PathsLongerThanTheStage) {
   }
   ASSERT_GT(parts.entries.size(), 4 * kFewestEntries);
   const RoundOfPaths round = make_round(paths, 6, 9, random);
-  EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 3),
-            evaluated(without, scene, tables, paths, round, 3));
+  const Result expected = evaluated(without, scene, tables, paths, round, 3);
+  EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 3), expected);
+  EXPECT_EQ(evaluated(side_by_side, scene, tables, paths, round, 3), expected);
 }
 
 /// Cells of plumes are on the stage, too.
 TEST_P(StagedEvaluation, Gas) {
-  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), kFewestEntries));
+  EvaluatorProgram without(GetParam()), staged(with_stage(GetParam(), kFewestEntries)),
+      side_by_side(with_stage(GetParam(), kFewestEntries, 16));
   std::mt19937 random(43);
   for (const std::size_t channels : {7u, 100u}) {
     FlatScene scene = make_device_scene(channels, Layout::kRegular, random);
     add_gas(scene, random);
     const opencl::ChannelTables tables = opencl::make_channel_tables(scene, make_responses());
     const PathBuffer paths = make_gas_paths(scene, 60, random);
-    const RoundOfPaths round = make_round(paths, 12, 5, random);
+    const RoundOfPaths round = make_round(paths, 18, 25, random);
     const Result expected = evaluated(without, scene, tables, paths, round, 3);
     EXPECT_GT(*std::ranges::max_element(expected.means), 0);
     EXPECT_EQ(evaluated(staged, scene, tables, paths, round, 3), expected) << channels << " channels";
+    EXPECT_EQ(evaluated(side_by_side, scene, tables, paths, round, 3), expected) << channels << " channels";
   }
 }
 

@@ -63,8 +63,12 @@ TEST(Tuner, LaddersEndWhereSizesComeToTheSame) {
   };
   TunedRender render{Method::kDpeptBatch, true, 100, uint64_t{1} << 40};
   EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group,
-            128u);  // a vector of one channel each, in groups of 32
-  EXPECT_EQ(last(render, 3), 128u);
+            64u);  // two pixels with a vector of four channels each, in groups of 32
+  EXPECT_EQ(last(render, 3), 512u);
+  render.method = Method::kPt;  // a path has a group
+  EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group, 128u);
+  EXPECT_EQ(tuning_ladders(tuning_bounds(gpu, render, kBudget)).at(2).values.back(), 128u);
+  render.method = Method::kDpeptBatch;
   render.channels = 4000;  // vectors of 4
   EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group, 256u);
   EXPECT_EQ(last(render, 3), 1024u);
