@@ -37,13 +37,13 @@ __kernel void dpept_batch(KB_EVALUATION_PARAMS) {
   KB_FILM_INIT(film, spectra_layout->film_columns);
   __local uint4 entries[KB_PIXELS * 2 * KB_STAGE_ENTRIES];
   __local PathCursor cursors[KB_PIXELS * KB_SAMPLES_IN_REGISTERS];
-  __local uint2 staged[KB_PIXELS * KB_STAGE_PATHS];
+  __local uint2 staged[KB_PIXELS * KB_SAMPLES_IN_REGISTERS];
   __local kb_u32 samples_counted[KB_PIXELS], goes_on[2];
   const kb_u32 items = (kb_u32)get_local_size(0) / KB_PIXELS;
   const kb_u32 place = (kb_u32)get_local_id(0) / items, item = (kb_u32)get_local_id(0) % items;
   const Stage stage = {entries + place * 2u * KB_STAGE_ENTRIES,
                        cursors + place * KB_SAMPLES_IN_REGISTERS,
-                       staged + place * KB_STAGE_PATHS,
+                       staged + place * KB_SAMPLES_IN_REGISTERS,
                        samples_counted + place,
                        goes_on,
                        item,

@@ -146,8 +146,12 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
 
 uint32_t fitting_local_size(const EvaluationShape& shape, uint64_t kernel_limit) {
   if (shape.group_size() <= kernel_limit) return shape.local_size;
-  const uint64_t items = kernel_limit / (shape.group_size() / shape.local_size);
-  return static_cast<uint32_t>(items >= 32 ? items / 32 * 32 : std::max<uint64_t>(items, 1));
+  const uint64_t pixels = shape.group_size() / shape.local_size;
+  const uint64_t items = std::max<uint64_t>(kernel_limit, 1) / pixels;
+  if (items == 0)
+    throw DeviceError("a work-group of this kernel can have " + std::to_string(kernel_limit) +
+                      " work-items on this device, and " + std::to_string(pixels) + " pixels share one");
+  return static_cast<uint32_t>(items >= 32 ? items / 32 * 32 : items);
 }
 
 uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open) {

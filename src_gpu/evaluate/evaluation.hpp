@@ -40,6 +40,7 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool s
 
 /// Work-items that share a path: no more of them in a group than the compiled kernel can have, whose registers may allow fewer than the
 /// device does.
+/// throws DeviceError  not even one for each pixel
 uint32_t fitting_local_size(const EvaluationShape& shape, uint64_t kernel_limit);
 
 /// Sums of pixels as the host keeps them, [pixel][channels + derived] (film/replicate_sums.hpp).

@@ -76,7 +76,7 @@ std::string EvaluatorBuild::options() const {
   return "-DKB_WIDTH=" + std::to_string(width) + " -DKB_VECTORS=" + std::to_string(vectors) +
          " -DKB_PER_PATH=" + std::to_string(per_path) + " -DKB_DERIVED=" + std::to_string(derived) +
          film_options() + " -DKB_PIXELS=" + std::to_string(tile) + " -DKB_STAGED=" + std::to_string(staged) +
-         " -DKB_STAGE_ENTRIES=" + std::to_string(stage_entries) + " " + features;
+         (stage_entries ? " -DKB_STAGE_ENTRIES=" + std::to_string(*stage_entries) : "") + " " + features;
 }
 
 std::string EvaluatorBuild::film_options() const {

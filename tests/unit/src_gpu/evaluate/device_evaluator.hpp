@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct EvaluatorBuild {
   uint32_t tile = 1;     // KB_PIXELS
   std::string features;  // "-DKB_SPECIALISED -DKB_HAS_..."; empty: everything
   bool staged = false;   // KB_STAGED: dpept_batch alone
-  uint32_t stage_entries = 256;
+  std::optional<uint32_t>
+      stage_entries;  // KB_STAGE_ENTRIES; nothing: as many as the kernels have by themselves
 
   std::string options() const;
   std::string film_options() const;

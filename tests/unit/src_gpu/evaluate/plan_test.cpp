@@ -116,7 +116,8 @@ TEST(GpuPlan, WorkGroupsFitTheKernel) {
   EXPECT_EQ(fitting(128, 2, 256), 128u);
   EXPECT_EQ(fitting(128, 2, 255), 96u);
   EXPECT_EQ(fitting(8, 16, 100), 6u);
-  EXPECT_EQ(fitting(8, 16, 10), 1u);
+  EXPECT_EQ(fitting(8, 16, 16), 1u);
+  EXPECT_THROW(fitting(8, 16, 15), DeviceError);
 }
 
 /// Vertices are staged by work-groups of GPUs that evaluate a path together, and by nothing else.
