@@ -16,16 +16,18 @@ struct ChannelRange {
   bool one_group;  // the group of the channel that the path has kept: blocks of others have ended
 };
 
-/// A lookup blends the spectra of its four texels. Where textures have few texels, each is a spectrum like others: its row is made when it is
-/// first asked for and serves all lookups at a wavelength offset. Others are evaluated four at once, see ColourTerms.
+/// A lookup blends the spectra of its four texels. Where a texture has few colours (up to a factor), each is a spectrum like others: its row is
+/// made when it is first asked for and serves all lookups at a wavelength offset. Others are evaluated four at once, see ColourTerms.
 class ColourLookups {
  public:
-  /// Texels that have rows, of all textures together: at 512 channels 2 MiB a thread (twice that if all reflect and emit).
+  /// Colours that have rows, of all textures together: at 512 channels 2 MiB a thread (twice that if all reflect and emit).
   static constexpr std::size_t kMostRows = 1024;
+  /// Texels of a texture whose colours are looked at: 256 KiB a thread.
+  static constexpr std::size_t kMostTexels = 65536;
 
   ColourLookups(const FlatScene& scene, const EvaluatorKernels& kernels);
 
-  bool has_rows(uint32_t texture) const { return first_row_[texture] != kNone; }
+  bool has_rows(uint32_t texture) const { return first_[texture] != kNone; }
   /// The lookup at the offset of `spectra` times `factor` (null: 1) for these channels, in `out` or a row that lives until the next offset.
   /// factor: of a texture always the same, or null
   const float* row(uint32_t texture, const TexelCorners& corners, const float* factor, DenseSpectra& spectra,
@@ -41,12 +43,14 @@ class ColourLookups {
     const float* data = nullptr;
   };
 
-  const float* texel_row(std::size_t number, std::size_t texel, const float* factor, DenseSpectra& spectra);
+  const float* colour_row(std::size_t number, const float* factor, DenseSpectra& spectra);
 
   const FlatScene& scene_;
   const EvaluatorKernels& kernels_;
-  std::vector<std::size_t> first_row_;  // by texture; kNone: it has none
-  std::vector<Row> rows_;               // without, then with factor
+  std::vector<std::size_t> first_;  // by texture: of its texels in row_of_; kNone: it has no rows
+  std::vector<uint32_t> row_of_;    // by texel
+  std::vector<KbFloat4> colours_;   // by row; a texture's own
+  std::vector<Row> rows_;           // without, then with factor
   uint64_t generation_ = 0;
   RowPool pool_;
 };

@@ -1,4 +1,4 @@
-// Rows of texels against lookups that are evaluated.
+// Rows of colours against lookups that are evaluated.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -17,9 +17,10 @@ struct Size {
   uint32_t width, height;
 };
 
-/// Pictures whose rows fit into ColourLookups::kMostRows, or not: 48, 2560, 900, 500 and 70 texels.
-constexpr Size kSizes[] = {{8, 6}, {64, 40}, {30, 30}, {25, 20}, {10, 7}};
-constexpr bool kHasRows[] = {true, false, true, false, true};
+/// Pictures whose colours have rows, or not: 48, 2560, 900 and 500 of one texel each, six of 60000 texels and of more than are looked at, and 70.
+constexpr Size kSizes[] = {{8, 6}, {64, 40}, {30, 30}, {25, 20}, {300, 200}, {300, 219}, {10, 7}};
+constexpr bool kHasRows[] = {true, false, true, false, true, false, true};
+constexpr bool kFewColours[] = {false, false, false, false, true, true, false};
 
 FlatScene pictures(std::size_t channels) {
   static const SigmoidTable sigmoids;
@@ -32,7 +33,10 @@ FlatScene pictures(std::size_t channels) {
   scene.channel_scale.assign(channels, 1.0);
   std::mt19937 random(3);
   std::uniform_real_distribution<float> unit(0, 1);
-  for (const Size& size : kSizes) {
+  for (std::size_t t = 0; t < std::size(kSizes); ++t) {
+    const Size size = kSizes[t];
+    std::array<std::array<float, 3>, 6> few;
+    for (auto& colour : few) colour = sigmoids({unit(random), unit(random), unit(random)});
     KbTexture texture{};
     texture.width = size.width;
     texture.height = size.height;
@@ -41,7 +45,8 @@ FlatScene pictures(std::size_t channels) {
     texture.illuminant_row = KB_NONE;
     scene.textures.push_back(texture);
     for (uint32_t i = 0; i < size.width * size.height; ++i) {
-      const std::array<float, 3> c = sigmoids({unit(random), unit(random), unit(random)});
+      const std::array<float, 3> c =
+          kFewColours[t] ? few[random() % few.size()] : sigmoids({unit(random), unit(random), unit(random)});
       scene.texels.push_back(i % 5 == 0 ? KbFloat4{0, 0, 1e10f, unit(random)}
                                         : KbFloat4{c[0], c[1], c[2], unit(random)});
     }
@@ -91,11 +96,22 @@ KbTextureSample random_sample(uint32_t texture, std::mt19937& random) {
   return {texture, x | y << 16, unit(random), unit(random)};
 }
 
-TEST_P(ColourLookup, FewTexelsHaveRows) {
+TEST_P(ColourLookup, FewColoursHaveRows) {
   const FlatScene scene = pictures(16);
+  const Lookups lookups(scene, GetParam(), 0.5);
+  for (uint32_t t = 0; t < std::size(kSizes); ++t) EXPECT_EQ(lookups.colours.has_rows(t), kHasRows[t]) << t;
+}
+
+/// What is no sum is the row itself, whatever colours come four times.
+TEST_P(ColourLookup, OneColourIsItsRow) {
+  FlatScene scene = pictures(16);
+  for (std::size_t i = 0; i < 48; ++i) scene.texels[i] = KbFloat4{1e-5f, 2e-3f, -1, 1};
   Lookups lookups(scene, GetParam(), 0.5);
-  for (uint32_t t = 0; t < std::size(kSizes); ++t)
-    EXPECT_EQ(lookups.row({t, 2 | 3 << 16, 0, 0}, nullptr) != lookups.out.get(), kHasRows[t]) << t;
+  const float* const row = lookups.row({0, 2 | 3 << 16, 0.3f, 0.9f}, nullptr);
+  EXPECT_NE(row, lookups.out.get());
+  EXPECT_EQ(row, lookups.row({0, 5 | 1 << 16, 0.123f, 0.77f}, nullptr));
+  scene.texels[48 - 1].w = 0.5f;
+  EXPECT_EQ(lookups.row({0, 7 | 5 << 16, 0.3f, 0.9f}, nullptr), lookups.out.get());
 }
 
 /// Of 512 channels colours are interpolated in cells, by texels or by lookups.
@@ -108,7 +124,7 @@ TEST_P(ColourLookup, RowsAddUpToTheLookup) {
     std::mt19937 random(4);
     double largest = 0;
     for (int i = 0; i < 200; ++i) {
-      const KbTextureSample sample = random_sample(i % 2 == 0 ? 0 : 4, random);
+      const KbTextureSample sample = random_sample(i % 4 == 1 ? 6 : i % 4 == 3 ? 4 : 0, random);
       const float* const scaled = i % 3 == 0 ? factor.data() : nullptr;
       const std::vector<float> values = lookups.values(sample, scaled),
                                expected = lookups.evaluated(sample, scaled);
