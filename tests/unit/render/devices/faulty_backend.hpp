@@ -2,10 +2,13 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <latch>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -30,6 +33,7 @@ class FaultyBackend final : public Backend {
   void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
               const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override {
     while (waits_for_ && !*waits_for_) std::this_thread::yield();
+    if (const auto all = std::exchange(meeting_, nullptr)) meet(*all);
     const bool fails = fault_.kind != Fault::Kind::kNone && ++calls_ >= fault_.at_call;
     if (!fails) return backend_->render(film, range, blocks, stop, progress);
     const auto end = blocks.begin() + static_cast<std::ptrdiff_t>(std::min(fault_.delivered, blocks.size()));
@@ -60,6 +64,10 @@ class FaultyBackend final : public Backend {
   /// Renders nothing before the other has failed, so that it does.
   void wait_for(const FaultyBackend& other) { waits_for_ = other.failed_; }
 
+  /// Its first render() begins when as many backends as the latch counts have been given something to render, or
+  /// after a minute.
+  void meet_at(std::shared_ptr<std::latch> all) { meeting_ = std::move(all); }
+
   /// One that keeps the film as the backend does, and is another for all that.
   void claim_other_rule() {
     rule_ = backend_->sum_rule();
@@ -67,6 +75,12 @@ class FaultyBackend final : public Backend {
   }
 
  private:
+  static void meet(std::latch& all) {
+    using Clock = std::chrono::steady_clock;
+    all.count_down();
+    for (const auto end = Clock::now() + std::chrono::minutes(1); !all.try_wait() && Clock::now() < end;)
+      std::this_thread::yield();
+  }
   void check() const {
     if (fault_.auxiliary) throw DeviceError(name_ + ": lost");
   }
@@ -77,6 +91,7 @@ class FaultyBackend final : public Backend {
   std::optional<SumRule> rule_;
   int calls_ = 0;
   std::shared_ptr<std::atomic<bool>> failed_ = std::make_shared<std::atomic<bool>>(false), waits_for_;
+  std::shared_ptr<std::latch> meeting_;
 };
 
 }  // namespace kiloband::test
