@@ -192,6 +192,21 @@ const std::vector<float>& DenseSpectra::float_table(uint32_t s) {
   return table;
 }
 
+const double* DenseSpectra::exact_values(uint32_t s, std::vector<double>& out) const {
+  const SpectrumRow& row = scene_.spectra[s];
+  out.resize(padded_);
+  if (row.is_planck) {
+    for (std::size_t k = 0; k < channels_; ++k) out[k] = value_at(row, lambda_[k]);
+  } else {
+    const RegularTable& table = row.table;
+    if (table.values.size() < 2) throw_short_table();
+    kernels_.sample_double(
+        {table.values.data(), table.values.size(), table.min_nm, table.step_nm, table.extrapolate},
+        lambda_.get(), channels_, out.data());
+  }
+  return out.data();
+}
+
 DenseSpectra::MaterialRows& DenseSpectra::material_rows(uint32_t material) {
   if (material >= material_rows_.size()) throw std::logic_error("saved path: material does not exist");
   const KbMaterial& record = scene_.materials[material];
@@ -205,9 +220,10 @@ std::array<const float*, 3> DenseSpectra::conductor(uint32_t material) {
     const KbMaterial& record = scene_.materials[material];
     if (record.k_row >= rows_.size()) throw_bad_row(record.k_row);
     rows.data[0] = {pool_.take(), pool_.take(), pool_.take(), nullptr};
+    const double* const indices = exact_values(record.eta_row, optical_[0]);
+    const double* const absorptions = exact_values(record.k_row, optical_[1]);
     for (std::size_t k = 0; k < channels_; ++k) {
-      const double n = value_at(scene_.spectra[record.eta_row], lambda_[k]);
-      const double absorption = value_at(scene_.spectra[record.k_row], lambda_[k]);
+      const double n = indices[k], absorption = absorptions[k];
       split((n - 1) * (n + 1) - absorption * absorption, rows.data[0][0][k], rows.data[0][1][k]);
       // Rows of one path alone would not earn what the question costs.
       const bool metal = !fast_ && is_metallic(n, absorption);
@@ -224,10 +240,11 @@ std::array<const float*, 4> DenseSpectra::dispersive(uint32_t material, bool ins
     const KbMaterial& record = scene_.materials[material];
     if (record.ext_row != KB_NONE && record.ext_row >= rows_.size()) throw_bad_row(record.ext_row);
     rows.data[inside] = {pool_.take(), pool_.take(), pool_.take(), pool_.take()};
+    const double* const interiors = exact_values(record.eta_row, optical_[0]);
+    const double* const exteriors =
+        record.ext_row == KB_NONE ? nullptr : exact_values(record.ext_row, optical_[1]);
     for (std::size_t k = 0; k < channels_; ++k) {
-      const double interior = value_at(scene_.spectra[record.eta_row], lambda_[k]);
-      const double exterior =
-          record.ext_row == KB_NONE ? record.eta_ext : value_at(scene_.spectra[record.ext_row], lambda_[k]);
+      const double interior = interiors[k], exterior = exteriors ? exteriors[k] : record.eta_ext;
       const double e = inside ? exterior / interior : interior / exterior;
       const double big_e = (e - 1) * (e + 1);
       split(big_e, rows.data[inside][0][k], rows.data[inside][1][k]);

@@ -100,6 +100,8 @@ struct DenseSpectra {
   [[noreturn]] static void throw_bad_row(uint32_t s);
   const float* make_spectrum(uint32_t s);
   void fill_exact(uint32_t s, float* out);
+  /// Values of a spectrum without units of the film, in double, in `out`. Returns them.
+  const double* exact_values(uint32_t s, std::vector<double>& out) const;
   /// Planck's law in film units, shared by the emissivities of one temperature.
   const std::vector<double>& planck(double temperature_k);
   const std::vector<float>& float_table(uint32_t s);
@@ -127,6 +129,7 @@ struct DenseSpectra {
   std::vector<MaterialRows> material_rows_;       // by material
   std::map<double, PlanckRow> planck_;            // by temperature
   std::vector<std::vector<float>> float_tables_;  // by spectrum, made when needed
+  std::vector<double> optical_[2];                // indices of the material at hand
   RowPool pool_;  // padding is zero: rows are only ever written in their first K entries, or zeros beyond
 };
 

@@ -198,9 +198,9 @@ void evaluate_path(const PathProgram& path, float* film) {
   if (path.derived) finish_derived(*path.derived, film + path.derived_offset);
 }
 
-inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, sample_exact,     weighted_sum,
-                                           mix_bands,     fresnel_row,  transmission_row, internal_row,
-                                           tinted_row,    colour_row};
+inline constexpr EvaluatorKernels kKernels{evaluate_path, sample_table, sample_exact, sample_double,
+                                           weighted_sum,  mix_bands,    fresnel_row,  transmission_row,
+                                           internal_row,  tinted_row,   colour_row};
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kiloband::cpu

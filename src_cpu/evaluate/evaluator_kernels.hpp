@@ -161,6 +161,8 @@ struct EvaluatorKernels {
   /// the bits of RegularTable.
   void (*sample_exact)(const DoubleTable& table, const double* lambda_nm, const double* factor,
                        std::size_t count, float* out);
+  /// out[i] = table(lambda_nm[i]) for i < count rounded up to kMaxLanes, with the bits of RegularTable.
+  void (*sample_double)(const DoubleTable& table, const double* lambda_nm, std::size_t count, double* out);
   /// out[i] = sum over r < rows of weights[r] * row[r][i], i < count.
   /// Nothing is read or written beyond count.
   void (*weighted_sum)(const float* const* row, const float* weights, std::size_t rows, std::size_t count,

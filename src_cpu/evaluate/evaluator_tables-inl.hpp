@@ -90,6 +90,12 @@ inline void sample_exact(const DoubleTable& table, const double* lambda_nm, cons
   }
 }
 
+inline void sample_double(const DoubleTable& table, const double* lambda_nm, std::size_t count, double* out) {
+  const std::size_t n = hn::Lanes(kDoubleTag), end = (count + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+  for (std::size_t k = 0; k < end; k += n)
+    hn::StoreU(exact_value(table, hn::LoadU(kDoubleTag, lambda_nm + k)), kDoubleTag, out + k);
+}
+
 inline void weighted_sum(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
                          float* out) {
   std::size_t i = 0;

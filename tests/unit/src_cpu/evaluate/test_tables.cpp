@@ -50,12 +50,15 @@ TEST_P(Tables, ExactSamplesHaveTheBitsOfRegularTable) {
       std::vector<double> factor(lambda_nm.size());
       for (double& f : factor) f = uniform(random);
       std::vector<float> plain(lambda_nm.size()), scaled(lambda_nm.size());
+      std::vector<double> doubles(lambda_nm.size());
       const DoubleTable view{table.values.data(), size, table.min_nm, table.step_nm, extrapolate};
       const EvaluatorKernels& kernels = evaluator_kernels(GetParam());
       kernels.sample_exact(view, lambda_nm.data(), nullptr, lambda_nm.size(), plain.data());
       kernels.sample_exact(view, lambda_nm.data(), factor.data(), lambda_nm.size(), scaled.data());
+      kernels.sample_double(view, lambda_nm.data(), lambda_nm.size(), doubles.data());
       for (std::size_t i = 0; i < lambda_nm.size(); ++i) {
         const double value = table(lambda_nm[i]);
+        EXPECT_EQ(doubles[i], value) << lambda_nm[i] << " nm, " << size << " entries";
         EXPECT_EQ(plain[i], static_cast<float>(value)) << lambda_nm[i] << " nm, " << size << " entries";
         EXPECT_EQ(scaled[i], static_cast<float>(value * factor[i])) << lambda_nm[i] << " nm";
       }
