@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "shared/records.h"
 
@@ -33,12 +32,6 @@ namespace HWY_NAMESPACE {
 /// Vectors of a full block: P, S and L take 12 of the 16 (SSE4, AVX2) or 32 registers.
 inline constexpr std::size_t kBlockVectors = 4;
 static_assert(kBlockVectors * kLanes <= kRowPadding && kLanes <= kMaxLanes);
-
-/// Calls f with the constants 0 .. N-1: array elements stay in registers.
-template <class F, std::size_t... I>
-HWY_INLINE void unrolled(F&& f, std::index_sequence<I...>) {
-  (f(std::integral_constant<std::size_t, I>{}), ...);
-}
 
 /// State of a block of V vectors of channels: P, S and L of StepKind.
 template <std::size_t V>

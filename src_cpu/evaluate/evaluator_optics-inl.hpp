@@ -10,6 +10,8 @@
 
 #include <hwy/highway.h>
 
+#include <utility>
+
 #include "src_cpu/evaluate/evaluator_kernels.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,6 +32,12 @@ HWY_INLINE Floats square(Floats x) {
 }
 HWY_INLINE Floats constant(float x) {
   return hn::Set(kTag, x);
+}
+
+/// Calls f with the constants 0 .. N-1: array elements stay in registers.
+template <class F, std::size_t... I>
+HWY_INLINE void unrolled(F&& f, std::index_sequence<I...>) {
+  (f(std::integral_constant<std::size_t, I>{}), ...);
 }
 
 /// Smallest divisor that is used: 0 / 0 at grazing incidence on a matched boundary comes to 0.

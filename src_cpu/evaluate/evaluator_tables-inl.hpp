@@ -96,14 +96,27 @@ inline void sample_double(const DoubleTable& table, const double* lambda_nm, std
     hn::StoreU(exact_value(table, hn::LoadU(kDoubleTag, lambda_nm + k)), kDoubleTag, out + k);
 }
 
+/// V vectors of a weighted sum, from i on.
+template <std::size_t V>
+HWY_INLINE void sum_rows(const float* const* row, const float* weights, std::size_t rows, std::size_t i,
+                         float* out) {
+  constexpr std::make_index_sequence<V> kEach;
+  Floats sum[V];
+  unrolled([&](auto v) HWY_ATTR { sum[v] = hn::Zero(kTag); }, kEach);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const Floats weight = constant(weights[r]);
+    const float* const from = row[r] + i;
+    unrolled([&](auto v) HWY_ATTR { sum[v] = hn::MulAdd(weight, load(from, v * kLanes), sum[v]); }, kEach);
+  }
+  unrolled([&](auto v) HWY_ATTR { hn::StoreU(sum[v], kTag, out + i + v * kLanes); }, kEach);
+}
+
+/// Four vectors at a time: of one, the loop over its rows takes longer than they do.
 inline void weighted_sum(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
                          float* out) {
   std::size_t i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    Floats sum = hn::Zero(kTag);
-    for (std::size_t r = 0; r < rows; ++r) sum = hn::MulAdd(constant(weights[r]), load(row[r], i), sum);
-    hn::StoreU(sum, kTag, out + i);
-  }
+  for (; i + 4 * kLanes <= count; i += 4 * kLanes) sum_rows<4>(row, weights, rows, i, out);
+  for (; i + kLanes <= count; i += kLanes) sum_rows<1>(row, weights, rows, i, out);
   for (; i < count; ++i) {
     float sum = 0;
     for (std::size_t r = 0; r < rows; ++r) sum += weights[r] * row[r][i];
