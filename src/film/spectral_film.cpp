@@ -106,15 +106,14 @@ void SpectralFilm::add_pixels(const BlockSamples& samples) {
   const PixelRect& block = blocks_[samples.block];
   Coarse coarse(options_.channels);
   for (std::size_t p = 0; p < block.pixels(); ++p) {
-    if (pixels_) {
-      pixels_->add(pixel_index(block, p), samples.counts[p],
-                   samples.means.subspan(p * samples.stride, options_.channels), samples.factor(p));
-    } else {
+    const auto means = samples.means.subspan(p * samples.stride, options_.channels);
+    if (pixels_)
+      pixels_->add(pixel_index(block, p), samples.counts[p], means, samples.factor(p));
+    else
       add_held(samples, p);
-    }
-    coarse.add(samples, block, p);
+    coarse.add(block, p, samples.counts[p], means, samples.factor(p));
   }
-  add_coarse(samples, coarse);
+  add_coarse(samples.replicate, samples.block, coarse);
 }
 
 void SpectralFilm::add_held(const BlockSamples& samples, std::size_t pixel_in_block) {
@@ -130,24 +129,24 @@ void SpectralFilm::add_held(const BlockSamples& samples, std::size_t pixel_in_bl
       means);
 }
 
-void SpectralFilm::Coarse::add(const BlockSamples& samples, const PixelRect& block, std::size_t pixel) {
+void SpectralFilm::Coarse::add(const PixelRect& block, std::size_t pixel, uint32_t count,
+                               std::span<const float> means, float factor) {
   const std::size_t tile = tile_in_block(block, pixel);
-  film::add_samples({channels, &samples.means[pixel * samples.stride], samples.factor(pixel)},
-                    samples.counts[pixel], &sums[tile * channels]);
-  counts[tile] += samples.counts[pixel];
+  film::add_samples({channels, means.data(), factor}, count, &sums[tile * channels]);
+  counts[tile] += count;
 }
 
 /// The block's share of the image, tile by tile: few numbers to a sum keep its rounding small.
-void SpectralFilm::add_coarse(const BlockSamples& samples, const Coarse& coarse) {
+void SpectralFilm::add_coarse(uint32_t replicate, uint32_t block, const Coarse& coarse) {
   const std::size_t channels = options_.channels;
-  auto& block_sums = block_sums_[samples.block];
+  auto& block_sums = block_sums_[block];
   if (block_sums.empty()) block_sums.resize(options_.replicates * channels);
   for (std::size_t tile = 0; tile < kTilesPerBlock; ++tile) {
     const uint64_t count = coarse.counts[tile];
     if (count == 0) continue;
     const double* const sums = &coarse.sums[tile * channels];
-    for (std::size_t c = 0; c < channels; ++c) block_sums[samples.replicate * channels + c] += sums[c];
-    block_counts_[samples.block][samples.replicate] += count;
+    for (std::size_t c = 0; c < channels; ++c) block_sums[replicate * channels + c] += sums[c];
+    block_counts_[block][replicate] += count;
   }
 }
 

@@ -126,16 +126,16 @@ class SpectralFilm {
   struct Held;
   struct Sums;
   struct Coarse;
-  struct BlockMeans;
   void require_held() const;
   void require_sums() const;
   uint32_t attempted_at(uint32_t replicate, std::size_t pixel) const;
   void add_pixels(const BlockSamples& samples);
   void add_held(const BlockSamples& samples, std::size_t pixel_in_block);
-  void add_coarse(const BlockSamples& samples, const Coarse& coarse);
+  void add_coarse(uint32_t replicate, uint32_t block, const Coarse& coarse);
   void fold_block(uint32_t block);
-  void clear_block(uint32_t block);
-  BlockMeans means_of_block(uint32_t replicate, uint32_t block) const;
+  void clear_pixel(std::size_t pixel);
+  template <class Use>
+  void each_mean(uint32_t replicate, uint32_t block, const Use& use) const;
   void add_held_image_sums(std::vector<std::vector<double>>& sums, std::vector<uint64_t>& counts) const;
 
   PixelRect rect_;

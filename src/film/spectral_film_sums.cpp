@@ -22,7 +22,7 @@ void SpectralFilm::open_replicate(uint32_t replicate, uint32_t block) {
   if (options_.held || sums_->open.at(block) == replicate) return;
   fold_block(block);
   if (!sums_->stale.empty() && sums_->stale[block]) {
-    clear_block(block);
+    for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) clear_pixel(pixel_index(blocks_[block], p));
     sums_->stale[block] = 0;
   }
   sums_->open[block] = replicate;
@@ -41,13 +41,11 @@ void SpectralFilm::restart() {
   for (std::vector<uint64_t>& counts : block_counts_) std::ranges::fill(counts, 0);
 }
 
-void SpectralFilm::clear_block(uint32_t block) {
-  for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) {
-    const PixelSums sums = pixel_sums(0, pixel_index(blocks_[block], p));
-    sums.count = 0;
-    std::ranges::fill(sums.open, 0.0f);
-    std::ranges::fill(sums.closed, ClosedSum{0});
-  }
+void SpectralFilm::clear_pixel(std::size_t pixel) {
+  const PixelSums sums = pixel_sums(0, pixel);
+  sums.count = 0;
+  std::ranges::fill(sums.open, 0.0f);
+  std::ranges::fill(sums.closed, ClosedSum{0});
 }
 
 PixelSums SpectralFilm::pixel_sums(uint32_t replicate, std::size_t pixel) {
@@ -93,25 +91,30 @@ uint32_t SpectralFilm::attempted_at(uint32_t replicate, std::size_t pixel) const
   return attempted(replicate, block_of(pixel));
 }
 
-SpectralFilm::BlockMeans SpectralFilm::means_of_block(uint32_t replicate, uint32_t block) const {
-  const std::size_t channels = options_.channels, pixels = blocks_[block].pixels();
-  BlockMeans block_means{std::vector<uint32_t>(pixels), std::vector<float>(pixels * channels)};
-  for (std::size_t p = 0; p < pixels; ++p) {
+/// use(pixel in the block, its valid samples, their means) for all pixels of a block, one after the other: while means are in the first
+/// cache, all that is made of them is.
+template <class Use>
+void SpectralFilm::each_mean(uint32_t replicate, uint32_t block, const Use& use) const {
+  std::vector<float> means(options_.channels);
+  for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) {
     const PixelSumsView sums = pixel_sums(replicate, pixel_index(blocks_[block], p));
-    block_means.counts[p] = sums.count;
-    mean_of_sums(*options_.sums, attempted(replicate, block), sums,
-                 std::span(block_means.means).subspan(p * channels, channels));
+    mean_of_sums(*options_.sums, attempted(replicate, block), sums, means);
+    use(p, sums.count, std::span<const float>(means));
   }
-  return block_means;
 }
 
 /// Moves the open replicate of a block into the moments; nothing is open then.
 void SpectralFilm::fold_block(uint32_t block) {
   const uint32_t replicate = sums_->open[block];
   if (replicate == Sums::kNone) return;
-  const BlockMeans means = means_of_block(replicate, block);
-  add_pixels(means.samples(block, replicate, options_.channels));
-  clear_block(block);
+  Coarse coarse(options_.channels);
+  each_mean(replicate, block, [&](std::size_t p, uint32_t count, std::span<const float> means) {
+    const std::size_t pixel = pixel_index(blocks_[block], p);
+    pixels_->add(pixel, count, means);
+    coarse.add(blocks_[block], p, count, means, 1);
+    clear_pixel(pixel);
+  });
+  add_coarse(replicate, block, coarse);
   sums_->attempted[0][block] = 0;
   sums_->open[block] = Sums::kNone;
 }
@@ -129,10 +132,10 @@ void SpectralFilm::add_held_image_sums(std::vector<std::vector<double>>& sums,
   for (uint32_t block = 0; block < blocks_.size(); ++block) {
     for (uint32_t r = 0; r < options_.replicates; ++r) {
       if (attempted(r, block) == 0) continue;
-      const BlockMeans means = means_of_block(r, block);
-      const BlockSamples samples = means.samples(block, r, channels);
       Coarse coarse(channels);
-      for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) coarse.add(samples, blocks_[block], p);
+      each_mean(r, block, [&](std::size_t p, uint32_t count, std::span<const float> means) {
+        coarse.add(blocks_[block], p, count, means, 1);
+      });
       std::ranges::fill(of_block, 0.0);
       for (std::size_t tile = 0; tile < kTilesPerBlock; ++tile) {
         if (coarse.counts[tile] == 0) continue;

@@ -13,7 +13,9 @@ struct SpectralFilm::Coarse {
   explicit Coarse(std::size_t channel_count)
       : channels(channel_count), sums(kTilesPerBlock * channel_count), counts(kTilesPerBlock) {}
 
-  void add(const BlockSamples& samples, const PixelRect& block, std::size_t pixel);
+  /// The means of `count` samples of a pixel of the block, times factor.
+  void add(const PixelRect& block, std::size_t pixel, uint32_t count, std::span<const float> means,
+           float factor);
 
   std::size_t channels;
   std::vector<double> sums;      // [tile][channel]
@@ -35,16 +37,6 @@ struct SpectralFilm::Sums {
   std::vector<uint32_t> open;                    // [block] of folded films: the replicate, or kNone
   std::vector<char> stale;                       // [block]: its sums are of before restart(); empty: none is
   std::function<void(uint32_t block)> observer;
-};
-
-/// The means of a replicate of a block, made from sums.
-struct SpectralFilm::BlockMeans {
-  std::vector<uint32_t> counts;
-  std::vector<float> means;
-
-  BlockSamples samples(uint32_t block, uint32_t replicate, std::size_t channels) const {
-    return {block, replicate, counts, means, channels};
-  }
 };
 
 }  // namespace kiloband
