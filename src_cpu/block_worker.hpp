@@ -26,8 +26,8 @@ class BlockWorker {
   /// valid until the next call.
   BlockSamples render(const PixelRect& block, uint32_t block_index, const SampleRange& range,
                       const std::atomic<bool>& stop, const SampleEvents& events);
-  /// The same for a film that keeps sums: goes on from those of the block, of which it has range.first
-  /// samples, and puts them back.
+  /// The same for a film that keeps sums: adds to those of the block, of which it has range.first samples.
+  /// After an exception the block's sums are of no use.
   void go_on(SpectralFilm& film, uint32_t block_index, const SampleRange& range,
              const std::atomic<bool>& stop, const SampleEvents& events);
 

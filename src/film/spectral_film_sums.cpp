@@ -95,10 +95,11 @@ uint32_t SpectralFilm::attempted_at(uint32_t replicate, std::size_t pixel) const
 /// cache, all that is made of them is.
 template <class Use>
 void SpectralFilm::each_mean(uint32_t replicate, uint32_t block, const Use& use) const {
+  const uint32_t tried = attempted(replicate, block);
   std::vector<float> means(options_.channels);
   for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) {
     const PixelSumsView sums = pixel_sums(replicate, pixel_index(blocks_[block], p));
-    mean_of_sums(*options_.sums, attempted(replicate, block), sums, means);
+    mean_of_sums(*options_.sums, tried, sums, means);
     use(p, sums.count, std::span<const float>(means));
   }
 }

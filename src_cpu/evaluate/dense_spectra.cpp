@@ -15,6 +15,11 @@ namespace {
   throw std::logic_error("dense spectra: a table has fewer than 2 entries");
 }
 
+DoubleTable view_of(const RegularTable& table) {
+  if (table.values.size() < 2) throw_short_table();
+  return {table.values.data(), table.values.size(), table.min_nm, table.step_nm, table.extrapolate};
+}
+
 /// Stores x as the sum of two floats: 48 bits, so that differences of rows keep float precision.
 void split(double x, float& high, float& low) {
   high = static_cast<float>(x);
@@ -171,11 +176,8 @@ void DenseSpectra::fill_exact(uint32_t s, float* out) {
     return;
   }
   if (!row.is_planck) {
-    const std::vector<double>& values = row.table.values;
-    if (values.size() < 2) throw_short_table();
-    kernels_.sample_exact(
-        {values.data(), values.size(), row.table.min_nm, row.table.step_nm, row.table.extrapolate},
-        lambda_.get(), is_emission_[s] ? emission_factor_.data() : nullptr, channels_, out);
+    kernels_.sample_exact(view_of(row.table), lambda_.get(),
+                          is_emission_[s] ? emission_factor_.data() : nullptr, channels_, out);
     std::fill(out + channels_, out + padded_, 0.0f);
     return;
   }
@@ -198,11 +200,7 @@ const double* DenseSpectra::exact_values(uint32_t s, std::vector<double>& out) c
   if (row.is_planck) {
     for (std::size_t k = 0; k < channels_; ++k) out[k] = value_at(row, lambda_[k]);
   } else {
-    const RegularTable& table = row.table;
-    if (table.values.size() < 2) throw_short_table();
-    kernels_.sample_double(
-        {table.values.data(), table.values.size(), table.min_nm, table.step_nm, table.extrapolate},
-        lambda_.get(), channels_, out.data());
+    kernels_.sample_double(view_of(row.table), lambda_.get(), channels_, out.data());
   }
   return out.data();
 }

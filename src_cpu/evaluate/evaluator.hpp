@@ -17,7 +17,7 @@ namespace kiloband::cpu {
 struct SumRows {
   std::span<float* const> pixels;
   /// Rows of a film: derived channels follow the channels at once, and nothing behind them is touched. Else stride()
-  /// floats, derived channels at derived_offset(), and padding receives zeros: faster where a row is added to often.
+  /// floats, derived channels at derived_offset(), and padding receives zeros.
   bool packed = false;
 };
 
