@@ -12,10 +12,19 @@
 
 namespace kiloband::opencl::test {
 
+/// POCL_CACHE_DIR is a folder of this process until it ends. To hand out a binary PoCL 3.1 walks through all
+/// files of the program twice, to measure and to copy: where another process runs the same program out of the
+/// same folder and adds one in between, it writes past the end or keeps half a binary.
+inline void take_own_pocl_folder() {
+  static const ScratchFolder kFolder("kiloband_gpu_host_pocl");
+  setenv("POCL_CACHE_DIR", kFolder.path().c_str(), 1);
+}
+
 /// XDG_CACHE_HOME is this folder while the object lives.
 class CacheFolder {
  public:
   CacheFolder() {
+    take_own_pocl_folder();
     list_devices();  // PoCL chooses the folder of its own cache now: one that stays
     const char* value = std::getenv("XDG_CACHE_HOME");
     if (value) before_ = value;
