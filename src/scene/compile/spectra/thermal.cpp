@@ -47,9 +47,13 @@ void Flattener::require_emission_data(const Texture& texture, const SpectrumSour
     require_emission_data((*board)->color0, {use.name + " color0", use.position});
     require_emission_data((*board)->color1, {use.name + " color1", use.position});
   }
-  if (std::holds_alternative<std::shared_ptr<const MeshAttributeTexture>>(texture))
+  const auto refuse = [&](const char* type) {
     throw InputError(use.position,
-                     use.name + ": a surface that emits thermally cannot have a mesh_attribute here");
+                     use.name + ": a surface that emits thermally cannot have a " + type + " here");
+  };
+  if (std::holds_alternative<std::shared_ptr<const MeshAttributeTexture>>(texture)) refuse("mesh_attribute");
+  if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(texture))
+    refuse("spectral_bitmap");
   const auto* spectrum = std::get_if<Spectrum>(&texture);
   const auto data = spectrum ? spectrum->data_range() : std::nullopt;
   if (!data || spectrum->extrapolates()) return;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/compile/flat_scene.hpp"
 #include "scene/image/spectral_image.hpp"
 #include "support.hpp"
 
@@ -158,6 +159,29 @@ TEST(SpectralMessages, Elements) {
           "name='filename' value='a.exr'/></texture></bsdf></shape><emitter type='constant'/>",
           folder),
       "scene.xml:2:55: error: mask bsdf: opacity: a spectral_bitmap is not supported here");
+}
+
+/// The emissivity would be the complement of its texels, which are not where those of bitmaps are.
+TEST(SpectralMessages, NotWhereASurfaceEmitsThermally) {
+  const TemporaryFolder folder;
+  write_cube(folder / "a.exr", 2, 2, kBands, [](uint32_t, uint32_t, std::size_t) { return 0.5; });
+  folder.write("t.pfm", std::string("Pf\n1 1\n-1.0\n\0\0\x96\x43", 16));  // 300 K
+  const std::string image =
+      "<texture type='spectral_bitmap' name='reflectance'><string name='filename' value='a.exr'/></texture>";
+  const std::string temperatures[] = {
+      "<float name='temperature' value='300'/>",
+      "<texture type='bitmap' name='temperature'><boolean name='raw' value='true'/><string name='filename' value='t.pfm'/></texture>"};
+  for (const std::string& temperature : temperatures) {
+    const std::string body = "<shape type='sphere'><bsdf type='diffuse'>" + image +
+                             "</bsdf><emitter type='thermal'>" + temperature + "</emitter></shape>";
+    const auto compile = [&] {
+      compile_scene(read_scene_text(scene_around(body), "scene.xml", folder.path(), {}),
+                    {parse_channels("410-440"), {}, {}});
+    };
+    EXPECT_EQ(
+        error_of(folder, compile),
+        "scene.xml:2:23: error: bsdf: reflectance: a surface that emits thermally cannot have a spectral_bitmap here");
+  }
 }
 
 std::string mixture(const std::string& endmembers) {
