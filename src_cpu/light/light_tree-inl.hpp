@@ -131,7 +131,7 @@ KB_INLINE F tree_probability(const FlatScene& scene, V3 point, U leaf, M active)
     const U second = select(going, right_child, walk.node);
     const LightNode left = gather_light_node(nodes, first), right = gather_light_node(nodes, second);
     const F given = left_steps(left, right, walk.n, point);
-    const M goes_left = to_floats(leaf) < to_floats(second);  // exact below 2^24
+    const M goes_left = has_bits(leaf - second, 0x80000000u);  // leaf < second: both are below 2^31
     walk.n = select(going, select(goes_left, given, walk.n - given), walk.n);
     walk.node = select(goes_left, first, second);
     right_child = select(going, select(goes_left, left.right, right.right), right_child);
