@@ -19,11 +19,11 @@ bool folds_before(uint32_t index) {
   return index > 0 && index % kFoldInterval == 0;
 }
 
-/// Whether they do before one of the range's samples. Where not, closed sums stay as they are.
-bool folds_within(const SampleRange& range) {
-  if (range.count == 0) return false;
-  const uint32_t last = range.first + range.count - 1, bound = last - last % kFoldInterval;
-  return bound >= range.first && folds_before(bound);
+/// What is open becomes a part of what is closed.
+void fold(const PixelSums& sums) {
+  for (std::size_t c = 0; c < sums.open.size(); ++c)
+    sums.closed[c] = std::bit_cast<ClosedSum>(std::bit_cast<double>(sums.closed[c]) + sums.open[c]);
+  std::ranges::fill(sums.open, 0.0f);
 }
 
 }  // namespace
@@ -45,31 +45,25 @@ BlockSamples BlockWorker::render(const PixelRect& block, uint32_t block_index, c
   sums_.assign(block.pixels() * evaluator_.stride(), 0.0f);
   folded_.clear();
   counts_.assign(block.pixels(), 0);
-  use_own_rows(block.pixels());
-  add_samples(block, range, stop, events);
+  rows_.clear();
+  for (std::size_t p = 0; p < block.pixels(); ++p) rows_.push_back(&sums_[p * evaluator_.stride()]);
+  packed_ = false;
+  add_samples(block, range, stop, events, [this] { fold_sums(); });
   finish_means(block.pixels());
   return {block_index, range.replicate, counts_, sums_, evaluator_.stride(), factors_};
 }
 
+/// Samples are added to the film in place: copying its sums into padded rows and back takes 3 % of a render of replicates of 8
+/// samples with 512 channels, 8 % with 256, and no K from 8 to 1024 is faster with copies.
 void BlockWorker::go_on(SpectralFilm& film, uint32_t block_index, const SampleRange& range,
                         const std::atomic<bool>& stop, const SampleEvents& events) {
   const PixelRect& block = film.blocks()[block_index];
   film.open_replicate(range.replicate, block_index);
   if (film.attempted(range.replicate, block_index) != range.first)
     throw std::logic_error("BlockWorker: the samples do not follow those that the film has");
-  const uint32_t done = folds_within(range) ? add_to_copies(film, block, range, stop, events)
-                                            : add_in_place(film, block, range, stop, events);
-  film.set_attempted(range.replicate, block_index, range.first + done);
-}
-
-/// Where nothing folds, sums are not copied into padded rows and back: with replicates of 8 samples that takes 3 % of a render of 512
-/// channels, 8 % of one of 256, and no K from 8 to 1024 is faster with copies. An exception leaves samples that the film does not count.
-uint32_t BlockWorker::add_in_place(SpectralFilm& film, const PixelRect& block, const SampleRange& range,
-                                   const std::atomic<bool>& stop, const SampleEvents& events) {
   const std::size_t channels = film.options().channels;
   rows_.clear();
   counts_.clear();
-  folded_.clear();
   packed_ = true;
   const auto sums_of_row = [&](uint32_t y) {
     return film.open_sums(range.replicate, film.pixel_index(block, std::size_t{y} * block.width),
@@ -80,36 +74,25 @@ uint32_t BlockWorker::add_in_place(SpectralFilm& film, const PixelRect& block, c
     for (uint32_t x = 0; x < block.width; ++x) rows_.push_back(&sums.values[x * channels]);
     counts_.insert(counts_.end(), sums.counts.begin(), sums.counts.end());
   }
-  const uint32_t done = add_samples(block, range, stop, events);
+  const uint32_t done = add_samples(block, range, stop, events, [&] {
+    for (std::size_t p = 0; p < block.pixels(); ++p)
+      fold(film.pixel_sums(range.replicate, film.pixel_index(block, p)));
+  });
   for (uint32_t y = 0; y < block.height; ++y)
     std::copy_n(&counts_[std::size_t{y} * block.width], block.width, sums_of_row(y).counts.begin());
-  return done;
-}
-
-uint32_t BlockWorker::add_to_copies(SpectralFilm& film, const PixelRect& block, const SampleRange& range,
-                                    const std::atomic<bool>& stop, const SampleEvents& events) {
-  take_sums(film, block, range);
-  use_own_rows(block.pixels());
-  const uint32_t done = add_samples(block, range, stop, events);
-  put_sums(film, block, range.replicate);
-  return done;
-}
-
-void BlockWorker::use_own_rows(std::size_t pixels) {
-  rows_.clear();
-  for (std::size_t p = 0; p < pixels; ++p) rows_.push_back(&sums_[p * evaluator_.stride()]);
-  packed_ = false;
+  film.set_attempted(range.replicate, block_index, range.first + done);
 }
 
 /// Adds the range's samples to the sums. Returns how many.
 uint32_t BlockWorker::add_samples(const PixelRect& block, const SampleRange& range,
-                                  const std::atomic<bool>& stop, const SampleEvents& events) {
+                                  const std::atomic<bool>& stop, const SampleEvents& events,
+                                  const std::function<void()>& fold_all) {
   const DenormalsToZero mode;
   uint32_t done = 0;
   for (; done < range.count && !stop; ++done) {
     const uint32_t index = range.first + done;
     const SampleId id{range.replicate + index * settings_.replicates, range.replicate, index};
-    if (folds_before(index)) fold_sums();
+    if (folds_before(index)) fold_all();
     add_sample(block, id);
     for (uint32_t& count : counts_) ++count;
     for (const uint32_t pixel : invalid_) {
@@ -119,53 +102,6 @@ uint32_t BlockWorker::add_samples(const PixelRect& block, const SampleRange& ran
     events.on_sample(block.pixels());
   }
   return done;
-}
-
-/// Derived channels stand behind the channels in the film, at derived_offset() in a row of sums.
-std::vector<BlockWorker::Columns> BlockWorker::columns_of_film() const {
-  const std::size_t channels = scene_.flat->channels.size();
-  std::vector<Columns> columns{{0, 0, channels}};
-  if (derived_count_ > 0) columns.push_back({channels, evaluator_.derived_offset(), derived_count_});
-  return columns;
-}
-
-/// The block's sums so far; closed ones where they will be added to.
-void BlockWorker::take_sums(const SpectralFilm& film, const PixelRect& block, const SampleRange& range) {
-  const std::size_t stride = evaluator_.stride();
-  const std::vector<Columns> all_columns = columns_of_film();
-  sums_.resize(block.pixels() * stride);
-  folded_.assign(range.first > kFoldInterval ? sums_.size() : 0, 0.0);
-  counts_.assign(block.pixels(), 0);
-  for (std::size_t p = 0; p < block.pixels(); ++p) {
-    const PixelSumsView from = film.pixel_sums(range.replicate, film.pixel_index(block, p));
-    counts_[p] = from.count;
-    float* end = &sums_[p * stride];  // of what is written
-    for (const Columns& columns : all_columns) {
-      const std::size_t to = p * stride + columns.here;
-      std::fill(end, &sums_[to], 0.0f);
-      end = std::copy_n(&from.open[columns.film], columns.count, &sums_[to]);
-      if (folded_.empty()) continue;
-      for (std::size_t c = 0; c < columns.count; ++c)
-        folded_[to + c] = std::bit_cast<double>(from.closed[columns.film + c]);
-    }
-    std::fill(end, sums_.data() + (p + 1) * stride, 0.0f);
-  }
-}
-
-void BlockWorker::put_sums(SpectralFilm& film, const PixelRect& block, uint32_t replicate) const {
-  const std::size_t stride = evaluator_.stride();
-  const std::vector<Columns> all_columns = columns_of_film();
-  for (std::size_t p = 0; p < block.pixels(); ++p) {
-    const PixelSums to = film.pixel_sums(replicate, film.pixel_index(block, p));
-    to.count = counts_[p];
-    for (const Columns& columns : all_columns) {
-      const std::size_t from = p * stride + columns.here;
-      std::copy_n(&sums_[from], columns.count, &to.open[columns.film]);
-      if (folded_.empty()) continue;
-      for (std::size_t c = 0; c < columns.count; ++c)
-        to.closed[columns.film + c] = std::bit_cast<ClosedSum>(folded_[from + c]);
-    }
-  }
 }
 
 /// The wavelength offsets of the block's paths: one (shared), or one per pixel.

@@ -41,21 +41,8 @@ class BlockWorker {
   const Evaluator& evaluator() const { return evaluator_; }
 
  private:
-  /// Columns that follow each other, in the film and in a row of sums.
-  struct Columns {
-    std::size_t film, here, count;
-  };
-
-  std::vector<Columns> columns_of_film() const;
   uint32_t add_samples(const PixelRect& block, const SampleRange& range, const std::atomic<bool>& stop,
-                       const SampleEvents& events);
-  uint32_t add_in_place(SpectralFilm& film, const PixelRect& block, const SampleRange& range,
-                        const std::atomic<bool>& stop, const SampleEvents& events);
-  uint32_t add_to_copies(SpectralFilm& film, const PixelRect& block, const SampleRange& range,
-                         const std::atomic<bool>& stop, const SampleEvents& events);
-  void use_own_rows(std::size_t pixels);
-  void take_sums(const SpectralFilm& film, const PixelRect& block, const SampleRange& range);
-  void put_sums(SpectralFilm& film, const PixelRect& block, uint32_t replicate) const;
+                       const SampleEvents& events, const std::function<void()>& fold_all);
   void set_mu(const PixelRect& block, const SampleId& id);
   void add_sample(const PixelRect& block, const SampleId& id);
   void fold_sums();
