@@ -84,7 +84,6 @@ class CpuBackend final : public Backend {
 
  private:
   void note_invalid(const InvalidSample& sample);
-  void count(BlockWorker& worker, uint64_t rays_before, uint64_t vertices_before);
   float pass_boundaries(TraceRay& ray, float far) const;
 
   std::shared_ptr<const FlatScene> kept_;
@@ -106,11 +105,6 @@ void CpuBackend::note_invalid(const InvalidSample& sample) {
   ++invalid_samples_;
   const std::lock_guard lock(mutex_);
   if (invalid_.size() < kReportedInvalid) invalid_.push_back(sample);
-}
-
-void CpuBackend::count(BlockWorker& worker, uint64_t rays_before, uint64_t vertices_before) {
-  rays_ += worker.tracer().rays() - rays_before;
-  vertices_ += worker.tracer().vertices() - vertices_before;
 }
 
 void CpuBackend::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
@@ -136,7 +130,8 @@ void CpuBackend::render(SpectralFilm& film, const SampleRange& range, const std:
       } else {
         film.add(worker.render(film.blocks()[blocks[i]], blocks[i], range, stop, events));
       }
-      count(worker, rays, vertices);
+      rays_ += worker.tracer().rays() - rays;
+      vertices_ += worker.tracer().vertices() - vertices;
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!failed.exchange(true)) failure = std::current_exception();

@@ -11,15 +11,6 @@
 namespace kiloband::cpu {
 namespace {
 
-[[noreturn]] void throw_short_table() {
-  throw std::logic_error("dense spectra: a table has fewer than 2 entries");
-}
-
-DoubleTable view_of(const RegularTable& table) {
-  if (table.values.size() < 2) throw_short_table();
-  return {table.values.data(), table.values.size(), table.min_nm, table.step_nm, table.extrapolate};
-}
-
 /// Stores x as the sum of two floats: 48 bits, so that differences of rows keep float precision.
 void split(double x, float& high, float& low) {
   high = static_cast<float>(x);
@@ -30,11 +21,6 @@ void split(double x, float& high, float& low) {
 double planck_factor(const SpectrumRow& row, double lambda_nm) {
   if (lambda_nm < row.planck_min_nm || lambda_nm > row.planck_max_nm) return 0;
   return row.planck_scale * (row.table.values.empty() ? 1 : row.table(lambda_nm));
-}
-
-double value_at(const SpectrumRow& row, double lambda_nm) {
-  if (!row.is_planck) return row.table(lambda_nm);
-  return planck_factor(row, lambda_nm) * planck_radiance(lambda_nm, row.temperature_k);
 }
 
 /// Whether metal_fresnel() has the reflectance of index n + ik at any angle to some units in the last place: R >= 1/4 (it is least, in
@@ -123,10 +109,7 @@ const float* DenseSpectra::make_spectrum(uint32_t s) {
   if (row.absorption) {
     for (std::size_t k = 0; k < channels_; ++k) out[k] = static_cast<float>((*row.absorption)(k, mu_));
   } else if (fast_ && !row.is_planck && !is_emission_[s]) {
-    const std::vector<float>& table = float_table(s);
-    kernels_.sample_table(
-        {table.data(), table.size(), row.table.min_nm, row.table.step_nm, row.table.extrapolate},
-        lambda_.get(), channels_, out);
+    kernels_.sample_table(view_of(float_table(s), row.table), lambda_.get(), channels_, out);
     std::fill(out + channels_, out + padded_, 0.0f);
   } else {
     fill_exact(s, out);
@@ -169,26 +152,23 @@ void DenseSpectra::fill_planck(double temperature_k, const float* emissivity, fl
 
 void DenseSpectra::fill_exact(uint32_t s, float* out) {
   const SpectrumRow& row = scene_.spectra[s];
-  if (row.is_planck && is_emission_[s]) {
-    const std::vector<double>& radiance = planck(row.temperature_k);
-    for (std::size_t k = 0; k < channels_; ++k)
-      out[k] = static_cast<float>(planck_factor(row, lambda_[k]) * radiance[k]);
-    return;
-  }
   if (!row.is_planck) {
-    kernels_.sample_exact(view_of(row.table), lambda_.get(),
+    kernels_.sample_exact(view_of(row.table.values, row.table), lambda_.get(),
                           is_emission_[s] ? emission_factor_.data() : nullptr, channels_, out);
     std::fill(out + channels_, out + padded_, 0.0f);
     return;
   }
-  for (std::size_t k = 0; k < channels_; ++k) out[k] = static_cast<float>(value_at(row, lambda_[k]));
+  const double* const film = is_emission_[s] ? planck(row.temperature_k).data() : nullptr;
+  for (std::size_t k = 0; k < channels_; ++k) {
+    const double radiance = film ? film[k] : planck_radiance(lambda_[k], row.temperature_k);
+    out[k] = static_cast<float>(planck_factor(row, lambda_[k]) * radiance);
+  }
 }
 
 const std::vector<float>& DenseSpectra::float_table(uint32_t s) {
   std::vector<float>& table = float_tables_[s];
   if (table.empty()) {
     const std::vector<double>& values = scene_.spectra[s].table.values;
-    if (values.size() < 2) throw_short_table();
     table.assign(values.begin(), values.end());
   }
   return table;
@@ -198,9 +178,10 @@ const double* DenseSpectra::exact_values(uint32_t s, std::vector<double>& out) c
   const SpectrumRow& row = scene_.spectra[s];
   out.resize(padded_);
   if (row.is_planck) {
-    for (std::size_t k = 0; k < channels_; ++k) out[k] = value_at(row, lambda_[k]);
+    for (std::size_t k = 0; k < channels_; ++k)
+      out[k] = planck_factor(row, lambda_[k]) * planck_radiance(lambda_[k], row.temperature_k);
   } else {
-    kernels_.sample_double(view_of(row.table), lambda_.get(), channels_, out.data());
+    kernels_.sample_double(view_of(row.table.values, row.table), lambda_.get(), channels_, out.data());
   }
   return out.data();
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <stdexcept>
 #include <vector>
 
 #include "scene/compile/flat_scene.hpp"
@@ -14,6 +15,14 @@
 
 namespace kiloband::cpu {
 
+/// The values of a table for the kernels, which may be copies in another precision.
+/// throws std::logic_error  fewer than 2
+template <class Number>
+TableView<Number> view_of(const std::vector<Number>& values, const RegularTable& table) {
+  if (values.size() < 2) throw std::logic_error("dense spectra: a table has fewer than 2 entries");
+  return {values.data(), values.size(), table.min_nm, table.step_nm, table.extrapolate};
+}
+
 /// Dense spectra of one wavelength offset mu: row s holds spectrum s at lambda_k = (1 - mu) min_k + mu max_k
 /// for every channel, padded with zeros to a multiple of 64 floats and aligned to 64 bytes. Emission rows
 /// hold radiance * width_k / channel_scale_k, so that path sums are channel values in film units.
@@ -21,7 +30,7 @@ namespace kiloband::cpu {
 /// Rows are made when they are first asked for and live until the next begin(). All are resampled in double,
 /// except reflectances in the fast mode: those come from float copies of the tables by SIMD gathers
 /// (positions in double).
-struct DenseSpectra {
+class DenseSpectra {
  public:
   DenseSpectra(const FlatScene& scene, const EvaluatorKernels& kernels);
 

@@ -74,15 +74,11 @@ void DerivedRows::fill(std::size_t d, const DenseSpectra& spectra) {
   const std::size_t first = row.first_group * kRowPadding;
   const std::size_t n = row.group_count * kRowPadding;
   if (n == 0) return;
-  if (spectra.fast()) {
-    kernels_.sample_table(
-        {row.table.data(), row.table.size(), response.min_nm, response.step_nm, response.extrapolate},
-        spectra.lambda_nm() + first, n, row.weights.get());
-  } else {
-    kernels_.sample_exact({response.values.data(), response.values.size(), response.min_nm, response.step_nm,
-                           response.extrapolate},
-                          spectra.lambda_nm() + first, nullptr, n, row.weights.get());
-  }
+  const double* const lambda_nm = spectra.lambda_nm() + first;
+  if (spectra.fast())
+    kernels_.sample_table(view_of(row.table, response), lambda_nm, n, row.weights.get());
+  else
+    kernels_.sample_exact(view_of(response.values, response), lambda_nm, nullptr, n, row.weights.get());
   for (std::size_t i = 0; i < n; ++i) row.weights[i] *= row.factor[i] * inverse_cover_[first + i];
 }
 

@@ -7,8 +7,6 @@
 
 namespace kiloband::cpu {
 
-static_assert(Evaluator::kChannelPadding == kRowPadding);
-
 namespace {
 
 /// So many paths ahead texels are asked for: what is in flight fits into the first cache.
@@ -68,7 +66,6 @@ struct Evaluator::Impl {
     PathProgram program = builder.build(entries, spectra);
     program.derived = derived_rows.plan(spectra);
     program.derived_offset = rows.packed ? program.channels : derived_offset;
-    program.film_channels = rows.packed ? program.channels : derived_offset;
     if (p + 1 < paths.paths.size()) program.next_film = row_of(paths.paths[p + 1], rows);
     path_kernels.evaluate_path(program, row_of(paths.paths[p], rows));
   }

@@ -31,14 +31,12 @@ struct SumRows {
 /// in W m^-2 sr^-1 nm^-1 as it is.
 class Evaluator {
  public:
-  static constexpr std::size_t kChannelPadding = 64;
-
   /// throws DeviceError if the machine lacks `isa`; std::logic_error if channel_scale has not K entries
   Evaluator(const FlatScene& scene, const DerivedChannels& derived, Isa isa);
   ~Evaluator();
   Evaluator(Evaluator&&) noexcept;
 
-  /// Floats per pixel in `sums`: channels and derived channels, each padded to kChannelPadding, and an odd
+  /// Floats per pixel in `sums`: channels and derived channels, each padded to 64, and an odd
   /// multiple of it: with a power of two the rows of a block's pixels would compete
   /// for a few sets of the caches.
   std::size_t stride() const;

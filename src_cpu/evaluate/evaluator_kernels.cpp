@@ -157,10 +157,10 @@ HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* fi
   if (path.derived) block.derive(*path.derived, k);
   block.each([&](auto i) HWY_ATTR {
     const std::size_t first = k + i * kLanes;
-    if (first + kLanes <= path.film_channels)
+    if (first + kLanes <= path.derived_offset)
       hn::StoreU(hn::Add(hn::LoadU(kTag, film + first), block.radiance[i]), kTag, film + first);
-    else if (first < path.film_channels)
-      add_part(block.radiance[i], path.film_channels - first, film + first);
+    else if (first < path.derived_offset)
+      add_part(block.radiance[i], path.derived_offset - first, film + first);
   });
 }
 
@@ -204,22 +204,11 @@ namespace kiloband::cpu {
 
 // Every target has its own namespace: the choice is the caller's, not Highway's global one.
 const EvaluatorKernels& evaluator_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::kAvx512:
-      return N_AVX3::kKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::kAvx2:
-      return N_AVX2::kKernels;
-#endif
-#if HWY_TARGETS & HWY_SSE4
-    case Isa::kSse4:
-      return N_SSE4::kKernels;
-#endif
-    default:
-      throw std::logic_error("evaluator_kernels: the instruction set is not resolved");
-  }
+  const EvaluatorKernels* const of_isa[] = {nullptr, HWY_CHOOSE_SSE4(kKernels), HWY_CHOOSE_AVX2(kKernels),
+                                            HWY_CHOOSE_AVX3(kKernels)};
+  const auto* const kernels = of_isa[static_cast<int>(isa)];
+  if (!kernels) throw std::logic_error("evaluator_kernels: the instruction set is not resolved");
+  return *kernels;
 }
 
 }  // namespace kiloband::cpu

@@ -130,32 +130,27 @@ struct PathProgram {
   std::size_t channels = 0;
   const DerivedPlan* derived = nullptr;  // null: none
   bool gas = false;                      // has vertices of gas
-  std::size_t film_channels = 0;         // of the film's row that may be written: `channels`, or padded
-  std::size_t derived_offset = 0;        // of derived channels in the film's row
-  const float* next_film = nullptr;      // row of the following path, to be fetched ahead; never read
+  /// Of derived channels in the film's row. What is before may be written: `channels`, or padded.
+  std::size_t derived_offset = 0;
+  const float* next_film = nullptr;  // row of the following path, to be fetched ahead; never read
 };
 
-/// A table with regular step, as RegularTable but float.
-struct FloatTable {
-  const float* values;
+/// A RegularTable, or its values as floats.
+template <class Number>
+struct TableView {
+  const Number* values;
   std::size_t size;  // at least 2
   double min_nm, step_nm;
   bool extrapolate;
 };
-
-/// A RegularTable.
-struct DoubleTable {
-  const double* values;
-  std::size_t size;  // at least 2
-  double min_nm, step_nm;
-  bool extrapolate;
-};
+using FloatTable = TableView<float>;
+using DoubleTable = TableView<double>;
 
 /// The kernels of one instruction set.
 struct EvaluatorKernels {
   /// Adds the path's channel values to film[0 .. channels) and its derived ones to film[derived_offset ..).
   void (*evaluate_path)(const PathProgram& path, float* film);
-  /// out[i] = table(lambda_nm[i]) for i < count rounded up to kMaxLanes; positions in double.
+  /// out[i] = table(lambda_nm[i]) for i < count rounded up to the lanes of a vector; positions in double.
   void (*sample_table)(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out);
   /// out[i] = table(lambda_nm[i]) * factor[i] (null: 1) for i < count rounded up to kMaxLanes, in double, with
   /// the bits of RegularTable.
@@ -168,7 +163,7 @@ struct EvaluatorKernels {
   void (*weighted_sum)(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
                        float* out);
   /// out[i] = first[i] * values[index[i]] + second[i] * values[index[i] + 1],
-  /// i < count rounded up to kMaxLanes.
+  /// i < count rounded up to the lanes of a vector.
   void (*mix_bands)(const float* values, const int32_t* index, const float* first, const float* second,
                     std::size_t count, float* out);
   /// out[k] = a[k] F(terms) of channel k, begin <= k < end rounded up to the lanes of a vector.

@@ -65,14 +65,13 @@ void ProgramBuilder::reserve(std::size_t entries) {
   survivor_ = kAll;
   scratch_.release();
   cells_.clear();
-  if (steps_.size() < StepWriter::kMostSteps * entries) grow(std::max<std::size_t>(64, 2 * entries));
+  if (steps_.size() < StepWriter::kMostSteps * entries) {
+    const std::size_t room = std::max<std::size_t>(64, 2 * entries);
+    steps_.resize(StepWriter::kMostSteps * room);
+    gas_.reserve(room);
+    cells_.reserve(5 * room);
+  }
   writer_ = StepWriter(steps_.data());
-}
-
-void ProgramBuilder::grow(std::size_t entries) {
-  steps_.resize(StepWriter::kMostSteps * entries);
-  gas_.reserve(entries);
-  cells_.reserve(5 * entries);
 }
 
 /// The vertices from `first` on that refer to nothing but spectra, as most do. Returns where the first other one is.

@@ -36,7 +36,6 @@ class ProgramBuilder {
   };
 
   void reserve(std::size_t entries);
-  void grow(std::size_t entries);
   Factors factors(const KbPathVertex& vertex, const KbTextureSample* samples, DenseSpectra& spectra);
   void add_vertex(const KbPathVertex& vertex, Factors from, bool last, DenseSpectra& spectra);
   std::size_t add_plain(std::span<const KbPathVertex> entries, std::size_t first, DenseSpectra& spectra);

@@ -19,11 +19,6 @@ struct SavedPath {
 struct PathBuffer {
   std::vector<KbPathVertex> entries;
   std::vector<SavedPath> paths;
-
-  void clear() {
-    entries.clear();
-    paths.clear();
-  }
 };
 
 }  // namespace kiloband::cpu

@@ -28,22 +28,11 @@ inline constexpr PathKernels kPathKernels{start_wave, shade_wave, closest_of_few
 namespace kiloband::cpu {
 
 const PathKernels& path_kernels(Isa isa) {
-  switch (isa) {
-#if HWY_TARGETS & HWY_AVX3
-    case Isa::kAvx512:
-      return N_AVX3::kPathKernels;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case Isa::kAvx2:
-      return N_AVX2::kPathKernels;
-#endif
-#if HWY_TARGETS & HWY_SSE4
-    case Isa::kSse4:
-      return N_SSE4::kPathKernels;
-#endif
-    default:
-      throw std::logic_error("path_kernels: the instruction set is not resolved");
-  }
+  const PathKernels* const of_isa[] = {nullptr, HWY_CHOOSE_SSE4(kPathKernels), HWY_CHOOSE_AVX2(kPathKernels),
+                                       HWY_CHOOSE_AVX3(kPathKernels)};
+  const auto* const kernels = of_isa[static_cast<int>(isa)];
+  if (!kernels) throw std::logic_error("path_kernels: the instruction set is not resolved");
+  return *kernels;
 }
 
 }  // namespace kiloband::cpu

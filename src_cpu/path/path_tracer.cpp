@@ -9,10 +9,6 @@ namespace {
 /// 512 KiB: about as much as the second-level cache has for them.
 constexpr std::size_t kMostCachedRecords = 8192;
 
-bool has_rare_features(const SceneFeatures& f) {
-  return f.gas || f.dispersion;
-}
-
 /// Paths without a pixel are traced for their neighbours' sake alone.
 bool is_recorded(const Wave& wave, uint32_t path) {
   return wave.paths[path].pixel != KB_NONE;
@@ -76,7 +72,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
     : scene_(scene),
       flat_(*scene.flat),
       settings_(settings),
-      rare_(has_rare_features(flat_.features)
+      rare_(flat_.features.gas || flat_.features.dispersion
                 ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree, kernels.eval_heroes)
                 : nullptr),
       parts_(rare_ && !rare_->gas()),
@@ -89,7 +85,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
                        std::vector<uint32_t>& invalid) {
   out.paths.clear();
   invalid.clear();
-  if (flat_.integrator.max_depth == 0) return out.clear();
+  if (flat_.integrator.max_depth == 0) return out.entries.clear();
   const std::span<const TriangleRecord> records = scene_.records;
   Bounce bounce{flat_,
                 settings_,

@@ -25,15 +25,12 @@ void add_texel(ColourTerms& terms, double& constant, const KbFloat4& texel, doub
   terms.weights[i] = static_cast<float>(weight * texel.w);
 }
 
-/// Their number becomes even.
-void add_empty_term(ColourTerms& terms) {
-  std::ranges::fill(terms.coefficients[terms.count], 0.0f);
-  terms.weights[terms.count++] = 0;
-}
-
+/// What terms have in common; their number becomes even.
 void close(ColourTerms& terms, double constant) {
   terms.constant = static_cast<float>(constant);
-  if (terms.count % 2 == 1) add_empty_term(terms);
+  if (terms.count % 2 == 0) return;
+  std::ranges::fill(terms.coefficients[terms.count], 0.0f);
+  terms.weights[terms.count++] = 0;
 }
 
 /// Numbers texels by their colours, up to a factor, from colours.size() on; new colours go behind the others. False: there are more than

@@ -70,27 +70,20 @@ void SpectralTextures::blend(const KbTexture& texture, uint32_t index, const KbT
   blended_.back() = 0;
 }
 
-void SpectralTextures::bands(const KbTexture& texture, DenseSpectra& spectra, float* out) {
-  const BandRows& rows = band_rows(texture.first_row, spectra);
-  kernels_.mix_bands(blended_.data(), rows.index.get(), rows.first.get(), rows.second.get(),
-                     spectra.channels(), out);
-}
-
-void SpectralTextures::mixture(const KbTexture& texture, DenseSpectra& spectra, float* out) {
+void SpectralTextures::fill(const KbTextureSample& sample, DenseSpectra& spectra, float* out) {
+  const KbTexture& texture = scene_.textures[sample.texture];
+  blend(texture, sample.texture, sample);
+  if (texture.flags & KB_TEXTURE_BANDS) {
+    const BandRows& rows = band_rows(texture.first_row, spectra);
+    kernels_.mix_bands(blended_.data(), rows.index.get(), rows.first.get(), rows.second.get(),
+                       spectra.channels(), out);
+    return;
+  }
   members_.clear();
   for (uint32_t p = 0; p < texture.values; ++p) members_.push_back(spectra.spectrum(texture.first_row + p));
   // Whole rows with their padding, so that a channel's bits do not depend on its place.
   kernels_.weighted_sum(members_.data(), blended_.data(), texture.values, pad_channels(spectra.channels()),
                         out);
-}
-
-void SpectralTextures::fill(const KbTextureSample& sample, DenseSpectra& spectra, float* out) {
-  const KbTexture& texture = scene_.textures[sample.texture];
-  blend(texture, sample.texture, sample);
-  if (texture.flags & KB_TEXTURE_BANDS)
-    bands(texture, spectra, out);
-  else
-    mixture(texture, spectra, out);
 }
 
 }  // namespace kiloband::cpu

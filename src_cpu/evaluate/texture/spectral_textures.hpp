@@ -1,7 +1,6 @@
 // Lookups of spectral textures as dense rows, so that the fast steps of evaluation can use them.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "src_cpu/evaluate/dense_spectra.hpp"
@@ -31,8 +30,6 @@ class SpectralTextures {
   BandRows make_rows(const BandSet& set) const;
   const BandRows& band_rows(uint32_t set, const DenseSpectra& spectra);
   void blend(const KbTexture& texture, uint32_t index, const KbTextureSample& sample);
-  void bands(const KbTexture& texture, DenseSpectra& spectra, float* out);
-  void mixture(const KbTexture& texture, DenseSpectra& spectra, float* out);
 
   const FlatScene& scene_;
   const EvaluatorKernels& kernels_;
