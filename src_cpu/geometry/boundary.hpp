@@ -18,10 +18,10 @@ inline glm::vec3 leave_surface(const SurfaceHit& hit, glm::vec3 direction) {
   return offset_ray_origin(hit.departure, glm::dot(n, direction) >= 0 ? n : -n, hit.offset);
 }
 
-/// The parameter of the point that a ray left, whose origin is off the surface:
+/// The parameter of the point of a surface that a ray left, whose origin is off the surface:
 /// columns of gas are measured from there.
-inline float begin_at(const SurfaceHit& hit, glm::vec3 origin, glm::vec3 direction) {
-  return glm::dot(hit.point - origin, direction) / glm::dot(direction, direction);
+inline float begin_at(glm::vec3 point, glm::vec3 origin, glm::vec3 direction) {
+  return glm::dot(point - origin, direction) / glm::dot(direction, direction);
 }
 
 inline SurfaceHit surface_of(const FlatScene& scene, const TraceRay& ray) {

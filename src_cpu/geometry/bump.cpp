@@ -6,9 +6,11 @@
 #include "shared/estimator.h"
 #include "shared/warp.h"
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
-#include "src_cpu/geometry/surface_hit.hpp"
 #include "src_cpu/geometry/texture/texel_corners.hpp"
 #include "src_cpu/geometry/texture/texture_lookup.hpp"
+#include "src_cpu/lanes/one_lane_glm.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/geometry/surface_hit-inl.hpp"
 
 namespace kiloband::cpu {
 namespace {
@@ -19,6 +21,11 @@ glm::vec3 vector(const KbFloat3& v) {
 glm::vec2 vector(const KbFloat2& v) {
   return {v.x, v.y};
 }
+
+/// dp/du, dp/dv; where a mesh has no texture coordinates, its barycentric ones take their place.
+struct SurfaceTangents {
+  glm::vec3 du, dv;
+};
 
 SurfaceTangents mesh_tangents(const FlatScene& scene, const KbShape& shape, uint32_t primitive) {
   const uint32_t* index = &scene.triangles[3 * (std::size_t{shape.first_triangle} + primitive)];
@@ -57,6 +64,33 @@ float axis_slope(double x, uint32_t size, uint32_t wrap) {
   return i < size - 1.0 ? 1.0f : -1.0f;
 }
 
+SurfaceTangents surface_tangents(const FlatScene& scene, uint32_t shape, uint32_t primitive, glm::vec2 uv) {
+  const KbShape& record = scene.shapes[shape];
+  if (record.type == KB_SHAPE_MESH) return mesh_tangents(scene, record, primitive);
+  const SurfaceTangents own = canonical_tangents(record.type, uv);
+  return {transform_vector(record.to_world, own.du), transform_vector(record.to_world, own.dv)};
+}
+
+/// dh/du, dh/dv of a texture of heights.
+glm::vec2 height_gradient(const FlatScene& scene, uint32_t index, glm::vec2 uv) {
+  const KbTexture& texture = scene.textures[index];
+  if (texture.flags & KB_TEXTURE_NEAREST) return {0, 0};
+  const KbTextureSample sample = sample_bitmap(texture, index, uv);
+  const TexelCorners corners(texture, sample);
+  const auto height = [&](int corner) { return scene.texels[texture.first_texel + corners.texel[corner]].w; };
+  const float* m = texture.to_uv;
+  const auto coordinate = [&](const float* row, uint32_t size) {
+    return (double{row[0]} * double{uv.x} + double{row[1]} * double{uv.y} + double{row[2]}) * size - 0.5;
+  };
+  const float x = axis_slope(coordinate(m, texture.width), texture.width, texture.wrap) *
+                  static_cast<float>(texture.width) *
+                  ((1 - sample.fy) * (height(1) - height(0)) + sample.fy * (height(3) - height(2)));
+  const float y = axis_slope(coordinate(m + 3, texture.height), texture.height, texture.wrap) *
+                  static_cast<float>(texture.height) *
+                  ((1 - sample.fx) * (height(2) - height(0)) + sample.fx * (height(3) - height(1)));
+  return {x * m[0] + y * m[3], x * m[1] + y * m[4]};
+}
+
 /// Of a vector that may be so long or short that its square is not.
 glm::vec3 brought_to_one(glm::vec3 v) {
   const glm::vec3 a = glm::abs(v);
@@ -91,8 +125,8 @@ glm::vec3 mapped_normal(const FlatScene& scene, const KbBump& bump, const BumpPo
   const float length2 = glm::dot(local, local);
   if (!(length2 > 0) || (local.x == 0 && local.y == 0 && local.z > 0)) return at.normal;
   const glm::vec3 du = surface_tangents(scene, at.shape, at.primitive, at.uv).du;
-  const ShadingFrame frame(at.normal, du);
-  return frame.to_world(local / std::sqrt(length2));
+  const one_lane::Frame frame = one_lane::make_frame(to_lane(at.normal), to_lane(du));
+  return to_glm(frame.to_world(to_lane(local / std::sqrt(length2))));
 }
 
 /// n' turned half around n.
@@ -101,32 +135,6 @@ glm::vec3 half_turned(glm::vec3 n, glm::vec3 bumped) {
 }
 
 }  // namespace
-
-SurfaceTangents surface_tangents(const FlatScene& scene, uint32_t shape, uint32_t primitive, glm::vec2 uv) {
-  const KbShape& record = scene.shapes[shape];
-  if (record.type == KB_SHAPE_MESH) return mesh_tangents(scene, record, primitive);
-  const SurfaceTangents own = canonical_tangents(record.type, uv);
-  return {transform_vector(record.to_world, own.du), transform_vector(record.to_world, own.dv)};
-}
-
-glm::vec2 height_gradient(const FlatScene& scene, uint32_t index, glm::vec2 uv) {
-  const KbTexture& texture = scene.textures[index];
-  if (texture.flags & KB_TEXTURE_NEAREST) return {0, 0};
-  const KbTextureSample sample = sample_bitmap(texture, index, uv);
-  const TexelCorners corners(texture, sample);
-  const auto height = [&](int corner) { return scene.texels[texture.first_texel + corners.texel[corner]].w; };
-  const float* m = texture.to_uv;
-  const auto coordinate = [&](const float* row, uint32_t size) {
-    return (double{row[0]} * double{uv.x} + double{row[1]} * double{uv.y} + double{row[2]}) * size - 0.5;
-  };
-  const float x = axis_slope(coordinate(m, texture.width), texture.width, texture.wrap) *
-                  static_cast<float>(texture.width) *
-                  ((1 - sample.fy) * (height(1) - height(0)) + sample.fy * (height(3) - height(2)));
-  const float y = axis_slope(coordinate(m + 3, texture.height), texture.height, texture.wrap) *
-                  static_cast<float>(texture.height) *
-                  ((1 - sample.fx) * (height(2) - height(0)) + sample.fx * (height(3) - height(1)));
-  return {x * m[0] + y * m[3], x * m[1] + y * m[4]};
-}
 
 BumpedNormal bumped_normal(const FlatScene& scene, const KbBump& bump, const BumpPoint& at) {
   const bool mapped = scene.textures[bump.texture].flags & KB_TEXTURE_NORMALS;

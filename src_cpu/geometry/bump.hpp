@@ -29,15 +29,6 @@
 
 namespace kiloband::cpu {
 
-/// dp/du, dp/dv; where a mesh has no texture coordinates, its barycentric ones take their place.
-struct SurfaceTangents {
-  glm::vec3 du, dv;
-};
-SurfaceTangents surface_tangents(const FlatScene& scene, uint32_t shape, uint32_t primitive, glm::vec2 uv);
-
-/// dh/du, dh/dv of a texture of heights.
-glm::vec2 height_gradient(const FlatScene& scene, uint32_t texture, glm::vec2 uv);
-
 /// A point that was hit.
 struct BumpPoint {
   uint32_t shape, primitive;

@@ -24,7 +24,7 @@ void add_triangle(FewTriangles& few, const FlatScene& scene, uint32_t shape, uin
   glm::dvec3 p[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const KbFloat3& place = scene.positions[scene.triangles[first + i]];
-    p[i] = to_glm(place);
+    p[i] = kiloband::to_glm(place);
     triangle.corners[i] = corner_at(few.corners, place);
   }
   const glm::dvec3 product = cross(p[1] - p[0], p[2] - p[0]);

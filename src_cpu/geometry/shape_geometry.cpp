@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/warp.h"
 #include "src_cpu/geometry/shape_geometry_affine.hpp"
-#include "src_cpu/geometry/shape_geometry_warp.hpp"
 
 namespace kiloband::cpu {
 namespace {
@@ -137,8 +137,14 @@ glm::dvec3 canonical_tangent(uint32_t type, const glm::dvec3& p) {
 }
 
 glm::vec3 canonical_area_point(uint32_t type, glm::vec2 u) {
-  if (type == KB_SHAPE_SPHERE) return warp_uniform_sphere(u);
-  if (type == KB_SHAPE_DISK) return {warp_concentric_disk(u), 0};
+  if (type == KB_SHAPE_SPHERE) {
+    const KbFloat3 w = kb_sphere_uniform(u.x, u.y);
+    return {w.x, w.y, w.z};
+  }
+  if (type == KB_SHAPE_DISK) {
+    const KbFloat2 p = kb_disk_concentric(u.x, u.y);
+    return {p.x, p.y, 0};
+  }
   const float phi = 2 * KB_PI * u.x;
   return {std::cos(phi), std::sin(phi), u.y};
 }
@@ -151,16 +157,9 @@ SphereGeometry sphere_geometry(const KbShape& shape) {
 
 bool intersect_analytic(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
                         double t_min, double t_max, double& t) {
-  switch (shape.type) {
-    case KB_SHAPE_SPHERE:
-      return intersect_sphere(shape, origin, direction, t_min, t_max, t);
-    case KB_SHAPE_DISK:
-      return intersect_disk(shape, origin, direction, t_min, t_max, t);
-    case KB_SHAPE_CYLINDER:
-      return intersect_cylinder(shape, origin, direction, t_min, t_max, t);
-    default:
-      return false;  // meshes are not analytic
-  }
+  if (shape.type == KB_SHAPE_SPHERE) return intersect_sphere(shape, origin, direction, t_min, t_max, t);
+  if (shape.type == KB_SHAPE_DISK) return intersect_disk(shape, origin, direction, t_min, t_max, t);
+  return shape.type == KB_SHAPE_CYLINDER && intersect_cylinder(shape, origin, direction, t_min, t_max, t);
 }
 
 glm::vec2 analytic_uv(uint32_t shape_type, const glm::dvec3& local) {

@@ -63,9 +63,6 @@ KB_INLINE M operator!(M a) {
 KB_INLINE bool any(M a) {
   return !hn::AllFalse(kFloatLanes, a.v);
 }
-KB_INLINE bool all(M a) {
-  return hn::AllTrue(kFloatLanes, a.v);
-}
 KB_INLINE uint32_t count(M a) {
   return static_cast<uint32_t>(hn::CountTrue(kFloatLanes, a.v));
 }
@@ -301,12 +298,6 @@ KB_INLINE void load_fours(const uint32_t* const (&from)[kLanes], U (&words)[4]) 
   words[1] = hn::BitCast(kWordLanes, hn::InterleaveUpper(pairs, low01, low23));
   words[2] = hn::BitCast(kWordLanes, hn::InterleaveLower(pairs, high01, high23));
   words[3] = hn::BitCast(kWordLanes, hn::InterleaveUpper(pairs, high01, high23));
-}
-KB_INLINE void scatter(U a, uint32_t* p, U index) {
-  hn::ScatterIndex(a.v, kWordLanes, p, hn::BitCast(kSignedLanes, index.v));
-}
-KB_INLINE void scatter(F a, float* p, U index) {
-  hn::ScatterIndex(a.v, kFloatLanes, p, hn::BitCast(kSignedLanes, index.v));
 }
 
 // Chosen lanes are moved together in the register and stored whole: the form of the instruction that writes to

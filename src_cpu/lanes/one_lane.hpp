@@ -52,9 +52,6 @@ KB_INLINE M operator!(M a) {
 KB_INLINE bool any(M a) {
   return a.v;
 }
-KB_INLINE bool all(M a) {
-  return a.v;
-}
 KB_INLINE uint32_t count(M a) {
   return a.v ? 1 : 0;
 }
@@ -271,12 +268,6 @@ KB_INLINE U gather(const uint32_t* p, U index) {
 /// gather of 16 lanes takes about as long as 16 loads.
 KB_INLINE void load_fours(const uint32_t* const (&from)[kLanes], U (&words)[4]) {
   std::memcpy(words, from[0], sizeof words);
-}
-KB_INLINE void scatter(U a, uint32_t* p, U index) {
-  p[index.v] = a.v;
-}
-KB_INLINE void scatter(F a, float* p, U index) {
-  p[index.v] = a.v;
 }
 /// The lanes of m, one after another; writes kLanes elements.
 KB_INLINE void store_chosen(F a, M m, float* p) {

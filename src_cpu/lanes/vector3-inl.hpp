@@ -49,6 +49,10 @@ KB_INLINE V3 normalize(V3 a) {
 KB_INLINE V3 select(M m, V3 yes, V3 no) {
   return {select(m, yes.x, no.x), select(m, yes.y, no.y), select(m, yes.z, no.z)};
 }
+/// The lanes of m, one after another; writes kLanes elements of each array.
+KB_INLINE void store_chosen(V3 a, M m, float* x, float* y, float* z) {
+  store_chosen(a.x, m, x), store_chosen(a.y, m, y), store_chosen(a.z, m, z);
+}
 KB_INLINE F largest(V3 a) {
   return max(max(a.x, a.y), a.z);
 }

@@ -1,5 +1,5 @@
 // Gas along the rays of a path: null boundaries are passed, and every segment in a gas becomes a vertex of
-// kind KB_KIND_MEDIUM (shared/records.h).
+// kind KB_KIND_MEDIUM (shared/path_vertex.h).
 //
 // Estimator. Gas only absorbs and emits, so with optical depth x from the segment's begin the
 // radiance there is
@@ -13,7 +13,6 @@
 // attenuated by the atmosphere in front of them.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "shared/plume.h"
 #include "src_cpu/geometry/boundary.hpp"
@@ -21,23 +20,6 @@
 
 namespace kiloband::cpu::one_lane {
 namespace {
-
-/// The hit in glm's types.
-SurfaceHit surface_hit(const Shading& s) {
-  const RayQueue& rays = s.wave.rays();
-  SurfaceHit hit;
-  hit.point = to_glm(s.hit.point);
-  hit.geometric_normal = to_glm(s.hit.geometric_normal);
-  hit.shading_normal = to_glm(s.hit.shading_normal);
-  hit.tangent = to_glm(s.hit.tangent);
-  hit.offset = s.hit.offset.v;
-  hit.departure = to_glm(s.hit.departure);
-  hit.uv = to_glm(s.hit.uv);
-  hit.shape = s.hit.shape.v;
-  hit.triangle = rays.primitive[s.first];
-  hit.barycentric = {rays.u[s.first], rays.v[s.first]};
-  return hit;
-}
 
 KbFloat3 to_record(glm::vec3 v) {
   return {v.x, v.y, v.z};
@@ -51,10 +33,10 @@ bool is_plume(const KbMedium& medium) {
   return medium.type == KB_MEDIUM_GRID || medium.type == KB_MEDIUM_JET;
 }
 
-KbPathVertex medium_vertex(const KbMedium& medium, uint32_t flags) {
-  KbPathVertex vertex{};
+Vertex medium_vertex(const KbMedium& medium, uint32_t flags) {
+  Vertex vertex = empty_vertex();
   vertex.head = KB_KIND_MEDIUM | flags;
-  vertex.row_a = static_cast<uint16_t>(medium.row);
+  vertex.a.row = medium.row;
   return vertex;
 }
 
@@ -78,25 +60,10 @@ float column_of(const FlatScene& scene, const KbMedium& medium, const Straight& 
 }
 
 /// A vertex of gas behind what the path has saved, and the cells that follow it.
-void append_medium(Wave& wave, uint32_t path, const KbPathVertex& medium,
-                   std::span<const KbPlumeCell> cells) {
-  Vertex v = empty_vertex();
-  v.head = medium.head;
-  v.a.row = medium.row_a;
-  v.emission.row = medium.emit_row;
-  v.emit_weight = medium.emit_weight;
-  v.nee0 = medium.nee0;
-  v.nee1 = medium.nee1;
-  v.scatter0 = medium.scatter0;
-  append(wave, path, v, {true});
-  for (std::size_t i = 0; i < cells.size(); i += 4) {
-    WaveEntry extension;
-    extension.vertex = {};
-    extension.next = KB_NONE;
-    const auto some = cells.subspan(i, std::min<std::size_t>(4, cells.size() - i));
-    std::memcpy(static_cast<void*>(&extension.vertex), some.data(), some.size_bytes());
-    wave.entries.push_back(extension);
-  }
+void append_medium(Wave& wave, uint32_t path, const Vertex& medium, std::span<const KbPlumeCell> cells) {
+  append(wave, path, medium, {true});
+  for (std::size_t i = 0; i < cells.size(); i += 4)
+    wave.entries.emplace_back(&cells[i], std::min<std::size_t>(4, cells.size() - i) * sizeof cells[i]);
 }
 
 TraceRay ray_of(const RayQueue& rays, uint32_t i) {
@@ -178,7 +145,7 @@ void GasPaths::pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay
   cross(path, gas.media, hit.shape, glm::dot(hit.geometric_normal, direction) >= 0);
   gas.far -= ray.t_max;
   ray = TraceRay(leave_surface(hit, direction), direction, 0, gas.far);
-  gas.begin = begin_at(hit, ray.origin(), direction);
+  gas.begin = begin_at(hit.point, ray.origin(), direction);
   if (++gas.crossings >= KB_MAX_VERTICES) {
     path.flags |= kInvalidPath;
     return;  // as if it left the scene
@@ -206,7 +173,7 @@ void GasPaths::append(Wave& wave, uint32_t path, bool escapes) {
       continue;
     }
     if (in_front > 0 && medium.emit_row != KB_NONE) {
-      KbPathVertex aside = medium_vertex(scene_.media[scene_.atmosphere], KB_VERTEX_DEFER);
+      Vertex aside = medium_vertex(scene_.media[scene_.atmosphere], KB_VERTEX_DEFER);
       aside.scatter0 = in_front;
       append_medium(wave, path, aside, {});
     }
@@ -218,12 +185,13 @@ void GasPaths::append_segment(Wave& wave, uint32_t path, const KbMedium& medium,
                               const Segment& segment) const {
   const Straight s = straight(segment.origin, segment.direction, segment.t_min, segment.t_max);
   const bool emits = medium.emit_row != KB_NONE;
-  KbPathVertex vertex = medium_vertex(medium, KB_VERTEX_SCATTER | (emits ? KB_VERTEX_EMIT : 0));
+  Vertex vertex = medium_vertex(medium, KB_VERTEX_SCATTER | (emits ? KB_VERTEX_EMIT : 0));
   vertex.emit_weight = 1;
-  vertex.emit_row = static_cast<uint16_t>(emits ? medium.emit_row : 0);
+  if (emits) vertex.emission.row = medium.emit_row;
   if (!is_plume(medium)) {
-    vertex.scatter0 = column_of(scene_, medium, s);
-    if (vertex.scatter0 != 0) append_medium(wave, path, vertex, {});
+    const float column = column_of(scene_, medium, s);
+    vertex.scatter0 = column;
+    if (column != 0) append_medium(wave, path, vertex, {});
     return;
   }
   KbPlumeWalk walk;
@@ -233,8 +201,8 @@ void GasPaths::append_segment(Wave& wave, uint32_t path, const KbMedium& medium,
   uint32_t count = 0;
   while (const uint32_t more = kb_plume_next(&walk, &medium, nodes, &cells[count])) count += more;
   if (count == 0) return;
-  for (uint32_t i = 0; i < count; ++i) vertex.scatter0 += cells[i].column;
-  vertex.head |= count << KB_VERTEX_MATERIAL_SHIFT;
+  for (uint32_t i = 0; i < count; ++i) vertex.scatter0.v += cells[i].column;
+  vertex.head.v |= count << KB_VERTEX_MATERIAL_SHIFT;
   vertex.nee0 = walk.first_k;
   vertex.nee1 = medium.reference_k;
   append_medium(wave, path, vertex, std::span(cells).first(count));
@@ -246,14 +214,14 @@ void GasPaths::follow_ray(const Shading& s) {
   origin_and_direction(next, next.count - 1, origin, direction);
   GasPath& gas = paths_[s.path.v];
   gas.media = media_towards(s, direction);
-  gas.begin = begin_at(surface_hit(s), origin, direction);
+  gas.begin = begin_at(to_glm(s.hit.point), origin, direction);
 }
 
 void GasPaths::note_shadow_ray(const Shading& s) {
   glm::vec3 origin, direction;
   origin_and_direction(s.wave.shadow_rays, s.wave.shadow_rays.count, origin, direction);
   shadow_owners_.push_back(
-      {s.path.v, begin_at(surface_hit(s), origin, direction), media_towards(s, direction)});
+      {s.path.v, begin_at(to_glm(s.hit.point), origin, direction), media_towards(s, direction)});
 }
 
 void GasPaths::trace_shadows(Wave& wave) {
@@ -292,7 +260,7 @@ bool GasPaths::walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, 
     const glm::vec3 from = leave_surface(hit, direction);
     ray = infinite ? TraceRay(from, direction, 0, kInfinity)
                    : TraceRay(from, origin + direction - from, 0, shadow.t_max);
-    at.begin = begin_at(hit, from, ray.direction());
+    at.begin = begin_at(hit.point, from, ray.direction());
   }
 }
 
@@ -321,7 +289,7 @@ void GasPaths::append_columns(Wave& wave, uint32_t path, uint32_t entry, const C
   wave.entries[entry].vertex.head |= KB_VERTEX_DEFER;
   for (uint32_t i = 0; i < columns.count; ++i) {
     const bool last = i + 1 == columns.count;
-    KbPathVertex vertex =
+    Vertex vertex =
         medium_vertex(scene_.media[columns.medium[i]], KB_VERTEX_NEE | (last ? 0 : KB_VERTEX_DEFER));
     vertex.nee0 = columns.column[i];
     append_medium(wave, path, vertex, {});

@@ -1,7 +1,7 @@
 // One bounce of a wave: emission, next-event estimation, scattering, roulette.
 //
 // Estimator: path_tracer.hpp. The stages stand in the order in which kernels/path has them; what few scenes have (gas,
-// dispersion, thermal emission) is code for one path at a time (RareFeatures), which one lane alone calls.
+// dispersion) is code for one path at a time (RareFeatures), which one lane alone calls. Thermal emission: thermal-inl.hpp.
 //
 // For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
 #if defined(KILOBAND_SHADE_INL) == defined(HWY_TARGET_TOGGLE)

@@ -103,12 +103,8 @@ KB_INLINE void queue_shadow_rays(Shading& s, const Light& light, M lit) {
   const V3 origin = leave_surface(s.hit.departure, s.hit.geometric_normal, s.hit.offset, light.direction);
   const V3 way = select(light.infinite, light.direction, light.target - origin);
   const uint32_t n = queue.count;
-  store_chosen(origin.x, lit, queue.ox + n);
-  store_chosen(origin.y, lit, queue.oy + n);
-  store_chosen(origin.z, lit, queue.oz + n);
-  store_chosen(way.x, lit, queue.dx + n);
-  store_chosen(way.y, lit, queue.dy + n);
-  store_chosen(way.z, lit, queue.dz + n);
+  store_chosen(origin, lit, queue.ox + n, queue.oy + n, queue.oz + n);
+  store_chosen(way, lit, queue.dx + n, queue.dy + n, queue.dz + n);
   store_chosen(select(light.infinite, F(kInfinity), F(1)), lit, queue.t_max + n);
   store_chosen(s.path, lit, queue.path + n);
 }
@@ -138,12 +134,8 @@ KB_INLINE void continue_paths(Shading& s, V3 direction, F bound, F pdf, M delta,
   RayQueue& next = s.wave.next_rays();
   const V3 origin = leave_surface(s.hit.departure, s.hit.geometric_normal, s.hit.offset, direction);
   const uint32_t n = next.count;
-  store_chosen(origin.x, goes_on, next.ox + n);
-  store_chosen(origin.y, goes_on, next.oy + n);
-  store_chosen(origin.z, goes_on, next.oz + n);
-  store_chosen(direction.x, goes_on, next.dx + n);
-  store_chosen(direction.y, goes_on, next.dy + n);
-  store_chosen(direction.z, goes_on, next.dz + n);
+  store_chosen(origin, goes_on, next.ox + n, next.oy + n, next.oz + n);
+  store_chosen(direction, goes_on, next.dx + n, next.dy + n, next.dz + n);
   store_chosen(s.path, goes_on, next.path + n);
   store(F(0), next.t_min + n);
   store(F(kInfinity), next.t_max + n);

@@ -8,6 +8,8 @@
 #define KILOBAND_VERTEX_INL
 #endif
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "shared/estimator.h"
@@ -95,14 +97,8 @@ inline void append_lookups(Wave& wave, uint32_t head, uint32_t i, const LookupAr
   uint32_t count = 0;
   for (uint32_t k = 0; k < 4; ++k)
     if (head & kFlags[k]) samples[count++] = lookups[k].at(i);
-  for (uint32_t k = 0; k < count; k += 2) {
-    WaveEntry extension;
-    extension.vertex = {};
-    extension.next = KB_NONE;
-    std::memcpy(static_cast<void*>(&extension.vertex), &samples[k],
-                std::min(count - k, 2u) * sizeof(KbTextureSample));
-    wave.entries.push_back(extension);
-  }
+  for (uint32_t k = 0; k < count; k += 2)
+    wave.entries.emplace_back(&samples[k], std::min(count - k, 2u) * sizeof(KbTextureSample));
 }
 
 /// Saves the vertices of lanes m at the ends of their paths. path: indices in the wave

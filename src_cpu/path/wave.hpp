@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "render/backend.hpp"
@@ -51,6 +52,10 @@ struct WaveEntry {
   KbPathVertex vertex;
   uint32_t next;  // the path's next vertex
   WaveEntry() {}  // sets nothing: who adds one fills it in
+  /// What follows a vertex, at most as large as one.
+  WaveEntry(const void* from, std::size_t bytes) : vertex{}, next(KB_NONE) {
+    std::memcpy(static_cast<void*>(&vertex), from, bytes);
+  }
 };
 
 /// Every ray that is traced, with its path's index in the block (benchmarks of bare queries, traced paths).
