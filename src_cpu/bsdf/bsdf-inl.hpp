@@ -1,4 +1,4 @@
-// Chooses each lane's material: eval_bsdf() and sample_bsdf() of src_cpu/bsdf/bsdf.hpp over lanes.
+// Chooses each lane's material: eval_bsdf() and sample_bsdf().
 //
 // A material's code runs where a lane has it, so that a wave of one material pays for one; for one lane that is a
 // branch. Lanes outside `active`, and those without a value or sample, get pdf and weights of 0. Without a value, too,
@@ -67,6 +67,7 @@ inline void sample_any_principled(const Material& m, V3 wi, F u_lobe, V2 u, M ac
   if (const M lanes = active & thin; any(lanes)) sample_sheet(m, wi, u_lobe, u, lanes, sample);
 }
 
+/// Value and density for wi -> wo; zero for delta materials and for directions that the material does not scatter to.
 KB_INLINE BsdfValue eval_bsdf(const Material& m, V3 wi, V3 wo, M active) {
   BsdfValue value = no_value();
   const M above = active & (wi.z > F(0)) & (wo.z > F(0));
@@ -87,6 +88,8 @@ KB_INLINE BsdfValue eval_bsdf(const Material& m, V3 wi, V3 wo, M active) {
   return value;
 }
 
+/// Chooses a direction; the weights are f |cos theta_o| / pdf of the whole material for non-delta lobes, and of the chosen lobe
+/// for delta ones. u_lobe and u uniform in [0,1).
 KB_INLINE BsdfSample sample_bsdf(const Material& m, V3 wi, F u_lobe, V2 u, M active) {
   BsdfSample sample = no_sample();
   const M above = active & (wi.z > F(0));

@@ -1,6 +1,17 @@
-// What all BSDFs over lanes have in common: a material in each lane, a value, a sample.
+// What all BSDFs have in common: a material in each lane, a value, a sample. They are the wavelength-independent part: what
+// sampling, densities and saved vertices need.
 //
-// What they mean, units and conventions: src_cpu/bsdf/bsdf.hpp. Vectors are in the local shading frame.
+// A BSDF value times |cos theta_o| is split into a part that does not depend on wavelength and the spectral
+// factors that deferred evaluation applies (KbVertexKind in shared/path_vertex.h). Directions are unit vectors in
+// the local shading frame (z = normal), both pointing away from the surface; wi is where the path comes from,
+// wo where it goes.
+//
+// Conventions, which are Mitsuba 3's: reflecting materials are black from behind (cos_i <= 0 or cos_o <= 0),
+// transmitted radiance is scaled by 1 / eta^2 (radiance transport), cosines are those of the shading frame.
+// Roughness below 1e-4 is 1e-4. Differences: Beckmann's masking is exact (Mitsuba's rational fit is off by up
+// to 0.35 %), plastic lobes are chosen with 10 % uniform mixed in, and a rough dielectric whose lobe float
+// directions cannot resolve (min(alpha) * |eta - 1| < 3e-6) acts as a smooth one.
+//
 // For one lane or a vector of them: see lanes/one_lane.hpp and lanes/highway_lanes-inl.hpp, one of which comes first.
 #if defined(KILOBAND_BSDF_COMMON_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef KILOBAND_BSDF_COMMON_INL
@@ -26,10 +37,12 @@ struct Principled {
 struct Material {
   U type, flags, ref_a, ref_b;
   F alpha_u, alpha_v, eta, specular_weight, fdr_int, bound_a, bound_b;
-  U table;              // where its tables begin in `tables`, or KB_NONE
-  U compensation;       // where its table of energy compensation begins there, or KB_NONE
-  F channel_eta;        // dispersive: interior over exterior index at the chosen wavelength; 0: not degraded
-  const float* tables;  // of the scene; for lanes that have a table at all
+  U table;         // where its tables begin in `tables`, or KB_NONE
+  U compensation;  // where its table of energy compensation begins there, or KB_NONE
+  /// Dispersive: interior over exterior index at the wavelength chosen by degradation; 0: not degraded. Before it, reflection by a
+  /// smooth dielectric is for all channels (KB_KIND_DISPERSIVE) while transmission needs a channel to be chosen by the caller.
+  F channel_eta;
+  const float* tables;           // of the scene; for lanes that have a table at all
   const Principled* principled;  // of lanes that have a principled material; null: none has
 };
 
@@ -39,16 +52,30 @@ KB_INLINE Material one_material(const KbMaterial& m) {
           m.fdr_int, m.bound_a, m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr, nullptr};
 }
 
+/// The weights of one direction pair, for KbVertexKind eval_kind(material).
 struct BsdfValue {
-  F w0, w1, pdf;
-  M lobe_b;
+  /// f |cos theta_o| without spectral factors [1/sr]; see KB_KIND_*. KB_KIND_TINTED: w1 < 0 where sqrt(S_a) is the factor
+  F w0, w1;
+  F pdf;     // solid angle [1/sr], of sample_bsdf choosing wo (0 for delta lobes)
+  M lobe_b;  // KB_KIND_SCALED: the factor is S_b instead of S_a (dielectric transmittance)
 };
 
+/// A vertex has one kind: for materials with a non-delta lobe `kind` equals eval_kind(material), so that
+/// light and BSDF samples can share a vertex. Only rough dielectrics may need S_a for one and S_b for the
+/// other: w0 * S_a is then KB_KIND_TWO_TERM with (w0, 0), w0 * S_b with (0, w0).
 struct BsdfSample {
   V3 wo;
-  F w0, w1, pdf, eta, bound;
-  M delta, transmission, lobe_b, needs_channel;
-  U kind;
+  F w0, w1;  // f |cos theta_o| / pdf without spectral factors (delta lobes: weight / probability)
+  F pdf;     // solid angle [1/sr], or the discrete probability of a delta lobe; 0: no sample, the path ends
+  F eta;     // transmission: ratio of refractive indices, transmitted over incident side; else 1
+  /// Upper bound of this sample's throughput factor over all channels, times eta^2: without the radiance scaling, as roulette wants it.
+  F bound;
+  M delta, transmission;
+  M lobe_b;  // KB_KIND_SCALED: the factor is S_b instead of S_a (dielectric transmittance)
+  /// Dispersive transmission with probability pdf: the caller chooses a channel and calls transmit_dispersive; wo, w0 and bound are not
+  /// set.
+  M needs_channel;
+  U kind;  // how w0, w1 are to be evaluated
 };
 
 KB_INLINE BsdfValue no_value() {

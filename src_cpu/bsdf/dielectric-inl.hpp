@@ -179,8 +179,12 @@ KB_INLINE void sample_rough_dielectric(const Material& material, V3 wi, F eta, F
     sample_facet_boundary(material, wi, eta, u_lobe, u, lanes, sample);
 }
 
+/// A pair of directions at a rough dispersive boundary, for every channel at once. For reflection the vertex
+/// is KB_KIND_DISPERSIVE with w0 = weight, w1 = cosine; for transmission KB_KIND_ROUGH_TRANSMISSION with
+/// w0 = weight and the directions (shared/rough_transmission.h).
 struct BoundaryPair {
-  F weight, cosine;
+  F weight;  // f |cos theta_o| [1/sr] without Fresnel's reflectance; or without the factor T; 0: none
+  F cosine;  // reflection: of wi and the half vector, negative from inside
   M transmission;
 };
 
@@ -201,6 +205,10 @@ KB_INLINE BoundaryPair rough_boundary_pair(const Material& material, V3 wi, V3 w
   return {weight, select(reflection, select(below, -half.dot_i, half.dot_i), F(0)), active & transmission};
 }
 
+/// Second half of a sample with needs_channel: refracts wi for the chosen channel.
+/// eta_channel  interior over exterior index at the channel's wavelength
+/// probability  of getting here: the sample's pdf times the probability of the channel
+/// returns pdf == 0 on total internal reflection (this channel is carried by the reflected sample alone)
 KB_INLINE BsdfSample transmit_dispersive(const Material& material, V3 wi, F eta_channel, F probability,
                                          M active) {
   const M below = wi.z < F(0);

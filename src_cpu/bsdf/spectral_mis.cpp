@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src_cpu/lanes/one_lane_glm.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/bsdf/bsdf-inl.hpp"
+
 namespace kiloband::cpu {
-namespace {
-
-MaterialContext seen_by(const KbMaterial& material, float eta) {
-  return {&material, nullptr, {eta}};
-}
-
-}  // namespace
 
 uint32_t hero_channel(uint32_t c, uint32_t heroes, uint32_t channels, float offset) {
   const float position = (static_cast<float>(c) + offset) / static_cast<float>(heroes);
@@ -37,13 +34,17 @@ HeroDensity hero_density(EvalHeroes eval, const KbMaterial& material, const Hero
 glm::vec3 sample_heroes(const KbMaterial& material, const HeroSet& heroes, glm::vec3 wi, glm::vec2 u_hero,
                         float u_lobe, glm::vec2 u) {
   if (u_hero.y < KB_NO_HERO) {
-    const glm::vec3 wo = cosine_direction(u);
+    const glm::vec3 wo = to_glm(one_lane::cosine_hemisphere(u.x, u.y));
     return u_lobe < 0.5f ? wo : glm::vec3(wo.x, wo.y, -wo.z);
   }
   uint32_t c = 0;
   for (float sum = heroes.q[0]; c + 1 < heroes.count && u_hero.x >= sum;) sum += heroes.q[++c];
-  const BsdfSample sample = sample_bsdf(seen_by(material, heroes.eta[c]), wi, u_lobe, u);
-  return sample.pdf > 0 ? sample.wo : glm::vec3(0);
+  one_lane::Material seen = one_lane::one_material(material);
+  seen.type = one_lane::U(uint32_t{KB_MATERIAL_ROUGH_DIELECTRIC});  // the compiler leaves the others out
+  seen.channel_eta = heroes.eta[c];
+  one_lane::BsdfSample sample = one_lane::no_sample();
+  if (wi.z != 0) one_lane::sample_dielectric_side(seen, to_lane(wi), u_lobe, to_lane(u), {true}, sample);
+  return sample.pdf.v > 0 ? to_glm(sample.wo) : glm::vec3(0);
 }
 
 }  // namespace kiloband::cpu

@@ -17,7 +17,7 @@
 #include <glm/glm.hpp>
 
 #include "shared/estimator.h"
-#include "src_cpu/bsdf/bsdf.hpp"
+#include "shared/records.h"
 
 namespace kiloband::cpu {
 

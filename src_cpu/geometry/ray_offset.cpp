@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src_cpu/geometry/shape_geometry_affine.hpp"
 #include "src_cpu/lanes/one_lane_glm.hpp"
 // After the lanes that it is to be compiled for.
 #include "src_cpu/geometry/ray_offset-inl.hpp"
@@ -17,21 +18,6 @@ float target_offset(float offset, glm::vec3 to_light) {
   return one_lane::target_offset(offset, to_lane(to_light)).v;
 }
 
-glm::vec3 largest_coordinates(glm::vec3 p0, glm::vec3 p1, glm::vec3 p2) {
-  return glm::max(glm::max(glm::abs(p0), glm::abs(p1)), glm::abs(p2));
-}
-
-glm::vec3 off_the_edges(glm::vec3 p, glm::vec3 weights, const glm::vec3 (&corners)[3], glm::vec3 area_normal,
-                        float offset) {
-  const one_lane::Triangle triangle{to_lane(corners[0]),
-                                    to_lane(corners[1]),
-                                    to_lane(corners[2]),
-                                    to_lane(corners[1] - corners[0]),
-                                    to_lane(corners[2] - corners[0]),
-                                    to_lane(area_normal)};
-  return to_glm(one_lane::off_the_edges(triangle, to_lane(p), to_lane(weights), offset, {true}));
-}
-
 glm::vec3 largest_coordinates(const KbShape& shape) {
   glm::vec3 largest;
   for (int axis = 0; axis < 3; ++axis) {
@@ -42,9 +28,7 @@ glm::vec3 largest_coordinates(const KbShape& shape) {
 }
 
 glm::vec3 off_the_rim(const KbShape& shape, glm::vec3 p, glm::vec2 uv, float offset) {
-  const auto column = [&](int c) {
-    return glm::vec3(shape.to_world[c], shape.to_world[4 + c], shape.to_world[8 + c]);
-  };
+  const auto column = [&](int c) { return affine_column<float>(shape.to_world, c); };
   if (shape.type == KB_SHAPE_SPHERE) return p;
   const bool disk = shape.type == KB_SHAPE_DISK;
   const glm::vec3 along = column(disk ? 0 : 2);

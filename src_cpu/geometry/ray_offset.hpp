@@ -9,15 +9,11 @@ namespace kiloband::cpu {
 
 float surface_offset(glm::vec3 largest_coordinates, glm::vec3 unit_normal);
 float target_offset(float offset, glm::vec3 to_light);
-glm::vec3 largest_coordinates(glm::vec3 p0, glm::vec3 p1, glm::vec3 p2);
-/// area_normal: of the corners, cross product of the edges from the first one
-glm::vec3 off_the_edges(glm::vec3 p, glm::vec3 weights, const glm::vec3 (&corners)[3], glm::vec3 area_normal,
-                        float offset);
 
 /// Of a sphere, disk or cylinder: no point of it has a larger one.
 glm::vec3 largest_coordinates(const KbShape& shape);
 
-/// As off_the_edges(), for disks and cylinders, which close bodies with others at their rims.
+/// As off_the_edges() of ray_offset-inl.hpp, for disks and cylinders, which close bodies with others at their rims.
 /// uv  of the point, as SurfacePoint has it: a disk's u is the radius, a cylinder's v the height
 glm::vec3 off_the_rim(const KbShape& shape, glm::vec3 p, glm::vec2 uv, float offset);
 

@@ -42,11 +42,4 @@ SurfaceHit make_surface_hit(const FlatScene& scene, uint32_t shape, uint32_t pri
   return result;
 }
 
-ShadingFrame::ShadingFrame(glm::vec3 normal, glm::vec3 tangent) {
-  const one_lane::Frame frame = one_lane::make_frame(to_lane(normal), to_lane(tangent));
-  x = to_glm(frame.x);
-  y = to_glm(frame.y);
-  z = to_glm(frame.z);
-}
-
 }  // namespace kiloband::cpu

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "shared/estimator.h"
 #include "src_cpu/geometry/ray_offset.hpp"
@@ -13,25 +14,9 @@
 namespace kiloband::cpu {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586476925;
-
-bool lit_on_both_sides(const KbShape& shape) {
-  return shape.flags & KB_SHAPE_LIT_BOTH_SIDES;
-}
-
 float area_to_solid_angle(glm::vec3 to_light, glm::vec3 front_normal, float area) {
   return one_lane::area_to_solid_angle(to_lane(to_light), glm::length(to_light), to_lane(front_normal), area)
       .v;
-}
-
-/// Completes a sample whose position and geometric normal are known.
-void finish_by_area(AreaLightSample& sample, const KbShape& shape, glm::vec3 point) {
-  const glm::vec3 to_light = sample.position - point;
-  const float distance = glm::length(to_light);
-  const one_lane::V3 normal = to_lane(sample.normal);
-  sample.normal = to_glm(one_lane::lit_side(shape.flags, to_lane(to_light), distance, normal, normal));
-  sample.pdf = area_to_solid_angle(to_light, sample.normal, shape.area);
-  if (sample.pdf > 0) sample.direction = to_light * (1 / distance);
 }
 
 AreaLightSample sample_mesh(const FlatScene& scene, const KbShape& shape, const TriangleChoice& choice,
@@ -59,10 +44,15 @@ AreaLightSample sample_by_area(const KbShape& shape, glm::vec3 point, glm::vec2 
   const AreaPoint on_light = sample_analytic_area(shape, u);
   AreaLightSample sample;
   sample.position = on_light.position;
-  sample.normal = on_light.normal;
-  sample.offset = surface_offset(largest_coordinates(shape), sample.normal);
-  finish_by_area(sample, shape, point);
-  if (need_uv && sample.pdf > 0) sample.uv = analytic_uv(shape.type, on_light.local);
+  sample.offset = surface_offset(largest_coordinates(shape), on_light.normal);
+  const glm::vec3 to_light = sample.position - point;
+  const float distance = glm::length(to_light);
+  const one_lane::V3 normal = to_lane(on_light.normal);
+  sample.normal = to_glm(one_lane::lit_side(shape.flags, to_lane(to_light), distance, normal, normal));
+  sample.pdf = area_to_solid_angle(to_light, sample.normal, shape.area);
+  if (!(sample.pdf > 0)) return sample;
+  sample.direction = to_light * (1 / distance);
+  if (need_uv) sample.uv = analytic_uv(shape.type, on_light.local);
   return sample;
 }
 
@@ -91,7 +81,7 @@ struct SphereView {
 };
 
 float cone_density(double one_minus_cos) {
-  const auto density = static_cast<float>(1 / (kTwoPi * one_minus_cos));
+  const auto density = static_cast<float>(1 / (2 * std::numbers::pi * one_minus_cos));
   return std::isfinite(density) ? density : 0;
 }
 
@@ -131,7 +121,8 @@ AreaLightSample sample_sphere_cone(const KbShape& shape, const SphereView& view,
 
 /// A sphere's front is seen from outside, or from inside if its normals are flipped.
 bool sphere_front_visible(const KbShape& shape, const SphereView& view) {
-  return lit_on_both_sides(shape) || view.outside() != ((shape.flags & KB_SHAPE_FLIP_NORMALS) != 0);
+  return (shape.flags & KB_SHAPE_LIT_BOTH_SIDES) ||
+         view.outside() != ((shape.flags & KB_SHAPE_FLIP_NORMALS) != 0);
 }
 
 AreaLightSample sample_sphere(const KbShape& shape, glm::vec3 point, glm::vec2 u, bool need_uv) {
@@ -162,14 +153,6 @@ AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, 
   }
   return shape.type == KB_SHAPE_SPHERE ? sample_sphere(shape, point, u, need_uv)
                                        : sample_by_area(shape, point, u, need_uv);
-}
-
-float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin, float area) {
-  if (shape.type == KB_SHAPE_SPHERE) return sphere_light_density(shape, origin, hit.point);
-  if (shape.type == KB_SHAPE_MESH && shape.first_cdf == KB_NONE) return 0;
-  return one_lane::area_density(shape.flags, area, to_lane(hit.geometric_normal), to_lane(hit.shading_normal),
-                                to_lane(hit.point - origin))
-      .v;
 }
 
 }  // namespace kiloband::cpu

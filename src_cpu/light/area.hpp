@@ -4,22 +4,8 @@
 #include <glm/glm.hpp>
 
 #include "scene/compile/flat_scene.hpp"
-#include "src_cpu/geometry/surface_hit.hpp"
 
 namespace kiloband::cpu {
-
-/// Largest i in [0, count) with cdf[i] <= u; intervals of zero width are never chosen. cdf has count + 1
-/// entries, 0 to 1.
-inline uint32_t find_interval(const float* cdf, uint32_t count, float u) {
-  // The last entry that is not above u begins the interval. Without branches: their outcome would be random.
-  uint32_t first = 0;
-  for (uint32_t length = count; length > 1;) {
-    const uint32_t half = length / 2;
-    first += cdf[first + half] <= u ? half : 0;
-    length -= half;
-  }
-  return first;
-}
 
 /// A point on an area light as seen from a shaded point.
 struct AreaLightSample {
@@ -44,12 +30,7 @@ struct TriangleChoice {
 AreaLightSample sample_area_light(const FlatScene& scene, const KbShape& shape, const TriangleChoice& choice,
                                   glm::vec3 point, glm::vec2 u, bool need_uv);
 
-/// The same density for a given hit of the shape; 0 where sample_area_light() cannot give it.
-/// area  of what points are chosen on: the shape, or the triangle that the light tree chooses, m^2
-/// The other arguments as area_light_pdf().
-float area_light_density(const KbShape& shape, const SurfaceHit& hit, glm::vec3 origin, float area);
-
-/// Of spheres: for a point of the surface.
+/// The same density for a given point of a sphere; 0 where sample_area_light() cannot give it.
 float sphere_light_density(const KbShape& shape, glm::vec3 origin, glm::vec3 hit_point);
 
 }  // namespace kiloband::cpu

@@ -1,4 +1,9 @@
-// Environment emitters: environment.hpp in lanes, and what escaped rays find. A scene has one at most.
+// Environment emitters: constant radiance and lat-long maps, and what escaped rays find. A scene has one at most.
+// Densities are without the probability of selection.
+//
+// The map (emitter's local frame, +Y up): u = atan2(x, -z) / 2 pi mod 1, v = acos(y) / pi, as in Mitsuba 3.
+// The emitter's to_world is a rotation or reflection (uniform scale does not matter).
+// How maps are sampled: scene/compile/light/envmap_sampling.hpp.
 //
 // For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
 #if defined(KILOBAND_ENVIRONMENT_INL) == defined(HWY_TARGET_TOGGLE)

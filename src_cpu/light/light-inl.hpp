@@ -1,4 +1,4 @@
-// Light selection, sampling and densities: emitter.hpp in lanes. Spheres, disks and cylinders one lane after another.
+// Light selection, sampling and densities. Spheres, disks and cylinders one lane after another (emitter.hpp).
 //
 // For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
 #if defined(KILOBAND_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
@@ -18,11 +18,14 @@
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
 
-/// LightSample (emitter.hpp) in lanes; pdf 0: no sample.
+/// One sample of direct light at a point.
 struct Light {
-  V3 direction, target;
-  F pdf, factor;
-  M infinite, delta;
+  V3 direction;  // unit, from the shaded point towards the light
+  V3 target;  // area and positional lights: the point on the light, moved off its surface towards its front
+  F pdf;  // solid angle times selection probability [1/sr]; delta lights: selection probability; 0: no sample
+  F factor;    // incident radiance (delta lights: irradiance) = factor * spectrum; about 1 for area lights
+  M infinite;  // environment and directional lights, suns: no target
+  M delta;     // cannot be hit by BSDF sampling
   Resolved radiance;
 };
 
@@ -169,7 +172,7 @@ struct RadianceArrays {
         xy(r.sample.xy),
         fx(r.sample.fx),
         fy(r.sample.fy) {}
-  KB_INLINE void put(uint32_t i, const EmittedRadiance& one) {
+  KB_INLINE void put(uint32_t i, const ResolvedSpectrum& one) {
     row[i] = one.row;
     textured[i] = one.textured;
     texture[i] = one.texture.texture, xy[i] = one.texture.xy;
@@ -178,7 +181,7 @@ struct RadianceArrays {
   KB_INLINE Resolved lanes() const { return {row, has_bits(textured, 1u), {texture, xy, fx, fy}}; }
 };
 
-/// `light` with samples of area lights on shapes of other kinds, and of thermal ones, in active lanes.
+/// `light` with samples of area lights on shapes of other kinds, and of thermal ones, in active lanes, where it has none.
 /// finish  (lane, sample): what is left to be done with it
 template <class Finish>
 inline Light sample_shape_lights(const FlatScene& scene, const ChosenLight& chosen, V3 point, const F4& u,
@@ -186,8 +189,6 @@ inline Light sample_shape_lights(const FlatScene& scene, const ChosenLight& chos
   V3Array direction(light.direction), target(light.target);
   FloatArray pdf(light.pdf), factor(light.factor);
   RadianceArrays radiance(light.radiance);
-  const auto words = [](M m) KB_LAMBDA { return select(m, U(1u), U(0u)); };
-  WordArray infinite(words(light.infinite)), delta(words(light.delta));
   const V3Array at(point);
   const FloatArray u1(u.y), u2(u.z), u3(u.w), probability(chosen.head.select_pdf), area(chosen.area);
   const WordArray emitters(chosen.emitter), triangle(chosen.triangle);
@@ -199,10 +200,9 @@ inline Light sample_shape_lights(const FlatScene& scene, const ChosenLight& chos
     target.x[i] = one.target.x, target.y[i] = one.target.y, target.z[i] = one.target.z;
     pdf[i] = one.pdf;
     factor[i] = one.factor;
-    infinite[i] = one.infinite, delta[i] = one.delta;
     radiance.put(i, one.radiance);
   });
-  return {direction, target, pdf, factor, has_bits(infinite, 1u), has_bits(delta, 1u), radiance.lanes()};
+  return {direction, target, pdf, factor, light.infinite, light.delta, radiance.lanes()};
 }
 
 /// Samples of what has been chosen.
@@ -234,7 +234,10 @@ KB_INLINE Light sample_chosen(const Lights& lights, const ChosenLight& chosen, c
   return sample_shape_lights(scene, chosen, point, u, others, light, [](uint32_t, LightSample&) KB_LAMBDA {});
 }
 
-/// sample_light() of emitter.hpp, without thermally emitting shapes. u: selection, triangle, position.
+/// Selects an emitter by FlatScene::emitter_cdf (u.x) and a triangle of a mesh (u.y), or both by the light tree if there is one
+/// (shared/light_tree.h), then a point or direction on it: environment maps by their texels, for the receiver's facing, with finer
+/// digits from u.y; constant environments over the sphere; suns over their discs. Without thermally emitting shapes.
+/// u: selection, triangle, position.
 KB_INLINE Light sample_lights(const Lights& lights, const Receiver& receiver, const F4& u, M active) {
   return sample_chosen(lights, choose_light(lights.scene, receiver.point, u, active), receiver, u, active);
 }
@@ -257,8 +260,10 @@ KB_INLINE HitLight chosen_as_light(const FlatScene& scene, const Hit& hit, U emi
   return {tree_probability(scene, origin, select(in_tree, words[2], U(0u)), in_tree), as_floats(words[3])};
 }
 
-/// area_light_pdf() of emitter.hpp: the density of hits, for active lanes, whose shape has an emitter.
+/// Density with which sample_lights() gives the direction from `origin` to a hit, selection included [1/sr], in active lanes, whose
+/// shape has an emitter. 0 where the light does not emit to there (on_front()) or cannot be sampled.
 /// triangle  of the mesh that was hit
+/// origin    the `point` that was given to sample_lights(): for spheres the density depends on its side
 KB_INLINE F area_light_pdf(const FlatScene& scene, const Hit& hit, U emitter, U triangle, V3 origin,
                            M active) {
   const KbShape* shapes = scene.shapes.data();

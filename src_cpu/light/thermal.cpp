@@ -7,10 +7,10 @@
 #include "shared/material_tables.h"
 #include "shared/thermal.h"
 #include "src_cpu/geometry/texture/texture_lookup.hpp"
-#include "src_cpu/lanes/one_lane.hpp"
-#include "src_cpu/light/area.hpp"
-// After the lanes that it is to be compiled for.
+#include "src_cpu/lanes/one_lane_glm.hpp"
+// After the lanes that they are to be compiled for.
 #include "src_cpu/bsdf/fresnel-inl.hpp"
+#include "src_cpu/light/area-inl.hpp"
 
 namespace kiloband::cpu {
 namespace {
@@ -47,8 +47,8 @@ uint32_t choose_node(float position, uint32_t count, float u) {
 
 uint32_t row_of_nodes(const FlatScene& scene, const KbThermal& thermal, const Aspect& aspect, glm::vec2 u) {
   const float* cosines = &scene.tables[thermal.table];
-  const uint32_t below =
-      std::min(find_interval(cosines, thermal.nodes_cos, aspect.cosine), thermal.nodes_cos - 2);
+  const uint32_t below = std::min(one_lane::find_interval(cosines, 0, thermal.nodes_cos, aspect.cosine).v,
+                                  thermal.nodes_cos - 2);
   const float t = (aspect.cosine - cosines[below]) / (cosines[below + 1] - cosines[below]);
   const uint32_t i = u.x < t ? below + 1 : below;
   uint32_t j = 0;
@@ -86,10 +86,7 @@ void coefficients(const FlatScene& scene, const KbThermal& thermal, const Aspect
     return;
   }
   c[1] = thermal.q * (1 - c[0]);
-  if (table) {
-    const float position = aspect.cosine * (KB_COAT_NODES - 1);
-    c[1] = interpolated(table + thermal.nodes_s * KB_COMPENSATION_NODES, KB_COAT_NODES, position);
-  }
+  if (table) c[1] = kb_coat_transmittance(table + thermal.nodes_s * KB_COMPENSATION_NODES, aspect.cosine);
   c[2] = std::max(0.0f, 1 - c[0] - c[1]);
 }
 
@@ -132,13 +129,13 @@ uint32_t fraction16(float f) {
 }
 
 /// The emissivity's source with the place's temperature.
-EmittedRadiance with_temperature(const EmittedRadiance& emissivity, float temperature_k) {
+ResolvedSpectrum with_temperature(const ResolvedSpectrum& emissivity, float temperature_k) {
   KbThermalSample sample{KB_SAMPLE_THERMAL | KB_SAMPLE_ROW | emissivity.row, 0, 0, temperature_k};
   if (emissivity.textured) {
     const KbTextureSample& t = emissivity.texture;
     sample = {KB_SAMPLE_THERMAL | t.texture, t.xy, fraction16(t.fx) | fraction16(t.fy) << 16, temperature_k};
   }
-  EmittedRadiance emitted;
+  ResolvedSpectrum emitted;
   emitted.textured = true;
   static_assert(sizeof sample == sizeof emitted.texture);
   std::memcpy(&emitted.texture, &sample, sizeof sample);
@@ -151,17 +148,18 @@ ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, 
                                  glm::vec2 u) {
   const TexturePoint at(hit.uv, hit.triangle, hit.barycentric);
   const KbSurface& surface = chosen_surface(scene, scene.shapes[hit.shape].surface, at, u.x);
-  const uint32_t index = on_front(hit.shading_normal, towards) ? surface.front_thermal : surface.back_thermal;
+  const one_lane::V3 normal = to_lane(hit.shading_normal), away = to_lane(towards);
+  const uint32_t index = one_lane::on_front(normal, away).v ? surface.front_thermal : surface.back_thermal;
   if (index == KB_NONE) return {};
   const KbThermal& thermal = scene.thermals[index];
   const bool anisotropic = thermal.alpha_u != thermal.alpha_v;
-  const ShadingFrame frame(hit.shading_normal, anisotropic ? hit.tangent : glm::vec3(0));
-  const Source source = choose_source(scene, thermal, aspect_of(thermal, frame.to_local(towards)), u);
+  const one_lane::Frame frame =
+      one_lane::make_frame(normal, to_lane(anisotropic ? hit.tangent : glm::vec3(0)));
+  const Source source = choose_source(scene, thermal, aspect_of(thermal, to_glm(frame.to_local(away))), u);
   if (!(source.weight > 0)) return {};
-  const ResolvedSpectrum spectrum = resolve_spectrum(scene, source.ref, at);
   ThermalRadiance emitted;
   emitted.weight = source.weight * opacity_at(scene, surface, at);
-  emitted.radiance = {spectrum.row, spectrum.textured, spectrum.texture};
+  emitted.radiance = resolve_spectrum(scene, source.ref, at);
   if (thermal.field != KB_NONE)
     emitted.radiance = with_temperature(emitted.radiance, temperature_at(scene, thermal, hit));
   return emitted;

@@ -13,7 +13,7 @@ namespace kiloband::cpu {
 /// 0: nothing is emitted
 struct ThermalRadiance {
   float weight = 0;
-  EmittedRadiance radiance;
+  ResolvedSpectrum radiance;
 };
 
 /// hit      on a shape whose surface has KB_SURFACE_THERMAL

@@ -18,6 +18,11 @@ KbMaterial material_of(const Shading& s) {
   return material;
 }
 
+/// C of spectral_mis.hpp.
+uint32_t hero_count(const FlatScene& scene) {
+  return std::min(KB_MAX_HEROES, static_cast<uint32_t>(scene.channels.size()));
+}
+
 bool is_rough(const KbMaterial& material) {
   return material.type == KB_MATERIAL_ROUGH_DIELECTRIC;
 }
@@ -34,11 +39,12 @@ bool may_disperse(const FlatScene& scene, const KbSurface& surface) {
   return is_dispersive(scene, surface.front) || is_dispersive(scene, surface.back);
 }
 
-}  // namespace
-
-bool RareFeatures::shade_dispersive(Shading& s) {
-  return dispersion_ && dispersion_->shade(s, *this);
+BoundaryPair pair_of(const Shading& s, glm::vec3 wo) {
+  if (s.wi.z.v == 0 || wo.z == 0) return {F(0), F(0), {false}};
+  return rough_boundary_pair(s.material, s.wi, to_lane(wo), {true});
 }
+
+}  // namespace
 
 DispersedPaths::DispersedPaths(const FlatScene& scene, EvalHeroes eval_heroes)
     : scene_(scene), eval_heroes_(eval_heroes) {
@@ -49,7 +55,9 @@ DispersedPaths::DispersedPaths(const FlatScene& scene, EvalHeroes eval_heroes)
 
 void DispersedPaths::start(std::span<const float> mu) {
   mu_ = mu;
-  paths_.assign(kWavePaths, {});
+  std::array<float, KB_MAX_HEROES> even;
+  even.fill(1.0f / static_cast<float>(hero_count(scene_)));
+  hero_weights_.assign(kWavePaths, even);
 }
 
 bool DispersedPaths::shade(Shading& s, RareFeatures& rare) {
@@ -116,20 +124,12 @@ void DispersedPaths::refract_one_channel(Shading& s, BsdfSample& sample) {
   }
   const float probability = survive(s, carries);
   const float eta = channel_eta(material, path.channel, mu_of(path));
-  const cpu::BsdfSample one =
-      cpu::transmit_dispersive(material, to_glm(s.wi), eta, sample.pdf.v * probability);
-  sample.wo = to_lane(one.wo);
-  sample.w0 = one.w0;
-  sample.pdf = one.pdf;
-  sample.eta = one.eta;
+  sample = transmit_dispersive(s.material, s.wi, F(eta), sample.pdf * F(probability), {true});
   // Roulette follows the one channel that is left: its weight stands for all channels' chances, and is no
   // gain as far as it is the mean one, K.
-  sample.bound = one.bound / static_cast<float>(scene_.channels.size());
-  sample.delta = {one.delta};
-  sample.lobe_b = {true};
-  sample.kind = U(one.kind);
+  sample.bound = sample.bound / F(static_cast<float>(scene_.channels.size()));
   sample.w1 = F(kb_channel_weight(path.channel));
-  s.vertex.set({one.pdf > 0}, KB_VERTEX_DEGRADE);
+  s.vertex.set(sample.pdf > F(0), KB_VERTEX_DEGRADE);
 }
 
 /// A rough dispersive boundary: the channel is chosen on arrival, before light and BSDF samples.
@@ -152,31 +152,28 @@ HeroSet DispersedPaths::choose_heroes(const Shading& s, const KbMaterial& materi
   if (material.flags & KB_MATERIAL_COMPENSATED) return {};
   const auto channels = static_cast<uint32_t>(scene_.channels.size());
   HeroSet heroes;
-  heroes.count = std::min(KB_MAX_HEROES, channels);
+  heroes.count = hero_count(scene_);
   const PathState& path = s.wave.paths[s.path.v];
-  DispersedPath& own = paths_[s.path.v];
-  if (own.heroes == 0) {
-    own.heroes = heroes.count;
-    own.hero_weights.fill(1.0f / static_cast<float>(heroes.count));
-  }
-  heroes.q = own.hero_weights;
+  heroes.q = hero_weights_[s.path.v];
   const float offset = kb_hero_offset(s.bounce.settings.seed, path.film_pixel, s.bounce.id.sample);
   for (uint32_t c = 0; c < heroes.count; ++c)
     heroes.eta[c] = channel_eta(material, hero_channel(c, heroes.count, channels, offset), mu_of(path));
-  if (cpu::acts_smooth(material, std::span(heroes.eta).first(heroes.count))) return {};
+  const Facets facets = facets_of(s.material);
+  for (uint32_t c = 0; c < heroes.count; ++c)
+    if (any(acts_smooth(facets, F(heroes.eta[c])) | acts_smooth(facets, F(1 / heroes.eta[c])))) return {};
   return heroes;
 }
 
 /// Saves a vertex whose weight (nee0 or scatter0) is set, with the spectra and directions of its pair.
-void DispersedPaths::append_pair(Shading& s, const Boundary& at, const cpu::BoundaryPair& pair, glm::vec3 wo,
+void DispersedPaths::append_pair(Shading& s, const Boundary& at, const BoundaryPair& pair, glm::vec3 wo,
                                  Vertex v) {
   const bool light = v.has(KB_VERTEX_NEE).v;
   v.head = v.head | U(s.side.v << KB_VERTEX_MATERIAL_SHIFT |
-                      (pair.transmission ? KB_KIND_ROUGH_TRANSMISSION : KB_KIND_DISPERSIVE));
+                      (pair.transmission.v ? KB_KIND_ROUGH_TRANSMISSION : KB_KIND_DISPERSIVE));
   v.a = s.vertex.a;
   v.b = s.vertex.b;
-  finish_spectra(v, {true}, {pair.transmission});
-  if (pair.transmission) {
+  finish_spectra(v, {true}, pair.transmission);
+  if (pair.transmission.v) {
     v.emit_weight = at.wi.x;
     (light ? v.scatter0 : v.nee0) = at.wi.y;
     v.nee1 = wo.x;
@@ -195,18 +192,18 @@ void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSe
   const Light light = sample_lights(s, {true});
   if (!(light.pdf.v > 0) || !(light.factor.v > 0)) return;
   const glm::vec3 wo = to_glm(s.frame.to_local(light.direction));
-  const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
+  const BoundaryPair pair = pair_of(s, wo);
   const HeroDensity density = hero_density(eval_heroes_, at.material, heroes, at.wi, wo);
   const float opacity = s.opacity.v;
   const float mis = light.delta.v ? 1 : power_heuristic(light.pdf, F(density.pdf * opacity)).v;
   const float share = scene_.features.bump ? bump_share(s, light.direction).v : 1;
-  const float weight = mis * opacity * light.factor.v / light.pdf.v * pair.weight * share;
+  const float weight = mis * opacity * light.factor.v / light.pdf.v * pair.weight.v * share;
   if (!(weight > 0)) return;
   Vertex v = empty_vertex();
   v.head = U(KB_VERTEX_NEE | (light.radiance.textured.v ? KB_VERTEX_TEX_NEE : 0u));
   v.nee0 = weight;
   v.light = light.radiance;
-  v.scale = density.value / pair.weight;
+  v.scale = density.value / pair.weight.v;
   append_pair(s, at, pair, wo, v);
   queue_shadow_rays(s, light, {true});
   rare.note_shadow_ray(s);
@@ -219,29 +216,22 @@ bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSe
   const KbFloat4 h =
       kb_hero_sample(s.bounce.settings.seed, path.film_pixel, s.bounce.id.sample, s.bounce.number);
   const glm::vec3 wo = sample_heroes(at.material, heroes, at.wi, {h.x, h.y}, s.u.x.v, {s.u.y.v, s.u.z.v});
-  const cpu::BoundaryPair pair = cpu::rough_boundary_pair(at.material, at.wi, wo);
+  const BoundaryPair pair = pair_of(s, wo);
   const HeroDensity density = hero_density(eval_heroes_, at.material, heroes, at.wi, wo);
   const V3 direction = s.frame.to_world(to_lane(wo));
   const float share = scene_.features.bump ? bump_share(s, direction).v : 1;
-  if (!(density.pdf > 0) || !(pair.weight > 0) || !(share > 0)) return false;
+  if (!(density.pdf > 0) || !(pair.weight.v > 0) || !(share > 0)) return false;
   // Channels between the heroes may carry a little more, or all where no hero has anything: never below
   // delta, so that roulette does not stop them all.
   F bound = path.bound * (std::max(density.bound / density.pdf, KB_NO_HERO) *
-                          (pair.transmission ? at.material.bound_b : at.material.bound_a));
+                          (pair.transmission.v ? at.material.bound_b : at.material.bound_a));
   if (!(bound.v > 0)) return false;
   for (uint32_t c = 0; c < heroes.count; ++c)
-    paths_[s.path.v].hero_weights[c] = heroes.q[c] * density.hero[c] / density.pdf;
-  s.vertex = {U(KB_VERTEX_SCATTER),
-              F(0),
-              F(0),
-              F(0),
-              F(pair.weight / density.pdf * share),
-              F(0),
-              F(density.value / pair.weight),
-              s.vertex.a,
-              s.vertex.b,
-              s.vertex.emission,
-              s.vertex.light};
+    hero_weights_[s.path.v][c] = heroes.q[c] * density.hero[c] / density.pdf;
+  s.vertex.head = U(KB_VERTEX_SCATTER);
+  s.vertex.emit_weight = s.vertex.nee0 = s.vertex.nee1 = s.vertex.scatter1 = F(0);
+  s.vertex.scatter0 = F(pair.weight.v / density.pdf * share);
+  s.vertex.scale = F(density.value / pair.weight.v);
   if (!roulette(s, bound, {true}).v) return false;
   append_pair(s, at, pair, wo, s.vertex);
   continue_paths(s, direction, bound, F(density.pdf * s.opacity.v), {false}, {true});

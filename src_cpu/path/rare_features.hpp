@@ -8,7 +8,6 @@
 
 #include "src_cpu/bsdf/spectral_mis.hpp"
 #include "src_cpu/geometry/embree_scene.hpp"
-#include "src_cpu/geometry/surface_hit.hpp"
 #include "src_cpu/lanes/one_lane_glm.hpp"
 #include "src_cpu/path/channel_choice.hpp"
 #include "src_cpu/path/medium_stack.hpp"
@@ -80,7 +79,7 @@ class GasPaths {
 
 // ---- dispersion (dispersed_paths.cpp) ----------------------------------------------------------------
 
-/// A surface being shaded, as the BSDFs' functions for one path take it.
+/// A surface being shaded, as spectral_mis.hpp takes it.
 struct Boundary {
   KbMaterial material;  // with the bounds of this very point
   glm::vec3 wi;
@@ -102,26 +101,20 @@ class DispersedPaths {
   const std::vector<uint32_t>& shapes() const { return shapes_; }
 
  private:
-  /// What a path carries besides.
-  struct DispersedPath {
-    uint32_t heroes = 0;                              // of spectral MIS; 0: none chosen yet
-    std::array<float, KB_MAX_HEROES> hero_weights{};  // q_c
-  };
-
   float mu_of(const PathState& path) const { return mu_[mu_.size() == 1 ? 0 : path.pixel]; }
   float channel_eta(const KbMaterial& material, uint32_t channel, float mu) const;
   BinnedThroughput carried(const Shading& s) const;
   float survive(const Shading& s, const BinnedThroughput& carried);
   void degrade(Shading& s);
   HeroSet choose_heroes(const Shading& s, const KbMaterial& material);
-  void append_pair(Shading& s, const Boundary& at, const cpu::BoundaryPair& pair, glm::vec3 wo, Vertex v);
+  void append_pair(Shading& s, const Boundary& at, const BoundaryPair& pair, glm::vec3 wo, Vertex v);
   void add_hero_light(Shading& s, const Boundary& at, const HeroSet& heroes, RareFeatures& rare);
   bool scatter_heroes(Shading& s, const Boundary& at, const HeroSet& heroes);
 
   const FlatScene& scene_;
   EvalHeroes eval_heroes_;
   std::span<const float> mu_;
-  std::vector<DispersedPath> paths_;
+  std::vector<std::array<float, KB_MAX_HEROES>> hero_weights_;  // q_c of a path's heroes
   std::vector<uint32_t> shapes_;
 };
 
@@ -144,7 +137,7 @@ class RareFeatures {
   void pass_gas(const Shading& s, bool escapes) {
     if (gas_) gas_->append(s.wave, s.path.v, escapes);
   }
-  bool shade_dispersive(Shading& s);
+  bool shade_dispersive(Shading& s) { return dispersion_ && dispersion_->shade(s, *this); }
   void refract_one_channel(Shading& s, BsdfSample& sample) { dispersion_->refract_one_channel(s, sample); }
   void note_shadow_ray(const Shading& s) {
     if (gas_) gas_->note_shadow_ray(s);

@@ -109,8 +109,10 @@ inline Light sample_thermal_lights(const Shading& s, M active) {
       scene, chosen, receiver.point, u, thermal, light, [&](uint32_t i, LightSample& one) KB_LAMBDA {
         if (!one.thermal) return;
         const KbFloat4 v = thermal_numbers(s, paths[i]);
-        const ThermalRadiance emitted =
-            thermal_radiance(scene, thermal_surface(scene, one.on), -one.direction, {v.z, v.w});
+        const ThermalPoint& on = one.on;
+        const SurfaceHit hit = make_surface_hit(scene, on.shape, on.triangle, on.barycentric.x,
+                                                on.barycentric.y, on.position, glm::vec3(0), 0);
+        const ThermalRadiance emitted = thermal_radiance(scene, hit, -one.direction, {v.z, v.w});
         one.factor *= emitted.weight;
         one.radiance = emitted.radiance;
       });

@@ -20,10 +20,6 @@ KbTextureSample sample_bitmap(const KbTexture& texture, uint32_t index, glm::vec
   return sample_of(one_lane::sample_bitmap(texture, index, to_lane(uv)));
 }
 
-KbTextureSample sample_envmap_texture(const KbTexture& texture, uint32_t index, glm::vec2 uv) {
-  return sample_of(one_lane::sample_envmap_texture(texture, index, to_lane(uv)));
-}
-
 ResolvedSpectrum resolve_spectrum(const FlatScene& scene, uint32_t ref, const TexturePoint& at) {
   const one_lane::TexturePlace place{to_lane(at.uv), {at.triangle}, to_lane(at.barycentric)};
   const one_lane::Resolved one = one_lane::resolve(scene, ref, place, {true});
@@ -55,11 +51,6 @@ const KbSurface& blended_surface(const FlatScene& scene, const KbSurface& blend,
     surface = &scene.surfaces[second ? surface->second : surface->first];
   }
   return *surface;
-}
-
-float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum) {
-  if (!spectrum.textured) return scene.spectra[spectrum.row].bound;
-  return one_lane::texel_bounds(scene, spectrum.texture.texture, spectrum.texture.xy).v;
 }
 
 }  // namespace kiloband::cpu

@@ -23,8 +23,6 @@ struct TexturePoint {
 /// The bilinear (or nearest: fx = fy = 0) sample of a bitmap at uv; v = 0 is the first row, pixel centres at
 /// (i + 0.5) / n, wrapped as the texture says. Exact at the borders of all wrap modes.
 KbTextureSample sample_bitmap(const KbTexture& texture, uint32_t index, glm::vec2 uv);
-/// The environment map's sample for local coordinates u in [0,1) (periodic), v in [0,1] (rows align-corners).
-KbTextureSample sample_envmap_texture(const KbTexture& texture, uint32_t index, glm::vec2 uv);
 
 /// A spectrum reference resolved at uv: the row of a named spectrum (checkerboards choose one),
 /// or a texture sample.
@@ -62,9 +60,5 @@ inline float opacity_at(const FlatScene& scene, const KbSurface& surface, const 
 inline float number_at(const FlatScene& scene, uint32_t ref, float number, const TexturePoint& at) {
   return ref == KB_NONE ? number : bitmap_value(scene, resolve_spectrum(scene, ref, at).texture);
 }
-
-/// Upper bound of a resolved spectrum over guide bands and rendered channels
-/// (of a lookup: of its four texels).
-float spectrum_bound(const FlatScene& scene, const ResolvedSpectrum& spectrum);
 
 }  // namespace kiloband::cpu

@@ -18,13 +18,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "src_cpu/bsdf/bsdf.hpp"
 #include "tests/statistical/analytic/analytic_test.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
+#include "tests/support/one_path_bsdfs.hpp"
 
 namespace kiloband::test::furnace_rough_test {
 
-using namespace cpu;
 namespace {
 
 constexpr double kPi = std::numbers::pi;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "src_cpu/light/environment.hpp"
 #include "tests/support/messages.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test {
 

@@ -25,7 +25,7 @@ std::vector<glm::dvec3> normals_of(uint32_t facing) {
   return normals;
 }
 
-/// Direction at map coordinates, in the map's frame (src_cpu/light/environment.hpp).
+/// Direction at map coordinates, in the map's frame (src_cpu/light/environment-inl.hpp).
 glm::dvec3 map_direction(double u, double v) {
   const double phi = 2 * std::numbers::pi * u, theta = std::numbers::pi * v;
   return {std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta)};

@@ -6,12 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "src_cpu/bsdf/bsdf.hpp"
+#include "tests/support/one_path_bsdfs.hpp"
 #include "tests/support/principled_numbers.hpp"
 
 namespace kiloband::test {
-
-using namespace cpu;
 
 // The records below are read by the kernels in probe.cpp: plain 4-byte members.
 struct Query {

@@ -1,10 +1,9 @@
-// Light selection, sampling and densities on the device against src_cpu/light/emitter.cpp,
+// Light selection, sampling and densities on the device against src_cpu/light/light-inl.hpp and area.cpp,
 // which treats spheres in double.
-#include "src_cpu/light/emitter.hpp"
-
 #include "scene/compile/light/lattice_cdf.hpp"
 #include "src_cpu/light/area.hpp"
 #include "support.hpp"
+#include "tests/support/one_path_lights.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
 namespace kiloband::test::emitter_test {

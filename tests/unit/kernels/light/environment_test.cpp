@@ -1,10 +1,8 @@
-// Environments on the device against src_cpu/light/environment.cpp: coordinates, densities,
+// Environments on the device against src_cpu/light/environment-inl.hpp: coordinates, densities,
 // poles and the seam.
-#include "src_cpu/light/environment.hpp"
-
 #include "src_cpu/geometry/texture/texture_lookup.hpp"
-#include "src_cpu/light/emitter.hpp"
 #include "support.hpp"
+#include "tests/support/one_path_lights.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
 namespace kiloband::test::environment_test {

@@ -1,6 +1,6 @@
 // Suns on the device against src_cpu/light/sun-inl.hpp: samples, densities, what escaping rays meet.
-#include "src_cpu/light/emitter.hpp"
 #include "support.hpp"
+#include "tests/support/one_path_lights.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
 namespace kiloband::test::sun_test {

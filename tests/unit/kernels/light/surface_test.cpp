@@ -2,8 +2,11 @@
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
+#include "src_cpu/lanes/one_lane_glm.hpp"
 #include "support.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/geometry/surface_hit-inl.hpp"
 
 namespace kiloband::test::surface_test {
 
@@ -140,14 +143,15 @@ TEST(GpuSurface, Frames) {
   }
   const std::vector<ItemOut> out = run_items(probe(), "frame", FlatScene(), in);
   for (std::size_t i = 0; i < in.size(); ++i) {
-    const ShadingFrame expected(get3(in[i], 0), get3(in[i], 3));
+    const one_lane::Frame expected = one_lane::make_frame(to_lane(get3(in[i], 0)), to_lane(get3(in[i], 3)));
     const double tolerance =
         i % 3 == 0 || i % 6 == 5 ? 2e-6 : 1e-4;  // tangents may be nearly along the normal
     ASSERT_LT(std::fabs(glm::dot(get3(out[i], 0), get3(out[i], 6))), 2e-4f) << i;
-    ASSERT_LT(difference(get3(out[i], 0), expected.x), tolerance) << i;
-    ASSERT_LT(difference(get3(out[i], 3), expected.y), tolerance) << i;
-    ASSERT_EQ(get3(out[i], 6), expected.z);
-    ASSERT_LT(difference(get3(out[i], 9), expected.to_local(get3(in[i], 6))), tolerance) << i;
+    ASSERT_LT(difference(get3(out[i], 0), to_glm(expected.x)), tolerance) << i;
+    ASSERT_LT(difference(get3(out[i], 3), to_glm(expected.y)), tolerance) << i;
+    ASSERT_EQ(get3(out[i], 6), to_glm(expected.z));
+    const glm::vec3 local = to_glm(expected.to_local(to_lane(get3(in[i], 6))));
+    ASSERT_LT(difference(get3(out[i], 9), local), tolerance) << i;
     ASSERT_LT(difference(get3(out[i], 12), get3(in[i], 6)), 2 * tolerance) << i;
   }
 }

@@ -3,6 +3,7 @@
 
 #include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "support.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test::texture_test {
 

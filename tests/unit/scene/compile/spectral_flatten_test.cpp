@@ -6,11 +6,10 @@
 #include <random>
 
 #include "scene/compile/flat_scene.hpp"
-#include "src_cpu/light/emitter.hpp"
-#include "src_cpu/light/environment.hpp"
 #include "support.hpp"
 #include "tests/support/chi_square.hpp"
 #include "tests/support/envmap_table.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test::spectral_flatten_test {
 

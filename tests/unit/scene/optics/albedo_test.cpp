@@ -7,11 +7,10 @@
 #include "scene/optics/compensation.hpp"
 #include "scene/optics/facet_quadrature.hpp"
 #include "shared/thermal.h"
-#include "src_cpu/bsdf/bsdf.hpp"
+#include "tests/support/one_path_bsdfs.hpp"
 
 namespace kiloband::test {
 
-using namespace cpu;
 namespace {
 
 glm::dvec3 direction(double degrees, double phi) {

@@ -5,12 +5,10 @@
 #include <vector>
 
 #include "scene/optics/coating.hpp"
-#include "src_cpu/bsdf/bsdf.hpp"
 #include "tests/support/chi_square.hpp"
+#include "tests/support/one_path_bsdfs.hpp"
 
 namespace kiloband::test {
-
-using namespace cpu;
 
 KbMaterial material_of(KbMaterialType type);
 KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, float alpha_v, bool visible,

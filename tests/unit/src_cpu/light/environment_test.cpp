@@ -1,6 +1,4 @@
 // Environment maps in double precision.
-#include "src_cpu/light/environment.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "scene/compile/light/envmap_facings.hpp"
 #include "test_scene.hpp"
 #include "tests/support/envmap_table.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test::environment_test {
 namespace {

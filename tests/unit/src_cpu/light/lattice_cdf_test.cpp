@@ -8,9 +8,12 @@
 
 #include "scene/compile/flattener.hpp"
 #include "spectral/channels.hpp"
+#include "src_cpu/lanes/one_lane.hpp"
 #include "src_cpu/light/area.hpp"
 #include "test_scene.hpp"
 #include "tests/support/messages.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/light/area-inl.hpp"
 
 namespace kiloband::test::lattice_cdf_test {
 
@@ -23,8 +26,9 @@ constexpr uint32_t kSteps = 1u << 24;
 std::vector<uint32_t> choices(const std::vector<float>& cdf) {
   std::vector<uint32_t> chosen(cdf.size() - 1);
   for (uint32_t i = 0; i < kSteps; ++i) {
-    ++chosen[find_interval(cdf.data(), static_cast<uint32_t>(chosen.size()),
-                           static_cast<float>(i) * 0x1p-24f)];
+    ++chosen[one_lane::find_interval(cdf.data(), 0, static_cast<uint32_t>(chosen.size()),
+                                     static_cast<float>(i) * 0x1p-24f)
+                 .v];
   }
   return chosen;
 }

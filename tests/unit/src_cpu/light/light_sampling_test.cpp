@@ -7,9 +7,9 @@
 
 #include "scene/compile/light/envmap_sampling.hpp"
 #include "src_cpu/geometry/texture/texture_lookup.hpp"
-#include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test::light_sampling_test {
 

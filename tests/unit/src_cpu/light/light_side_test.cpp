@@ -1,8 +1,11 @@
 // Which side of a mesh shines, where vertex normals and winding may say different things.
 #include <gtest/gtest.h>
 
-#include "src_cpu/light/emitter.hpp"
+#include "src_cpu/lanes/one_lane_glm.hpp"
 #include "test_scene.hpp"
+#include "tests/support/one_path_lights.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/light/area-inl.hpp"
 
 namespace kiloband::test::light_side_test {
 
@@ -23,7 +26,7 @@ TEST(MeshLight, VertexNormalsDecideTheSideThatShines) {
         const bool shines = normals_face_point != flipped;
         EXPECT_EQ(sample.pdf > 0, shines);
         EXPECT_EQ(area_light_pdf(scene, hit, glm::vec3(0)) > 0, shines);
-        EXPECT_EQ(on_front(hit.shading_normal, -glm::vec3(ahead)), shines);
+        EXPECT_EQ(one_lane::on_front(to_lane(hit.shading_normal), to_lane(-glm::vec3(ahead))).v, shines);
         if (!shines) continue;
         EXPECT_LT(sample.target.z, 2);
         EXPECT_GT(sample.target.z, 1.999f);

@@ -9,6 +9,7 @@
 #include "src_cpu/geometry/shape_geometry.hpp"
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test::shape_surface_test {
 
@@ -117,7 +118,7 @@ TEST(RayOffset, FollowsTheCornersAndNotThePoint) {
   // Level: 2^-19 of the height, and 2^-22 of the width for tests that mix the axes.
   EXPECT_EQ(surface_offset({8, 8, 2}, {0, 0, 1}), 2 * 0x1p-19f + 8 * 0x1p-22f);
   EXPECT_EQ(surface_offset({8, 8, 0}, {0, 0, -1}), 8 * 0x1p-22f);
-  const glm::vec3 largest = largest_coordinates({1e-6f, 0, -2e-6f}, {0, -3e-6f, 0}, {0, 0, 1e-6f});
+  const glm::vec3 largest = largest_of_triangle({1e-6f, 0, -2e-6f}, {0, -3e-6f, 0}, {0, 0, 1e-6f});
   EXPECT_EQ(largest, glm::vec3(1e-6f, 3e-6f, 2e-6f));
   EXPECT_LT(surface_offset(largest, {0.6f, 0.8f, 0}),
             1e-11f);  // a triangle of micrometres: far below its size

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test::sun_test {
 

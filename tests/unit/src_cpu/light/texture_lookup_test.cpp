@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "src_cpu/light/emitter.hpp"
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test::texture_lookup_test {
 

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "src_cpu/geometry/ray_offset.hpp"
+#include "tests/support/one_path_lights.hpp"
 #include "tests/unit/src_gpu/geometry/ray_tester.hpp"
 
 namespace kiloband::test::edge_cases_test {
@@ -160,7 +161,7 @@ TEST(BvhEdgeCases, RaysDoNotMeetTheSliverTheyLeave) {
   mesh.add_triangle(a, b, c);
   RayTester tester(scene_of(mesh));
   const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
-  const float offset = surface_offset(largest_coordinates(a, b, c), normal);
+  const float offset = surface_offset(largest_of_triangle(a, b, c), normal);
   std::mt19937 random(8);
   std::uniform_real_distribution<float> uniform(0.02f, 0.49f);
   std::vector<KbRay> rays;

@@ -1,25 +1,13 @@
-// Wavelength-independent part of the BSDFs on the CPU: what sampling, densities and saved vertices need. Here for one
-// path at a time; the formulas are written over lanes (bsdf-inl.hpp), for vectors of paths as well.
-//
-// A BSDF value times |cos theta_o| is split into a part that does not depend on wavelength and the spectral
-// factors that deferred evaluation applies (KbVertexKind in shared/records.h). Directions are unit vectors in
-// the local shading frame (z = normal), both pointing away from the surface; wi is where the path comes from,
-// wo where it goes.
-//
-// Conventions, which are Mitsuba 3's: reflecting materials are black from behind (cos_i <= 0 or cos_o <= 0),
-// transmitted radiance is scaled by 1 / eta^2 (radiance transport), cosines are those of the shading frame.
-// Roughness below 1e-4 is 1e-4. Differences: Beckmann's masking is exact (Mitsuba's rational fit is off by up
-// to 0.35 %), plastic lobes are chosen with 10 % uniform mixed in, and a rough dielectric whose lobe float
-// directions cannot resolve (min(alpha) * |eta - 1| < 3e-6) acts as a smooth one.
+// BSDFs for one path at a time, in glm's types: the lanes' sources for one lane (src_cpu/bsdf/bsdf-inl.hpp), which renders
+// have no use for but tests ask one question at a time. Conventions and units: src_cpu/bsdf/common-inl.hpp.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <span>
 
 #include "shared/records.h"
 
-namespace kiloband::cpu {
+namespace kiloband::test {
 
 /// The weights of one direction pair, for KbVertexKind eval_kind(material).
 struct BsdfValue {
@@ -94,18 +82,10 @@ struct BoundaryPair {
 };
 BoundaryPair rough_boundary_pair(const KbMaterial& material, glm::vec3 wi, glm::vec3 wo);
 
-/// Is a rough boundary's lobe too narrow for float directions, so that it is treated as smooth, with one of these indices, from
-/// one of its sides?
-/// etas  interior over exterior
-bool acts_smooth(const KbMaterial& material, std::span<const float> etas);
-
-/// Cosine-weighted direction around +z, of density cos / pi. u uniform in [0,1)^2.
-glm::vec3 cosine_direction(glm::vec2 u);
-
 /// The KbVertexKind of eval_bsdf's weights for this material.
 uint8_t eval_kind(const KbMaterial& material);
 
 /// True if the material has a non-delta lobe, so that next-event estimation makes sense.
 bool has_smooth_lobe(const KbMaterial& material);
 
-}  // namespace kiloband::cpu
+}  // namespace kiloband::test
