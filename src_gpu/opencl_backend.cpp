@@ -159,15 +159,19 @@ std::invoke_result_t<Work> Renderer::repeated(const Work& work) {
   }
 }
 
-/// The device refused memory in the middle of work: everything is made anew within half of what was in use.
+/// The device refused memory in the middle of work: everything is made anew, with half of what was in use beside the scene. Where the
+/// scene itself was refused, after a loss of the device, less would not help.
 void Renderer::retreat(const DeviceOutOfMemory& refusal) {
-  if (++retreats_ > kMostRetreats) throw refusal;
-  options_.device_memory = state_->memory.peak() / 2;
+  if (!state_ || ++retreats_ > kMostRetreats) throw refusal;
+  const uint64_t peak = state_->memory.peak();
+  groups_.reset();
+  state_->release_pool();
+  const uint64_t scene = state_->memory.used();
+  options_.device_memory = scene + (peak - scene) / 2;
   note(options_.sink, {},
        fmt::format("{}: at most {} MiB of device memory from now on", refusal.what(),
                    *options_.device_memory >> 20));
-  done_.device_memory_bytes = std::max(done_.device_memory_bytes, state_->memory.peak());
-  groups_.reset();
+  done_.device_memory_bytes = std::max(done_.device_memory_bytes, peak);
   repeated([] {});
 }
 

@@ -165,6 +165,42 @@ TEST_F(OpenclFault, MemoryRefusedAtALaunch) {
   EXPECT_TRUE(result.says("MiB of device memory from now on\n")) << result.outcome.err;
 }
 
+/// The scene is most of what is in use: half of the rest is given up, not half of all.
+TEST_F(OpenclFault, MemoryRefusedAtALaunchBesideALargeScene) {
+  const TemporaryFolder folder;
+  constexpr std::size_t kEdge = 1024;
+  std::string picture = "PF\n1024 1024\n-1.0\n";
+  const float grey = 0.5f;
+  for (std::size_t i = 0; i < 3 * kEdge * kEdge; ++i)
+    picture.append(reinterpret_cast<const char*>(&grey), sizeof grey);
+  folder.write("grey.pfm", picture);
+  const auto scene = folder.write("scene.xml", R"(<scene version="3.0.0">
+<sensor type="perspective"/><emitter type="constant"/>
+<shape type="sphere"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="grey.pfm"/>
+</texture></bsdf><transform name="to_world"><translate z="4"/></transform></shape></scene>)");
+  Names arguments = small_render();
+  arguments[1] = scene.string();
+  const Finished good = run({}, arguments);
+  ASSERT_EQ(good.outcome.code, 0) << good.outcome.err;
+  const Fault fault{"clEnqueueNDRangeKernel", -4, good.report.at("clEnqueueNDRangeKernel") - 2};
+  const Finished result = run_with(fault, arguments);
+  expect_clean_end(result, good, fault);
+  EXPECT_EQ(result.outcome.code, 0) << result.outcome.err;
+  EXPECT_TRUE(result.says("MiB of device memory from now on\n")) << result.outcome.err;
+}
+
+/// While a lost device is set up again there is no memory, not even for the scene.
+TEST_F(OpenclFault, LostAndThenNoMemory) {
+  const Finished result = run({{"KILOBAND_SHIM_FUNCTION", "clEnqueueNDRangeKernel"},
+                               {"KILOBAND_SHIM_CODE", "-5"},
+                               {"KILOBAND_SHIM_NTH", "4"},
+                               {"KILOBAND_SHIM_THEN", "clCreateBuffer"}},
+                              small_render());
+  expect_clean_end(result, good_, {"clCreateBuffer", -4});
+  EXPECT_EQ(result.outcome.code, 3);
+  EXPECT_TRUE(result.says(kRebuilt)) << result.outcome.err;
+}
+
 /// --quiet keeps warnings and errors only; statistics tell of the loss.
 TEST_F(OpenclFault, LossIsInTheStatistics) {
   const TemporaryFolder folder;

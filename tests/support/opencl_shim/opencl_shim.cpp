@@ -4,6 +4,7 @@
 //   KILOBAND_SHIM_NTH       which of its calls fails, from 1 (default 1)
 //   KILOBAND_SHIM_CODE      the code that it gives, a number (default -5, CL_OUT_OF_RESOURCES)
 //   KILOBAND_SHIM_REPEAT    1: all later calls fail too
+//   KILOBAND_SHIM_THEN      name of a function of which every call gives -4, CL_MEM_OBJECT_ALLOCATION_FAILURE, once the first has failed
 //   KILOBAND_SHIM_DEVICE    1: calls of queues of the device count and fail that was the first to have a queue, 2: of
 //                           the second ...; functions without a queue never fail then (default: any device)
 //   KILOBAND_SHIM_REPORT    file to write at exit: a line "NAME CALLS" per function, then "live_buffers N",
@@ -66,6 +67,7 @@ long number_of(const char* variable, long otherwise) {
 /// Counts calls and decides which fail. Reports when the process ends, after the program's own destructors.
 struct Plan {
   const char* function = std::getenv("KILOBAND_SHIM_FUNCTION");
+  const char* then = std::getenv("KILOBAND_SHIM_THEN");
   const char* report = std::getenv("KILOBAND_SHIM_REPORT");
   long nth = number_of("KILOBAND_SHIM_NTH", 1);
   cl_int code = static_cast<cl_int>(number_of("KILOBAND_SHIM_CODE", CL_OUT_OF_RESOURCES));
@@ -94,6 +96,10 @@ struct Plan {
   /// The code to give; CL_SUCCESS: call the real function.
   cl_int next(Function called, cl_command_queue queue = nullptr) {
     long call = ++calls[called];
+    if (then && failed > 0 && std::strcmp(then, kNames[called]) == 0) {
+      ++failed;
+      return CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    }
     if (!function || std::strcmp(function, kNames[called]) != 0) return CL_SUCCESS;
     if (device > 0) {
       if (!queue || device_of(queue) != device) return CL_SUCCESS;
