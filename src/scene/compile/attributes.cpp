@@ -68,22 +68,26 @@ struct Cells {
 
 }  // namespace
 
-/// Of a colour the spectrum of a reflectance, or a multiple of one; of one value a flat one.
+/// Of a colour the spectrum of a reflectance, or a multiple of one; of one value, and of a share, a flat one.
 KbFloat4 Flattener::attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
-                                    double unit) {
+                                    double unit, bool share) {
   float values[3];
   for (std::size_t i = 0; i < 3; ++i)
     values[i] = static_cast<float>(unit * (*parts[parts.size() == 3 ? i : 0])[at]);
+  if (share) std::fill_n(values, 3, (values[0] + values[1] + values[2]) / 3);
   return texel_of(values, BitmapUse::kPicture, 1);
 }
 
 uint32_t Flattener::mesh_attribute(const std::shared_ptr<const MeshAttributeTexture>& texture,
-                                   const SpectrumSource& use) {
+                                   const SpectrumSource& use, bool share) {
   const std::string label = fmt::format("{}: mesh_attribute '{}'", use.name, texture->name);
   if (!mesh_) throw InputError(texture->position, label + ": only meshes have attributes");
   ++mesh_lookups_;
+  const BitmapUse kind = share          ? BitmapUse::kOpacity
+                         : use.emission ? BitmapUse::kEmission
+                                        : BitmapUse::kPicture;
   const auto [place, is_new] =
-      attributes_.try_emplace({texture.get(), mesh_}, static_cast<uint32_t>(out_.textures.size()));
+      attributes_.try_emplace({texture.get(), mesh_, kind}, static_cast<uint32_t>(out_.textures.size()));
   if (!is_new) return place->second;
   const Attribute attribute = find_attribute(*mesh_, *texture);
   if (attribute.parts.empty())
@@ -111,7 +115,7 @@ uint32_t Flattener::mesh_attribute(const std::shared_ptr<const MeshAttributeText
   KbFloat4* texels = &out_.texels[record.first_texel];
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     KbFloat4* cell = texels + cells.size * (t / cells.across * record.width + t % cells.across);
-    const auto texel = [&](std::size_t at) { return attribute_texel(attribute.parts, at, unit); };
+    const auto texel = [&](std::size_t at) { return attribute_texel(attribute.parts, at, unit, share); };
     cell[0] = texel(attribute.of_faces ? t : triangles[t][0]);
     if (attribute.of_faces) continue;
     cell[1] = texel(triangles[t][1]);

@@ -37,10 +37,11 @@ class Flattener {
     ++mesh_lookups_;
     return &for_this->second;
   }
+  /// share: an opacity or a weight, which of a colour is the mean
   uint32_t mesh_attribute(const std::shared_ptr<const MeshAttributeTexture>& texture,
-                          const SpectrumSource& use);
+                          const SpectrumSource& use, bool share = false);
   static KbFloat4 attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
-                                  double unit);
+                                  double unit, bool share);
   void finish_attribute(const KbTexture& record, std::size_t count, bool emits);
   // spectral.cpp
   uint32_t spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
@@ -216,8 +217,8 @@ class Flattener {
   std::map<std::tuple<const void*, bool, const void*>, uint32_t> materials_;
   const Mesh* mesh_ = nullptr;    // of the shape that is compiled
   std::size_t mesh_lookups_ = 0;  // how often something of it was asked for
-  std::map<std::pair<const void*, const void*>, uint32_t> attributes_;  // by texture and mesh
-  std::map<std::tuple<uint32_t, float, float>, Coating> coatings_;      // by distribution, roughness, index
+  std::map<std::tuple<const void*, const void*, BitmapUse>, uint32_t> attributes_;  // by texture and mesh
+  std::map<std::tuple<uint32_t, float, float>, Coating> coatings_;  // by distribution, roughness, index
   std::map<std::pair<uint32_t, uint32_t>, std::vector<float>> conductor_bounds_;  // by rows of n and k
   std::map<std::pair<const void*, bool>, uint32_t> checkerboards_;                // and whether it emits
   std::map<std::pair<const void*, uint32_t>, uint32_t> media_;  // by medium and the boundary's material

@@ -35,7 +35,8 @@ BsdfPointer moved_out(const Bsdf& bsdf, const BlendBsdf& inner, const Rebuild& r
 /// have blends in them. Null: there is none.
 BsdfPointer distributed(const Bsdf& bsdf) {
   if (const auto* mask = std::get_if<MaskBsdf>(&bsdf.model)) {
-    const auto* inner = std::get_if<BlendBsdf>(&mask->nested->model);
+    const BsdfPointer moved = distributed(*mask->nested);  // of a twosided bsdf
+    const auto* inner = std::get_if<BlendBsdf>(moved ? &moved->model : &mask->nested->model);
     if (!inner) return nullptr;
     return moved_out(bsdf, *inner, [&](const BsdfPointer& part) { return MaskBsdf{mask->opacity, part}; });
   }
@@ -64,7 +65,7 @@ void Flattener::set_share(const Texture& texture, const SpectrumSource& use, uin
   } else if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
     ref = KB_REF_BITMAP | bitmap(*image, BitmapUse::kOpacity);
   } else if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture)) {
-    ref = KB_REF_BITMAP | mesh_attribute(*attribute, use);
+    ref = KB_REF_BITMAP | mesh_attribute(*attribute, use, true);
   } else {
     throw InputError(use.position, use.name + ": only a number or a bitmap is supported here");
   }

@@ -141,6 +141,8 @@ void split_at_creases(Mesh& mesh, double most_rad) {
     }
   }
   split.triangles = std::move(mesh.triangles);
+  split.face_attributes = std::move(mesh.face_attributes);
+  split.byte_attributes = std::move(mesh.byte_attributes);
   mesh = std::move(split);
 }
 

@@ -74,13 +74,18 @@ EmitterModel read_point(ReadContext& context, const ObjectReader& object) {
 }
 
 /// The picture of a spot, which must be one, as in Mitsuba.
+/// Values of a mesh, which lights that are no shapes do not have.
+bool is_attribute(const Texture& texture) {
+  return std::holds_alternative<std::shared_ptr<const MeshAttributeTexture>>(texture);
+}
+
 std::optional<Texture> read_spot_texture(ReadContext& context, const ObjectReader& object, double cutoff) {
   if (!object.has("texture")) return {};
   Node& node = object.find("texture")->resolved();
   const bool spectral = node.type == "spectral_bitmap";
   Texture texture = read_texture(context, object, "texture",
                                  spectral ? SpectrumUse::kIntensity : SpectrumUse::kReflectance, Spectrum());
-  if (std::holds_alternative<Spectrum>(texture))
+  if (std::holds_alternative<Spectrum>(texture) || is_attribute(texture))
     object.fail_at("texture", "texture: must be a bitmap, checkerboard or spectral_bitmap");
   if (spectral && object.has("intensity"))
     object.fail_at("intensity", "'intensity' together with a spectral_bitmap, which is the intensity itself");
@@ -115,6 +120,8 @@ EmitterModel read_projector(ReadContext& context, const ObjectReader& object) {
   ProjectorEmitter projector;
   if (!object.has("irradiance")) object.fail_here("parameter 'irradiance' is missing");
   projector.irradiance = read_texture(context, object, "irradiance", SpectrumUse::kIrradiance, Spectrum());
+  if (is_attribute(projector.irradiance))
+    object.fail_at("irradiance", "irradiance: must be a spectrum, bitmap, checkerboard or spectral_bitmap");
   projector.d65 = object.find("irradiance")->resolved().type == "d65";
   projector.scale = object.get_float("scale", 1);
   object.check(projector.scale >= 0, "scale", projector.scale, "must be >= 0");

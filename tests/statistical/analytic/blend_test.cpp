@@ -105,6 +105,8 @@ TEST(BlendFurnace, IsTheMeanOfItsParts) {
       {"two sides, two blends", bsdf("twosided", painted + blend(0.5, diffuse(0.1) + diffuse(0.6))), 120,
        0.35},
       {"in a mask", bsdf("mask", real("opacity", 0.6) + painted), 60, 0.6 * grey + 0.4},
+      {"on two sides in a mask", bsdf("mask", real("opacity", 0.6) + bsdf("twosided", painted)), 120,
+       0.6 * grey + 0.4},
       {"of a mask", blend(0.5, diffuse(0.4) + bsdf("mask", real("opacity", 0.6) + diffuse(0.2))), 60,
        0.5 * 0.4 + 0.5 * (0.6 * 0.2 + 0.4)},
       {"mirror and diffuse", blend(0.5, bsdf("conductor", "") + diffuse(0.2)), 60, 0.6},

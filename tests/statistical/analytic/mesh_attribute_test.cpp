@@ -132,6 +132,15 @@ TEST(MeshAttribute, OfEachMeshItsOwn) {
   EXPECT_NEAR(half(1), (2 * (0.1 + 0.3) + 0.5 + 0.6) / 6, 0.01);
 }
 
+/// Of a colour an opacity is the mean.
+TEST(MeshAttribute, AColourAsOpacity) {
+  const Text masked = "<bsdf type='mask'>" + attribute("opacity", "vertex_color") +
+                      bsdf("diffuse", spectrum("reflectance", 1)) + "</bsdf>";
+  const RenderResult result = seen(mesh(masked) + sun(), {}, 2, {256, 75});
+  const double mean = (2 * (0.1 + 0.3) + 0.9 + (0.8 + 0.3 + 0.1) / 3) / 6;
+  expect_image_mean(result, channel_integrals([=](double) { return mean; }, result), 0.02);
+}
+
 /// Radiance of lamps: seen, and light on a plane that faces them at a distance at which all points count alike.
 TEST_P(MeshAttributeTest, OfLamps) {
   const Text lamp_of =
@@ -173,6 +182,12 @@ TEST(MeshAttribute, Refusals) {
   expect(mesh(diffuse_of("vertex_w") + thermal(300)),
          "a surface that emits thermally cannot have a mesh_attribute here");
   expect(mesh(diffuse_of("w")), "name 'w': must begin with vertex_ or face_");
+  // The same texture of the same mesh, as radiance before.
+  const Text bright =
+      "<texture type='mesh_attribute' id='t'>" + text("name", "vertex_w") + real("scale", 5) + "</texture>";
+  expect(bright + mesh("<emitter type='area'><ref name='radiance' id='t'/></emitter>") +
+             mesh("<bsdf type='diffuse'><ref name='reflectance' id='t'/></bsdf>"),
+         "mesh_attribute 'vertex_w': a value is 4.5: must be from 0 to 1");
 }
 
 }  // namespace

@@ -39,6 +39,16 @@ TEST(Creases, ACubeHasSharpEdgesOrNone) {
       EXPECT_NEAR(smooth.normals[i][axis], (2 * smooth.positions[i][axis] - 1) / std::sqrt(3.0), 1e-6);
 }
 
+TEST(Creases, AttributesOfFacesAndOfBytesStay) {
+  Mesh mesh = cube();
+  mesh.face_attributes["k"] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  mesh.byte_attributes.insert("vertex red");
+  const Mesh before = mesh;
+  split_at_creases(mesh, 89 * kDegree);
+  EXPECT_EQ(mesh.face_attributes, before.face_attributes);
+  EXPECT_EQ(mesh.byte_attributes, before.byte_attributes);
+}
+
 /// Triangles with vertices of their own are joined first; texture coordinates and attributes keep them apart.
 TEST(Creases, EqualVerticesAreOne) {
   const Mesh joined = cube();

@@ -340,6 +340,14 @@ std::vector<BrokenScene> table() {
       {"spot with a texture that is none",
        complete_scene(R"xml(<emitter type="spot"><spectrum name="texture" value="0.5"/></emitter>)xml"),
        "scene.xml:2:54: error: spot emitter: texture: must be a bitmap, checkerboard or spectral_bitmap"},
+      {"spot with an attribute of a mesh",
+       complete_scene(
+           R"xml(<emitter type="spot"><texture name="texture" type="mesh_attribute"><string name="name" value="vertex_a"/></texture></emitter>)xml"),
+       "scene.xml:2:52: error: spot emitter: texture: must be a bitmap, checkerboard or spectral_bitmap"},
+      {"projector of an attribute of a mesh",
+       complete_scene(
+           R"xml(<emitter type="projector"><texture name="irradiance" type="mesh_attribute"><string name="name" value="vertex_a"/></texture></emitter>)xml"),
+       "scene.xml:2:60: error: projector emitter: irradiance: must be a spectrum, bitmap, checkerboard or spectral_bitmap"},
       {"spot with a texture over half of all directions",
        complete_scene(
            R"xml(<emitter type="spot"><float name="cutoff_angle" value="90"/><texture name="texture" type="checkerboard"/></emitter>)xml"),
