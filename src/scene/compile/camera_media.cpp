@@ -123,10 +123,14 @@ std::vector<glm::dvec3> first_points(const Sensor& sensor) {
     reach = sensor.near_clip * std::tan(0.5 * thin->fov_x);
     lens = thin->aperture_radius;
   }
-  std::vector<glm::dvec3> points = {{0, 0, sensor.near_clip}};
+  const bool parallel = std::holds_alternative<OrthographicSensor>(sensor.model);  // has no principal point
+  const double middle_x = parallel ? 0 : -2 * sensor.principal_point_x * reach;
+  const double middle_y = parallel ? 0 : -2 * sensor.principal_point_y * reach * aspect;
+  std::vector<glm::dvec3> points = {{middle_x, middle_y, sensor.near_clip}};
   for (const double x : {-1.0, 1.0})
     for (const double y : {-aspect, aspect})
-      points.emplace_back(x * (reach + lens), y * reach + (y < 0 ? -lens : lens), sensor.near_clip);
+      points.emplace_back(middle_x + x * (reach + lens), middle_y + y * reach + (y < 0 ? -lens : lens),
+                          sensor.near_clip);
   return points;
 }
 

@@ -204,8 +204,8 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
   const std::string& id = own_id.empty() ? outer_id : own_id;
   out_.material_names.push_back(id.empty() ? fmt::format("material {}", out_.materials.size() - 1) : id);
   const auto index = static_cast<uint32_t>(out_.materials.size() - 1);
-  if (index >= 1u << (32 - KB_VERTEX_MATERIAL_SHIFT))
-    throw InputError(bsdf->position, "more than 1048576 bsdfs");
+  if (constexpr uint32_t kMost = 1u << (32 - KB_VERTEX_MATERIAL_SHIFT); index >= kMost)
+    throw InputError(bsdf->position, fmt::format("more than {} bsdfs", kMost));
   materials_[{bsdf.get(), compensated, mesh_lookups_ > lookups ? mesh_ : nullptr}] = index;
   return index;
 }

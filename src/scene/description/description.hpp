@@ -318,7 +318,8 @@ struct ShapeGroup {
   std::string id;
   SourcePosition position;
   std::vector<Shape> shapes;
-  std::vector<Instance> instances;  // of other groups
+  std::vector<Instance> instances;   // of other groups
+  bool has_analytic_shapes = false;  // or one of the groups has: spheres, disks, cylinders
 };
 
 // ---- sensor, film, integrator ----
@@ -354,8 +355,7 @@ struct OrthographicSensor {};
 struct Sensor {
   SourcePosition position;
   Transform to_world{1.0};
-  double near_clip = 0.01;
-  double far_clip = 1e4;
+  double near_clip = 0.01, far_clip = 1e4;
   double principal_point_x = 0, principal_point_y = 0;
   std::variant<PerspectiveSensor, ThinLensSensor, OrthographicSensor> model;
   Film film;

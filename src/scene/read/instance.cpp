@@ -1,6 +1,4 @@
 // <shape type="shapegroup"> and <shape type="instance">
-#include <algorithm>
-
 #include "scene/read/context.hpp"
 
 namespace kiloband {
@@ -31,13 +29,6 @@ std::vector<Node*> members(const ObjectReader& group) {
   return found;
 }
 
-bool has_analytic_shapes(const ShapeGroup& group) {
-  return std::ranges::any_of(group.shapes,
-                             [](const Shape& s) { return !std::holds_alternative<MeshShape>(s.geometry); }) ||
-         std::ranges::any_of(group.instances,
-                             [](const Instance& i) { return has_analytic_shapes(*i.group); });
-}
-
 }  // namespace
 
 std::vector<Node*> merged_shapes(Node& node) {
@@ -66,9 +57,11 @@ std::shared_ptr<const ShapeGroup> read_shape_group(ReadContext& context, Node& n
         fail(member->place, object.label() + ": a group in a group: write an instance of it");
       if (member->type == "instance") {
         group->instances.push_back(read_instance(context, *member));
+        group->has_analytic_shapes |= group->instances.back().group->has_analytic_shapes;
       } else {
         group->shapes.push_back(read_shape(context, *member));
         check_member(object, *member, group->shapes.back());
+        group->has_analytic_shapes |= !std::holds_alternative<MeshShape>(group->shapes.back().geometry);
       }
     }
     if (group->shapes.empty() && group->instances.empty()) object.fail_here("has no shapes");
@@ -90,7 +83,7 @@ Instance read_instance(ReadContext& context, Node& node) {
   if (!group || group->type != "shapegroup")
     object.fail_here("needs one shape of type 'shapegroup', or a reference to one");
   instance.group = read_shape_group(context, *group);
-  if (has_analytic_shapes(*instance.group) && !is_similarity(glm::dmat3(instance.to_world)))
+  if (instance.group->has_analytic_shapes && !is_similarity(glm::dmat3(instance.to_world)))
     object.fail_at("to_world",
                    "to_world must not stretch or shear a group with spheres, disks or cylinders: use meshes");
   object.finish();

@@ -8,7 +8,7 @@ namespace kiloband {
 namespace {
 
 constexpr int64_t kMaxDepth = 1'000'000;
-constexpr int64_t kMaxCount = int64_t{1} << 32;  // samples per pixel
+constexpr int64_t kMaxCount = 0xffffffff;  // samples per pixel, as of --spp
 
 int64_t positive(const ObjectReader& object, std::string_view name, int64_t fallback, int64_t highest) {
   const int64_t value = object.get_int(name, fallback);

@@ -10,7 +10,7 @@
 namespace kiloband {
 namespace {
 
-constexpr uint64_t kMaxSamples = uint64_t{1} << 32;  // per pixel
+constexpr uint64_t kMaxSamples = 0xffffffff;  // per pixel
 
 /// Passes every different message on once: a file that several objects name says its notes once.
 DiagnosticSink without_repetitions(const DiagnosticSink& sink) {

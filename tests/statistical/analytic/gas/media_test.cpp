@@ -91,6 +91,18 @@ TEST(Gas, CamerasThatAreHalfInside) {
   EXPECT_EQ(message_of(scene(2, wide + sky(1) + beside)),
             "test.xml:1:99: error: sensor: its near plane is partly inside medium 'medium 0'; move it or "
             "change near_clip");
+  // A near plane of 2 m beside it, but for one of two principal points, which move it by its width.
+  const std::string tall = shape("cube", to_world(scale("1 3 3") + translate("1 0 0")) + gas_in);
+  const auto is_refused = [&](double principal_point) {
+    const std::string outside =
+        object("sensor", "perspective",
+               real("fov", 90) + real("near_clip", 1) + real("principal_point_offset_x", principal_point) +
+                   to_world(lookat("-1.1, 0, 0.5", "-1.1, 0, -5")) + film(4));
+    const auto compile = [&] { render_valid(scene(2, outside + sky(1) + tall), "500-510", {}, {2, 42}); };
+    return error_of(compile).find("near plane") != std::string::npos;
+  };
+  EXPECT_FALSE(is_refused(0));
+  EXPECT_NE(is_refused(1), is_refused(-1));
   std::string nested;
   for (const char* size : {"1", "2", "3", "4", "5"}) nested += shape("cube", to_world(scale(size)) + gas_in);
   const std::string inside = perspective(lookat("0.1, 0.1, 0.1", "0, 0, -5"), 60, film(4));

@@ -37,6 +37,20 @@ TEST(SceneInstances, GroupsMayHaveInstances) {
   EXPECT_EQ(outer.instances[0].group->id, "g");
 }
 
+// Each is looked at once, however often it is repeated: 16^12 places here.
+TEST(SceneInstances, OfInstancesOfInstances) {
+  std::string groups = group(kCube, "g0");
+  for (int level = 1; level <= 12; ++level) {
+    std::string contents;
+    for (int i = 0; i < 16; ++i) contents += instance("<ref id='g" + std::to_string(level - 1) + "'/>");
+    groups += group(contents, "g" + std::to_string(level));
+  }
+  const SceneDescription scene =
+      read(test::scene(groups + instance("<ref id='g12'/>" + kStretch) + kSensor + kLight));
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_FALSE(scene.instances[0].group->has_analytic_shapes);
+}
+
 // A group stands inside its instance, too; without one it is nothing to see.
 TEST(SceneInstances, GroupsInPlace) {
   const SceneDescription scene = read(test::scene(instance(group(kCube)) + kSensor + kLight));
