@@ -42,11 +42,16 @@ std::vector<double> breaks_of(const Spectrum& response, const std::pair<double, 
 
 }  // namespace
 
+double absolute_integral(const Spectrum& response, double min_nm, double max_nm) {
+  return integrate([&](double nm) { return std::abs(response(nm)); }, breaks_of(response, {min_nm, max_nm}),
+                   kTolerance);
+}
+
 Channel effective_band(const Spectrum& response, const ChannelList& channels) {
   double integral = 0, moment = 0, largest = 0;
   for (const auto& piece : covered(channels)) {
     const std::vector<double> breaks = breaks_of(response, piece);
-    integral += integrate([&](double nm) { return std::abs(response(nm)); }, breaks, kTolerance);
+    integral += absolute_integral(response, piece.first, piece.second);
     moment += integrate([&](double nm) { return nm * std::abs(response(nm)); }, breaks, kTolerance);
     largest = std::max({largest, std::abs(response.max_over(piece.first, piece.second)),
                         std::abs(response.min_over(piece.first, piece.second))});

@@ -13,4 +13,7 @@ namespace kiloband {
 /// response is 0 in all of them.
 Channel effective_band(const Spectrum& response, const ChannelList& channels);
 
+/// Integral of |response| over [min_nm, max_nm], nm times the response's unit; relative error 1e-9.
+double absolute_integral(const Spectrum& response, double min_nm, double max_nm);
+
 }  // namespace kiloband

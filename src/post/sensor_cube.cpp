@@ -171,11 +171,11 @@ double uncovered_part(const Spectrum& response, const ChannelList& channels) {
   const auto range = response.data_range();
   const Channel all = hull(channels);
   const double from = range ? range->min_nm : all.min_nm, to = range ? range->max_nm : all.max_nm;
-  const double total = response.integral(from, to);
+  const double total = absolute_integral(response, from, to);
   if (!(total > 0)) return 0;
   double covered = 0;
   Cover(channels).for_pieces(from, to, [&](double a, double b, int count) {
-    if (count > 0) covered += response.integral(a, b);
+    if (count > 0) covered += absolute_integral(response, a, b);
   });
   return 1 - covered / total;
 }
@@ -228,10 +228,10 @@ void report_responses(CubeReader& cube, const std::vector<NamedResponse>& respon
       sum += weights.weight[k] * integrals[k];
       bound += weights.deviation[k] * integrals[k];
     }
-    if (bound > kWorthAWarning * sum)
+    if (bound > kWorthAWarning * std::abs(sum))
       warn(sink, {},
            "response '" + name + "': changes inside channels; the image's mean can be off by " +
-               percent(bound / sum) + " (give it before the render, or finer channels)");
+               percent(bound / std::abs(sum)) + " (give it before the render, or finer channels)");
   }
 }
 

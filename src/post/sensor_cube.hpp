@@ -16,7 +16,7 @@ using NamedResponse = std::pair<std::string, Spectrum>;
 /// Integrals of colour matching functions times 683.002 lm/W: X, Y, Z in cd m^-2 (Y is the luminance).
 std::vector<NamedResponse> xyz_responses();
 
-/// Part of the response's integral that no channel covers, 0 to 1; overlaps count once.
+/// Part of the integral of |response| that no channel covers, 0 to 1; overlaps count once.
 double uncovered_part(const Spectrum& response, const ChannelList& channels);
 
 /// How a response sees a cube: the integral of response times radiance is the sum over channels of weight

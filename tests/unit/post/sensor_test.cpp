@@ -66,6 +66,15 @@ void expect_band(const Spectrum& response, const ChannelList& channels, double m
   EXPECT_NEAR(band.max_nm, max_nm, 1e-6);
 }
 
+/// What is negative counts as much as what is positive.
+TEST(UncoveredPart, IsOfTheMagnitude) {
+  const Spectrum response = Spectrum::tabulated({400, 500, 500.000001, 600}, {-1, -1, 2, 2});
+  EXPECT_NEAR(uncovered_part(response, {{400, 500, ""}}), 2.0 / 3, 1e-6);
+  EXPECT_NEAR(uncovered_part(response, {{500, 600, ""}}), 1.0 / 3, 1e-6);
+  EXPECT_EQ(uncovered_part(response, {{300, 350, ""}}), 1);
+  EXPECT_EQ(uncovered_part(Spectrum::tabulated({400, 500}, {-1, -1}), {{600, 700, ""}}), 1);
+}
+
 /// Centroid and equivalent width by hand.
 TEST(EffectiveBand, IsCentroidAndEquivalentWidth) {
   const ChannelList all{{380, 2540, ""}};
