@@ -25,7 +25,8 @@ for section in SpeedOfLight ComputeWorkloadAnalysis MemoryWorkloadAnalysis Sched
   LaunchStats SourceCounters; do
   sections+=(--section "$section")
 done
-ncu --force-overwrite -o "$out/$kernel" --kernel-name "$kernel" --launch-count 1 "${sections[@]}" \
+# The clocks stay as they are: rates are those of a render.
+ncu --clock-control none --force-overwrite -o "$out/$kernel" --kernel-name "$kernel" --launch-count 1 "${sections[@]}" \
   python3 "$here/replay.py" "$out/captured" ${REGISTERS:+--registers "$REGISTERS"}
 { ncu --import "$out/$kernel.ncu-rep" --page details; ncu --import "$out/$kernel.ncu-rep" --page raw; } > "$out/$kernel.txt"
 ncu --import "$out/$kernel.ncu-rep" --page source --csv > "$out/$kernel.csv"

@@ -44,8 +44,9 @@ row() {
   python3 scripts/gpu_static.py "$set" "$tag" "$folder/$name.txt" "$folder/$name.sass"
 }
 
-# As most_registers() of src_gpu/evaluate/evaluation.cpp has it.
-registers_of() { if [ "$1" = diffuse ]; then echo 56; else echo 96; fi; }
+# As evaluation_shape() of src_gpu/evaluate/evaluation.cpp has it for 512 channels: registers, vectors of four channels per item, pixels per group.
+registers_of() { if [ "$1" = diffuse ]; then echo 120; else echo 96; fi; }
+batch_of() { if [ "$1" = diffuse ]; then echo -DKB_VECTORS=4 -DKB_PIXELS=2; else echo -DKB_VECTORS=1 -DKB_PIXELS=1; fi; }
 
 [ $# -gt 0 ] || set -- diffuse
 echo "| set | program | kernel | registers | stack | spills | warps | instructions |" \
@@ -53,13 +54,13 @@ echo "| set | program | kernel | registers | stack | spills | warps | instructio
 echo "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"
 for set in "$@"; do
   defines=$(defines_of "$set")
-  # As a GPU is given 512 channels (evaluation_shape): 4 per item; shared wavelengths, no derived channels.
-  evaluation="-DKB_WIDTH=4 -DKB_VECTORS=1 -DKB_DERIVED=0 -DKB_PIXELS=1 -DKB_PER_PATH=0"
+  # Shared wavelengths, no derived channels; the other methods have one vector.
+  evaluation="-DKB_WIDTH=4 -DKB_DERIVED=0 -DKB_PER_PATH=0"
   # shellcheck disable=SC2086
   {
     limit=128 row "$set" paths kernels/path/paths.cl $defines # kPathRegisters of src_gpu/device_state.cpp
-    limit=$(registers_of "$set") row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation -DKB_STAGED=1
-    row "$set" path kernels/evaluate/evaluate.cl $defines $evaluation -DKB_FILM_TRANSPOSED=1 | grep dpept_path
-    row "$set" pt kernels/evaluate/pt.cl $defines $evaluation -DKB_METHOD_PT=1
+    limit=$(registers_of "$set") row "$set" batch kernels/evaluate/evaluate.cl $defines $evaluation $(batch_of "$set") -DKB_STAGED=1
+    row "$set" path kernels/evaluate/evaluate.cl $defines $evaluation -DKB_VECTORS=1 -DKB_FILM_TRANSPOSED=1 | grep dpept_path
+    row "$set" pt kernels/evaluate/pt.cl $defines $evaluation -DKB_VECTORS=1 -DKB_METHOD_PT=1
   }
 done

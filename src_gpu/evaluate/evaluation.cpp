@@ -1,7 +1,6 @@
 #include "src_gpu/evaluate/evaluation.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "base/deal_ranges.hpp"
 
@@ -69,26 +68,46 @@ constexpr uint64_t kWarp = 32, kHalfWarp = 16;
 constexpr uint32_t kItemsOfPath = 256, kItemsSideBySide = 64, kPathsOfGroup = 64;
 constexpr uint64_t kMostPixels = 16;
 
+/// Vectors of channels that a work-item takes at most, where vertices have one reflectance.
+constexpr uint32_t kMostVectors = 4;
+
+/// Work-items of a GPU that share a path, for so many parts of its channels.
+uint64_t sharing_items(uint64_t parts) {
+  return parts <= kHalfWarp ? parts : ceil_div(parts, kWarp) * kWarp;
+}
+
+/// Vectors of a work-item: several spare each the decoding of vertices that it has in common with the others, but may leave more lanes idle. The
+/// least of the instructions that a vertex takes: 11 and 19 for each vector (counted: validation/results/gpu_static.md). Work-items fill a warp.
+uint32_t vectors_of_item(uint64_t vectors) {
+  constexpr uint64_t kOfVertex = 11, kOfVector = 19;
+  uint32_t best = 1;
+  uint64_t least = sharing_items(vectors) * (kOfVertex + kOfVector);
+  for (uint32_t some = 2; some <= kMostVectors && ceil_div(vectors, some) > kHalfWarp; ++some) {
+    const uint64_t instructions = sharing_items(ceil_div(vectors, some)) * (kOfVertex + kOfVector * some);
+    if (instructions >= least) continue;
+    least = instructions;
+    best = some;
+  }
+  return best;
+}
+
 /// dpept_batch with the stage: pixels side by side fill the lanes that channels leave.
-void put_pixels_side_by_side(uint32_t channels, uint64_t most_items, uint64_t filled,
+void put_pixels_side_by_side(const EvaluationTask& task, uint64_t most_items, uint64_t filled,
                              EvaluationShape& shape) {
-  shape.width = channels >= 4 ? 4 : channels >= 2 ? 2 : 1;
-  const uint64_t vectors = ceil_div(channels, shape.width);
-  const uint64_t items = vectors <= kHalfWarp ? vectors : ceil_div(vectors, kWarp) * kWarp;
-  shape.local_size = static_cast<uint32_t>(std::min(items, most_items));
+  shape.width = task.channels >= 4 ? 4 : task.channels >= 2 ? 2 : 1;
+  const uint64_t vectors = ceil_div(task.channels, shape.width);
+  const bool plain = task.vertices == VertexSpectra::kOneReflectance && task.shared_wavelengths;
+  shape.vectors = plain ? vectors_of_item(vectors) : 1;
+  shape.local_size =
+      static_cast<uint32_t>(std::min(sharing_items(ceil_div(vectors, shape.vectors)), most_items));
   shape.units_per_group =
       static_cast<uint32_t>(std::clamp<uint64_t>(filled / shape.local_size, 1, kMostPixels));
 }
 
-/// Registers that NVIDIA's compiler is held to, for more warps; 0: any number. Measured on an H100 as the sizes above; rows alone need fewer.
-uint32_t most_registers(const EvaluationShape& shape, const std::vector<std::string>& of_scene) {
-  if (!shape.staged) return 0;
-  const bool rows_alone = std::ranges::all_of(
-      std::to_array<const char*>({"KB_HAS_BITMAP=0", "KB_HAS_ENVMAP_LIGHT=0", "KB_HAS_TEMPERATURE_FIELD=0",
-                                  "KB_HAS_CONDUCTOR=0", "KB_HAS_ROUGH_CONDUCTOR=0", "KB_HAS_DISPERSION=0",
-                                  "KB_HAS_GAS=0"}),
-      [&](const char* lacks) { return std::ranges::find(of_scene, lacks) != of_scene.end(); });
-  return rows_alone ? 56 : 96;
+/// Of dpept_batch with the stage, measured on an H100 as the sizes above.
+uint32_t most_registers(const EvaluationTask& task, uint32_t vectors) {
+  if (task.vertices == VertexSpectra::kAny) return 96;
+  return vectors == 1 ? 56 : 24 + 24 * vectors;
 }
 
 uint64_t pixels_of_means(const KbSpectraLayout& layout, uint64_t film_pixels) {
@@ -112,35 +131,44 @@ std::vector<std::string> EvaluationShape::defines(uint32_t derived) const {
   return d;
 }
 
-EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool shared_wavelengths,
-                                 uint32_t channels, std::optional<uint32_t> largest_group) {
+VertexSpectra vertex_spectra(const SceneFeatures& f, bool specialised) {
+  if (!specialised || f.bitmap || f.envmap_light || f.temperature_field || f.conductor || f.rough_conductor ||
+      f.dispersion || f.gas)
+    return VertexSpectra::kAny;
+  const bool two = f.rough_dielectric || f.plastic || f.rough_plastic || f.principled;
+  return two ? VertexSpectra::kRows : VertexSpectra::kOneReflectance;
+}
+
+EvaluationShape evaluation_shape(const DeviceInfo& device, const EvaluationTask& task,
+                                 std::optional<uint32_t> largest_group) {
   EvaluationShape shape;
-  shape.method = method;
-  shape.shared_wavelengths = shared_wavelengths;
+  shape.method = task.method;
+  shape.shared_wavelengths = task.shared_wavelengths;
   shape.registers = samples_in_registers(device.type == DeviceType::kCpu);
   if (device.type == DeviceType::kCpu) {
     // SIMD comes from the vectors, not from the group: one work-item takes up to 128 channels at a time, and
     // walks a tile of pixels sample by sample while their dense spectra are
     // in the first cache (measured: validation/README.md).
     shape.width = 16;
-    shape.vectors = static_cast<uint32_t>(std::min<uint64_t>(8, ceil_div(channels, 16)));
+    shape.vectors = static_cast<uint32_t>(std::min<uint64_t>(8, ceil_div(task.channels, 16)));
     shape.units_per_group = 16;
     return shape;
   }
-  shape.film_transposed = method == Method::kDpeptPath;
-  shape.staged = method == Method::kDpeptBatch;
+  shape.film_transposed = task.method == Method::kDpeptPath;
+  shape.staged = task.method == Method::kDpeptBatch;
   shape.vectors = 1;
   const auto at_most = [&](uint32_t usual) {
     return std::min<uint64_t>(device.max_work_group_size, largest_group.value_or(usual));
   };
   if (shape.staged) {
-    put_pixels_side_by_side(channels, at_most(kItemsOfPath), at_most(kItemsSideBySide), shape);
+    put_pixels_side_by_side(task, at_most(kItemsOfPath), at_most(kItemsSideBySide), shape);
+    shape.most_registers = most_registers(task, shape.vectors);
     return shape;
   }
-  shape.width = channels >= 512 ? 4 : channels >= 128 ? 2 : 1;
-  const uint64_t items = ceil_div(ceil_div(channels, shape.width), kWarp) * kWarp;
+  shape.width = task.channels >= 512 ? 4 : task.channels >= 128 ? 2 : 1;
+  const uint64_t items = ceil_div(ceil_div(task.channels, shape.width), kWarp) * kWarp;
   shape.local_size = static_cast<uint32_t>(
-      method == Method::kDpeptPath ? at_most(kPathsOfGroup) : std::min(items, at_most(kItemsOfPath)));
+      task.method == Method::kDpeptPath ? at_most(kPathsOfGroup) : std::min(items, at_most(kItemsOfPath)));
   return shape;
 }
 
@@ -195,7 +223,7 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
                                                 : std::vector<std::string>{},
                           program_cache)),
       program_(build(context, main_file(shape.method), joined(defines, shape.defines(layout.derived)),
-                     program_cache, most_registers(shape, defines))),
+                     program_cache, shape.most_registers)),
       clear_(film_program_.kernel("film_clear")),
       finish_(film_program_.kernel("film_finish")),
       close_(film_program_.kernel("film_close")),

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/compile/scene_features.hpp"
 #include "src_gpu/device/program.hpp"
 #include "src_gpu/evaluate/pinned_memory.hpp"
 #include "src_gpu/path/path_pool.hpp"
@@ -15,7 +16,25 @@
 
 namespace kiloband::opencl {
 
-/// How evaluation is compiled and launched; what follows from device, method and number of channels.
+/// What the vertices of a scene refer to, at most: the less, the fewer registers evaluation takes.
+enum class VertexSpectra {
+  kOneReflectance,  // besides light samples and emission: diffuse and smooth surfaces, of named spectra
+  kRows,            // two reflectances too
+  kAny              // texels, temperatures, indices of refraction, gas
+};
+
+/// specialised  kernels are compiled for the features; else for any
+VertexSpectra vertex_spectra(const SceneFeatures& features, bool specialised);
+
+/// What a render asks of evaluation.
+struct EvaluationTask {
+  Method method = Method::kDpeptBatch;
+  bool shared_wavelengths = true;
+  uint32_t channels = 1;
+  VertexSpectra vertices = VertexSpectra::kAny;
+};
+
+/// How evaluation is compiled and launched; what follows from device and task.
 struct EvaluationShape {
   Method method = Method::kDpeptBatch;
   bool shared_wavelengths = true;
@@ -25,6 +44,7 @@ struct EvaluationShape {
   uint32_t units_per_group =
       1;  // pixels (dpept_batch) or slots (pt) that a work-group takes; staged: side by side
   uint32_t registers = samples_in_registers(false);  // samples that are summed there
+  uint32_t most_registers = 0;  // that NVIDIA's compiler is held to, for more warps; 0: any number
   bool film_transposed = false;
   bool staged =
       false;  // dpept_batch: work-groups bring vertices to local memory (kernels/evaluate/stage.clh)
@@ -35,8 +55,8 @@ struct EvaluationShape {
 
 /// largest_group  work-items of a group of a GPU, at most; nothing: 64 for dpept-path, whose work-items have a
 ///                path each, 256 for the others, which share one
-EvaluationShape evaluation_shape(const DeviceInfo& device, Method method, bool shared_wavelengths,
-                                 uint32_t channels, std::optional<uint32_t> largest_group = {});
+EvaluationShape evaluation_shape(const DeviceInfo& device, const EvaluationTask& task,
+                                 std::optional<uint32_t> largest_group = {});
 
 /// Work-items that share a path: no more of them in a group than the compiled kernel can have, whose registers may allow fewer than the
 /// device does.

@@ -4,7 +4,6 @@
 #include <bit>
 #include <vector>
 
-#include "src_gpu/evaluate/evaluation.hpp"
 #include "src_gpu/path/path_pool.hpp"
 
 namespace kiloband::opencl {
@@ -87,13 +86,13 @@ std::vector<Ladder> tuning_ladders(const TuningBounds& bounds) {
 
 TuningBounds tuning_bounds(const DeviceInfo& device, const TunedRender& render, uint64_t memory_budget) {
   const auto shape = [&](std::optional<uint32_t> largest) {
-    return evaluation_shape(device, render.method, render.shared_wavelengths, render.channels, largest);
+    return evaluation_shape(device, render.task, largest);
   };
   const auto group = [&](std::optional<uint32_t> largest) { return shape(largest).group_size(); };
   KbSpectraLayout layout{};
-  layout.stride = render.channels;
+  layout.stride = render.task.channels;
   TuningBounds bounds;
-  bounds.method = render.method;
+  bounds.method = render.task.method;
   bounds.cpu_device = device.type == DeviceType::kCpu;
   bounds.pool_slots = usual_slots(bounds.cpu_device, memory_budget, slot_bytes(layout, shape({})));
   bounds.round_paths = usual_jobs(bounds.cpu_device, memory_budget);

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "src_gpu/device/device.hpp"
-#include "src_gpu/path/round_plan.hpp"
+#include "src_gpu/evaluate/evaluation.hpp"
 #include "src_gpu/tuning/ladder_search.hpp"
 #include "src_gpu/tuning/tuning.hpp"
 
@@ -27,9 +27,7 @@ struct TuningBounds {
 
 /// What of a render the sizes depend on.
 struct TunedRender {
-  Method method = Method::kDpeptBatch;
-  bool shared_wavelengths = true;
-  uint32_t channels = 1;
+  EvaluationTask task;
   uint64_t paths = 0;
 };
 /// Those of a device that nobody has tuned. memory_budget: bytes

@@ -127,7 +127,7 @@ TEST(GpuPlan, WhoStagesVertices) {
   for (const DeviceType type : {DeviceType::kGpu, DeviceType::kAccelerator, DeviceType::kCpu}) {
     device.type = type;
     for (const Method method : {Method::kDpeptBatch, Method::kDpeptPath, Method::kPt}) {
-      const EvaluationShape shape = evaluation_shape(device, method, true, 512);
+      const EvaluationShape shape = evaluation_shape(device, {method, true, 512});
       const bool staged = type != DeviceType::kCpu && method == Method::kDpeptBatch;
       EXPECT_EQ(shape.staged, staged);
       const std::vector<std::string> defines = shape.defines(0);
@@ -141,19 +141,49 @@ TEST(GpuPlan, PixelsSideBySide) {
   DeviceInfo device;
   device.type = DeviceType::kGpu;
   device.max_work_group_size = 1024;
-  const auto shape = [&](uint32_t channels, std::optional<uint32_t> largest = {}) {
-    return evaluation_shape(device, Method::kDpeptBatch, true, channels, largest);
-  };
-  for (uint32_t channels = 1; channels < 3000; channels += 7) {
-    for (const uint32_t largest : {32u, 64u, 256u, 1024u}) {
-      const EvaluationShape s = shape(channels, largest);
-      EXPECT_LE(s.group_size(), largest);
-      EXPECT_GE(s.local_size * s.width, std::min(channels, largest * s.width));
-      EXPECT_TRUE(s.units_per_group == 16 || 2 * s.group_size() > largest) << channels << " " << largest;
+  for (const VertexSpectra vertices : {VertexSpectra::kAny, VertexSpectra::kOneReflectance}) {
+    const auto shape = [&](uint32_t channels, std::optional<uint32_t> largest = {}) {
+      return evaluation_shape(device, {Method::kDpeptBatch, true, channels, vertices}, largest);
+    };
+    for (uint32_t channels = 1; channels < 3000; channels += 7) {
+      for (const uint32_t largest : {32u, 64u, 256u, 1024u}) {
+        const EvaluationShape s = shape(channels, largest);
+        const uint32_t of_item = s.width * s.vectors;
+        EXPECT_LE(s.group_size(), largest);
+        EXPECT_GE(s.local_size * of_item, std::min(channels, largest * of_item));
+        EXPECT_TRUE(s.units_per_group == 16 || 2 * s.group_size() > largest) << channels << " " << largest;
+      }
     }
+    EXPECT_EQ(shape(512, 128).group_size(), 128u);
+    EXPECT_EQ(shape(512, 512).group_size(), 512u);
   }
-  EXPECT_EQ(shape(512, 128).units_per_group, 1u);
-  EXPECT_EQ(shape(512, 512).units_per_group, 4u);
+}
+
+/// Several vectors for a work-item: where vertices have one reflectance each and all paths the same wavelengths, and as many as leave a warp full.
+TEST(GpuPlan, VectorsOfAWorkItem) {
+  DeviceInfo device;
+  device.type = DeviceType::kGpu;
+  device.max_work_group_size = 1024;
+  SceneFeatures features;
+  features.diffuse = features.dielectric = features.checkerboard = features.area_light = true;
+  const auto shape = [&](uint32_t channels, bool shared = true, bool specialised = true) {
+    return evaluation_shape(device,
+                            {Method::kDpeptBatch, shared, channels, vertex_spectra(features, specialised)});
+  };
+  const std::vector<std::pair<uint32_t, uint32_t>> expected{
+      {1, 1}, {64, 1}, {128, 1}, {160, 2}, {256, 2}, {300, 3}, {384, 3}, {512, 4}, {800, 4}, {4096, 4}};
+  for (const auto& [channels, vectors] : expected) EXPECT_EQ(shape(channels).vectors, vectors) << channels;
+  EXPECT_EQ(shape(512).local_size, 32u);
+  EXPECT_EQ(shape(512).units_per_group, 2u);
+  EXPECT_EQ(shape(512).most_registers, 120u);
+  EXPECT_EQ(shape(512, false).vectors, 1u);
+  EXPECT_EQ(shape(512, true, false).vectors, 1u);
+  EXPECT_EQ(shape(512, true, false).most_registers, 96u);
+  features.plastic = true;
+  EXPECT_EQ(shape(512).vectors, 1u);
+  EXPECT_EQ(shape(512).most_registers, 56u);
+  features.bitmap = true;
+  EXPECT_EQ(shape(512).most_registers, 96u);
 }
 
 }  // namespace

@@ -102,7 +102,8 @@ TEST_P(StagedEvaluation, Gas) {
 
 INSTANTIATE_TEST_SUITE_P(, StagedEvaluation,
                          testing::Values(EvaluatorBuild{4, 1, false, 4}, EvaluatorBuild{4, 1, true, 4},
-                                         EvaluatorBuild{4, 2, false, 4}, EvaluatorBuild{1, 1, false, 4}),
+                                         EvaluatorBuild{4, 2, false, 4}, EvaluatorBuild{4, 3, false, 4},
+                                         EvaluatorBuild{4, 4, false, 4}, EvaluatorBuild{1, 1, false, 4}),
                          [](const auto& p) {
                            return "width" + std::to_string(p.param.width) + "x" +
                                   std::to_string(p.param.vectors) +

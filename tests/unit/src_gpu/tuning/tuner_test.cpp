@@ -61,19 +61,19 @@ TEST(Tuner, LaddersEndWhereSizesComeToTheSame) {
   const auto last = [&](const TunedRender& render, std::size_t ladder) {
     return tuning_ladders(tuning_bounds(gpu, render, kBudget)).at(ladder).values.back();
   };
-  TunedRender render{Method::kDpeptBatch, true, 100, uint64_t{1} << 40};
+  TunedRender render{{Method::kDpeptBatch, true, 100}, uint64_t{1} << 40};
   EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group,
             64u);  // two pixels with a vector of four channels each, in groups of 32
   EXPECT_EQ(last(render, 3), 512u);
-  render.method = Method::kPt;  // a path has a group
+  render.task.method = Method::kPt;  // a path has a group
   EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group, 128u);
   EXPECT_EQ(tuning_ladders(tuning_bounds(gpu, render, kBudget)).at(2).values.back(), 128u);
-  render.method = Method::kDpeptBatch;
-  render.channels = 4000;  // vectors of 4
+  render.task.method = Method::kDpeptBatch;
+  render.task.channels = 4000;  // vectors of 4
   EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group, 256u);
   EXPECT_EQ(last(render, 3), 1024u);
-  render.method = Method::kDpeptPath;  // an item has a path, whatever the channels are
-  render.channels = 100;
+  render.task.method = Method::kDpeptPath;  // an item has a path, whatever the channels are
+  render.task.channels = 100;
   EXPECT_EQ(last(render, 3), 1024u);
   const uint64_t usual = usual_jobs(false, kBudget);
   EXPECT_EQ(last(render, 1), usual << 4);
