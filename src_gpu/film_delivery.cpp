@@ -46,21 +46,25 @@ std::size_t FilmDelivery::index(const ImagePixel& pixel) const {
   return std::size_t{pixel.y - rect.y0} * rect.width + pixel.x - rect.x0;
 }
 
-FilmSums FilmDelivery::sums_of(std::span<const ImagePixel> pixels) const {
-  const std::size_t values = pixels.size() * channels_;
-  FilmSums sums{std::vector<float>(values), std::vector<float>(values), std::vector<float>(values),
-                std::vector<uint32_t>(pixels.size())};
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
+void FilmDelivery::read_sums(std::span<const ImagePixel> pixels, FilmSums& sums) const {
+  for (auto* values : {&sums.open, &sums.sum, &sums.lost}) values->resize(pixels.size() * channels_);
+  sums.counts.resize(pixels.size());
+  const auto read = [&](std::size_t i) {
     const PixelSumsView from = std::as_const(film_).pixel_sums(range_.replicate, index(pixels[i]));
+    const std::size_t first = i * channels_;
     sums.counts[i] = from.count;
-    std::ranges::copy(from.open, sums.open.begin() + static_cast<std::ptrdiff_t>(i * channels_));
-    for (std::size_t c = 0; c < from.closed.size(); ++c) {
-      const auto closed = std::bit_cast<CompensatedSum>(from.closed[c]);
-      sums.sum[i * channels_ + c] = closed.sum;
-      sums.lost[i * channels_ + c] = closed.lost;
+    std::ranges::copy(from.open, &sums.open[first]);
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const auto closed =
+          from.closed.empty() ? CompensatedSum{} : std::bit_cast<CompensatedSum>(from.closed[c]);
+      sums.sum[first + c] = closed.sum;
+      sums.lost[first + c] = closed.lost;
     }
-  }
-  return sums;
+  };
+  deal_ranges(pixels.size(), threads_for(kBytesOfValue * channels_ * pixels.size()),
+              [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) read(i);
+              });
 }
 
 /// The block's pixels are those from `first` on.

@@ -25,8 +25,8 @@ class FilmDelivery {
   uint32_t attempted() const { return collected_.attempted; }
   std::size_t missing() const { return film_.blocks()[blocks_[next_block_]].pixels() - collected_.pixels(); }
 
-  /// The film's sums of these pixels, of the samples before the range.
-  FilmSums sums_of(std::span<const ImagePixel> pixels) const;
+  /// The film's sums of these pixels, of the samples before the range, into memory that is there. Pixels are dealt to threads.
+  void read_sums(std::span<const ImagePixel> pixels, FilmSums& sums) const;
   /// The pixels follow those that were added before: the rest of a block, or whole blocks, or a part of one. Blocks are dealt to threads.
   void add(const GroupResult& result);
 

@@ -84,6 +84,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels, bool open, uint32_t rounds) 
 }
 
 void GroupRenderer::make_pool(const PlanRequest& r, bool open) {
+  has_sums_ = false;
   device_.release_pool();
   plan_ = plan_rounds(r);
   device_.make_pool(plan_->pool, plan_->group_pixels, open);
@@ -291,16 +292,25 @@ SampleCut GroupRenderer::next_round(const SampleRange& range, uint32_t done, boo
   return {std::min(round_samples_ * rounds, range.count - done), false};
 }
 
+/// The device's film has the sums of the samples before the range then, or of none.
+void GroupRenderer::begin_film(uint64_t pixels, const SampleRange& range, const SumsBefore* before) {
+  const bool goes_on = before && range.first > 0;
+  const bool there = goes_on && before->left_on_device && has_sums_;
+  has_sums_ = false;  // until the render has got through
+  if (there) return;
+  device_.clear_film(pixels);
+  if (goes_on) device_.load_film(before->of_film());
+}
+
 void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
-                           const FilmSums* before, const std::atomic<bool>& stop,
+                           const SumsBefore* before, const std::atomic<bool>& stop,
                            const std::function<void(uint64_t)>& on_samples, RunTally& tally,
                            GroupResult& result) {
   prepare(pixels.size(), before != nullptr);
   if (pixels.size() > plan_->group_pixels)
     throw DeviceOutOfMemory(
         fmt::format("the device has room for {} of {} pixels", plan_->group_pixels, pixels.size()));
-  device_.clear_film(pixels.size());
-  if (before && range.first > 0) device_.load_film(*before);
+  begin_film(pixels.size(), range, before);
   clear_other(result, before != nullptr);
   // All pixels of the group get the same samples, so that a stopped render is even.
   while (result.attempted < range.count && !stop) {
@@ -318,6 +328,7 @@ void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange
   }
   if (before) {
     device_.save_film(pixels.size(), result.sums);
+    has_sums_ = true;
   } else {
     device_.finish_film(pixels.size(), result.means, result.counts);
   }

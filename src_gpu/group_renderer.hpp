@@ -31,6 +31,13 @@ struct ImagePixel {
   uint32_t x, y;
 };
 
+/// The sums of pixels' samples before a range, which are gone on with.
+struct SumsBefore {
+  bool left_on_device =
+      false;  // by the render before, of the same pixels; the device may have lost them since
+  std::function<const FilmSums&()> of_film;
+};
+
 /// Do they share wavelength offsets?
 inline bool same_block(const ImagePixel& a, const ImagePixel& b) {
   return a.x / kBlockSize == b.x / kBlockSize && a.y / kBlockSize == b.y / kBlockSize;
@@ -64,10 +71,10 @@ class GroupRenderer {
 
   /// Renders range.count samples of every pixel (fewer if stop becomes true). At most group_pixels() of them.
   /// The pixels of a block stand together. on_samples gets the pixel samples done.
-  /// before  the sums of the pixels' samples before the range, which are gone on with; null: means are wanted
+  /// before  not asked for sums of no samples; null: means are wanted
   /// result  becomes what was rendered, in the memory that it has: pages that are new cost more than the download
   /// throws DeviceLost (everything of the device is to be made anew), DeviceOutOfMemory, DeviceError
-  void render(std::span<const ImagePixel> pixels, const SampleRange& range, const FilmSums* before,
+  void render(std::span<const ImagePixel> pixels, const SampleRange& range, const SumsBefore* before,
               const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples, RunTally& tally,
               GroupResult& result);
 
@@ -87,6 +94,7 @@ class GroupRenderer {
   /// splits where the arena is too small.
   void render_part(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
                    const SampleRange& samples, bool open, RunTally& tally);
+  void begin_film(uint64_t pixels, const SampleRange& range, const SumsBefore* before);
   uint64_t round_pixels(uint32_t samples) const;
   KbRound make_round(const SampleRange& samples, uint64_t number) const;
   void fill_pixels(std::span<const ImagePixel> pixels, KbRound& round);
@@ -103,6 +111,7 @@ class GroupRenderer {
   std::optional<RoundPlan> plan_;
   uint64_t planned_pixels_ = 0;
   bool planned_open_ = false;
+  bool has_sums_ = false;  // the device's film, from a render that has got through
   uint32_t planned_rounds_ = 1;
   uint32_t round_samples_;
   uint32_t most_slots_;

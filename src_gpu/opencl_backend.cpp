@@ -28,6 +28,13 @@ std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
   return pixels;
 }
 
+/// Of the film's sums, what the device has a copy of: those of these blocks, while the film has this seal.
+struct LeftSums {
+  uint64_t seal = 0;
+  uint32_t replicate = 0;
+  std::vector<uint32_t> blocks;
+};
+
 class Renderer final : public Backend {
  public:
   Renderer(std::shared_ptr<HostScene> host, const SamplingSettings& settings, const Options& options,
@@ -78,7 +85,7 @@ class Renderer final : public Backend {
   /// Calls `work` until it gets through without losing the device, which is set up where need be.
   template <class Work>
   std::invoke_result_t<Work> repeated(const Work& work);
-  void render_group(std::span<const ImagePixel> pixels, const SampleRange& range, const FilmSums* before,
+  void render_group(std::span<const ImagePixel> pixels, const SampleRange& range, const SumsBefore* before,
                     const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress);
   void count(const RunTally& tally);
 
@@ -89,7 +96,9 @@ class Renderer final : public Backend {
   DeviceContext context_;
   std::unique_ptr<DeviceState> state_;
   std::unique_ptr<GroupRenderer> groups_;
-  GroupResult result_;      // of the group that was rendered last
+  GroupResult result_;  // of the group that was rendered last
+  FilmSums before_;     // of the group that was gone on with last
+  LeftSums left_;
   BackendStatistics done_;  // but for what the context and the device memory know
   uint32_t retreats_ = 0;
 };
@@ -198,7 +207,7 @@ void Renderer::count(const RunTally& tally) {
 }
 
 void Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
-                            const FilmSums* before, const std::atomic<bool>& stop,
+                            const SumsBefore* before, const std::atomic<bool>& stop,
                             const std::function<void(uint64_t)>& progress) {
   uint64_t reported = 0;  // by an attempt that was lost: not to be reported again
   repeated([&] {
@@ -235,26 +244,35 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
     pixels.insert(pixels.end(), some.begin(), some.end());
   }
   FilmDelivery delivery(film, range, blocks, film_scale().size());
+  const bool sums = film.keeps_sums();
+  const bool left = sums && left_.seal != 0 && left_.seal == film.seal() &&
+                    left_.replicate == range.replicate && left_.blocks == blocks;
+  left_ = {};
+  bool in_one = false;
   const std::atomic<bool> never{false};
   for (std::size_t at = 0; at < pixels.size();) {
     const std::size_t room =
-        repeated([&] { return groups_->group_pixels(pixels.size(), film.keeps_sums(), range.count); });
+        repeated([&] { return groups_->group_pixels(pixels.size(), sums, range.count); });
     const bool in_block = delivery.in_block();
     const std::size_t number = in_block ? std::min(room, delivery.missing()) : whole_blocks(pixels, at, room);
     const std::span<const ImagePixel> group = std::span(pixels).subspan(at, number);
     // The parts of a block that is larger than a group get the same samples, stopped or not.
     SampleRange part = range;
     if (in_block) part.count = delivery.attempted();
-    std::optional<FilmSums> before;
-    if (film.keeps_sums()) before = delivery.sums_of(group);
+    in_one = number == pixels.size();
+    const SumsBefore before{left && in_one, [&]() -> const FilmSums& {
+                              delivery.read_sums(group, before_);
+                              return before_;
+                            }};
     try {
-      render_group(group, part, before ? &*before : nullptr, in_block ? never : stop, told);
+      render_group(group, part, sums ? &before : nullptr, in_block ? never : stop, told);
       delivery.add(result_);
       at += number;
     } catch (const DeviceOutOfMemory& refusal) {
       retreat(refusal);  // and the same pixels again, fewer at a time
     }
   }
+  if (sums && in_one) left_ = {film.seal_sums(), range.replicate, blocks};
 }
 
 std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {

@@ -100,6 +100,10 @@ class SpectralFilm {
   /// The observer is called at the end of set_attempted(), by the thread that has added to the block's sums, which are in
   /// its caches then. It must not be changed meanwhile.
   void observe(std::function<void(uint32_t block)> observer);
+  /// A number that no film's sums have had before. seal() is it until anything may have changed these, and 0 from then on: who has a copy of
+  /// them elsewhere need not read them again.
+  uint64_t seal_sums();
+  uint64_t seal() const;
   /// Folded films: what is open becomes part of the moments. To be called before anything is read; no more
   /// samples of the replicates so far may follow.
   void finish_replicates();

@@ -32,6 +32,7 @@ void SpectralFilm::open_replicate(uint32_t replicate, uint32_t block) {
 void SpectralFilm::restart() {
   require_sums();
   if (options_.held) throw std::logic_error("SpectralFilm::restart: replicates are held");
+  sums_->break_seal();
   pixels_->restart();
   sums_->values.forget_counts();
   std::ranges::fill(sums_->attempted[0], 0);
@@ -50,6 +51,7 @@ void SpectralFilm::clear_pixel(std::size_t pixel) {
 
 PixelSums SpectralFilm::pixel_sums(uint32_t replicate, std::size_t pixel) {
   require_sums();
+  sums_->break_seal();
   return sums_->values.at(options_.held ? replicate : 0, pixel);
 }
 
@@ -60,6 +62,7 @@ PixelSumsView SpectralFilm::pixel_sums(uint32_t replicate, std::size_t pixel) co
 
 OpenSums SpectralFilm::open_sums(uint32_t replicate, std::size_t pixel, std::size_t pixels) {
   require_sums();
+  sums_->break_seal();
   return sums_->values.open(options_.held ? replicate : 0, pixel, pixels);
 }
 
@@ -70,8 +73,20 @@ OpenSumsView SpectralFilm::open_sums(uint32_t replicate, std::size_t pixel, std:
 
 void SpectralFilm::set_attempted(uint32_t replicate, uint32_t block, uint32_t attempted) {
   require_sums();
+  sums_->break_seal();
   sums_->attempted.at(options_.held ? replicate : 0).at(block) = attempted;
   if (sums_->observer) sums_->observer(block);
+}
+
+uint64_t SpectralFilm::seal_sums() {
+  static std::atomic<uint64_t> last{0};
+  require_sums();
+  return sums_->seal = ++last;
+}
+
+uint64_t SpectralFilm::seal() const {
+  require_sums();
+  return sums_->seal;
 }
 
 void SpectralFilm::observe(std::function<void(uint32_t block)> observer) {

@@ -1,6 +1,8 @@
 // SpectralFilm's sums: what it holds of replicates that come in parts.
 #pragma once
 
+#include <atomic>
+
 #include "film/spectral_film.hpp"
 
 namespace kiloband {
@@ -37,6 +39,11 @@ struct SpectralFilm::Sums {
   std::vector<uint32_t> open;                    // [block] of folded films: the replicate, or kNone
   std::vector<char> stale;                       // [block]: its sums are of before restart(); empty: none is
   std::function<void(uint32_t block)> observer;
+  std::atomic<uint64_t> seal = 0;
+
+  void break_seal() {
+    if (seal.load(std::memory_order_relaxed) != 0) seal.store(0, std::memory_order_relaxed);
+  }
 };
 
 }  // namespace kiloband

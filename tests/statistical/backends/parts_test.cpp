@@ -18,31 +18,58 @@ constexpr uint32_t kReplicates = 2, kSamples = 67;  // over all chunks: 64 on th
 /// Several sizes, on and off the bounds of chunks.
 const std::vector<Parts> kCuts{{67}, {1, 1, 2, 4, 24, 35}, {16, 48, 3}, {64, 1, 1, 1}, {65, 2}};
 
-/// All means and their variances of a film that holds sums, after parts of these sizes.
+/// A film that holds sums, rendered part by part.
+class GrowingFilm {
+ public:
+  GrowingFilm(Backend& backend, const PixelRect& rect, uint32_t samples)
+      : backend_(backend),
+        samples_(samples),
+        film_(rect, options(backend, samples)),
+        blocks_(film_.blocks().size()) {
+    std::iota(blocks_.begin(), blocks_.end(), 0u);
+  }
+
+  /// The next samples of a replicate, of all blocks.
+  void add(uint32_t replicate, uint32_t count) { add_to(blocks_, replicate, count); }
+  void add_to(const std::vector<uint32_t>& blocks, uint32_t replicate, uint32_t count) {
+    const std::atomic<bool> stop{false};
+    backend_.render(film_, {replicate, film_.attempted(replicate, blocks[0]), count}, blocks, stop, {});
+  }
+  SpectralFilm& film() { return film_; }
+
+  /// All means; every pixel has all samples by now.
+  std::vector<float> means() {
+    std::vector<float> means, mean(film_.options().channels);
+    for (uint32_t r = 0; r < kReplicates; ++r) {
+      for (std::size_t p = 0; p < film_.rect().pixels(); ++p) {
+        film_.replicate_mean(r, p, mean);
+        means.insert(means.end(), mean.begin(), mean.end());
+        EXPECT_EQ(film_.replicate_samples(r, p), samples_);
+      }
+    }
+    return means;
+  }
+
+ private:
+  static FilmOptions options(const Backend& backend, uint32_t samples) {
+    FilmOptions options{backend.film_scale().size(), kReplicates, true, true};
+    options.sums = backend.sum_rule();
+    options.most_samples = samples;
+    return options;
+  }
+
+  Backend& backend_;
+  uint32_t samples_;
+  SpectralFilm film_;
+  std::vector<uint32_t> blocks_;
+};
+
+/// All means of a film after parts of these sizes.
 std::vector<float> in_parts(Backend& backend, const PixelRect& rect, const Parts& parts) {
-  FilmOptions options{backend.film_scale().size(), kReplicates, true, true};
-  options.sums = backend.sum_rule();
-  options.most_samples = std::accumulate(parts.begin(), parts.end(), 0u);
-  SpectralFilm film(rect, options);
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
-  const std::atomic<bool> stop{false};
-  for (uint32_t r = 0; r < kReplicates; ++r) {
-    uint32_t first = 0;
-    for (const uint32_t count : parts) {
-      backend.render(film, {r, first, count}, blocks, stop, {});
-      first += count;
-    }
-  }
-  std::vector<float> means, mean(options.channels);
-  for (uint32_t r = 0; r < kReplicates; ++r) {
-    for (std::size_t p = 0; p < rect.pixels(); ++p) {
-      film.replicate_mean(r, p, mean);
-      means.insert(means.end(), mean.begin(), mean.end());
-      EXPECT_EQ(film.replicate_samples(r, p), options.most_samples);
-    }
-  }
-  return means;
+  GrowingFilm growing(backend, rect, std::accumulate(parts.begin(), parts.end(), 0u));
+  for (uint32_t r = 0; r < kReplicates; ++r)
+    for (const uint32_t count : parts) growing.add(r, count);
+  return growing.means();
 }
 
 std::size_t different_bits(const std::vector<float>& a, const std::vector<float>& b) {
@@ -81,6 +108,60 @@ TEST_F(SumsInParts, OfAnySizeGiveTheBitsOfOneDelivery) {
                                in_parts(*renderer, rect_, fewer)),
                 0u)
           << name;
+    }
+  }
+}
+
+const std::vector<std::string> kDeviceMethods{"opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"};
+
+/// Were sums taken to the device?
+bool has_loaded_sums(const Backend& backend) {
+  return backend.statistics().kernel_seconds.contains("film_unpack");
+}
+
+/// A film that is gone on with at once: the device has its sums.
+TEST_F(SumsInParts, StayOnTheDevice) {
+  for (const std::string& name : kDeviceMethods) {
+    const auto renderer = backend(name, SamplerType::kSobol, WavelengthMode::kShared);
+    in_parts(*renderer, rect_, Parts(20, 1));  // of one size: others may need memory for more rounds
+    EXPECT_FALSE(has_loaded_sums(*renderer)) << name;
+  }
+}
+
+/// ... and not those of another film, of another replicate or of other blocks, nor those of a film that somebody else has touched, nor of one
+/// whose memory on the device something else has had.
+TEST_F(SumsInParts, ComeFromTheFilmWhereTheDeviceHasOthers) {
+  for (const std::string& name : kDeviceMethods) {
+    const PixelRect two_blocks{28, 3, 8, 3};
+    const auto make = [&] { return backend(name, SamplerType::kSobol, WavelengthMode::kShared); };
+    const std::vector<float> at_once = render_part(*make(), two_blocks, kReplicates, 9).means;
+    using Between = std::function<void(Backend & renderer, GrowingFilm & film, GrowingFilm & other)>;
+    const std::vector<std::pair<const char*, Between>> cases{
+        {"another film", [](Backend&, GrowingFilm&, GrowingFilm& other) { other.add(0, 3); }},
+        {"another replicate", [](Backend&, GrowingFilm& film, GrowingFilm&) { film.add(1, 3); }},
+        {"a block of them",
+         [](Backend&, GrowingFilm& film, GrowingFilm&) {
+           film.add_to({1}, 0, 2);
+           film.add_to({0}, 0, 2);
+         }},
+        {"somebody else",
+         [](Backend&, GrowingFilm& film, GrowingFilm&) {
+           const PixelSums sums = film.film().pixel_sums(0, 0);
+           sums.open[0] += 0.0f;
+         }},
+        {"auxiliary images",
+         [&](Backend& renderer, GrowingFilm&, GrowingFilm&) { renderer.auxiliary(two_blocks); }},
+        {"means",
+         [&](Backend& renderer, GrowingFilm&, GrowingFilm&) { render_part(renderer, two_blocks, 1, 2); }},
+    };
+    for (const auto& [what, between] : cases) {
+      const auto renderer = make();
+      GrowingFilm film(*renderer, two_blocks, 9), other(*renderer, two_blocks, 9);
+      film.add(0, 4);
+      between(*renderer, film, other);
+      for (uint32_t r = 0; r < kReplicates; ++r) film.add(r, 9 - film.film().attempted(r, 0));
+      EXPECT_TRUE(has_loaded_sums(*renderer)) << name << ", " << what;
+      EXPECT_EQ(different_bits(at_once, film.means()), 0u) << name << ", " << what;
     }
   }
 }

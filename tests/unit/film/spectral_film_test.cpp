@@ -69,6 +69,36 @@ TEST(SpectralFilm, ObserversSeeTheNewSums) {
   EXPECT_EQ(seen.size(), 1u);
 }
 
+TEST(SpectralFilm, SealsBreakWhereSumsMayHaveChanged) {
+  FilmOptions options{2};
+  options.sums = SumRule{};
+  options.replicates = 2;
+  SpectralFilm film({0, 0, 4, 3}, options), other({0, 0, 4, 3}, options);
+  const SpectralFilm& same = film;
+  EXPECT_EQ(film.seal(), 0u);
+  const uint64_t first = film.seal_sums();
+  EXPECT_NE(first, 0u);
+  EXPECT_EQ(film.seal(), first);
+  EXPECT_EQ(other.seal(), 0u);
+  EXPECT_NE(other.seal_sums(), first);
+  same.pixel_sums(0, 0), same.open_sums(0, 0, 4);  // who reads breaks nothing
+  EXPECT_EQ(film.seal(), first);
+  const std::vector<std::pair<const char*, std::function<void()>>> changes{
+      {"pixel_sums", [&] { film.pixel_sums(0, 0); }},
+      {"open_sums", [&] { film.open_sums(0, 0, 4); }},
+      {"set_attempted", [&] { film.set_attempted(0, 0, 1); }},
+      {"open_replicate", [&] { film.open_replicate(1, 0); }},
+      {"finish_replicates", [&] { film.finish_replicates(); }},
+      {"restart", [&] { film.restart(); }}};
+  film.open_replicate(0, 0);
+  for (const auto& [what, change] : changes) {
+    const uint64_t seal = film.seal_sums();
+    EXPECT_GT(seal, first);
+    change();
+    EXPECT_EQ(film.seal(), 0u) << what;
+  }
+}
+
 TEST(SpectralFilm, PixelsLieInTheirBlocks) {
   const SpectralFilm film({40, 50, 70, 90}, with_sums(1, false, 64));
   for (uint32_t b = 0; b < film.blocks().size(); ++b)
