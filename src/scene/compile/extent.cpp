@@ -17,8 +17,10 @@ void extend(const Shape& shape, Extent& extent) {
     for (const Vec3f& p : mesh->mesh->positions) add({p[0], p[1], p[2]});
     return;
   }
+  const bool sphere = std::holds_alternative<SphereShape>(shape.geometry);
+  const double low = sphere ? -1 : 0, high = std::holds_alternative<DiskShape>(shape.geometry) ? 0 : 1;
   for (int corner = 0; corner < 8; ++corner)
-    add({corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1});
+    add({corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? high : low});
 }
 
 const Extent& GroupExtents::of(const ShapeGroup& group) {

@@ -125,7 +125,9 @@ ReadIntegrator read_aov(ReadContext& context, const ObjectReader& object) {
     note(context.sink, object.value_place("aovs").position(),
          object.label() + ": no images of " + others + ": there are depth, sh_normal, shape_index");
   ReadIntegrator result = read_nested(context, object);
-  result.requested.auxiliary.insert(result.requested.auxiliary.begin(), images.begin(), images.end());
+  std::vector<std::string>& all = result.requested.auxiliary;
+  std::erase_if(images, [&](const std::string& image) { return std::ranges::find(all, image) != all.end(); });
+  all.insert(all.begin(), images.begin(), images.end());
   return result;
 }
 

@@ -75,5 +75,19 @@ TEST(PlaceLimits, LargeScenesAreWarnedOf) {
             "");
 }
 
+/// What shapes of a formula take of space: a cylinder is as long as from end to end, a disk has no thickness.
+TEST(PlaceLimits, ShapesAreAsLargeAsTheyAre) {
+  const auto with = [](const std::string& shape) { return flattened(kCamera + kSky + shape); };
+  const std::string cylinder =
+      "<shape type='cylinder'><float name='radius' value='1'/><point name='p1' value='0 0 ";
+  EXPECT_EQ(with(cylinder + "9000'/></shape>"), "");
+  EXPECT_NE(with(cylinder + "11000'/></shape>"), "");
+  EXPECT_EQ(with(moved("sphere", "<scale value='4900'/>")), "");
+  EXPECT_NE(with(moved("sphere", "<scale value='5100'/>")), "");
+  EXPECT_EQ(with(moved("disk", "<scale value='4900'/>") + "<shape type='sphere'><transform name='to_world'>"
+                                                          "<translate z='9000'/></transform></shape>"),
+            "");
+}
+
 }  // namespace
 }  // namespace kiloband::test::place_limits_test

@@ -64,6 +64,10 @@ TEST(AovIntegrator, AsksForOurImagesOfTheSameContent) {
   EXPECT_TRUE(both.requested.variance);
   EXPECT_EQ(both.requested.auxiliary, Names{"depth"});
   EXPECT_EQ(both.integrator.max_depth, 2);
+  const std::string inner = R"(<integrator type="aov"><string name="aovs" value="i:shape_index,d:depth"/>)";
+  const SceneDescription nested =
+      read(aov("a:depth,n:sh_normal", inner + R"(<integrator type="path"/></integrator>)"));
+  EXPECT_EQ(nested.requested.auxiliary, (Names{"normal", "object", "depth"}));  // each once
 }
 
 TEST(AovIntegrator, NamesWhatIsNotWritten) {
