@@ -10,6 +10,7 @@
 #include "src_gpu/device/pocl_cache.hpp"
 #include "src_gpu/film_delivery.hpp"
 #include "src_gpu/group_renderer.hpp"
+#include "src_gpu/told_samples.hpp"
 #include "src_gpu/tuning/tuning_store.hpp"
 
 namespace kiloband::opencl {
@@ -86,7 +87,7 @@ class Renderer final : public Backend {
   template <class Work>
   std::invoke_result_t<Work> repeated(const Work& work);
   void render_group(std::span<const ImagePixel> pixels, const SampleRange& range, const SumsBefore* before,
-                    const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress);
+                    const std::atomic<bool>& stop, ToldSamples& told);
   void count(const RunTally& tally);
 
   Options options_;
@@ -207,19 +208,12 @@ void Renderer::count(const RunTally& tally) {
 }
 
 void Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRange& range,
-                            const SumsBefore* before, const std::atomic<bool>& stop,
-                            const std::function<void(uint64_t)>& progress) {
-  uint64_t reported = 0;  // by an attempt that was lost: not to be reported again
+                            const SumsBefore* before, const std::atomic<bool>& stop, ToldSamples& told) {
   repeated([&] {
     RunTally tally;
-    uint64_t done = 0;
-    const auto on_samples = [&](uint64_t samples) {
-      done += samples;
-      if (done <= reported || !progress) return;
-      progress(done - reported);
-      reported = done;
-    };
-    groups_->render(pixels, range, before, stop, on_samples, tally, result_);
+    told.begin_attempt();
+    groups_->render(
+        pixels, range, before, stop, [&](uint64_t samples) { told.add(samples); }, tally, result_);
     count(tally);
   });
 }
@@ -236,8 +230,9 @@ std::size_t whole_blocks(const std::vector<ImagePixel>& pixels, std::size_t at, 
 void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) {
   const NeutralFolder neutral;
-  std::function<void(uint64_t)> told;
-  if (progress) told = [&](uint64_t samples) { neutral.from_outside([&] { progress(samples); }); };
+  std::function<void(uint64_t)> outside;
+  if (progress) outside = [&](uint64_t samples) { neutral.from_outside([&] { progress(samples); }); };
+  ToldSamples told(std::move(outside));
   std::vector<ImagePixel> pixels;
   for (const uint32_t block : blocks) {
     const std::vector<ImagePixel> some = pixels_of(film.blocks()[block]);
@@ -267,6 +262,7 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
     try {
       render_group(group, part, sums ? &before : nullptr, in_block ? never : stop, told);
       delivery.add(result_);
+      told.deliver();
       at += number;
     } catch (const DeviceOutOfMemory& refusal) {
       retreat(refusal);  // and the same pixels again, fewer at a time

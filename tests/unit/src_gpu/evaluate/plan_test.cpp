@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "src_gpu/evaluate/evaluation.hpp"
+#include "src_gpu/told_samples.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -118,6 +119,26 @@ TEST(GpuPlan, WorkGroupsFitTheKernel) {
   EXPECT_EQ(fitting(8, 16, 100), 6u);
   EXPECT_EQ(fitting(8, 16, 16), 1u);
   EXPECT_THROW(fitting(8, 16, 15), DeviceError);
+}
+
+/// A lost attempt, and one that is repeated in smaller parts: nothing is told twice, and all is told.
+TEST(ToldSamples, AreToldOnce) {
+  std::vector<uint64_t> told;
+  opencl::ToldSamples samples([&](uint64_t some) { told.push_back(some); });
+  samples.begin_attempt();
+  samples.add(5);
+  samples.deliver();
+  samples.begin_attempt();  // lost after 7 of 12
+  samples.add(4), samples.add(3);
+  for (int part = 0; part < 3; ++part) {
+    samples.begin_attempt();
+    samples.add(4);
+    samples.deliver();
+  }
+  EXPECT_EQ(told, (std::vector<uint64_t>{5, 4, 3, 1, 4}));
+  opencl::ToldSamples nobody({});
+  nobody.begin_attempt();
+  nobody.add(1);
 }
 
 /// Vertices are staged by work-groups of GPUs that evaluate a path together, and by nothing else.
