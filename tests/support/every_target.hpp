@@ -1,9 +1,13 @@
 // Highway's kernels on every instruction set that they are compiled for and the processor has.
 #pragma once
 
-#include <hwy/highway.h>
-
 #include <cstdint>
+
+// The sets come before Highway, which with KILOBAND_NATIVE would take one that nothing is compiled for.
+// clang-format off
+#include "base/simd_targets.hpp"
+#include <hwy/highway.h>
+// clang-format on
 
 namespace kiloband::test {
 
