@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/number.hpp"
 #include "base/temporary_folder.hpp"
@@ -28,6 +29,16 @@ std::optional<double> parse_value(const Request& request, const std::string& nam
   if (read_number(text, value) != NumberText::kNumber || !std::isfinite(value))
     throw InputError(fmt::format("{}={}: must be a finite number", name, quote_text(text)));
   return value;
+}
+
+/// The same within what a float holds.
+std::optional<float> parse_float(const Request& request, const std::string& name) {
+  const std::optional<double> value = parse_value(request, name);
+  if (!value) return std::nullopt;
+  constexpr float kMost = std::numeric_limits<float>::max();
+  if (std::abs(*value) > kMost)
+    throw InputError(fmt::format("{}={:g}: must be within {:g}", name, *value, kMost));
+  return static_cast<float>(*value);
 }
 
 /// "400-500", in nm.
@@ -154,8 +165,8 @@ ViewParameters parse_view(const Request& request) {
   view.map = static_cast<MapName>(parse_choice(request, "map", {"viridis", "cividis", "magma", "grey"}));
   view.scale = static_cast<MapScale>(parse_choice(request, "scale", {"linear", "log"}));
   view.exact = parse_choice(request, "quality", {"lossy", "exact"}) == 1;
-  if (const auto low = parse_value(request, "low")) view.low = static_cast<float>(*low);
-  if (const auto high = parse_value(request, "high")) view.high = static_cast<float>(*high);
+  view.low = parse_float(request, "low");
+  view.high = parse_float(request, "high");
   if (view.scale == MapScale::kLogarithmic &&
       ((view.low && !(*view.low > 0)) || (view.high && !(*view.high > 0))))
     throw InputError("low and high: must be above 0 on a logarithmic scale");

@@ -12,6 +12,11 @@ namespace {
 constexpr double kWhite = 0.9;        // of the display, for the 99th percentile
 constexpr float kMostDecades = 1e8f;  // of a logarithmic scale that is chosen automatically
 
+/// Within [0, 1]; NaN becomes 0: an index is made of it.
+float part_of_one(double x) {
+  return x > 0 ? static_cast<float>(std::min(x, 1.0)) : 0.0f;
+}
+
 /// sRGB bytes of [0, 1] at 2^14 equal steps: half a step is 0.1 of a byte where the curve is steepest.
 class SrgbBytes {
  public:
@@ -19,8 +24,8 @@ class SrgbBytes {
     for (std::size_t i = 0; i < bytes_.size(); ++i)
       bytes_[i] = static_cast<uint8_t>(std::lround(255 * srgb_encode(static_cast<double>(i) / kSteps)));
   }
-  uint8_t operator()(float linear) const {
-    return bytes_[static_cast<std::size_t>(std::clamp(linear, 0.0f, 1.0f) * kSteps + 0.5f)];
+  uint8_t operator()(double linear) const {
+    return bytes_[static_cast<std::size_t>(part_of_one(linear) * kSteps + 0.5f)];
   }
 
  private:
@@ -28,17 +33,19 @@ class SrgbBytes {
   std::array<uint8_t, kSteps + 1> bytes_{};
 };
 
-float filmic(float x) {
-  x = std::clamp(x, 0.0f, 1e6f);  // the quotient tends to 1.03
-  return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f);
+double filmic(double x) {
+  x = std::clamp(x, 0.0, 1e6);  // the quotient tends to 1.03
+  return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
 /// 0 to 255 of a value within the range.
 std::size_t index_of(float value, MapScale scale, const MapRange& range) {
-  float part = (value - range.low) / (range.high - range.low);
-  if (scale == MapScale::kLogarithmic)
-    part = value > 0 ? std::log(value / range.low) / std::log(range.high / range.low) : 0;
-  return static_cast<std::size_t>(std::clamp(part, 0.0f, 1.0f) * 255 + 0.5f);
+  double low = range.low, high = range.high, at = value;
+  if (scale == MapScale::kLogarithmic) {
+    if (!(value > 0)) return 0;
+    low = std::log(low), high = std::log(high), at = std::log(at);
+  }
+  return static_cast<std::size_t>(part_of_one((at - low) / (high - low)) * 255 + 0.5f);
 }
 
 Plane positive(Plane plane) {
@@ -55,7 +62,7 @@ double automatic_stops(const Plane& rgb) {
 
 Picture8 tone_map(const Plane& rgb, double stops, Tone tone) {
   static const SrgbBytes kBytes;
-  const auto exposure = static_cast<float>(std::exp2(stops));
+  const double exposure = std::exp2(stops);  // of a dim scene beyond what a float holds
   Picture8 picture{rgb.width, rgb.height, std::vector<uint8_t>(rgb.values.size())};
   for (std::size_t i = 0; i < rgb.values.size(); i += 3) {
     const float* const from = &rgb.values[i];

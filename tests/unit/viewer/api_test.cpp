@@ -80,6 +80,8 @@ TEST_F(ApiOfACube, PlacesOutsideTheImageAreRefused) {
   std::string many = "0,0";
   for (int i = 0; i < 16; ++i) many += ";0,0";
   EXPECT_EQ(error(get("/api/spectra", {{"select", many}})), "select: 17 places: at most 16");
+  EXPECT_EQ(error(get("/api/frame", {{"mode", "channel"}, {"low", "-1e300"}})),
+            "low=-1e+300: must be within 3.40282e+38");
   EXPECT_EQ(error(get("/api/frame", {{"mode", "channel"}, {"channel", "2"}})),
             "channel=2: the image has 2 channels");
 }

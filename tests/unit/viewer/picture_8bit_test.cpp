@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "spectral/colour/colour.hpp"
 
@@ -54,6 +55,20 @@ TEST(ToneMap, AutomaticExposureIsThePercentile) {
   for (int i = 0; i <= 100; ++i) values.push_back(static_cast<float>(i));
   EXPECT_NEAR(automatic_stops(greys(values)), std::log2(0.9 / 99), 1e-6);
   EXPECT_EQ(automatic_stops(greys({0, 0})), 0);
+}
+
+/// Radiances at which the exposure, or its product with them, is no float any more.
+TEST(ToneMap, AnyBrightnessIsAPicture) {
+  for (const float brightest : {1e-39f, 1e-45f, 1e30f, 3e38f, INFINITY}) {
+    const Plane plane = greys({0, brightest / 2, brightest});
+    for (const double more : {-10.0, 0.0, 35.0, 64.0})
+      for (const Tone tone : {Tone::kSrgb, Tone::kFilmic}) {
+        const Picture8 picture = tone_map(plane, automatic_stops(plane) + more, tone);
+        EXPECT_EQ(picture.rgb[0], 0) << brightest;
+        const bool bright = more >= 0 && brightest < INFINITY;
+        EXPECT_GT(picture.rgb[6], bright ? 220 : -1) << brightest << " " << more;
+      }
+  }
 }
 
 Colour pixel(const Picture8& picture, std::size_t i) {
@@ -111,6 +126,27 @@ TEST(ColourMaps, ArePublishedOnes) {
     }
   }
   EXPECT_FALSE(find_colour_map("jet"));
+}
+
+/// Bounds whose difference or ratio is no float, and values beyond them.
+TEST(MapColours, AnyRangeIsAPicture) {
+  constexpr float kMost = std::numeric_limits<float>::max(),
+                  kLeast = std::numeric_limits<float>::denorm_min();
+  const Plane plane{7, 1, 1, {-INFINITY, -kMost, 0, kLeast, 1, kMost, INFINITY}};
+  const ColourMap& map = colour_map(MapName::kGrey);
+  for (const auto& [scale, range] : {std::pair{MapScale::kLinear, MapRange{-kMost, kMost}},
+                                     {MapScale::kLinear, MapRange{0, kLeast}},
+                                     {MapScale::kLinear, MapRange{kMost, kMost}},
+                                     {MapScale::kLogarithmic, MapRange{kLeast, kMost}},
+                                     {MapScale::kLogarithmic, MapRange{1, 1}}}) {
+    const Picture8 picture = map_colours(plane, MapName::kGrey, scale, range);
+    EXPECT_EQ(pixel(picture, 0), map.front());
+    if (range.low < range.high) {
+      EXPECT_EQ(pixel(picture, 6), map.back());
+    }
+  }
+  const Picture8 middle = map_colours(plane, MapName::kGrey, MapScale::kLinear, {-kMost, kMost});
+  EXPECT_EQ(pixel(middle, 2), map[128]);
 }
 
 }  // namespace
