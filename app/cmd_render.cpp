@@ -73,7 +73,7 @@ void check_replicates(const RenderOptions& options) {
 /// What becomes of the replicates where the samples do not suffice.
 void report_replicates(const RenderOptions& options, const SessionSettings& settings,
                        const DiagnosticSink& sink) {
-  const uint32_t replicates = session_replicates(settings.stop, settings.replicates);
+  const uint32_t replicates = session_replicates(settings);
   if (replicates >= settings.replicates) return;
   const uint64_t samples = *settings.stop.samples_per_pixel;  // without it nothing is lowered
   if (options.target_error && replicates < 2)
@@ -120,6 +120,7 @@ SessionSettings session_settings(const RenderOptions& options, const OutputFiles
   SessionSettings settings;
   settings.stop = stop_rule(options, scene);
   settings.replicates = wanted_replicates(options);
+  settings.replicates_fixed = options.resume && checkpoint_replicates(*options.checkpoint).has_value();
   settings.sink = sink;
   settings.variance = options.variance;
   settings.keep_replicates = options.keep_replicates;
@@ -255,8 +256,7 @@ int render(const RenderOptions& given) {
   const RenderOptions options = with_requests(given, loaded.description.requested);
   const SessionSettings wanted = session_settings(options, files, loaded.description, sink);
   report_replicates(options, wanted, sink);
-  const SamplingSettings sampling =
-      options.sampling.settings(session_replicates(wanted.stop, wanted.replicates));
+  const SamplingSettings sampling = options.sampling.settings(session_replicates(wanted));
   const auto compiled = compile_scene(loaded.description, {loaded.channels, loaded.guide, sink});
   const FlatScene& scene = *compiled;
   const DerivedChannels derived = load_responses(options.responses, loaded, sink);

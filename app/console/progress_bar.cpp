@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/console/messages.hpp"
@@ -55,7 +56,7 @@ void ProgressBar::print(const Progress& progress) const {
     tell("{}\n", describe(progress));
     return;
   }
-  const int filled = static_cast<int>(std::lround(progress.fraction * kBarWidth));
+  const int filled = static_cast<int>(std::lround(std::clamp(progress.fraction, 0.0, 1.0) * kBarWidth));
   tell("\r[{}{}] {}\x1b[K", std::string(filled, '#'), std::string(kBarWidth - filled, '.'),
        describe(progress));
 }

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "app/console/messages.hpp"
 
 namespace kiloband {
@@ -17,7 +19,7 @@ void RunProgress::update(double fraction) {
   fraction_ = fraction;
   if (!enabled_ || !terminal_) return;
   constexpr int kWidth = 30;
-  const int filled = static_cast<int>(kWidth * fraction);
+  const int filled = static_cast<int>(kWidth * std::clamp(fraction, 0.0, 1.0));
   tell("\r[{:#<{}}{:.<{}}] {:3.0f} %  {:<44.44}", "", filled, "", kWidth - filled, 100 * fraction, name_);
 }
 

@@ -160,7 +160,7 @@ StopReason Passes::render_passes(SpectralFilm& film) {
   };
   uint32_t done = least_attempted(film);
   const uint32_t begin = done;
-  if (is_pass_end(film)) {
+  if (is_pass_end(film) || done >= most) {
     if (const auto reason = look_at_error(film)) return *reason;
   }
   while (!halt && done < most) {
@@ -242,7 +242,7 @@ double Passes::fraction() const {
     const double ratio = *settings_.stop.relative_error / *errors_.worst;
     fraction = std::max(fraction, std::min(0.99, ratio * ratio * done / static_cast<double>(errors_done_)));
   }
-  return fraction;
+  return std::min(fraction, 1.0);  // a checkpoint may have more samples than are asked for
 }
 
 void Passes::advance(uint64_t pixels) {

@@ -24,7 +24,7 @@ class Session {
         stop_(stop),
         bands_(select_bands(scene, derived)),
         channels_(scene.channels.size() + derived.size()),
-        replicates_(session_replicates(settings.stop, settings.replicates)),
+        replicates_(session_replicates(settings)),
         passes_(backend, settings, replicates_, bands_.film_channels, stop, progress) {}
 
   RenderReport run() {
@@ -177,9 +177,10 @@ class Session {
 
 }  // namespace
 
-uint32_t session_replicates(const StopRule& stop, uint32_t wanted) {
-  if (!stop.samples_per_pixel) return wanted;
-  return ReplicatePlan::deal(*stop.samples_per_pixel, wanted).replicates;
+uint32_t session_replicates(const SessionSettings& settings) {
+  const auto& samples = settings.stop.samples_per_pixel;
+  if (!samples || settings.replicates_fixed) return settings.replicates;
+  return ReplicatePlan::deal(*samples, settings.replicates).replicates;
 }
 
 BandSelection select_bands(const FlatScene& scene, const ChannelList& derived) {

@@ -37,7 +37,8 @@ enum class StopReason {
 
 struct SessionSettings {
   StopRule stop;
-  uint32_t replicates = 16;  // wanted; fewer where there are not 2 samples for each
+  uint32_t replicates = 16;       // wanted; fewer where there are not 2 samples for each
+  bool replicates_fixed = false;  // those of the checkpoint that is gone on with: never fewer
   bool variance = false;
   bool keep_replicates = false;
   std::vector<std::filesystem::path> outputs;
@@ -104,8 +105,7 @@ RenderReport run_session(const FlatScene& scene, const ChannelList& derived, Bac
                          const std::function<void(const Progress&)>& progress);
 
 /// The replicates that a session will use, to be given to the backend's SamplingSettings.
-/// wanted  SessionSettings::replicates
-uint32_t session_replicates(const StopRule& stop, uint32_t wanted);
+uint32_t session_replicates(const SessionSettings& settings);
 
 /// Long replicates are rendered a few samples at a time over the image (or strip), so that an interrupted
 /// render is even: FilmOptions::sums.

@@ -36,7 +36,7 @@ TEST(Overflow, IsCounted) {
   settings.variance = settings.keep_replicates = true;
   settings.outputs = {folder.path() / "bright.hdr"};
   SamplingSettings sampling;
-  sampling.replicates = session_replicates(settings.stop, settings.replicates);
+  sampling.replicates = session_replicates(settings);
   const auto backend = cpu::make_backend(std::make_shared<const FlatScene>(scene), {}, sampling, {});
   const RenderReport report = run_session(scene, {}, *backend, settings, false, {});
 

@@ -77,6 +77,51 @@ TEST_F(SessionTest, AnInterruptedTargetErrorEndsWhereItWouldHave) {
   expect_same(read("once.hdr").variance, read("resumed.hdr").variance, 0);
 }
 
+/// Fewer samples than the checkpoint has, too few for its replicates even: all that it has is written.
+TEST_F(SessionTest, FewerSamplesThanTheCheckpointHas) {
+  settings_.stop.samples_per_pixel = 64;
+  settings_.checkpoint = folder_ / "render.ck";
+  const RenderReport once = run(*backend(), "once.hdr");
+  settings_.resume = settings_.replicates_fixed = true;
+  for (const uint64_t samples : {48u, 8u, 1u}) {
+    settings_.stop.samples_per_pixel = samples;
+    double most = 0;
+    const RenderReport report =
+        run(*backend(), "again.hdr", false, [&](const Progress& p) { most = std::max(most, p.fraction); });
+    EXPECT_EQ(report.replicates, once.replicates);
+    EXPECT_EQ(report.samples_per_pixel, 64u);
+    EXPECT_LE(most, 1.0);
+    expect_same(read("once.hdr").mean, read("again.hdr").mean, 0);
+    expect_same(read("once.hdr").variance, read("again.hdr").variance, 0);
+  }
+}
+
+/// In the first pass to a limit below what one replicate has already: no more than all is done.
+TEST_F(SessionTest, ProgressEndsAtAll) {
+  settings_.stop.samples_per_pixel = 640;
+  settings_.checkpoint = folder_ / "render.ck";
+  std::atomic<bool> stop{false};
+  run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 0.2; });
+  settings_.resume = settings_.replicates_fixed = true;
+  settings_.stop.samples_per_pixel = 64;
+  double most = 0;
+  run(*backend(), "rest.hdr", false, [&](const Progress& p) { most = std::max(most, p.fraction); });
+  EXPECT_EQ(most, 1.0);
+}
+
+/// What is done already ends as it ended, with the limit of samples at no power of two of them.
+TEST_F(SessionTest, ATargetErrorThatIsReachedStaysReached) {
+  settings_.stop = {.samples_per_pixel = 96, .relative_error = 1e-9};
+  settings_.checkpoint = folder_ / "render.ck";
+  const RenderReport missed = run(*backend(), "once.hdr");
+  EXPECT_EQ(missed.ended_by, StopReason::kSamples);
+  settings_.resume = true;
+  settings_.stop.relative_error = 1.001 * *missed.errors.worst;  // what 96 samples reach
+  const RenderReport resumed = run(*backend(), "again.hdr");
+  EXPECT_EQ(resumed.samples_per_pixel, 96u);
+  EXPECT_EQ(resumed.ended_by, StopReason::kError);
+}
+
 // The folder goes while the render runs, and comes back: one warning, and the next checkpoint is written.
 TEST_F(SessionTest, ACheckpointThatCannotBeWrittenIsAWarning) {
   settings_.stop.samples_per_pixel = 96;

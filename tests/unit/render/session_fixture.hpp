@@ -34,7 +34,7 @@ class SessionTest : public ::testing::Test {
   std::unique_ptr<Backend> backend(uint64_t seed = 3) const {
     SamplingSettings sampling;
     sampling.seed = seed;
-    sampling.replicates = session_replicates(settings_.stop, settings_.replicates);
+    sampling.replicates = session_replicates(settings_);
     return cpu::make_backend(std::make_shared<const FlatScene>(scene_), {}, sampling, {});
   }
 

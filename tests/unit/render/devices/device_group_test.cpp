@@ -22,7 +22,7 @@ class DeviceGroupTest : public SessionTest {
     sampling.sampler = sampler;
     sampling.wavelengths =
         sampler == SamplerType::kSobol ? WavelengthMode::kShared : WavelengthMode::kPerPath;
-    sampling.replicates = session_replicates(settings_.stop, settings_.replicates);
+    sampling.replicates = session_replicates(settings_);
     return cpu::make_backend(std::make_shared<const FlatScene>(scene_), {}, sampling, {cpu::Isa::kAuto, 1});
   }
   std::unique_ptr<FaultyBackend> faulty(const Fault& fault, const std::string& name = "faulty") const {
