@@ -38,11 +38,12 @@ std::string root_element(const fs::path& file) {
 }
 
 std::vector<fs::path> scenes_below(const fs::path& folder) {
-  if (!fs::is_directory(folder)) throw InputError(folder.string() + ": is not a folder");
+  std::error_code unknown;  // names that are too long, links to themselves
+  if (!fs::is_directory(folder, unknown)) throw InputError(folder.string() + ": is not a folder");
   std::vector<fs::path> files;
   constexpr auto kOptions = fs::directory_options::skip_permission_denied;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, kOptions)) {
-    if (entry.path().extension() == ".xml" && entry.is_regular_file() &&
+    if (entry.path().extension() == ".xml" && entry.is_regular_file(unknown) &&
         root_element(entry.path()) == "scene")
       files.push_back(entry.path());
   }

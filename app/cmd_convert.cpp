@@ -31,7 +31,8 @@ WavelengthRange parse_range(const std::string& text) {
 
 /// The option's value, or what stands in the file that it names.
 std::string text_or_file(const std::string& value) {
-  return std::filesystem::is_regular_file(value) ? read_text_file(value) : value;
+  std::error_code unknown;  // a list that is longer than names can be
+  return std::filesystem::is_regular_file(value, unknown) ? read_text_file(value) : value;
 }
 
 CubeSelection selection_of(const ConvertOptions& options, const CubeInfo& info) {

@@ -4,6 +4,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -67,7 +69,8 @@ viewer::ApiSettings api_settings(const ViewOptions& options) {
   }
   settings.access.loopback = !options.listen;
   if (options.output_dir) {
-    if (!std::filesystem::is_directory(*options.output_dir))
+    std::error_code unknown;
+    if (!std::filesystem::is_directory(*options.output_dir, unknown))
       throw InputError("--output-dir " + *options.output_dir + ": is no folder");
     settings.output_dir = std::filesystem::canonical(*options.output_dir);
   }
@@ -84,6 +87,15 @@ std::string address_of(const ViewOptions& options, const viewer::ApiSettings& se
   const std::string named = host.find(':') == std::string::npos ? host : "[" + host + "]";
   return fmt::format("http://{}:{}/{}", named, port,
                      settings.access.token ? "?token=" + *settings.access.token : "");
+}
+
+/// What a cube has no use for: the options of scenes and renders.
+/// throws InputError  one was given
+void check_options_of_cube(const CLI::App& command, const std::string& cube) {
+  constexpr std::array kOfCubes{"SCENE", "--help", "--port", "--open", "--output-dir", "--listen", "--token"};
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && std::ranges::find(kOfCubes, option->get_name()) == kOfCubes.end())
+      throw InputError(option->get_name() + ": of scenes, not of the cube " + cube);
 }
 
 /// By the desktop's own program; where there is none the address has been printed. A child's child, which nobody waits for:
@@ -164,14 +176,15 @@ std::unique_ptr<viewer::ViewedImage> open_scene(const ViewOptions& options, unsi
   return viewer::start_live_render(std::move(live));
 }
 
-int view(const ViewOptions& options) {
+int view(const ViewOptions& options, const CLI::App& command) {
+  const bool cube = is_cube(options.scene.scene);
+  if (cube) check_options_of_cube(command, options.scene.scene);
   std::signal(SIGPIPE, SIG_IGN);
   const DiagnosticSink sink = print_diagnostics(false);
   api_settings(options);  // before hours of reading
   const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
-  const auto image = is_cube(options.scene.scene)
-                         ? viewer::open_stored_image(options.scene.scene, kMemoryBytes, threads, sink)
-                         : open_scene(options, threads, sink);
+  const auto image = cube ? viewer::open_stored_image(options.scene.scene, kMemoryBytes, threads, sink)
+                          : open_scene(options, threads, sink);
   catch_stop_signals();
   serve(*image, options);
   return kDone;
@@ -201,7 +214,7 @@ Command add_view(CLI::App& program) {
       "--listen", o->listen,
       "address of this machine that others may connect to (default: this machine alone); needs --token");
   command->add_option("--token", o->token, "secret that pages must know: random, or at least 16 characters");
-  return [o] { return view(*o); };
+  return [o, command] { return view(*o, *command); };
 }
 
 }  // namespace kiloband

@@ -58,6 +58,16 @@ TEST(CheckScenes, ScenesAreCompiledWithTheOptionsGiven) {
   expect_text(infrared.out, "0 of 1 scenes load\n");
 }
 
+/// A link to itself is no scene, and stops nothing.
+TEST(CheckScenes, LinksToThemselves) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  std::filesystem::create_symlink("loop.xml", folder / "loop.xml");
+  const Outcome outcome = run_program(folder, {"info", "--check", "."});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "loads   scene.xml\n1 of 1 scenes load\n");
+}
+
 TEST(CheckScenes, FoldersWithoutScenes) {
   const TemporaryFolder folder;
   folder.write("other.xml", "<mesh/>");
@@ -68,6 +78,9 @@ TEST(CheckScenes, FoldersWithoutScenes) {
   EXPECT_EQ(file.code, 2);
   expect_text(file.err, "other.xml: is not a folder");
   EXPECT_EQ(run_program(folder, {"info", "--check", ".", "--materials"}).code, 2);
+  const Outcome long_name = run_program(folder, {"info", "--check", std::string(300, 'x')});
+  EXPECT_EQ(long_name.code, 2);
+  expect_text(long_name.err, "x: is not a folder");
 }
 
 }  // namespace

@@ -35,6 +35,20 @@ TEST(Messages, ConvertSaysWhatItWrote) {
   EXPECT_EQ(run_program(folder, {"convert", "a.exr", "b.csv", "--pixel", "1,1"}).err, "wrote b.csv\n");
 }
 
+/// What a cube has no use for is no option without effect.
+TEST(Messages, OptionsOfScenesAreNotForCubes) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "1", "-o", "a.exr"})).code, 0);
+  for (const auto& [option, value] :
+       {std::pair{"--bands", "400:700:4"}, {"--spp", "4"}, {"--backend", "cpu"}, {"--seed", "2"}}) {
+    const Outcome outcome = run_program(folder, {"view", "a.exr", "--port", "0", option, value});
+    if (outcome.err.find("has no viewer") != std::string::npos) GTEST_SKIP() << outcome.err;
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err, std::string("kiloband: ") + option + ": of scenes, not of the cube a.exr\n");
+  }
+}
+
 /// A render begun with few samples, and so with fewer replicates, is extended without saying so again.
 TEST(Messages, ExtendedRendersKeepTheirReplicates) {
   const TemporaryFolder folder;

@@ -176,6 +176,13 @@ TEST(Responses, NamedBandsAreGivenWavelengths) {
   EXPECT_EQ(unknown.err,
             "kiloband: wavelengths of band 'blue': the cube has no such band; without wavelengths are 'red', "
             "'green'\n");
+
+  std::string many;  // longer than the name of a file can be
+  for (int i = 0; i < 40; ++i) many += "band" + std::to_string(i) + "=400-500,";
+  EXPECT_EQ(
+      convert("x.exr", many + "red=600-700").err,
+      "kiloband: wavelengths of band 'band0': the cube has no such band; without wavelengths are 'red', "
+      "'green'\n");
 }
 
 }  // namespace
