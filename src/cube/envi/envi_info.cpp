@@ -105,6 +105,17 @@ void read_metadata(const EnviHeader& header, bool own, CubeInfo& info) {
   }
 }
 
+/// What others state of the numbers in their files, and we do not apply.
+void check_calibration(const EnviHeader& header, const DiagnosticSink& sink) {
+  for (const char* key : {"data gain values", "data offset values", "reflectance scale factor"})
+    if (const EnviHeader::Entry* entry = header.find(key))
+      warn(sink, {}, header.where(*entry) + ": not applied: values are taken as they are stored");
+  const EnviHeader::Entry* compression = header.find("file compression");
+  if (compression && compression->value != "0")
+    throw InputError(header.where(*compression) + " '" + printable(compression->value) +
+                     "': compressed data files are not read");
+}
+
 }  // namespace
 
 CubeInfo read_envi_info(const EnviHeader& header, const EnviStorage& storage, const DiagnosticSink& sink) {
@@ -119,6 +130,7 @@ CubeInfo read_envi_info(const EnviHeader& header, const EnviStorage& storage, co
   info.holds_variances = content && content->value == "variance";
   info.samples_per_pixel = header.count(kEnviSamplesKey, UINT64_MAX, 0);
   info.replicates = static_cast<uint32_t>(header.count(kEnviReplicatesKey, UINT32_MAX, 0));
+  if (!own) check_calibration(header, sink);
   read_metadata(header, own, info);
   check_cube_info(info, header.file().string());
   return info;

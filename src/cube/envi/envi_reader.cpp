@@ -15,6 +15,14 @@ namespace {
 
 constexpr uint64_t kMaxHeaderBytes = 1u << 28;  // a million bands need about 100 MB
 
+/// As the type has it: no float is the double that its decimal number would be.
+template <class Number>
+bool is_ignored(Number value, double ignore) {
+  if constexpr (std::is_same_v<Number, float>)
+    return std::abs(ignore) <= std::numeric_limits<float>::max() && value == static_cast<float>(ignore);
+  return static_cast<double>(value) == ignore;
+}
+
 /// Converts numbers of one type; from may be unaligned. Values that equal `ignore` become NaN.
 template <class Number>
 void convert(const char* from, std::size_t count, bool swap, std::optional<double> ignore, float* to,
@@ -26,7 +34,7 @@ void convert(const char* from, std::size_t count, bool swap, std::optional<doubl
     Number value;
     std::memcpy(&value, bytes, sizeof value);
     *to = static_cast<float>(value);
-    if (ignore && static_cast<double>(value) == *ignore) *to = std::numeric_limits<float>::quiet_NaN();
+    if (ignore && is_ignored(value, *ignore)) *to = std::numeric_limits<float>::quiet_NaN();
   }
 }
 

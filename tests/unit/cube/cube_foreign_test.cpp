@@ -139,5 +139,29 @@ TEST_F(EnviHeaderText, IgnoredValuesAreNoNumbers) {
   EXPECT_TRUE(std::isnan(value));
 }
 
+/// A decimal number that no float is exactly.
+TEST(EnviForeign, IgnoredFloatsAreRounded) {
+  const TemporaryFolder folder;
+  const float values[] = {-3.4e38f, 0.1f, 1};
+  folder.write("a.img", std::string(reinterpret_cast<const char*>(values), sizeof values));
+  for (const auto& [ignored, at] : {std::pair{"-3.4e+38", 0}, {"0.1", 1}, {"1e300", -1}}) {
+    folder.write("a.hdr", std::string("ENVI\nsamples = 3\nlines = 1\nbands = 1\ndata type = 4\ninterleave = "
+                                      "bsq\nbyte order = 0\nwavelength = {500}\nfwhm = {10}\n"
+                                      "data ignore value = ") +
+                              ignored + "\n");
+    float read[3];
+    open_cube(folder / "a.hdr")->read_rows(0, 1, read, {});
+    for (int x = 0; x < 3; ++x) EXPECT_EQ(std::isnan(read[x]), x == at) << ignored << " " << x;
+  }
+}
+
+TEST_F(EnviHeaderText, CalibrationsAreNotAppliedAloud) {
+  open(1, "wavelength = {500}\nfwhm = {10}\ndata gain values = {2}\nreflectance scale factor = 10000\n");
+  EXPECT_TRUE(messages.contain("data gain values: not applied"));
+  EXPECT_TRUE(messages.contain("reflectance scale factor: not applied"));
+  EXPECT_NO_THROW(open(1, "file compression = 0\n"));
+  EXPECT_THROW(open(1, "file compression = 1\n"), InputError);
+}
+
 }  // namespace
 }  // namespace kiloband
