@@ -6,9 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 #include "base/error.hpp"
 #include "cube/cube_layout.hpp"
+#include "files/output_target.hpp"
 #include "post/replicated_cube.hpp"
 
 namespace kiloband {
@@ -88,8 +90,26 @@ CompareSide::CompareSide(const SideOptions& options, const DiagnosticSink& sink)
   open_renders(files, sink);
 }
 
+namespace {
+
+/// throws InputError  two of them are one file: of other programs' renders there is no seed that tells
+void check_different_files(const std::vector<std::string>& files) {
+  std::map<std::string, std::string> names;
+  for (const std::string& file : files) {
+    const auto identity = output_identity(file);
+    if (!identity) continue;
+    const auto [found, is_new] = names.emplace(*identity, file);
+    if (!is_new)
+      throw InputError(
+          fmt::format("{} and {} are one file: they are not independent renders", found->second, file));
+  }
+}
+
+}  // namespace
+
 void CompareSide::open_renders(const std::vector<std::string>& files, const DiagnosticSink& sink) {
   source_ = ErrorSource::kRenders;
+  check_different_files(files);
   for (const std::string& file : files) {
     cubes_.push_back(open_cube(file, sink));
     const CubeInfo& info = cubes_.back()->info();

@@ -64,7 +64,10 @@ void write_signature_table(const PlaceOptions& options, ReplicatedCube cube, con
                      ": does not state its camera: signatures need a cube that kiloband rendered");
   const std::vector<SignatureMask> masks = signature_masks(options, *cube.mean, *camera);
   std::optional<ReplicatedCube> background;
-  if (options.background) background = change(open_replicated_cube(*options.background, sink));
+  if (options.background) {
+    background = change(open_replicated_cube(*options.background, sink));
+    check_holds_radiances(*options.background, background->mean->info());
+  }
   ReplicatedCube* behind = background ? &*background : nullptr;
   const std::vector<Signature> signatures = measure_signatures(cube, behind, masks, *camera);
   report_errors(cube, behind, sink);

@@ -144,6 +144,11 @@ void check_background(const CubeInfo& info, const CubeInfo& background) {
     same = a.min_nm == b.min_nm && a.max_nm == b.max_nm && a.name == b.name;
   }
   if (!same) throw InputError("background: must have the size and the channels of the cube");
+  const auto camera = info.metadata.find(kCameraKey), behind = background.metadata.find(kCameraKey);
+  if (camera != info.metadata.end() && behind != background.metadata.end() &&
+      camera->second != behind->second)
+    throw InputError("background: has another camera (" + behind->second + ") than the cube (" +
+                     camera->second + ")");
 }
 
 }  // namespace

@@ -188,6 +188,8 @@ TEST(Compare, WrongInput) {
            "several renders as FILE,FILE,..., or --b-exact if B is the truth"},
           {{"a.hdr,plain.hdr", "a.hdr"},
            "a.hdr and plain.hdr have the same seed 0: they are not independent renders"},
+          {{"a.hdr,other.hdr,./a.hdr", "a.hdr"},
+           "a.hdr and ./a.hdr are one file: they are not independent renders"},
           {{"a.hdr,three.hdr", "a.hdr"}, "a.hdr has 4 channels, three.hdr has 3"},
           {{"a.hdr,plain.hdr", "a.hdr", "--variance-a", "a.hdr"},
            "A: --variance-a, --dof-a are for a single cube, these are 2 renders"},

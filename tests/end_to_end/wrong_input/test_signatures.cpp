@@ -58,6 +58,14 @@ TEST(WrongSignatures, Options) {
                      {{"--object", "ball", "--background-ring", "1", "--background", "plain.exr"},
                       "--background excludes --background-ring (see kiloband convert --help)"},
                  });
+  ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "400:700:4", "--variance",
+                                                           "-o", "var.hdr"}))
+                .code,
+            0);
+  expect_refused(
+      folder, {"convert", "cube.exr", "out.csv", "--signature", "--object", "ball"},
+      {{{"--background", "var.var.hdr"},
+        "var.var.hdr: holds variances, not radiances: give the cube itself, var.hdr, whose variances go with it"}});
   expect_refused(folder, {},
                  {
                      {{"convert", "cube.exr", "out.hdr", "--signature"},

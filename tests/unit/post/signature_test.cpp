@@ -174,6 +174,13 @@ TEST_F(Signatures, BackgroundCubesArePaired) {
   other.mean = open_cube(folder / "w.hdr");
   EXPECT_EQ(error_of([&] { measured(file, false, &other); }),
             "background: must have the size and the channels of the cube");
+  Cube narrow = make_cube(4, 2, equal_bands(400, 500, 2));
+  narrow.info.metadata = {{kCameraKey, "orthographic pixel_area 0.25"}};
+  write_cube_file(narrow, folder / "n.hdr", 2);
+  other.mean = open_cube(folder / "n.hdr");
+  EXPECT_EQ(
+      error_of([&] { measured(file, false, &other); }),
+      "background: has another camera (orthographic pixel_area 0.25) than the cube (orthographic pixel_area 0.5)");
 }
 
 TEST_F(Signatures, DistanceTurnsSolidAnglesIntoAreas) {
