@@ -21,6 +21,10 @@ void CubeWriter::finish() {
   files.commit();
 }
 
+std::size_t CubeReader::floats_held() const {
+  return info().bands.size() * (info().variance ? 2 : 1) + info().aux.size();
+}
+
 void check_holds_radiances(const std::filesystem::path& file, const CubeInfo& info) {
   if (!info.holds_variances) return;
   const std::filesystem::path stem = file.stem().stem();  // X of X.var.hdr

@@ -92,6 +92,8 @@ class CubeReader {
   virtual void read_rows(uint32_t y0, uint32_t rows, std::span<float> mean, std::span<float> variance) = 0;
   /// [row][x][aux plane]
   virtual void read_aux(uint32_t y0, uint32_t rows, std::span<float> aux) = 0;
+  /// Numbers per pixel of the rows that are asked for that reading holds, the caller's among them: how many rows fit into memory.
+  virtual std::size_t floats_held() const;
 };
 
 /// file: .exr, .hdr or .img

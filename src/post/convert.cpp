@@ -11,10 +11,11 @@ namespace {
 
 constexpr uint64_t kStripBytes = uint64_t{128} << 20;
 
-/// Rows whose values fit into the strip's memory: a multiple of 32 (whole tiles of EXR files), or all.
-uint32_t strip_rows(const CubeInfo& info) {
-  const uint64_t floats = info.bands.size() * (info.variance ? 2 : 1) + info.aux.size();
-  const uint64_t rows = kStripBytes / (floats * sizeof(float) * info.width);
+/// Rows whose values, those of all that they are made of too, fit into the strip's memory: a multiple of 32 (whole tiles of EXR files), or
+/// all.
+uint32_t strip_rows(const CubeReader& source) {
+  const CubeInfo& info = source.info();
+  const uint64_t rows = kStripBytes / (source.floats_held() * sizeof(float) * info.width);
   return static_cast<uint32_t>(std::min<uint64_t>(std::max<uint64_t>(rows / 32 * 32, 32), info.height));
 }
 
@@ -36,7 +37,7 @@ void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity q
   CubeInfo info = source.info();
   const Quantity given = info.quantity;
   info.quantity = quantity_on_disk;
-  const uint32_t strip = strip_rows(info);
+  const uint32_t strip = strip_rows(source);
   const auto writer = create_cube_writer_from(out, info, strip, given);
   std::vector<float> mean, variance, aux;
   uint64_t values = 0, variances = 0;

@@ -88,6 +88,8 @@ class SelectedCube : public CubeReader {
 
   const CubeInfo& info() const override { return info_; }
 
+  std::size_t floats_held() const override { return CubeReader::floats_held() + source_->floats_held(); }
+
   void read_rows(uint32_t y0, uint32_t rows, std::span<float> mean, std::span<float> variance) override {
     check_read(info_, y0, rows, mean.size(), info_.bands.size());
     check_read(info_, y0, rows, variance.size(),

@@ -59,6 +59,12 @@ class VarianceCube : public CubeReader {
 
   const CubeInfo& info() const override { return info_; }
 
+  std::size_t floats_held() const override {
+    std::size_t sum = CubeReader::floats_held() + cube_.mean->floats_held();
+    for (const auto& replicate : cube_.replicates) sum += replicate->floats_held();
+    return sum;
+  }
+
   void read_rows(uint32_t y0, uint32_t rows, std::span<float> mean, std::span<float> variance) override {
     cube_.mean->read_rows(y0, rows, mean, {});
     if (variance.empty()) return;

@@ -86,6 +86,8 @@ class SensorCube : public CubeReader {
 
   const CubeInfo& info() const override { return info_; }
 
+  std::size_t floats_held() const override { return CubeReader::floats_held() + source_->floats_held(); }
+
   void read_rows(uint32_t y0, uint32_t rows, std::span<float> mean, std::span<float> variance) override {
     check_read(info_, y0, rows, mean.size(), info_.bands.size());
     const std::size_t from = source_->info().bands.size(), to = info_.bands.size();
@@ -209,6 +211,7 @@ std::unique_ptr<CubeReader> apply_responses(std::unique_ptr<CubeReader> cube,
 
 void report_responses(CubeReader& cube, const std::vector<NamedResponse>& responses,
                       const DiagnosticSink& sink) {
+  if (responses.empty()) return;  // there are the bands that the render accumulated
   const std::vector<Band>& bands = cube.info().bands;
   const std::vector<double> integrals = image_integrals(cube);
   for (const auto& [name, response] : responses) {

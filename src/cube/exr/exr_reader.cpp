@@ -67,7 +67,9 @@ class ExrReader : public CubeReader {
   void read(uint32_t y0, uint32_t rows, const std::vector<Planes>& wanted) {
     if (rows == 0) return;
     guarded([&] {
-      if (storage_.tiled)
+      if (storage_.tiled && fits_kept_row(y0, rows, wanted))
+        read_kept_row(y0, rows, wanted);
+      else if (storage_.tiled)
         read_tiles(y0, rows, wanted);
       else
         read_lines(y0, rows, wanted);
@@ -106,6 +108,38 @@ class ExrReader : public CubeReader {
         tiled_->readTile(static_cast<int>(tx), static_cast<int>(ty));
         copy_tile(tx, ty, y0, rows, wanted);
       }
+  }
+
+  /// A part of one row of tiles, of which more may be asked for next.
+  bool fits_kept_row(uint32_t y0, uint32_t rows, const std::vector<Planes>& wanted) const {
+    std::size_t values = 0;
+    for (const Planes& planes : wanted)
+      values += std::size_t{info().width} * tile_rows() * planes.channels->size();
+    const uint32_t first = y0 % storage_.tile_height;
+    return rows < tile_rows() && first + rows <= tile_rows() && values <= kMostKept;
+  }
+
+  /// From the whole row of tiles, which is decoded once for all who ask for its parts one after the other.
+  void read_kept_row(uint32_t y0, uint32_t rows, const std::vector<Planes>& wanted) {
+    const uint32_t begin = y0 / storage_.tile_height * storage_.tile_height;
+    const uint32_t all = std::min(tile_rows(), info().height - begin);
+    std::vector<const std::vector<std::string>*> channels;
+    for (const Planes& planes : wanted) channels.push_back(planes.channels);
+    if (kept_.channels != channels || kept_.begin != begin) {
+      kept_ = {{}, begin, {}};
+      std::vector<Planes> whole;
+      kept_.values.resize(wanted.size());
+      for (std::size_t p = 0; p < wanted.size(); ++p) {
+        kept_.values[p].resize(std::size_t{all} * info().width * channels[p]->size());
+        whole.push_back({channels[p], kept_.values[p].data()});
+      }
+      read_tiles(begin, all, whole);
+      kept_.channels = channels;  // it is there
+    }
+    for (std::size_t p = 0; p < wanted.size(); ++p) {
+      const std::size_t row = info().width * channels[p]->size();
+      std::copy_n(&kept_.values[p][(y0 - begin) * row], rows * row, wanted[p].out);
+    }
   }
 
   uint32_t tile_columns() const { return std::min(storage_.tile_width, info().width); }
@@ -161,6 +195,15 @@ class ExrReader : public CubeReader {
   std::unique_ptr<Imf::TiledInputFile> tiled_;
   std::unique_ptr<Imf::InputFile> lines_;
   std::vector<float> staging_;
+
+  static constexpr std::size_t kMostKept = std::size_t{64} << 20;  // values
+  /// A row of tiles: what of it, from which row of the image on.
+  struct KeptRow {
+    std::vector<const std::vector<std::string>*> channels;
+    uint32_t begin = 0;
+    std::vector<std::vector<float>> values;  // of each
+  };
+  KeptRow kept_;
 };
 
 }  // namespace

@@ -72,6 +72,9 @@ TEST(ForeignExr, ScanLinesAndTilesOfAnyCompression) {
         maker.write(folder / "f.exr", tiled);
         const Cube cube = read_cube(folder / "f.exr", 2);
         ASSERT_EQ(cube.info.bands.size(), 3u);
+        const Cube by_row = read_cube(folder / "f.exr", 1);
+        EXPECT_EQ(by_row.mean, cube.mean);
+        EXPECT_EQ(by_row.aux, cube.aux);
         EXPECT_EQ(cube.info.aux, std::vector<std::string>{"A"});
         EXPECT_EQ(cube.info.quantity, Quantity::kDensity);
         // Wavelengths sort as numbers: 400.5, 700, 1000.

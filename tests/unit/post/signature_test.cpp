@@ -241,6 +241,17 @@ TEST_F(Signatures, ReplicatesMustBeThoseOfTheCube) {
 
 /// Sums of channels and regions have the errors that the replicates give,
 /// though channels and pixels move together.
+/// What strips of a conversion hold: the sum and its variance, and of every file all bands.
+TEST_F(Signatures, MemoryIsThatOfAllFilesRead) {
+  const auto file = write("a.hdr", 8, 2, 0.5f, 4);
+  CubeSelection selection;
+  selection.rebin = ChannelList{{400, 500, ""}};
+  const auto one = select_from_cube(open_cube(file), selection);
+  EXPECT_EQ(one->floats_held(), 1u + 2u);
+  const auto all = with_replicate_variance(select_from_cube(open_replicated_cube(file), selection));
+  EXPECT_EQ(all->floats_held(), 2u + (1 + 4) * (1u + 2u));
+}
+
 TEST_F(Signatures, ReplicatesGiveErrorsToSumsAndRegions) {
   const auto file = write("a.hdr", 8, 2, 0.5f);
   CubeSelection selection;
