@@ -69,6 +69,7 @@ int tune(TuneCommand command) {
   opencl::TunedMethod measured;
   measured.method = to_string(bounds.method);
   measured.channels = static_cast<uint32_t>(scene->channels.size());
+  measured.items_of_path = bounds.items_of_path;
   measured.scene = command.scene.scene;
   answer("{}, {}, {} channels, {}: {} samples of {} paths a render\n", timer.device().name, measured.method,
          measured.channels, measured.scene, timer.samples(), timer.paths() / timer.samples());

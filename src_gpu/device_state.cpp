@@ -26,11 +26,6 @@ std::vector<std::string> evaluation_defines(const HostScene& host, const DeviceS
   return defines;
 }
 
-EvaluationTask evaluation_task(const HostScene& host, const DeviceSettings& settings) {
-  return {settings.method, settings.shared_wavelengths, host.spectra.layout.channels,
-          vertex_spectra(host.scene.features, settings.specialised)};
-}
-
 std::vector<std::string> path_defines(const DeviceInfo& device, const HostScene& host,
                                       const DeviceSettings& settings) {
   std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
@@ -66,8 +61,10 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       method(device_settings.method),
       host_(host),
       settings_(device_settings),
-      shape_(evaluation_shape(device_context.device(), evaluation_task(host, settings_),
-                              settings_.tuning.evaluation_group)),
+      shape_(evaluation_shape(
+          device_context.device(),
+          evaluation_task(host.scene, method, settings_.shared_wavelengths, settings_.specialised),
+          settings_.tuning.evaluation_group)),
       paths_(build_program(context, "path/paths.cl",
                            ProgramOptions{path_defines(context.device(), host, settings_),
                                           settings_.program_cache, kPathRegisters})),

@@ -116,8 +116,10 @@ void Renderer::limit_memory() {
 
 /// What `kiloband tune` found for the device.
 Tuning Renderer::kept_tuning() const {
-  return tuning_for(TuningStore::of_user().load(context_.device()), to_string(method_),
-                    host_->spectra.layout.channels);
+  const EvaluationTask task = evaluation_task(
+      host_->scene, method_, settings_.wavelengths == WavelengthMode::kShared, options_.specialised);
+  return tuning_for(TuningStore::of_user().load(context_.device()), to_string(method_), task.channels,
+                    evaluation_shape(context_.device(), task).local_size);
 }
 
 /// One warning: without a cache the render goes on, and the next one compiles again.

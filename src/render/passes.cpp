@@ -94,7 +94,7 @@ void Passes::render_fixed(SpectralFilm& film) {
 /// Samples first, first + 1, ... of a replicate that are rendered at one go. Long replicates come in parts,
 /// so that an interrupted render is even; the first part is a single sample, so that every pixel soon has some, the next ones as many as
 /// pixels have, up to kWholeSamples, and more where the clock says that they are short. With a checkpoint parts follow its clock alone.
-/// Each part carries the film to the backend and back: few are better. What is seen of them later is where the render was
+/// Each part brings the film back from the backend: few are better. What is seen of them later is where the render was
 /// interrupted: sums do not depend on the parts that they come in.
 uint32_t Passes::next_part(uint32_t first, uint32_t target) const {
   const uint32_t left = target - first;

@@ -139,6 +139,12 @@ VertexSpectra vertex_spectra(const SceneFeatures& f, bool specialised) {
   return two ? VertexSpectra::kRows : VertexSpectra::kOneReflectance;
 }
 
+EvaluationTask evaluation_task(const FlatScene& scene, Method method, bool shared_wavelengths,
+                               bool specialised) {
+  return {method, shared_wavelengths, static_cast<uint32_t>(scene.channels.size()),
+          vertex_spectra(scene.features, specialised)};
+}
+
 EvaluationShape evaluation_shape(const DeviceInfo& device, const EvaluationTask& task,
                                  std::optional<uint32_t> largest_group) {
   EvaluationShape shape;

@@ -34,6 +34,9 @@ struct EvaluationTask {
   VertexSpectra vertices = VertexSpectra::kAny;
 };
 
+EvaluationTask evaluation_task(const FlatScene& scene, Method method, bool shared_wavelengths,
+                               bool specialised);
+
 /// How evaluation is compiled and launched; what follows from device and task.
 struct EvaluationShape {
   Method method = Method::kDpeptBatch;
@@ -53,8 +56,8 @@ struct EvaluationShape {
   uint32_t group_size() const { return staged ? local_size * units_per_group : local_size; }
 };
 
-/// largest_group  work-items of a group of a GPU, at most; nothing: 64 for dpept-path, whose work-items have a
-///                path each, 256 for the others, which share one
+/// largest_group  work-items of a group of a GPU, at most; nothing: 64 for dpept-path, whose work-items have a path each; 256 for the
+///                others, which share one, and 64 where pixels side by side fill it
 EvaluationShape evaluation_shape(const DeviceInfo& device, const EvaluationTask& task,
                                  std::optional<uint32_t> largest_group = {});
 

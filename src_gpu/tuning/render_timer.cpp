@@ -73,9 +73,9 @@ uint64_t RenderTimer::paths() const {
 }
 
 TuningBounds RenderTimer::bounds() const {
-  const EvaluationTask task{
-      options_.method.value_or(kDefaultMethod), sampling_.wavelengths == WavelengthMode::kShared,
-      static_cast<uint32_t>(scene_->channels.size()), vertex_spectra(scene_->features, options_.specialised)};
+  const EvaluationTask task =
+      evaluation_task(*scene_, options_.method.value_or(kDefaultMethod),
+                      sampling_.wavelengths == WavelengthMode::kShared, options_.specialised);
   const TunedRender render{task, paths()};
   return tuning_bounds(device_, render, options_.device_memory.value_or(default_memory_budget(device_)));
 }

@@ -98,6 +98,7 @@ TuningBounds tuning_bounds(const DeviceInfo& device, const TunedRender& render, 
   bounds.round_paths = usual_jobs(bounds.cpu_device, memory_budget);
   bounds.path_group = kPoolLocalSize;
   bounds.evaluation_group = group({});
+  bounds.items_of_path = shape({}).local_size;
   bounds.largest_group = std::min<uint64_t>(device.max_work_group_size, KB_LARGEST_PATH_GROUP);
   bounds.largest_evaluation_group = group(static_cast<uint32_t>(device.max_work_group_size));
   bounds.paths = render.paths;

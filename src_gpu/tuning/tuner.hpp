@@ -20,6 +20,7 @@ struct TuningBounds {
   uint64_t round_paths = 0;               // of dpept
   uint64_t path_group = 0;                // of GPUs
   uint64_t evaluation_group = 0;          // of GPUs
+  uint32_t items_of_path = 1;             // EvaluationShape::local_size, usually
   uint64_t largest_group = 0;             // that the device and the kernels have
   uint64_t largest_evaluation_group = 0;  // that the channels have work for, too
   uint64_t paths = ~uint64_t{0};          // of a timed render: no more are ever in flight or in a round

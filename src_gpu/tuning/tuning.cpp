@@ -33,7 +33,8 @@ std::string describe(const Tuning& tuning) {
   return text.empty() ? "the usual sizes" : text;
 }
 
-Tuning tuning_for(const std::vector<TunedMethod>& tuned, const std::string& method, uint32_t channels) {
+Tuning tuning_for(const std::vector<TunedMethod>& tuned, const std::string& method, uint32_t channels,
+                  uint32_t items_of_path) {
   Tuning nearest;
   double least = std::numeric_limits<double>::infinity();
   for (const TunedMethod& one : tuned) {
@@ -41,6 +42,7 @@ Tuning tuning_for(const std::vector<TunedMethod>& tuned, const std::string& meth
     if (one.method != method || !(apart < least)) continue;
     least = apart;
     nearest = one.tuning;
+    if (one.items_of_path != items_of_path) nearest.evaluation_group.reset();
   }
   return nearest;
 }

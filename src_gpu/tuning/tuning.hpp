@@ -31,12 +31,16 @@ std::string describe(const Tuning& tuning);
 struct TunedMethod {
   std::string method;     // "dpept-batch"
   uint32_t channels = 0;  // K
+  /// EvaluationShape::local_size with the usual sizes: groups of others are filled by other numbers of pixels.
+  uint32_t items_of_path = 1;
   Tuning tuning;
   std::string scene;    // it was measured in
   double speed_up = 1;  // over the usual sizes
 };
 
-/// The tuning for a method: of those at other numbers of channels the nearest, by ratio; empty where the method has none.
-Tuning tuning_for(const std::vector<TunedMethod>& tuned, const std::string& method, uint32_t channels);
+/// The tuning for a method: of those at other numbers of channels the nearest, by ratio; empty where the method has none. Its group of
+/// evaluation only where as many work-items share a path as in what was measured.
+Tuning tuning_for(const std::vector<TunedMethod>& tuned, const std::string& method, uint32_t channels,
+                  uint32_t items_of_path);
 
 }  // namespace kiloband::opencl

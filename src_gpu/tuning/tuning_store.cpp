@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 /// What the numbers in a file mean.
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 /// No device has more, or gains from less.
 constexpr uint64_t kFewestPaths = 64, kMostPaths = uint64_t{1} << 28, kLargestGroup = 4096;
 
@@ -42,6 +42,7 @@ TunedMethod tuned_method(const json& from) {
   one.method = from.at("method").get<std::string>();
   one.channels = static_cast<uint32_t>(std::min<uint64_t>(whole_number(from, "channels"), ~0u));
   if (one.channels == 0) throw std::out_of_range("channels");
+  one.items_of_path = size_in<uint32_t>(from, "items_of_path", 1, kLargestGroup).value_or(1);
   one.scene = from.at("scene").get<std::string>();
   one.speed_up = from.at("speed_up").get<double>();
   one.tuning.pool_slots = size_in<uint32_t>(from, "pool_slots", kFewestPaths, kMostPaths);
@@ -52,8 +53,11 @@ TunedMethod tuned_method(const json& from) {
 }
 
 json tuned_json(const TunedMethod& one) {
-  json j{
-      {"method", one.method}, {"channels", one.channels}, {"scene", one.scene}, {"speed_up", one.speed_up}};
+  json j{{"method", one.method},
+         {"channels", one.channels},
+         {"items_of_path", one.items_of_path},
+         {"scene", one.scene},
+         {"speed_up", one.speed_up}};
   put(j, "pool_slots", one.tuning.pool_slots);
   put(j, "round_paths", one.tuning.round_paths);
   put(j, "path_group", one.tuning.path_group);

@@ -89,6 +89,8 @@ TEST(OpenclProgram, TheFormForGpusGivesTheSameBytes) {
     float tolerance;
   };
   for (const Scene& scene : {Scene{cornell_box(), "400:700:20", 0},
+                             {cornell_box(), "400:700:300", 0},  // three vectors of a work-item, four
+                             {cornell_box(), "400:700:515", 0},
                              {scenes + "lens_and_glass.xml", "400:700:150", 0},
                              {scenes + "metals_and_lamps.xml", "400:700:5", 1e-6f},
                              {scenes + "hot_gas.xml", "3000:5000:9", 1e-6f}}) {

@@ -166,6 +166,32 @@ TEST_F(SumsInParts, ComeFromTheFilmWhereTheDeviceHasOthers) {
   }
 }
 
+/// The film of all pixels does not fit: what the device has is of its last group. Nor is it of a small film once a large one came between.
+TEST_F(SumsInParts, OfSeveralGroups) {
+  const FlatScene scene = folder_.flatten(zoo_scene("crop_window"), "450:650:100");
+  const PixelRect large = film_rect(scene), small{large.x0, large.y0, 3, 2};
+  for (const std::string& name : kDeviceMethods) {
+    std::size_t notes = 0;
+    opencl::Options options;
+    options.device_memory = uint64_t{600} << 10;
+    options.sink = [&](const Diagnostic&) { ++notes; };
+    const SamplingSettings settings{WavelengthMode::kShared, SamplerType::kSobol, 3, kReplicates};
+    const auto whole = make_zoo_backend(name, scene, {}, settings);
+    const auto renderer = make_zoo_backend(name, scene, {}, settings, options);
+    GrowingFilm first(*renderer, small, 6), second(*renderer, large, 6);
+    first.add(0, 2);
+    second.add(0, 1);
+    EXPECT_GT(notes, 0u) << "all pixels fit at once";
+    for (uint32_t r = 0; r < kReplicates; ++r) {
+      for (GrowingFilm* film : {&first, &second, &second})
+        film->add(r, (6 - film->film().attempted(r, 0)) / (film == &second ? 2 : 1));
+    }
+    for (uint32_t r = 0; r < kReplicates; ++r) second.add(r, 6 - second.film().attempted(r, 0));
+    EXPECT_EQ(different_bits(render_part(*whole, small, kReplicates, 6).means, first.means()), 0u) << name;
+    EXPECT_EQ(different_bits(render_part(*whole, large, kReplicates, 6).means, second.means()), 0u) << name;
+  }
+}
+
 /// The methods dpept keep the derived channels of whole rounds alone: parts that end there,
 /// as SumRule::step says.
 TEST_F(SumsInParts, WithDerivedChannelsEndWhereTheRuleSays) {

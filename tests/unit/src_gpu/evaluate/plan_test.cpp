@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "src_gpu/evaluate/evaluation.hpp"
 #include "src_gpu/told_samples.hpp"
@@ -205,6 +206,28 @@ TEST(GpuPlan, VectorsOfAWorkItem) {
   EXPECT_EQ(shape(512).most_registers, 56u);
   features.bitmap = true;
   EXPECT_EQ(shape(512).most_registers, 96u);
+}
+
+/// Each feature alone, beside diffuse surfaces under a lamp.
+TEST(GpuPlan, FeaturesAndTheirSpectra) {
+  const std::set<std::string> any{"conductor",       "roughconductor",    "dispersion", "bitmap",
+                                  "environment map", "temperature field", "gas"},
+      rows{"roughdielectric", "plastic", "roughplastic", "principled"};
+  const auto check = [&](const SceneFeatures& features, const std::string& name) {
+    const VertexSpectra expected = any.contains(name)    ? VertexSpectra::kAny
+                                   : rows.contains(name) ? VertexSpectra::kRows
+                                                         : VertexSpectra::kOneReflectance;
+    EXPECT_EQ(vertex_spectra(features, true), expected) << name;
+    EXPECT_EQ(vertex_spectra(features, false), VertexSpectra::kAny) << name;
+  };
+#define KB_CHECK_SPECTRA(macro, member, name) \
+  {                                           \
+    SceneFeatures features;                   \
+    features.member = true;                   \
+    check(features, name);                    \
+  }
+  KB_SCENE_FEATURES(KB_CHECK_SPECTRA)
+#undef KB_CHECK_SPECTRA
 }
 
 }  // namespace

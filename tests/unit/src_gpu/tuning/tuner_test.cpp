@@ -72,6 +72,13 @@ TEST(Tuner, LaddersEndWhereSizesComeToTheSame) {
   render.task.channels = 4000;  // vectors of 4
   EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group, 256u);
   EXPECT_EQ(last(render, 3), 1024u);
+  render.task.channels = 512;  // 32 items of 16 channels share a path where vertices are plain, 128 elsewhere
+  EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group, 128u);
+  EXPECT_EQ(tuning_bounds(gpu, render, kBudget).items_of_path, 128u);
+  render.task.vertices = VertexSpectra::kOneReflectance;
+  EXPECT_EQ(tuning_bounds(gpu, render, kBudget).evaluation_group, 64u);
+  EXPECT_EQ(tuning_bounds(gpu, render, kBudget).items_of_path, 32u);
+  EXPECT_EQ(last(render, 3), 512u);
   render.task.method = Method::kDpeptPath;  // an item has a path, whatever the channels are
   render.task.channels = 100;
   EXPECT_EQ(last(render, 3), 1024u);

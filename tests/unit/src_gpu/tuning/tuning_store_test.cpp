@@ -46,6 +46,7 @@ TEST_F(TuningStoreTest, FindsWhatItKept) {
   EXPECT_TRUE(store_.load(device_).empty());
   TunedMethod all = measured("dpept-batch", 64, 4096);
   all.tuning = {4096, uint64_t{1} << 25, 128, 64};
+  all.items_of_path = 32;
   EXPECT_EQ(store_.save(device_, all), "");
   EXPECT_EQ(store_.save(device_, measured("pt", 64, 512)), "");
   const auto found = store_.load(device_);
@@ -53,6 +54,7 @@ TEST_F(TuningStoreTest, FindsWhatItKept) {
   EXPECT_EQ(found[0].tuning, all.tuning);
   EXPECT_EQ(found[0].method, "dpept-batch");
   EXPECT_EQ(found[0].channels, 64u);
+  EXPECT_EQ(found[0].items_of_path, 32u);
   EXPECT_EQ(found[0].scene, "a scene");
   EXPECT_EQ(found[0].speed_up, 1.25);
   EXPECT_EQ(found[1].tuning, (Tuning{512, {}, {}, {}}));
@@ -64,8 +66,8 @@ TEST_F(TuningStoreTest, ALaterMeasurementTakesThePlace) {
   store_.save(device_, measured("dpept-batch", 64, 2048));
   const auto found = store_.load(device_);
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(tuning_for(found, "dpept-batch", 64).pool_slots, 2048u);
-  EXPECT_EQ(tuning_for(found, "dpept-batch", 8).pool_slots, 1024u);
+  EXPECT_EQ(tuning_for(found, "dpept-batch", 64, 1).pool_slots, 2048u);
+  EXPECT_EQ(tuning_for(found, "dpept-batch", 8, 1).pool_slots, 1024u);
 }
 
 TEST_F(TuningStoreTest, OtherDevicesAndDriversHaveTheirOwn) {
@@ -82,7 +84,7 @@ TEST_F(TuningStoreTest, OtherDevicesAndDriversHaveTheirOwn) {
 }
 
 TEST_F(TuningStoreTest, BelievesNoStrangeFile) {
-  const std::string head = R"({"format": 1, "device": "Some GPU", "tuned": [)";
+  const std::string head = R"({"format": 2, "device": "Some GPU", "tuned": [)";
   const std::string one = R"({"method": "pt", "channels": 8, "scene": "", "speed_up": 1)";
   write(head + one + R"(, "pool_slots": 4096}]})");
   EXPECT_EQ(store_.load(device_).size(), 1u);
@@ -91,8 +93,8 @@ TEST_F(TuningStoreTest, BelievesNoStrangeFile) {
         head + one + R"(, "pool_slots": 3}]})", head + one + R"(, "pool_slots": -4096}]})",
         head + one + R"(, "round_paths": 1e30}]})", head + one + R"(, "path_group": 0}]})",
         head + one + R"(, "evaluation_group": "64"}]})",
-        std::string(R"({"format": 2, "device": "Some GPU", "tuned": []})"),
-        std::string(R"({"format": 1, "device": "Another", "tuned": []})") + ""}) {
+        std::string(R"({"format": 1, "device": "Some GPU", "tuned": []})"),
+        std::string(R"({"format": 2, "device": "Another", "tuned": []})") + ""}) {
     write(text);
     EXPECT_TRUE(store_.load(device_).empty()) << text;
   }
@@ -108,11 +110,20 @@ TEST_F(TuningStoreTest, SaysWhyNothingIsKept) {
 TEST(Tuning, OfTheNearestNumberOfChannels) {
   const std::vector<TunedMethod> tuned{measured("dpept-batch", 8, 800), measured("dpept-batch", 512, 51200),
                                        measured("pt", 64, 6400)};
-  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 1).pool_slots, 800u);
-  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 63).pool_slots, 800u);
-  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 65).pool_slots, 51200u);
-  EXPECT_EQ(tuning_for(tuned, "dpept-path", 64), Tuning{});
-  EXPECT_EQ(tuning_for({}, "pt", 64), Tuning{});
+  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 1, 1).pool_slots, 800u);
+  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 63, 1).pool_slots, 800u);
+  EXPECT_EQ(tuning_for(tuned, "dpept-batch", 65, 1).pool_slots, 51200u);
+  EXPECT_EQ(tuning_for(tuned, "dpept-path", 64, 1), Tuning{});
+  EXPECT_EQ(tuning_for({}, "pt", 64, 1), Tuning{});
+}
+
+/// Groups of 256 are two pixels of 128 work-items, and eight of 32.
+TEST(Tuning, GroupsOfEvaluationAreThoseOfPathsSharedByAsMany) {
+  TunedMethod one = measured("dpept-batch", 512, 800);
+  one.tuning.evaluation_group = 256;
+  one.items_of_path = 128;
+  EXPECT_EQ(tuning_for({one}, "dpept-batch", 512, 128), one.tuning);
+  EXPECT_EQ(tuning_for({one}, "dpept-batch", 512, 32), (Tuning{800, {}, {}, {}}));
 }
 
 TEST(Tuning, WhatIsAskedForComesFirst) {
