@@ -74,7 +74,7 @@ KbFloat4 Flattener::attribute_texel(const std::vector<const std::vector<float>*>
   float values[3];
   for (std::size_t i = 0; i < 3; ++i)
     values[i] = static_cast<float>(unit * (*parts[parts.size() == 3 ? i : 0])[at]);
-  if (share) std::fill_n(values, 3, (values[0] + values[1] + values[2]) / 3);
+  if (share) std::fill_n(values, 3, luminance_of(values));
   return texel_of(values, BitmapUse::kPicture, 1);
 }
 

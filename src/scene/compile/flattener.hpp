@@ -278,6 +278,9 @@ void check_camera_place(const Sensor& sensor);
 /// Row-major 3x4 of an affine transform.
 void store_transform(const Transform& transform, float (&out)[12]);
 /// Row-major 2x3.
+/// The number that a colour is where one is wanted: Rec. 709 with D65's white, as Mitsuba's.
+float luminance_of(const float* rgb);
+
 void store_uv_transform(const glm::dmat3& to_uv, float (&out)[6]);
 /// to_world and its inverse.
 void set_emitter_transforms(KbEmitter& record, const Transform& to_world);

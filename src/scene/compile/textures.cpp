@@ -44,13 +44,12 @@ float value_of(const Image& image, std::size_t texel) {
   return (image.pixels[3 * texel] + image.pixels[3 * texel + 1] + image.pixels[3 * texel + 2]) / 3;
 }
 
-/// Rec. 709 with D65's white, as Mitsuba's.
+}  // namespace
+
 float luminance_of(const float* rgb) {
   if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) return rgb[0];
   return 0.212671f * rgb[0] + 0.715160f * rgb[1] + 0.072169f * rgb[2];
 }
-
-}  // namespace
 
 void store_uv_transform(const glm::dmat3& to_uv, float (&out)[6]) {
   for (int row = 0; row < 2; ++row) {
@@ -127,7 +126,8 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
   double largest = 0;
   double peak = 0;
   for (std::size_t texel = 0; texel < count; ++texel) {
-    const float value = value_of(image, texel);
+    const bool share = use == BitmapUse::kOpacity && image.channels == 3;
+    const float value = share ? luminance_of(&image.pixels[3 * texel]) : value_of(image, texel);
     const float grey[3] = {value, value, value};
     const float* rgb = image.channels == 1 ? grey : &image.pixels[3 * texel];
     out_.texels.push_back(flat ? flat_texel(value) : texel_of(rgb, use, height));

@@ -1,9 +1,11 @@
 #include "scene/mesh/input.hpp"
 
 #include <fstream>
+#include <string_view>
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace kiloband {
 
@@ -19,6 +21,19 @@ void MeshFile::fail_byte(size_t offset, const std::string& message) const {
   throw InputError(name + ": byte " + std::to_string(offset) + ": " + message);
 }
 
+namespace {
+
+/// Of text: binary STL files may begin with any bytes.
+void drop_byte_order_mark(const std::filesystem::path& path, std::string& bytes) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  if (!bytes.starts_with(kMark)) return;
+  const std::string_view rest = std::string_view(bytes).substr(kMark.size());
+  if (lowered_extension(path) == ".obj" || rest.starts_with("ply") || rest.starts_with("solid"))
+    bytes.erase(0, kMark.size());
+}
+
+}  // namespace
+
 MeshFile load_mesh_file(const std::filesystem::path& path) {
   MeshFile file{path.string(), {}};
   std::error_code error;
@@ -33,6 +48,7 @@ MeshFile load_mesh_file(const std::filesystem::path& path) {
   file.bytes.resize(size);
   stream.read(file.bytes.data(), static_cast<std::streamsize>(size));
   if (static_cast<uintmax_t>(stream.gcount()) != size) file.fail("cannot be read to its end");
+  drop_byte_order_mark(path, file.bytes);
   return file;
 }
 

@@ -182,6 +182,9 @@ Texture read_share(ReadContext& context, const ObjectReader& object, const std::
     object.fail_at(name, name + ": a checkerboard must have two numbers here");
   if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(share))
     object.fail_at(name, name + ": a spectral_bitmap is not supported here");
+  if (const auto* spectrum = std::get_if<Spectrum>(&share); spectrum && !spectrum->is_constant())
+    warn(context.sink, object.value_place(name).position(),
+         object.label() + ": " + name + ": one number for all wavelengths: the mean over the bands is taken");
   return share;
 }
 

@@ -144,8 +144,12 @@ void check_emission_texture(const Texture& texture, const std::string& label, co
 
 void check_reflectance_texture(const Texture& texture, const std::string& label, const Place& place) {
   if (const auto* board = std::get_if<std::shared_ptr<const CheckerboardTexture>>(&texture)) {
-    check_spectrum((*board)->color0, label + ": color0", SpectrumUse::kReflectance, place);
-    check_spectrum((*board)->color1, label + ": color1", SpectrumUse::kReflectance, place);
+    for (const auto& [name, color] :
+         {std::pair{": color0", &(*board)->color0}, {": color1", &(*board)->color1}}) {
+      if (color->planck_parameters())
+        fail(place, label + name + " describes emission: not allowed in a reflectance");
+      check_spectrum(*color, label + name, SpectrumUse::kReflectance, place);
+    }
   }
   if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
     check_spectral_reflectance(**spectral, label, place);

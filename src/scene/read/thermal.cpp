@@ -36,6 +36,10 @@ std::shared_ptr<const BitmapTexture> read_temperature_image(ReadContext& context
     fail(place, label + " " + format_number(static_cast<double>(image.lowest)) + " in " + file + ": " +
                     kTemperatureRule);
   const auto wrong = std::find_if_not(image.pixels.begin(), image.pixels.end(), is_temperature);
+  const float hottest = image.pixels.empty() ? 0 : *std::ranges::max_element(image.pixels);
+  if (hottest > 0 && hottest <= 1)
+    fail(place, label + ": " + file + " has no more than " + format_number(static_cast<double>(hottest)) +
+                    " K: images of integers hold fractions of 1, not kelvins: EXR and PFM do");
   if (wrong == image.pixels.end()) return bitmap;
   const auto pixel = static_cast<std::size_t>(wrong - image.pixels.begin());
   fail(place, label + " " + format_number(static_cast<double>(*wrong)) + " at pixel (" +

@@ -1,5 +1,6 @@
 #include "spectral/files/text_table.hpp"
 
+#include <algorithm>
 #include <fstream>
 
 #include "base/error.hpp"
@@ -45,6 +46,8 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
   stream.read(text.data(), static_cast<std::streamsize>(size));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.find('\n') == std::string::npos)
+    std::ranges::replace(text, '\r', '\n');  // old Macs' ends of lines
   return text;
 }
 

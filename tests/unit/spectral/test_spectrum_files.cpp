@@ -29,6 +29,12 @@ TEST(SpectrumFile, DescendingIsTurnedRound) {
   EXPECT_EQ(s(550), 2.5);
 }
 
+TEST(SpectrumFile, EndsOfLinesOfOldMacs) {
+  const Spectrum s = read_text("# a comment\r400 1\r500 2\r600 3\r");
+  EXPECT_EQ(s.knots_nm().size(), 3u);
+  EXPECT_EQ(s(550), 2.5);
+}
+
 TEST(SpectrumFile, CsvHeaderAndItsUnits) {
   EXPECT_EQ(read_text("wavelength_nm,value\n400,1\n500,2\n")(500), 2);
   EXPECT_EQ(read_text("Wavelength (micrometers),Reflectance\n0.4,1\n0.5,2\n")(500), 2);

@@ -63,7 +63,8 @@ SpectrumRow SpectrumTableBuilder::make_row(const Spectrum& spectrum, const Spect
   SpectrumRow row;
   row.name = use.name;
   row.is_emission = use.emission;
-  if (const auto planck = spectrum.planck_parameters()) {
+  // Of what is no emission (an index of refraction) a table is read, whatever it is made of.
+  if (const auto planck = spectrum.planck_parameters(); planck && use.emission) {
     row.is_planck = true;
     row.temperature_k = planck->temperature_k;
     row.planck_scale = planck->scale;

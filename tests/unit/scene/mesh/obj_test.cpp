@@ -28,6 +28,10 @@ TEST_F(Obj, FansPolygons) {
   EXPECT_TRUE(mesh.uvs.empty());
 }
 
+TEST_F(Obj, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(read("\xEF\xBB\xBF" + kQuadPositions + "f 1 2 3\n").triangles.size(), 1u);
+}
+
 TEST_F(Obj, ReadsEveryKindOfCorner) {
   const std::string head = kQuadPositions + "vt 0.25 0.75\nvn 0 0 -2\n";
   EXPECT_EQ(read(head + "f 1 2 3\n").normals[0], (Vec3f{0, 0, 1}));  // computed: vn is not referred to

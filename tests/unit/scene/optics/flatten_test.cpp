@@ -9,6 +9,7 @@ namespace kiloband::test {
 namespace {
 
 const std::string kSensor = R"(<sensor type="perspective"/>)";
+const std::string kSky = R"(<emitter type="constant"/>)";
 const std::string kPicture = R"(<texture type="checkerboard" name="specular_reflectance"/>)";
 
 std::string thermal(const std::string& kelvin) {
@@ -29,6 +30,39 @@ FlatScene flat_scene(const std::string& body, const std::string& bands = "8000-9
 
 std::string error_of(const std::string& body) {
   return test::error_of([&] { flat_scene(body); });
+}
+
+/// An index of refraction of Planck's form is a table as any other.
+TEST(Flatten, PlanckSpectraThatEmitNothing) {
+  const auto conductor = [](const std::string& eta) {
+    return flat_scene(kSky +
+                      sphere("<bsdf type=\"conductor\">" + eta + "<float name=\"k\" value=\"3\"/></bsdf>"));
+  };
+  const FlatScene scene = conductor(
+      R"(<spectrum type="planck" name="eta"><float name="temperature" value="3000"/><float name="scale" value="0.001"/></spectrum>)");
+  std::size_t tables = 0;
+  for (const SpectrumRow& row : scene.spectra) {
+    EXPECT_FALSE(row.is_planck);
+    tables += !row.table.values.empty();
+  }
+  EXPECT_EQ(tables, scene.spectra.size());
+}
+
+/// Where a number is wanted, of an image's colours it is the luminance.
+TEST(Flatten, ColoursAsOpacities) {
+  const TemporaryFolder folder;
+  const float red[] = {1, 0, 0};
+  folder.write("red.pfm", "PF\n1 1\n-1.0\n" + std::string(reinterpret_cast<const char*>(red), sizeof red));
+  const std::string text =
+      "<scene version=\"3.0.0\">\n" + kSky +
+      sphere(
+          R"(<bsdf type="mask"><texture type="bitmap" name="opacity"><string name="filename" value="red.pfm"/>)"
+          R"(<boolean name="raw" value="true"/></texture><bsdf type="diffuse"/></bsdf>)") +
+      kSensor + "</scene>";
+  const auto scene = compile_scene(read_scene_text(text, "scene.xml", folder.path(), {}),
+                                   {parse_channels("400-500"), {}, {}});
+  ASSERT_EQ(scene->texels.size(), 1u);
+  EXPECT_NEAR(scene->texels[0].w, 0.2126, 1e-3);
 }
 
 TEST(FlattenThermal, DiffuseSurfacesAreOneRow) {

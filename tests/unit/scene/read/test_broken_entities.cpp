@@ -236,6 +236,10 @@ std::vector<BrokenScene> table() {
       {"mask in a mask",
        complete_scene(R"xml(<bsdf type="mask"><bsdf type="mask"><bsdf type="diffuse"/></bsdf></bsdf>)xml"),
        "scene.xml:2:2: error: mask bsdf: the nested bsdf is a mask itself"},
+      {"board of lamps",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><texture type="checkerboard" name="reflectance"><spectrum type="planck" name="color1"><float name="temperature" value="300"/></spectrum></texture></bsdf>)xml"),
+       "scene.xml:2:37: error: diffuse bsdf: reflectance: color1 describes emission: not allowed in a reflectance"},
       {"opacity above 1",
        complete_scene(
            R"xml(<bsdf type="mask"><float name="opacity" value="2"/><bsdf type="diffuse"/></bsdf>)xml"),

@@ -217,6 +217,22 @@ TEST(SceneBsdf, TwoSidedAndMask) {
   EXPECT_TRUE(std::holds_alternative<TwoSidedBsdf>(mask.nested->model));
 }
 
+/// A share is one number: a spectrum's mean is taken aloud.
+TEST(SceneBsdf, SpectraAsSharesAreWarnedOf) {
+  const auto warnings = [](const std::string& opacity) {
+    Messages messages;
+    read(complete_scene("<bsdf type=\"mask\">" + opacity + "<bsdf type=\"diffuse\"/></bsdf>"), "/nonexistent",
+         {}, messages.lines());
+    return messages.texts;
+  };
+  EXPECT_TRUE(warnings("<spectrum name=\"opacity\" value=\"0.5\"/>").empty());
+  EXPECT_TRUE(warnings("<rgb name=\"opacity\" value=\"0.5\"/>").empty());
+  const auto of_spectrum = warnings("<spectrum name=\"opacity\" value=\"400:0, 700:1\"/>");
+  ASSERT_EQ(of_spectrum.size(), 1u);
+  EXPECT_NE(of_spectrum[0].find("warning: mask bsdf: opacity: one number for all wavelengths"),
+            std::string::npos);
+}
+
 TEST(SceneBsdf, CheckerboardsAreSharedThroughReferences) {
   const SceneDescription result = read(complete_scene(
       R"(<texture type="checkerboard" id="board"><rgb name="color0" value="0.9"/></texture>)"

@@ -80,6 +80,7 @@ TEST(SceneThermal, WrongInput) {
   folder.write("hot.pfm", pfm({300, 123456}));
   folder.write("cold.pfm", pfm({300, -1}));
   folder.write("rgb.pfm", pfm({300, 300, 300}, 3));
+  folder.write("part.pgm", "P2\n2 1\n255\n0 255\n");
   expect_messages(
       {
           {"no temperature", in_sphere(""),
@@ -108,6 +109,9 @@ TEST(SceneThermal, WrongInput) {
            "100000 K"},
           {"slightly negative image", in_sphere(image("cold.pfm")),
            "scene.xml:2:61: error: thermal emitter: temperature -1 in 'cold.pfm': must be from 0 to 100000 K"},
+          {"fractions", in_sphere(image("part.pgm")),
+           "scene.xml:2:61: error: thermal emitter: temperature: 'part.pgm' has no more than 1 K: images of "
+           "integers hold fractions of 1, not kelvins: EXR and PFM do"},
           {"coloured image", in_sphere(image("rgb.pfm")),
            "scene.xml:2:61: error: thermal emitter: temperature: an image of temperatures has one channel, "
            "'rgb.pfm' "
