@@ -119,27 +119,35 @@ class ExrReader : public CubeReader {
     return rows < tile_rows() && first + rows <= tile_rows() && values <= kMostKept;
   }
 
-  /// From the whole row of tiles, which is decoded once for all who ask for its parts one after the other.
+  /// Who asks for a second part of a row of tiles asks for the others, too: then it is decoded whole, and kept until its end was asked for. A
+  /// single look at a row, as at each replicate's, leaves nothing behind.
   void read_kept_row(uint32_t y0, uint32_t rows, const std::vector<Planes>& wanted) {
     const uint32_t begin = y0 / storage_.tile_height * storage_.tile_height;
     const uint32_t all = std::min(tile_rows(), info().height - begin);
     std::vector<const std::vector<std::string>*> channels;
     for (const Planes& planes : wanted) channels.push_back(planes.channels);
     if (kept_.channels != channels || kept_.begin != begin) {
-      kept_ = {{}, begin, {}};
-      std::vector<Planes> whole;
-      kept_.values.resize(wanted.size());
-      for (std::size_t p = 0; p < wanted.size(); ++p) {
-        kept_.values[p].resize(std::size_t{all} * info().width * channels[p]->size());
-        whole.push_back({channels[p], kept_.values[p].data()});
-      }
-      read_tiles(begin, all, whole);
-      kept_.channels = channels;  // it is there
+      kept_ = {channels, begin, {}};
+      return read_tiles(y0, rows, wanted);
     }
+    if (kept_.values.empty()) kept_.values = decoded_rows(begin, all, channels);
     for (std::size_t p = 0; p < wanted.size(); ++p) {
       const std::size_t row = info().width * channels[p]->size();
       std::copy_n(&kept_.values[p][(y0 - begin) * row], rows * row, wanted[p].out);
     }
+    if (y0 + rows == begin + all) kept_ = {};
+  }
+
+  std::vector<std::vector<float>> decoded_rows(uint32_t y0, uint32_t rows,
+                                               const std::vector<const std::vector<std::string>*>& channels) {
+    std::vector<std::vector<float>> values;
+    std::vector<Planes> wanted;
+    for (const auto* some : channels) {
+      values.emplace_back(std::size_t{rows} * info().width * some->size());
+      wanted.push_back({some, values.back().data()});
+    }
+    read_tiles(y0, rows, wanted);
+    return values;
   }
 
   uint32_t tile_columns() const { return std::min(storage_.tile_width, info().width); }
@@ -197,7 +205,7 @@ class ExrReader : public CubeReader {
   std::vector<float> staging_;
 
   static constexpr std::size_t kMostKept = std::size_t{64} << 20;  // values
-  /// A row of tiles: what of it, from which row of the image on.
+  /// The row of tiles that a part was asked for of: what of it, from which row of the image on; its values from the second part on.
   struct KeptRow {
     std::vector<const std::vector<std::string>*> channels;
     uint32_t begin = 0;
