@@ -37,7 +37,7 @@ class Flattener {
     ++mesh_lookups_;
     return &for_this->second;
   }
-  /// share: an opacity or a weight, which of a colour is the mean
+  /// share: an opacity or a weight, which of a colour is the luminance
   uint32_t mesh_attribute(const std::shared_ptr<const MeshAttributeTexture>& texture,
                           const SpectrumSource& use, bool share = false);
   static KbFloat4 attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
