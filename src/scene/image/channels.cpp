@@ -1,7 +1,6 @@
 #include "scene/image/channels.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace kiloband {
 namespace {
@@ -31,11 +30,6 @@ ImageChannels choose_channels(const std::vector<std::string>& names, int alpha) 
   const int colours = static_cast<int>(names.size()) - (alpha >= 0 ? 1 : 0);
   if (colours == 1) return {{alpha == 0 ? 1 : 0}, 1};
   return {};
-}
-
-float decode_srgb(float encoded) {
-  const double v = encoded;
-  return static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
 }
 
 }  // namespace kiloband

@@ -17,7 +17,4 @@ struct ImageChannels {
 /// alpha  place of the alpha channel, -1 if there is none
 ImageChannels choose_channels(const std::vector<std::string>& names, int alpha);
 
-/// The sRGB decoding of IEC 61966-2-1, for an encoded value in [0, 1].
-float decode_srgb(float encoded);
-
 }  // namespace kiloband

@@ -12,6 +12,7 @@
 #include "scene/image/format.hpp"
 #include "scene/image/image.hpp"
 #include "scene/image/negative_values.hpp"
+#include "spectral/colour/colour.hpp"
 
 namespace kiloband {
 namespace {
@@ -126,7 +127,7 @@ class Reader {
     // Textures have few distinct values in a row; the curve itself costs a pow.
     float last = 0, decoded = 0;
     for (float& value : image.pixels) {
-      if (value != last) decoded = decode_srgb(last = value);
+      if (value != last) decoded = static_cast<float>(srgb_decode(last = value));
       value = decoded;
     }
   }

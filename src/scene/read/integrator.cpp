@@ -2,13 +2,13 @@
 #include <algorithm>
 
 #include "scene/read/context.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {
 namespace {
 
 constexpr int64_t kMaxDepth = 1'000'000;
-constexpr int64_t kMaxCount = 0xffffffff;  // samples per pixel, as of --spp
 
 int64_t positive(const ObjectReader& object, std::string_view name, int64_t fallback, int64_t highest) {
   const int64_t value = object.get_int(name, fallback);
@@ -187,7 +187,7 @@ uint64_t read_sampler(ReadContext& context, Node& node) {
     object.refuse_type({"independent", "stratified", "multijitter", "orthogonal", "ldsampler", "halton",
                         "sobol", "hammersley"});
   }
-  const int64_t samples = positive(object, "sample_count", 4, kMaxCount);
+  const int64_t samples = positive(object, "sample_count", 4, kMaxSamples);
   if (object.has("seed")) {
     object.get_int("seed", 0);
     note(context.sink, object.value_place("seed").position(),

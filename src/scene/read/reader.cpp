@@ -5,12 +5,11 @@
 
 #include "scene/read/context.hpp"
 #include "scene/read/object/errors.hpp"
+#include "scene/read/object/limits.hpp"
 #include "scene/xml/values.hpp"
 
 namespace kiloband {
 namespace {
-
-constexpr uint64_t kMaxSamples = 0xffffffff;  // per pixel
 
 /// Passes every different message on once: a file that several objects name says its notes once.
 DiagnosticSink without_repetitions(const DiagnosticSink& sink) {

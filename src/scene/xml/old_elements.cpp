@@ -1,10 +1,10 @@
 #include "scene/xml/old_elements.hpp"
 
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "scene/xml/values.hpp"
+#include "spectral/colour/colour.hpp"
 
 namespace kiloband {
 namespace {
@@ -19,11 +19,6 @@ XmlAttribute with_value(const XmlAttribute& attribute, std::string_view name, st
   result.name = name;
   result.value = std::move(value);
   return result;
-}
-
-/// IEC 61966-2-1.
-double decoded(double value) {
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
 /// "#rrggbb", or one or three numbers from 0 to 1.
@@ -42,7 +37,7 @@ XmlElement rgb_of(const XmlElement& element) {
   const XmlAttribute& value = required(element, "value");
   std::string text;
   for (const double component : srgb_components(value))
-    text += (text.empty() ? "" : ", ") + format_number(decoded(component));
+    text += (text.empty() ? "" : ", ") + format_number(srgb_decode(component));
   return {"rgb", element.place, {required(element, "name"), with_value(value, "value", text)}, {}};
 }
 

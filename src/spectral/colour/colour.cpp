@@ -47,6 +47,10 @@ std::array<double, 3> xyz_to_linear_srgb(const std::array<double, 3>& xyz) {
           0.055648 * x - 0.204043 * y + 1.057311 * z};
 }
 
+double srgb_decode(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
 double srgb_encode(double linear) {
   linear = std::clamp(linear, 0.0, 1.0);
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;

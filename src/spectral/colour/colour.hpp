@@ -25,6 +25,8 @@ const Spectrum& illuminant_d65();
 /// ITU-R BT.709, to the six decimals that Mitsuba 3 uses. IEC 61966-2-1 prints it rounded to four; they
 /// differ by up to 3e-4.
 std::array<double, 3> xyz_to_linear_srgb(const std::array<double, 3>& xyz);
+/// IEC 61966-2-1: linear value of an encoded one, both in [0, 1]; what is outside is continued.
+double srgb_decode(double encoded);
 /// The sRGB transfer function, [0,1] to [0,1]; clamps.
 double srgb_encode(double linear);
 

@@ -123,5 +123,15 @@ TEST(Colour, TransferFunctionPublishedValues) {
   EXPECT_NEAR(srgb_encode(7), 1, 1e-15);
 }
 
+// IEC 61966-2-1 by hand: the linear piece, the power piece, the ends.
+TEST(Colour, DecodedFromTransferFunction) {
+  EXPECT_EQ(srgb_decode(0), 0);
+  EXPECT_EQ(srgb_decode(1), 1);
+  EXPECT_DOUBLE_EQ(srgb_decode(0.04), 0.04 / 12.92);
+  EXPECT_NEAR(srgb_decode(0.5), 0.21404114, 1e-7);
+  EXPECT_NEAR(srgb_decode(188.0 / 255.0), 0.50288646, 1e-7);
+  for (int i = 0; i < 256; ++i) EXPECT_NEAR(srgb_encode(srgb_decode(i / 255.0)), i / 255.0, 2e-7) << i;
+}
+
 }  // namespace
 }  // namespace kiloband::test

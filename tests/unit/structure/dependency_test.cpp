@@ -29,7 +29,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
     {"src/scene/image", {"src/base", "src/spectral", "src/pictures", "src/cube"}},
     {"src/scene/description",
      {"src/base", "src/shared", "src/spectral", "src/scene/mesh", "src/scene/image"}},
-    {"src/scene/xml", {"src/base"}},
+    {"src/scene/xml", {"src/base", "src/spectral"}},
     {"src/scene/read",
      {"src/base", "src/spectral", "src/sky", "src/scene/mesh", "src/scene/image", "src/scene/description",
       "src/scene/xml"}},

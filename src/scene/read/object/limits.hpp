@@ -3,6 +3,7 @@
 // images are written (CubeOutput).
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,8 @@ inline constexpr double kMaxBumpScale = 1e6;
 inline constexpr double kMinSunRadius = 1e-3, kMaxSunRadius = 90;
 /// Lengths in m: places and sizes, see check_places().
 inline constexpr double kMaxLength = 1e9;
+/// Samples per pixel, as of --spp, and what is counted like them.
+inline constexpr uint64_t kMaxSamples = 0xffffffff;
 
 /// "must be <= 1e+15 W m^-2".
 std::string at_most(double limit, std::string_view unit = {});

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "scene/compile/flat_scene.hpp"
-#include "scene/image/channels.hpp"
+#include "spectral/colour/colour.hpp"
 #include "spectral/colour/rgb.hpp"
 #include "support.hpp"
 
@@ -32,7 +32,7 @@ TEST(ColourBounds, AreTheLargestValueInTheChannels) {
     ASSERT_EQ(scene->texel_bounds.size(), 6u);
     for (int i = 0; i < 6; ++i) {
       SCOPED_TRACE(testing::Message() << "colour " << i << ", " << first_nm << " to " << last_nm << " nm");
-      const auto linear = [&](int c) { return decode_srgb(static_cast<float>(colours[i][c]) / 255); };
+      const auto linear = [&](int c) { return static_cast<float>(srgb_decode(colours[i][c] / 255.0)); };
       const Spectrum spectrum = rgb_reflectance({linear(0), linear(1), linear(2)});
       double largest = 0;
       for (double nm = first_nm; nm <= last_nm; nm += 0.5) largest = std::max(largest, spectrum(nm));
