@@ -73,7 +73,8 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       spectra_(upload_spectra(memory, host.spectra)) {}
 
 uint64_t DeviceState::film_bytes_per_pixel(bool open) const {
-  return opencl::film_bytes_per_pixel(host_.spectra.layout, shape_, open);
+  const KbSpectraLayout& layout = host_.spectra.layout;
+  return DeviceFilm::bytes_per_pixel(layout, film_form(open)) + partial_bytes(layout, shape_);
 }
 uint64_t DeviceState::table_bytes() const {
   return opencl::table_bytes(host_.spectra.layout, shape_);
@@ -92,6 +93,7 @@ void DeviceState::camera_moved() {
 
 void DeviceState::release_pool() {
   evaluation_.reset();
+  film_.reset();
   pool_.reset();
 }
 
@@ -99,13 +101,11 @@ void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels, bool ope
   release_pool();
   pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size,
                 settings_.tuning.path_group.value_or(kPoolLocalSize));
+  film_.emplace(context, memory, host_.spectra.layout, spectra_.layout, film_form(open),
+                settings_.program_cache, film_pixels);
   evaluation_.emplace(context, memory, host_.spectra.layout, shape_, evaluation_defines(host_, settings_),
-                      settings_.program_cache, size, film_pixels, open);
+                      settings_.program_cache, size, *film_);
   evaluation_->bind(scene_, spectra_, *pool_);
-}
-
-void DeviceState::clear_film(uint64_t pixels) {
-  evaluation_->clear(pixels);
 }
 
 RoundOutcome DeviceState::generate(const KbRound& round, std::span<const KbRoundPixel> pixels,
@@ -118,10 +118,6 @@ RoundOutcome DeviceState::generate(const KbRound& round, std::span<const KbRound
 
 void DeviceState::evaluate(const KbRound& round, uint64_t film_pixel) {
   if (method != Method::kPt) evaluation_->evaluate(round, film_pixel);
-}
-
-void DeviceState::finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {
-  evaluation_->finish(pixels, means, counts);
 }
 
 std::vector<AuxiliaryPixel> DeviceState::auxiliary(const PixelRect& rect) {

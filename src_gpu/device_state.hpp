@@ -64,19 +64,14 @@ class DeviceState {
   bool has_instances() const { return host_.scene.features.instances; }
   const SceneFeatures& features() const { return host_.scene.features; }
 
-  void clear_film(uint64_t pixels);
-  /// As Evaluation's of these names.
-  void load_film(const FilmSums& sums) { evaluation_->load(sums); }
-  void save_film(uint64_t pixels, FilmSums& sums) { evaluation_->save(pixels, sums); }
-  void close_chunk(uint64_t pixels) { evaluation_->close_chunk(pixels); }
+  /// Resident as long as there is a pool.
+  DeviceFilm& film() { return *film_; }
   /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's
   /// pixels begin in the film. Waits, once or twice: what was enqueued before is then done, too.
   RoundOutcome generate(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu,
                         uint64_t film_pixel);
-  /// Evaluates what generate() saved. Enqueued: the next generate() waits for it, or finish_film().
+  /// Evaluates what generate() saved. Enqueued: the next generate() waits for it, or what brings the film to the host.
   void evaluate(const KbRound& round, uint64_t film_pixel);
-  /// Means [pixel][channels + derived] and valid samples.
-  void finish_film(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 
   /// What the rays of a round find and the vertices that are saved, by job. hits: without, nothing is said of rays, and the stages
   /// are launched as for an image.
@@ -90,6 +85,7 @@ class DeviceState {
   const Method method;
 
  private:
+  FilmForm film_form(bool open) const { return {shape_.film_transposed, open}; }
   std::vector<KbPathVertex> saved_entries(const KbSavedPath& saved, const std::vector<KbPathVertex>& arena,
                                           const std::vector<uint32_t>& chunk_next) const;
   const HostScene& host_;
@@ -100,6 +96,7 @@ class DeviceState {
   DeviceBvh bvh_;
   DeviceSpectra spectra_;
   std::optional<PathPool> pool_;
+  std::optional<DeviceFilm> film_;
   std::optional<Evaluation> evaluation_;
 };
 

@@ -298,8 +298,8 @@ void GroupRenderer::begin_film(uint64_t pixels, const SampleRange& range, const 
   const bool there = goes_on && before->left_on_device && has_sums_;
   has_sums_ = false;  // until the render has got through
   if (there) return;
-  device_.clear_film(pixels);
-  if (goes_on) device_.load_film(before->of_film());
+  device_.film().clear(pixels);
+  if (goes_on) device_.film().load(before->of_film());
 }
 
 void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
@@ -318,7 +318,7 @@ void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange
         next_round(range, result.attempted, before != nullptr, fitting_rounds(pixels, range.count));
     const SampleRange samples{range.replicate, range.first + result.attempted, cut.samples};
     if (before && samples.first > 0 && begins_chunk(samples.first, sum_rule()))
-      device_.close_chunk(pixels.size());
+      device_.film().close_chunk(pixels.size());
     for (uint64_t at = 0, number = 0; at < pixels.size(); at += number) {
       number = std::min(round_pixels(cut.samples), pixels.size() - at);
       render_part(pixels, at, number, samples, cut.open, tally);
@@ -327,10 +327,10 @@ void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange
     result.attempted += cut.samples;
   }
   if (before) {
-    device_.save_film(pixels.size(), result.sums);
+    device_.film().save(pixels.size(), result.sums);
     has_sums_ = true;
   } else {
-    device_.finish_film(pixels.size(), result.means, result.counts);
+    device_.film().finish(pixels.size(), result.means, result.counts);
   }
   learn_evaluation(tally);
   tally.longest_launch_seconds =

@@ -2,24 +2,13 @@
 
 #include <algorithm>
 
-#include "base/deal_ranges.hpp"
-
 namespace kiloband::opencl {
 namespace {
 
 constexpr uint64_t kLocalSize = 64;
-/// Film values that a launch clears: 8 MiB.
-constexpr uint64_t kClearItems = 1u << 20;
-/// Means are downloaded in pieces of at most this many bytes and at most this part of the film,
-/// unless that is little.
-constexpr uint64_t kMeansBytes = 16u << 20, kMeansPart = 16, kLittle = 16u << 10;
 
 uint64_t ceil_div(uint64_t n, uint64_t d) {
   return (n + d - 1) / d;
-}
-
-uint64_t columns(const KbSpectraLayout& layout) {
-  return uint64_t{layout.channels} + layout.derived;
 }
 
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
@@ -110,12 +99,6 @@ uint32_t most_registers(const EvaluationTask& task, uint32_t vectors) {
   return vectors == 1 ? 56 : 24 + 24 * vectors;
 }
 
-uint64_t pixels_of_means(const KbSpectraLayout& layout, uint64_t film_pixels) {
-  const uint64_t bytes = sizeof(float) * columns(layout);
-  const uint64_t pixels = std::clamp(film_pixels / kMeansPart, kLittle / bytes, kMeansBytes / bytes);
-  return std::clamp<uint64_t>(pixels, 1, film_pixels);
-}
-
 }  // namespace
 
 std::vector<std::string> EvaluationShape::defines(uint32_t derived) const {
@@ -188,10 +171,9 @@ uint32_t fitting_local_size(const EvaluationShape& shape, uint64_t kernel_limit)
   return static_cast<uint32_t>(items >= 32 ? items / 32 * 32 : items);
 }
 
-uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open) {
-  const uint64_t partial =
-      shape.method == Method::kDpeptBatch ? uint64_t{shape.local_size} * layout.derived * sizeof(float) : 0;
-  return (open ? 3 : 2) * sizeof(float) * uint64_t{layout.film_columns} + sizeof(uint32_t) + partial;
+uint64_t partial_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape) {
+  const bool of_pixels = shape.method == Method::kDpeptBatch;
+  return of_pixels ? uint64_t{shape.local_size} * layout.derived * sizeof(float) : 0;
 }
 
 uint64_t table_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape) {
@@ -205,17 +187,10 @@ uint64_t slot_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape)
 
 Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpectraLayout& layout,
                        const EvaluationShape& shape, const std::vector<std::string>& defines,
-                       bool program_cache, const PoolSize& pool, uint64_t film_pixels, bool open)
+                       bool program_cache, const PoolSize& pool, const DeviceFilm& film)
     : layout_(layout),
       shape_(shape),
-      film_pixels_(film_pixels),
-      means_pixels_(pixels_of_means(layout, film_pixels)),
-      sum_(memory.allocate<float>("film", film_pixels * layout.film_columns)),
-      compensation_(memory.allocate<float>("film's rounding errors", film_pixels * layout.film_columns)),
-      open_(memory.allocate<float>("sums of chunks", open ? sum_.size() : 0)),
-      means_(memory.allocate<float>("means", means_pixels_ * columns(layout))),
-      counts_(memory.allocate<uint32_t>("sample counts", film_pixels)),
-      landing_{{context, means_.size()}, {context, means_.size()}},
+      film_(film),
       buffers_{
           .dense = memory.allocate<float>("dense spectra",
                                           pool.tables * table_bytes(layout, shape) / sizeof(float)),
@@ -224,17 +199,8 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
           .partial = memory.allocate<float>("derived channels", partial_floats(layout, shape, pool)),
           .parts = shape.local_size,
       },
-      film_program_(build(context, "film/film.cl",
-                          shape.film_transposed ? std::vector<std::string>{"KB_FILM_TRANSPOSED=1"}
-                                                : std::vector<std::string>{},
-                          program_cache)),
       program_(build(context, main_file(shape.method), joined(defines, shape.defines(layout.derived)),
                      program_cache, shape.most_registers)),
-      clear_(film_program_.kernel("film_clear")),
-      finish_(film_program_.kernel("film_finish")),
-      close_(film_program_.kernel("film_close")),
-      pack_(film_program_.kernel("film_pack")),
-      unpack_(film_program_.kernel("film_unpack")),
       main_(program_.kernel(main_kernel(shape.method))) {
   shape_.local_size = fitting_local_size(shape, main_->max_work_group_size());
   buffers_.parts = shape_.local_size;
@@ -245,115 +211,15 @@ Evaluation::Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpe
   resample_ = resample_program_->kernel("resample_rows");
 }
 
-/// open: rounds that go on with a chunk find its sums in place of the film's.
-FilmArguments::Of<BufferRef> Evaluation::film(uint64_t first_pixel, bool open) const {
-  return {.sum = open ? open_ : sum_,
-          .compensation = compensation_,
-          .counts = counts_,
-          .pixels = static_cast<uint32_t>(film_pixels_),
-          .first = static_cast<uint32_t>(first_pixel)};
-}
-
-PackingArguments::Of<BufferRef> Evaluation::packing(const DeviceBuffer<float>& values,
-                                                    uint64_t pixels) const {
-  return {.layout = *device_layout_,
-          .open = open_,
-          .values = values,
-          .packed = means_,
-          .pixels = static_cast<uint32_t>(pixels)};
-}
-
 void Evaluation::bind(const DeviceScene& scene, const DeviceSpectra& spectra, const PathPool& pool) {
-  device_layout_ = &spectra.layout;
   const auto bind_one = [&](EvaluationKernel& kernel, LaunchScale scale) {
-    kernel.set(scene, spectra, pool.buffers(), buffers_, film(0), pool.queue().slots);
+    kernel.set(scene, spectra, pool.buffers(), buffers_, film_.arguments(0), pool.queue().slots);
     kernel->set_scale(scale);
   };
   const LaunchScale scale = shape_.method == Method::kPt ? LaunchScale::kSlots : LaunchScale::kPaths;
   bind_one(main_, scale);
   if (derived_) bind_one(*derived_, scale);
   if (resample_) bind_one(*resample_, LaunchScale::kPaths);
-}
-
-/// Film pixels whose values stand among those of the first `pixels`.
-uint64_t Evaluation::touched_pixels(uint64_t pixels) const {
-  return shape_.film_transposed ? film_pixels_ : pixels;
-}
-
-void Evaluation::clear(uint64_t pixels) {
-  const uint64_t touched = touched_pixels(pixels), items = touched * layout_.film_columns;
-  clear_.set(film(0), packing(sum_, touched));
-  for (uint64_t first = 0; first < items; first += kClearItems)
-    clear_->launch(std::min(kClearItems, items - first), kLocalSize, first);
-  if (!open_.empty()) open_.fill(0.0f, 0, items);
-}
-
-void Evaluation::close_chunk(uint64_t pixels) {
-  const uint64_t touched = touched_pixels(pixels), items = touched * layout_.film_columns;
-  close_.set(film(0), packing(open_, touched));
-  for (uint64_t first = 0; first < items; first += kClearItems)
-    close_->launch(std::min(kClearItems, items - first), kLocalSize, first);
-}
-
-void Evaluation::unpack(const std::vector<float>& packed, DeviceBuffer<float>& values) {
-  const uint64_t pixels = packed.size() / columns(layout_);
-  for (uint64_t first = 0; first < pixels; first += means_pixels_) {
-    const uint64_t some = std::min(means_pixels_, pixels - first);
-    means_.upload(std::span(packed).subspan(first * columns(layout_), some * columns(layout_)));
-    unpack_.set(film(first), packing(values, some));
-    unpack_->launch(some * columns(layout_), kLocalSize);
-  }
-}
-
-/// Film pixels, packed by `kernel` from `values`, piece by piece: while one comes down the host puts the one before in its place.
-void Evaluation::download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels,
-                                 std::vector<float>& packed) {
-  packed.resize(pixels * columns(layout_));
-  struct Piece {
-    std::span<float> from;
-    float* to;
-    cl::Event done;
-  };
-  std::optional<Piece> before;
-  const auto put = [&](const Piece& piece) {
-    means_.wait_for(piece.done);
-    deal_ranges(piece.from.size(), threads_for(piece.from.size_bytes()),
-                [&](std::size_t begin, std::size_t end) {
-                  std::copy(piece.from.begin() + static_cast<std::ptrdiff_t>(begin),
-                            piece.from.begin() + static_cast<std::ptrdiff_t>(end), piece.to + begin);
-                });
-  };
-  for (uint64_t first = 0, number = 0; first < pixels; first += means_pixels_, ++number) {
-    const uint64_t some = std::min(means_pixels_, pixels - first);
-    kernel.set(film(first), packing(values, some));
-    kernel->launch(some * columns(layout_), kLocalSize);
-    const std::span<float> from = landing_[number % 2].values().first(some * columns(layout_));
-    const DeviceBuffer<float>& device_means = means_;
-    Piece piece{from, packed.data() + first * columns(layout_), device_means.download_event(from)};
-    if (before) put(*before);
-    before = std::move(piece);
-  }
-  if (before) put(*before);
-}
-
-void Evaluation::pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed) {
-  download_packed(pack_, values, pixels, packed);
-}
-
-void Evaluation::load(const FilmSums& sums) {
-  unpack(sums.open, open_);
-  unpack(sums.sum, sum_);
-  unpack(sums.lost, compensation_);
-  counts_.upload(std::span(sums.counts));
-}
-
-void Evaluation::save(uint64_t pixels, FilmSums& sums) {
-  pack(pixels, open_, sums.open);
-  pack(pixels, sum_, sums.sum);
-  pack(pixels, compensation_, sums.lost);
-  sums.counts.resize(pixels);
-  const DeviceBuffer<uint32_t>& device_counts = counts_;
-  device_counts.download(std::span<uint32_t>(sums.counts));
 }
 
 void Evaluation::resample(const KbRound& round) {
@@ -363,7 +229,7 @@ void Evaluation::resample(const KbRound& round) {
 }
 
 void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
-  main_.set(film(film_pixel, round.open != 0));
+  main_.set(film_.arguments(film_pixel, round.open != 0));
   if (shape_.method == Method::kDpeptPath) {
     main_->launch(round.pixels, shape_.local_size);
     return;
@@ -371,25 +237,18 @@ void Evaluation::evaluate(const KbRound& round, uint64_t film_pixel) {
   const uint64_t groups = ceil_div(round.pixels, shape_.units_per_group);
   main_->launch(groups * shape_.group_size(), shape_.group_size());
   if (!derived_) return;
-  derived_->set(film(film_pixel, round.open != 0));
+  derived_->set(film_.arguments(film_pixel, round.open != 0));
   (*derived_)->launch(uint64_t{round.pixels} * layout_.derived, kLocalSize);
 }
 
 void Evaluation::update(const LaunchQueue& queue, uint64_t film_pixel) {
   if (queue.most == 0) return;
-  main_.set(film(film_pixel), queue.slots);
+  main_.set(film_.arguments(film_pixel), queue.slots);
   const uint64_t groups = ceil_div(queue.most, shape_.units_per_group);
   main_->launch(groups * shape_.local_size, shape_.local_size);
   if (!derived_) return;
-  derived_->set(film(film_pixel), queue.slots);
+  derived_->set(film_.arguments(film_pixel), queue.slots);
   (*derived_)->launch(uint64_t{queue.most} * layout_.derived, kLocalSize);
-}
-
-void Evaluation::finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {
-  download_packed(finish_, sum_, pixels, means);
-  counts.resize(pixels);
-  const DeviceBuffer<uint32_t>& device_counts = counts_;
-  device_counts.download(std::span<uint32_t>(counts));
 }
 
 }  // namespace kiloband::opencl

@@ -1,5 +1,4 @@
-// Evaluation of paths into the film on the device: the kernels of evaluate.cl, pt.cl,
-// resample.cl and film.cl.
+// Evaluation of paths into the film on the device: the kernels of evaluate.cl, pt.cl and resample.cl.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +8,7 @@
 
 #include "scene/compile/scene_features.hpp"
 #include "src_gpu/device/program.hpp"
-#include "src_gpu/evaluate/pinned_memory.hpp"
+#include "src_gpu/evaluate/device_film.hpp"
 #include "src_gpu/path/path_pool.hpp"
 #include "src_gpu/path/round_plan.hpp"
 #include "src_gpu/scene/device_scene.hpp"
@@ -66,63 +65,35 @@ EvaluationShape evaluation_shape(const DeviceInfo& device, const EvaluationTask&
 /// throws DeviceError  not even one for each pixel
 uint32_t fitting_local_size(const EvaluationShape& shape, uint64_t kernel_limit);
 
-/// Sums of pixels as the host keeps them, [pixel][channels + derived] (film/replicate_sums.hpp).
-struct FilmSums {
-  std::vector<float> open, sum, lost;
-  std::vector<uint32_t> counts;  // valid samples
-};
-
-/// Bytes, from the layout alone: per film pixel, per dense table of spectra, per slot (pt).
-/// open  the film has sums of chunks that go on
-uint64_t film_bytes_per_pixel(const KbSpectraLayout& layout, const EvaluationShape& shape, bool open);
+/// Bytes, from the layout alone: per pixel of the round, per dense table of spectra, per slot (pt).
+uint64_t partial_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape);
 uint64_t table_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape);
 uint64_t slot_bytes(const KbSpectraLayout& layout, const EvaluationShape& shape);
 
 class Evaluation {
  public:
-  /// defines  of the scene (scene_defines); film_pixels: resident at once; open: as film_bytes_per_pixel()
+  /// defines  of the scene (scene_defines); the film must outlive the evaluation
   Evaluation(DeviceContext& context, DeviceMemory& memory, const KbSpectraLayout& layout,
              const EvaluationShape& shape, const std::vector<std::string>& defines, bool program_cache,
-             const PoolSize& pool, uint64_t film_pixels, bool open);
+             const PoolSize& pool, const DeviceFilm& film);
 
   /// Sets what does not change from launch to launch, before anything else; the arguments must outlive this object.
   void bind(const DeviceScene& scene, const DeviceSpectra& spectra, const PathPool& pool);
 
-  void clear(uint64_t pixels);
   /// Dense spectra of the round (shared wavelengths): before its paths are evaluated.
   void resample(const KbRound& round);
-  /// Films with sums of chunks: puts the host's sums into the film, or takes them from it.
-  void load(const FilmSums& sums);
-  void save(uint64_t pixels, FilmSums& sums);
-  /// The chunk that rounds went on with is complete: its sums become part of the film.
-  void close_chunk(uint64_t pixels);
   /// dpept: the round's saved paths. Enqueued, not waited for.
   void evaluate(const KbRound& round, uint64_t film_pixel);
   /// pt: one bounce of the slots in the queue.
   void update(const LaunchQueue& queue, uint64_t film_pixel);
-  /// Means [pixel][K + D] and valid samples.
-  void finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 
  private:
-  FilmArguments::Of<BufferRef> film(uint64_t first_pixel, bool open = false) const;
-  PackingArguments::Of<BufferRef> packing(const DeviceBuffer<float>& values, uint64_t pixels) const;
-  void unpack(const std::vector<float>& packed, DeviceBuffer<float>& values);
-  void pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
-  void download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels,
-                       std::vector<float>& packed);
-  uint64_t touched_pixels(uint64_t pixels) const;
-
   KbSpectraLayout layout_;
   EvaluationShape shape_;
-  uint64_t film_pixels_, means_pixels_;
-  const DeviceBuffer<KbSpectraLayout>* device_layout_ = nullptr;  // of the spectra, since bind()
-  DeviceBuffer<float> sum_, compensation_, open_, means_;
-  DeviceBuffer<uint32_t> counts_;
-  PinnedFloats landing_[2];  // where means come down, in turns
+  const DeviceFilm& film_;
   EvaluationArguments::Of<DeviceBuffer> buffers_;
-  Program film_program_, program_;
+  Program program_;
   std::optional<Program> resample_program_;
-  FilmKernel clear_, finish_, close_, pack_, unpack_;
   EvaluationKernel main_;
   std::optional<EvaluationKernel> resample_, derived_;
 };
