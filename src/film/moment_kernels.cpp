@@ -92,6 +92,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace kiloband::film {
 
+// The update of West (1979): with N samples so far of mean m, and n more of mean x, d = x - m,
+//   m' = m + n/(N + n) d,   M2' = M2 + N n/(N + n) d^2     (sum of n_r (m_r - m)^2),
+// which is also the merging of two sets (Chan et al. 1979) once M2 of the second is added. The factors are
+// per unit, so that the loops over channels are fused arithmetic without divisions. All terms of M2 are >= 0:
+// nothing cancels but d, whose absolute error is an ulp of the mean.
+MomentWeights moment_weights(uint64_t before, uint64_t added) {
+  const double total = static_cast<double>(before) + static_cast<double>(added);
+  const double fraction = static_cast<double>(added) / total;
+  return {static_cast<float>(fraction), static_cast<float>(static_cast<double>(before) * fraction)};
+}
+
 HWY_EXPORT(set_mean);
 HWY_EXPORT(update_mean);
 HWY_EXPORT(update_moments);

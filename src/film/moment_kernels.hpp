@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace kiloband::film {
 
@@ -13,11 +14,13 @@ struct ScaledMeans {
   float factor = 1;
 };
 
-/// Factors of one update, see statistics.cpp.
+/// Factors of one update.
 struct MomentWeights {
   float mean;  // n / (N + n)
   float m2;    // N n / (N + n)
 };
+/// Of n = `added` samples beside N = `before`; added > 0.
+MomentWeights moment_weights(uint64_t before, uint64_t added);
 
 /// mean[k] = x[k]
 void set_mean(const ScaledMeans& x, float* mean);

@@ -96,6 +96,25 @@ void SpectralFilm::add(const BlockSamples& samples) {
   added_[samples.block][samples.replicate] = 1;
 }
 
+void SpectralFilm::set(const BlockMoments& moments) {
+  const PixelRect& block = blocks_.at(moments.block);
+  const std::size_t channels = options_.channels, values = block.pixels() * channels;
+  if (!pixels_) throw std::logic_error("SpectralFilm::set: replicates are held");
+  if (moments.samples.size() != block.pixels() || moments.replicates.size() != block.pixels() ||
+      moments.mean.size() != values || moments.m2.size() != (options_.variance ? values : 0) ||
+      moments.counts.size() > options_.replicates || moments.sums.size() != moments.counts.size() * channels)
+    throw std::logic_error("SpectralFilm::set: moments do not have the block's shape");
+  if (sums_) forget_open(moments.block);
+  for (std::size_t p = 0; p < block.pixels(); ++p) {
+    const auto of_pixel = [&](std::span<const float> all) {
+      return all.empty() ? all : all.subspan(p * channels, channels);
+    };
+    pixels_->set(pixel_index(block, p), moments.samples[p], moments.replicates[p], of_pixel(moments.mean),
+                 of_pixel(moments.m2));
+  }
+  set_coarse(moments);
+}
+
 bool SpectralFilm::has(uint32_t replicate, uint32_t block) const {
   if (sums_) throw std::logic_error("SpectralFilm::has: the film keeps sums");
   return added_.at(block).at(replicate) != 0;
@@ -148,6 +167,16 @@ void SpectralFilm::add_coarse(uint32_t replicate, uint32_t block, const Coarse& 
     for (std::size_t c = 0; c < channels; ++c) block_sums[replicate * channels + c] += sums[c];
     block_counts_[block][replicate] += count;
   }
+}
+
+void SpectralFilm::set_coarse(const BlockMoments& moments) {
+  auto& sums = block_sums_[moments.block];
+  auto& counts = block_counts_[moments.block];
+  sums.assign(options_.replicates * options_.channels, 0.0);
+  std::ranges::copy(moments.sums, sums.begin());
+  std::ranges::fill(counts, 0);
+  std::ranges::copy(moments.counts, counts.begin());
+  if (!sums_) std::fill_n(added_[moments.block].begin(), moments.counts.size(), char{1});
 }
 
 void SpectralFilm::row(uint32_t y, std::span<float> mean, std::span<float> variance) const {

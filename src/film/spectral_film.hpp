@@ -48,6 +48,16 @@ struct BlockSamples {
   float factor(std::size_t pixel) const { return factors.empty() ? 1.0f : factors[pixel]; }
 };
 
+/// What the first replicates of a block have come to, as add() of one after the other makes it; values are [pixel][channel].
+struct BlockMoments {
+  uint32_t block = 0;
+  std::span<const uint64_t> samples;     // [pixel], of all replicates
+  std::span<const uint32_t> replicates;  // [pixel], those with samples
+  std::span<const float> mean, m2;       // m2: of films with variances
+  std::span<const double> sums;          // [replicate][channel], of the block's samples
+  std::span<const uint64_t> counts;      // [replicate]: their number
+};
+
 struct FilmOptions {
   std::size_t channels = 0;  // rendered and derived
   uint32_t replicates = 1;
@@ -75,7 +85,10 @@ class SpectralFilm {
   /// Thread-safe for different blocks. Folded films take the replicates of a block in order.
   /// Not for films that keep sums.
   void add(const BlockSamples& samples);
-  /// Whether add() has had this replicate of the block.
+  /// A block of a folded film becomes this, whatever it was, and no replicate is open there; thread-safe for different blocks. More
+  /// replicates may follow.
+  void set(const BlockMoments& moments);
+  /// Whether add() or set() has had this replicate of the block.
   bool has(uint32_t replicate, uint32_t block) const;
 
   /// What follows is for films that keep sums, and thread-safe for different blocks.
@@ -136,7 +149,9 @@ class SpectralFilm {
   void add_pixels(const BlockSamples& samples);
   void add_held(const BlockSamples& samples, std::size_t pixel_in_block);
   void add_coarse(uint32_t replicate, uint32_t block, const Coarse& coarse);
+  void set_coarse(const BlockMoments& moments);
   void fold_block(uint32_t block);
+  void forget_open(uint32_t block);
   void clear_pixel(std::size_t pixel);
   template <class Use>
   void each_mean(uint32_t replicate, uint32_t block, const Use& use) const;

@@ -135,6 +135,15 @@ void SpectralFilm::fold_block(uint32_t block) {
   sums_->open[block] = Sums::kNone;
 }
 
+/// As if the open replicate of a block, if there is one, had not begun.
+void SpectralFilm::forget_open(uint32_t block) {
+  sums_->break_seal();
+  if (sums_->open[block] == Sums::kNone) return;
+  for (std::size_t p = 0; p < blocks_[block].pixels(); ++p) clear_pixel(pixel_index(blocks_[block], p));
+  sums_->attempted[0][block] = 0;
+  sums_->open[block] = Sums::kNone;
+}
+
 void SpectralFilm::finish_replicates() {
   if (!sums_ || options_.held) return;
   for (uint32_t block = 0; block < blocks_.size(); ++block) fold_block(block);

@@ -9,18 +9,6 @@
 namespace kiloband {
 namespace {
 
-// The update of West (1979): with N samples so far of mean m, and n more of mean x, d = x - m,
-//   m' = m + n/(N + n) d,   M2' = M2 + N n/(N + n) d^2     (sum of n_r (m_r - m)^2),
-// which is also the merging of two sets (Chan et al. 1979) once M2 of the second is added. The factors are
-// per unit, so that the loops over channels are fused arithmetic without divisions. All terms of M2 are >= 0:
-// nothing cancels but d, whose absolute error is an ulp of the mean.
-
-film::MomentWeights weights(uint64_t before, uint64_t added) {
-  const double total = static_cast<double>(before) + static_cast<double>(added);
-  const double fraction = static_cast<double>(added) / total;
-  return {static_cast<float>(fraction), static_cast<float>(static_cast<double>(before) * fraction)};
-}
-
 std::size_t checked_product(std::size_t units, std::size_t channels) {
   if (channels != 0 && units > std::numeric_limits<std::size_t>::max() / sizeof(float) / channels)
     throw std::length_error("ReplicateMoments: units times channels is too large");
@@ -41,7 +29,7 @@ void ReplicateMoments::add(std::size_t unit, uint64_t n, std::span<const float> 
   if (unit >= samples_.size() || means.size() != channels_)
     throw std::logic_error("ReplicateMoments::add: unit or number of channels out of range");
   if (n == 0) return;
-  const film::MomentWeights w = weights(samples_[unit], n);
+  const film::MomentWeights w = film::moment_weights(samples_[unit], n);
   const film::ScaledMeans x{channels_, means.data(), factor};
   float* const mean = mean_.data() + unit * channels_;
   if (samples_[unit] == 0) {
@@ -54,6 +42,16 @@ void ReplicateMoments::add(std::size_t unit, uint64_t n, std::span<const float> 
   }
   samples_[unit] += n;
   ++replicates_[unit];
+}
+
+void ReplicateMoments::set(std::size_t unit, uint64_t samples, uint32_t replicates,
+                           std::span<const float> mean, std::span<const float> m2) {
+  if (unit >= samples_.size() || mean.size() != channels_ || m2.size() != (variance_ ? channels_ : 0))
+    throw std::logic_error("ReplicateMoments::set: unit or number of channels out of range");
+  std::ranges::copy(mean, mean_.begin() + static_cast<std::ptrdiff_t>(unit * channels_));
+  std::ranges::copy(m2, m2_.begin() + static_cast<std::ptrdiff_t>(variance_ ? unit * channels_ : 0));
+  samples_[unit] = samples;
+  replicates_[unit] = replicates;
 }
 
 /// Means and M2 are set by the first replicate that follows.

@@ -25,6 +25,10 @@ class ReplicateMoments {
   /// Adds a replicate mean of n samples (n = 0: nothing) of a unit: `means`, one entry per channel, times `factor`.
   void add(std::size_t unit, uint64_t n, std::span<const float> means, float factor = 1);
 
+  /// A unit becomes what somebody else has added up as add() does. m2: empty where none is kept
+  void set(std::size_t unit, uint64_t samples, uint32_t replicates, std::span<const float> mean,
+           std::span<const float> m2);
+
   /// Forgets all replicates; mean() of a unit is undefined until its next.
   void restart();
 

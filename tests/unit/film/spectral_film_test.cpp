@@ -173,5 +173,74 @@ TEST(SpectralFilm, SumsBeyondAChunkAreThoseOfBothKinds) {
   EXPECT_EQ(mean[0], 0.0f);
 }
 
+/// A block that is set is as one to which replicates were added one after the other, and takes the next one.
+TEST(SpectralFilm, SetBlocksGoOnAsAddedOnes) {
+  FilmOptions options;
+  options.channels = 2;
+  options.replicates = 3;
+  options.variance = true;
+  const std::vector<uint32_t> counts{4, 2};
+  const std::vector<std::vector<float>> replicates{{1, 3, 5, 7}, {2, 7, 4, 1}, {6, 2, 8, 3}};
+  SpectralFilm added({0, 0, 2, 1}, options), film({0, 0, 2, 1}, options);
+  for (uint32_t r = 0; r < 2; ++r) added.add({0, r, counts, replicates[r], 2});
+  const std::vector<uint64_t> samples{8, 4}, of_replicates{6, 6};
+  const std::vector<uint32_t> numbers{2, 2};
+  const std::vector<float> mean{1.5f, 5, 4.5f, 4}, m2{2, 32, 1, 36};  // 4 (1/2)^2 2, ... by hand
+  const std::vector<double> sums{4 * 1 + 2 * 5, 4 * 3 + 2 * 7, 4 * 2 + 2 * 4, 4 * 7 + 2 * 1};
+  film.add({0, 2, counts, replicates[2], 2});  // forgotten
+  film.set({0, samples, numbers, mean, m2, sums, of_replicates});
+  const auto expect_equal = [&] {
+    std::vector<float> mean_a(4), variance_a(4), mean_b(4), variance_b(4);
+    added.row(0, mean_a, variance_a);
+    film.row(0, mean_b, variance_b);
+    EXPECT_EQ(mean_a, mean_b);
+    EXPECT_EQ(variance_a, variance_b);
+    std::vector<std::vector<double>> sums_a, sums_b;
+    std::vector<uint64_t> counts_a, counts_b;
+    added.add_image_sums(sums_a, counts_a);
+    film.add_image_sums(sums_b, counts_b);
+    EXPECT_EQ(sums_a, sums_b);
+    EXPECT_EQ(counts_a, counts_b);
+    for (uint32_t x = 0; x < 2; ++x) EXPECT_EQ(added.samples(x, 0), film.samples(x, 0));
+  };
+  expect_equal();
+  EXPECT_TRUE(film.has(1, 0));
+  for (SpectralFilm* one : {&added, &film}) one->add({0, 2, counts, replicates[2], 2});
+  expect_equal();
+}
+
+/// An open replicate is forgotten; the next one begins with nothing.
+TEST(SpectralFilm, SetBlocksHaveNoOpenReplicate) {
+  SpectralFilm film({0, 0, 2, 1}, with_sums(3, false, 64));
+  put(film, 0, 5);
+  const std::vector<uint64_t> samples{8, 8}, counts{16};
+  const std::vector<uint32_t> numbers{1, 1};
+  const std::vector<float> mean{1, 2, 3, 4}, m2(4);
+  const std::vector<double> sums{32, 48};
+  film.set({0, samples, numbers, mean, m2, sums, counts});
+  EXPECT_EQ(film.attempted(0, 0), 0u);
+  film.open_replicate(1, 0);
+  EXPECT_EQ(film.pixel_sums(1, 0).count, 0u);
+  EXPECT_EQ(film.pixel_sums(1, 0).open[1], 0.0f);
+  std::vector<float> row(4);
+  film.row(0, row, {});
+  EXPECT_EQ(row, mean);
+  EXPECT_EQ(film.samples(1, 0), 8u);
+}
+
+TEST(SpectralFilm, SetRefusesOtherShapes) {
+  SpectralFilm film({0, 0, 2, 1}, with_sums(3, false, 64)), held({0, 0, 2, 1}, with_sums(3, true, 64));
+  const std::vector<uint64_t> samples{8, 8}, counts{16};
+  const std::vector<uint32_t> numbers{1, 1};
+  const std::vector<float> mean(4), few(3);
+  const std::vector<double> sums(2);
+  const BlockMoments right{0, samples, numbers, mean, mean, sums, counts};
+  EXPECT_NO_THROW(film.set(right));
+  EXPECT_THROW(held.set(right), std::logic_error);
+  EXPECT_THROW(film.set({0, samples, numbers, few, mean, sums, counts}), std::logic_error);
+  EXPECT_THROW(film.set({0, samples, numbers, mean, {}, sums, counts}), std::logic_error);
+  EXPECT_THROW(film.set({0, samples, numbers, mean, mean, {}, counts}), std::logic_error);
+}
+
 }  // namespace
 }  // namespace kiloband
