@@ -72,9 +72,11 @@ DeviceState::DeviceState(DeviceContext& device_context, const HostScene& host,
       bvh_(upload_bvh(memory, host.bvh)),
       spectra_(upload_spectra(memory, host.spectra)) {}
 
-uint64_t DeviceState::film_bytes_per_pixel(bool open) const {
+uint64_t DeviceState::film_bytes_per_pixel(FilmForm form) const {
   const KbSpectraLayout& layout = host_.spectra.layout;
-  return DeviceFilm::bytes_per_pixel(layout, film_form(open)) + partial_bytes(layout, shape_);
+  const uint64_t film = DeviceFilm::bytes_per_pixel(layout, form) + partial_bytes(layout, shape_);
+  if (form.moments == FilmForm::Moments::kNone) return film;
+  return film + DeviceReplicates::bytes_per_pixel(layout, form.moments == FilmForm::Moments::kMeanAndSquares);
 }
 uint64_t DeviceState::table_bytes() const {
   return opencl::table_bytes(host_.spectra.layout, shape_);
@@ -93,16 +95,22 @@ void DeviceState::camera_moved() {
 
 void DeviceState::release_pool() {
   evaluation_.reset();
+  replicates_.reset();
   film_.reset();
   pool_.reset();
 }
 
-void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels, bool open) {
+void DeviceState::make_pool(const PoolSize& size, uint64_t film_pixels, FilmForm form) {
   release_pool();
   pool_.emplace(context, memory, paths_, scene_, bvh_, spectra_, size,
                 settings_.tuning.path_group.value_or(kPoolLocalSize));
-  film_.emplace(context, memory, host_.spectra.layout, spectra_.layout, film_form(open),
-                settings_.program_cache, film_pixels);
+  form.transposed = shape_.film_transposed;
+  film_.emplace(context, memory, host_.spectra.layout, spectra_.layout, form, settings_.program_cache,
+                film_pixels);
+  if (form.moments != FilmForm::Moments::kNone)
+    replicates_.emplace(context, memory, host_.spectra.layout, spectra_.layout, *film_,
+                        form.moments == FilmForm::Moments::kMeanAndSquares, settings_.program_cache,
+                        film_pixels);
   evaluation_.emplace(context, memory, host_.spectra.layout, shape_, evaluation_defines(host_, settings_),
                       settings_.program_cache, size, *film_);
   evaluation_->bind(scene_, spectra_, *pool_);

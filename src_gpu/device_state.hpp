@@ -9,6 +9,7 @@
 
 #include "render/backend.hpp"
 #include "scene/description/derived_channels.hpp"
+#include "src_gpu/evaluate/device_replicates.hpp"
 #include "src_gpu/evaluate/evaluation.hpp"
 #include "src_gpu/path/path_pool.hpp"
 #include "src_gpu/path/round_plan.hpp"
@@ -45,16 +46,16 @@ class DeviceState {
   /// throws DeviceOutOfMemory  the scene alone does not fit; DeviceLost, DeviceError
   DeviceState(DeviceContext& device_context, const HostScene& host, const DeviceSettings& device_settings);
 
-  /// Memory of a round and the film of `film_pixels` pixels; open: with sums of chunks that go on.
+  /// Memory of a round and the film of `film_pixels` pixels.
   /// throws DeviceOutOfMemory
-  void make_pool(const PoolSize& size, uint64_t film_pixels, bool open);
+  void make_pool(const PoolSize& size, uint64_t film_pixels, FilmForm form);
   void release_pool();
   /// The host's scene has another camera.
   void camera_moved();
   bool has_pool() const { return pool_.has_value(); }
 
   /// Bytes that a film pixel, a dense table of spectra, a slot (beside the pool's own) take.
-  uint64_t film_bytes_per_pixel(bool open) const;
+  uint64_t film_bytes_per_pixel(FilmForm form) const;
   uint64_t table_bytes() const;
   uint64_t slot_bytes() const;
   bool has_dispersion() const { return host_.scene.features.dispersion; }
@@ -66,6 +67,8 @@ class DeviceState {
 
   /// Resident as long as there is a pool.
   DeviceFilm& film() { return *film_; }
+  /// If the film's form has moments.
+  DeviceReplicates& replicates() { return *replicates_; }
   /// Traces the round's paths; with the method pt it also evaluates them. film_pixel: where the round's
   /// pixels begin in the film. Waits, once or twice: what was enqueued before is then done, too.
   RoundOutcome generate(const KbRound& round, std::span<const KbRoundPixel> pixels, std::span<const float> mu,
@@ -85,7 +88,6 @@ class DeviceState {
   const Method method;
 
  private:
-  FilmForm film_form(bool open) const { return {shape_.film_transposed, open}; }
   std::vector<KbPathVertex> saved_entries(const KbSavedPath& saved, const std::vector<KbPathVertex>& arena,
                                           const std::vector<uint32_t>& chunk_next) const;
   const HostScene& host_;
@@ -97,6 +99,7 @@ class DeviceState {
   DeviceSpectra spectra_;
   std::optional<PathPool> pool_;
   std::optional<DeviceFilm> film_;
+  std::optional<DeviceReplicates> replicates_;
   std::optional<Evaluation> evaluation_;
 };
 

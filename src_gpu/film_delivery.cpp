@@ -119,4 +119,25 @@ void FilmDelivery::finish_block(const GroupResult& result, std::size_t first, ui
   film_.add({block, range_.replicate, std::span(result.counts).subspan(first, pixels), means, channels_});
 }
 
+void deliver_replicates(SpectralFilm& film, const FoldedReplicates& folded) {
+  const std::size_t channels = film.options().channels, blocks = film.blocks().size();
+  std::vector<std::size_t> firsts;
+  for (std::size_t b = 0, first = 0; b < blocks; first += film.blocks()[b++].pixels())
+    firsts.push_back(first);
+  const auto deliver = [&](std::size_t b) {
+    const std::size_t first = firsts[b], pixels = film.blocks()[b].pixels();
+    const auto values = [&](const std::vector<float>& all) {
+      return std::span(all).subspan(first * channels, pixels * channels);
+    };
+    film.set({static_cast<uint32_t>(b), std::span(folded.samples).subspan(first, pixels),
+              std::span(folded.replicates).subspan(first, pixels), values(folded.mean),
+              film.options().variance ? values(folded.m2) : std::span<const float>(), folded.sums[b],
+              folded.counts[b]});
+  };
+  deal_ranges(blocks, threads_for(kBytesOfValue * folded.mean.size()),
+              [&](std::size_t begin, std::size_t end) {
+                for (std::size_t b = begin; b < end; ++b) deliver(b);
+              });
+}
+
 }  // namespace kiloband::opencl

@@ -43,4 +43,7 @@ class FilmDelivery {
   GroupResult collected_;  // of the block that is open
 };
 
+/// All blocks of a folded film become what their replicates have come to. Blocks are dealt to threads.
+void deliver_replicates(SpectralFilm& film, const FoldedReplicates& folded);
+
 }  // namespace kiloband::opencl

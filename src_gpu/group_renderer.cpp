@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <numeric>
 
 #include "shared/sampler.h"
 
@@ -61,7 +62,7 @@ GroupRenderer::GroupRenderer(DeviceState& device, const SamplingSettings& settin
       paths_pace_(launch_seconds, most_jobs_ / kFirstPart, 1, most_jobs_),
       samples_pace_(launch_seconds, round_samples_, round_samples_, most_slots_) {}
 
-PlanRequest GroupRenderer::request(uint64_t pixels, bool open, uint32_t rounds) const {
+PlanRequest GroupRenderer::request(uint64_t pixels, FilmForm form, uint32_t rounds) const {
   PlanRequest r;
   r.budget = device_.memory.available();
   r.largest = device_.memory.largest();
@@ -69,7 +70,7 @@ PlanRequest GroupRenderer::request(uint64_t pixels, bool open, uint32_t rounds) 
   r.samples = round_samples_;
   r.rounds = rounds;
   r.method = device_.method;
-  r.film_bytes = device_.film_bytes_per_pixel(open);
+  r.film_bytes = device_.film_bytes_per_pixel(form);
   r.table_bytes = device_.table_bytes();
   r.slot_bytes = device_.slot_bytes();
   r.most_slots = most_slots_;
@@ -83,23 +84,23 @@ PlanRequest GroupRenderer::request(uint64_t pixels, bool open, uint32_t rounds) 
   return r;
 }
 
-void GroupRenderer::make_pool(const PlanRequest& r, bool open) {
+void GroupRenderer::make_pool(const PlanRequest& r, FilmForm form) {
   has_sums_ = false;
   device_.release_pool();
   plan_ = plan_rounds(r);
-  device_.make_pool(plan_->pool, plan_->group_pixels, open);
+  device_.make_pool(plan_->pool, plan_->group_pixels, form);
 }
 
 /// Allocates what the plan says, and less where the device has less than the budget promises.
-void GroupRenderer::prepare(uint64_t pixels, bool open, uint32_t rounds) {
+void GroupRenderer::prepare(uint64_t pixels, FilmForm form, uint32_t rounds) {
   const bool fits = planned_pixels_ >= pixels && planned_pixels_ * planned_rounds_ >= pixels * rounds;
-  if (plan_ && device_.has_pool() && fits && (planned_open_ || !open)) return;
+  if (plan_ && device_.has_pool() && fits && planned_form_.serves(form)) return;
   device_.release_pool();
-  PlanRequest r = request(pixels, open, rounds);
+  PlanRequest r = request(pixels, form, rounds);
   std::exception_ptr refusal;  // the first one: it says what the matter is
   for (int attempt = 0;; ++attempt) {
     try {
-      make_pool(r, open);
+      make_pool(r, form);
       break;
     } catch (const DeviceOutOfMemory&) {
       device_.release_pool();
@@ -119,12 +120,12 @@ void GroupRenderer::prepare(uint64_t pixels, bool open, uint32_t rounds) {
                      plan_->group_pixels, pixels, plan_->pool.slots, device_.memory.used() >> 20));
   }
   planned_pixels_ = pixels;
-  planned_open_ = open;
+  planned_form_ = form;
   planned_rounds_ = rounds;
 }
 
 uint64_t GroupRenderer::group_pixels(uint64_t pixels, bool open, uint32_t samples) {
-  prepare(pixels, open, rounds_as_one(pixels, samples));
+  prepare(pixels, {.open = open}, rounds_as_one(pixels, samples));
   return plan_->group_pixels;
 }
 
@@ -302,39 +303,83 @@ void GroupRenderer::begin_film(uint64_t pixels, const SampleRange& range, const 
   if (goes_on) device_.film().load(before->of_film());
 }
 
-void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
-                           const SumsBefore* before, const std::atomic<bool>& stop,
-                           const std::function<void(uint64_t)>& on_samples, RunTally& tally,
-                           GroupResult& result) {
-  prepare(pixels.size(), before != nullptr);
-  if (pixels.size() > plan_->group_pixels)
-    throw DeviceOutOfMemory(
-        fmt::format("the device has room for {} of {} pixels", plan_->group_pixels, pixels.size()));
-  begin_film(pixels.size(), range, before);
-  clear_other(result, before != nullptr);
-  // All pixels of the group get the same samples, so that a stopped render is even.
-  while (result.attempted < range.count && !stop) {
-    const SampleCut cut =
-        next_round(range, result.attempted, before != nullptr, fitting_rounds(pixels, range.count));
-    const SampleRange samples{range.replicate, range.first + result.attempted, cut.samples};
-    if (before && samples.first > 0 && begins_chunk(samples.first, sum_rule()))
+/// Into the device's film, which has the samples before the range. All pixels get the same samples, so that a stopped render is even.
+/// open: with sums that are gone on with. Returns the samples per pixel.
+uint32_t GroupRenderer::render_samples(std::span<const ImagePixel> pixels, const SampleRange& range,
+                                       bool open, const std::atomic<bool>& stop,
+                                       const std::function<void(uint64_t)>& on_samples, RunTally& tally) {
+  uint32_t attempted = 0;
+  while (attempted < range.count && !stop) {
+    const SampleCut cut = next_round(range, attempted, open, fitting_rounds(pixels, range.count));
+    const SampleRange samples{range.replicate, range.first + attempted, cut.samples};
+    if (open && samples.first > 0 && begins_chunk(samples.first, sum_rule()))
       device_.film().close_chunk(pixels.size());
     for (uint64_t at = 0, number = 0; at < pixels.size(); at += number) {
       number = std::min(round_pixels(cut.samples), pixels.size() - at);
       render_part(pixels, at, number, samples, cut.open, tally);
       on_samples(number * cut.samples);
     }
-    result.attempted += cut.samples;
+    attempted += cut.samples;
   }
+  return attempted;
+}
+
+/// The film has been waited for: what its launches took.
+void GroupRenderer::learn_last(RunTally& tally) {
+  learn_evaluation(tally);
+  tally.longest_launch_seconds =
+      std::max(tally.longest_launch_seconds, device_.context.take_longest(LaunchScale::kOther));
+}
+
+void GroupRenderer::render(std::span<const ImagePixel> pixels, const SampleRange& range,
+                           const SumsBefore* before, const std::atomic<bool>& stop,
+                           const std::function<void(uint64_t)>& on_samples, RunTally& tally,
+                           GroupResult& result) {
+  prepare(pixels.size(), {.open = before != nullptr});
+  if (pixels.size() > plan_->group_pixels)
+    throw DeviceOutOfMemory(
+        fmt::format("the device has room for {} of {} pixels", plan_->group_pixels, pixels.size()));
+  begin_film(pixels.size(), range, before);
+  clear_other(result, before != nullptr);
+  result.attempted = render_samples(pixels, range, before != nullptr, stop, on_samples, tally);
   if (before) {
     device_.film().save(pixels.size(), result.sums);
     has_sums_ = true;
   } else {
     device_.film().finish(pixels.size(), result.means, result.counts);
   }
-  learn_evaluation(tally);
-  tally.longest_launch_seconds =
-      std::max(tally.longest_launch_seconds, device_.context.take_longest(LaunchScale::kOther));
+  learn_last(tally);
+}
+
+bool GroupRenderer::begin_replicates(std::span<const std::size_t> block_pixels, const FilmForm& form,
+                                     uint32_t samples) {
+  const uint64_t pixels = std::accumulate(block_pixels.begin(), block_pixels.end(), uint64_t{0});
+  has_sums_ = false;
+  const bool there =
+      plan_ && device_.has_pool() && planned_form_.serves(form) && plan_->group_pixels >= pixels;
+  if (!there) device_.release_pool();  // its memory may be needed
+  try {
+    if (!there && plan_rounds(request(pixels, form, 1)).group_pixels < pixels) return false;
+    prepare(pixels, form, rounds_as_one(pixels, samples));
+    if (plan_->group_pixels < pixels) throw DeviceOutOfMemory("less than was promised");
+    device_.film().clear(pixels);
+    device_.replicates().begin(block_pixels);
+  } catch (const DeviceOutOfMemory&) {
+    device_.release_pool();
+    return false;
+  }
+  return true;
+}
+
+uint32_t GroupRenderer::add_replicate(std::span<const ImagePixel> pixels, const SampleRange& range, bool open,
+                                      const std::atomic<bool>& stop,
+                                      const std::function<void(uint64_t)>& on_samples, RunTally& tally) {
+  const uint32_t attempted = render_samples(pixels, range, open, stop, on_samples, tally);
+  if (attempted == 0) return 0;
+  if (open) device_.film().close_chunk(pixels.size());
+  device_.replicates().fold();
+  learn_last(tally);
+  return attempted;
 }
 
 }  // namespace kiloband::opencl

@@ -78,15 +78,28 @@ class GroupRenderer {
               const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples, RunTally& tally,
               GroupResult& result);
 
+  /// Makes the device ready for replicates of blocks with so many pixels, the first of which has so many samples, all of which stay there.
+  /// form  with moments
+  /// false: it has not the memory
+  bool begin_replicates(std::span<const std::size_t> block_pixels, const FilmForm& form, uint32_t samples);
+  /// Renders the range, the next replicate from its first sample on, for the pixels of these blocks, and adds it to the others.
+  /// open: by the rule of films that keep sums, whose bits differ; asked for in the form
+  /// returns its samples per pixel, fewer than asked for if stop became true; throws as render()
+  uint32_t add_replicate(std::span<const ImagePixel> pixels, const SampleRange& range, bool open,
+                         const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples,
+                         RunTally& tally);
+  /// All that was added; valid until the next call.
+  const FoldedReplicates& bring_replicates() { return device_.replicates().bring(); }
+
   /// The paths of one sample of each pixel (methods dpept: with pt vertices are not kept). hits: as DeviceState::trace.
   std::vector<TracedPath> trace(std::span<const ImagePixel> pixels, const SampleRange& range,
                                 bool hits = true);
 
  private:
   /// rounds  that are to be one, if the device has the memory
-  void prepare(uint64_t pixels, bool open = false, uint32_t rounds = 1);
-  void make_pool(const PlanRequest& request, bool open);
-  PlanRequest request(uint64_t pixels, bool open, uint32_t rounds) const;
+  void prepare(uint64_t pixels, FilmForm form = {}, uint32_t rounds = 1);
+  void make_pool(const PlanRequest& request, FilmForm form);
+  PlanRequest request(uint64_t pixels, FilmForm form, uint32_t rounds) const;
   uint32_t rounds_as_one(uint64_t pixels, uint32_t samples) const;
   uint32_t fitting_rounds(std::span<const ImagePixel> pixels, uint32_t samples) const;
   SampleCut next_round(const SampleRange& range, uint32_t done, bool goes_on, uint32_t rounds) const;
@@ -94,6 +107,10 @@ class GroupRenderer {
   /// splits where the arena is too small.
   void render_part(std::span<const ImagePixel> pixels, uint64_t at, uint64_t number,
                    const SampleRange& samples, bool open, RunTally& tally);
+  uint32_t render_samples(std::span<const ImagePixel> pixels, const SampleRange& range, bool open,
+                          const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples,
+                          RunTally& tally);
+  void learn_last(RunTally& tally);
   void begin_film(uint64_t pixels, const SampleRange& range, const SumsBefore* before);
   uint64_t round_pixels(uint32_t samples) const;
   KbRound make_round(const SampleRange& samples, uint64_t number) const;
@@ -110,7 +127,7 @@ class GroupRenderer {
   DiagnosticSink note_;
   std::optional<RoundPlan> plan_;
   uint64_t planned_pixels_ = 0;
-  bool planned_open_ = false;
+  FilmForm planned_form_;
   bool has_sums_ = false;  // the device's film, from a render that has got through
   uint32_t planned_rounds_ = 1;
   uint32_t round_samples_;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
+#include "src_gpu/delivery_pace.hpp"
 #include "src_gpu/device/device.hpp"
 #include "src_gpu/device/neutral_folder.hpp"
 #include "src_gpu/device/pocl_cache.hpp"
@@ -27,6 +29,20 @@ std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
   for (uint32_t i = 0; i < rect.pixels(); ++i)
     pixels.push_back({rect.x0 + i % rect.width, rect.y0 + i / rect.width});
   return pixels;
+}
+
+void append_pixels(const PixelRect& block, std::vector<ImagePixel>& pixels,
+                   std::vector<std::size_t>& numbers) {
+  const std::vector<ImagePixel> of_block = pixels_of(block);
+  pixels.insert(pixels.end(), of_block.begin(), of_block.end());
+  numbers.push_back(of_block.size());
+}
+
+/// Progress as it is told to who may be in any folder. Both must outlive it.
+std::function<void(uint64_t)> outside(const NeutralFolder& neutral,
+                                      const std::function<void(uint64_t)>& progress) {
+  if (!progress) return {};
+  return [&](uint64_t samples) { neutral.from_outside([&] { progress(samples); }); };
 }
 
 /// Of the film's sums, what the device has a copy of: those of these blocks, while the film has this seal.
@@ -54,6 +70,8 @@ class Renderer final : public Backend {
 
   void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
               const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override;
+  uint32_t render_replicates(SpectralFilm& film, const ReplicatePlan& plan, const std::atomic<bool>& stop,
+                             const std::function<void(uint64_t)>& progress) override;
   std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override;
 
   std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
@@ -88,6 +106,8 @@ class Renderer final : public Backend {
   std::invoke_result_t<Work> repeated(const Work& work);
   void render_group(std::span<const ImagePixel> pixels, const SampleRange& range, const SumsBefore* before,
                     const std::atomic<bool>& stop, ToldSamples& told);
+  void add_replicates(SpectralFilm& film, const ReplicatePlan& plan, const std::atomic<bool>& stop,
+                      ToldSamples& told, uint32_t& delivered);
   void count(const RunTally& tally);
 
   Options options_;
@@ -232,9 +252,7 @@ std::size_t whole_blocks(const std::vector<ImagePixel>& pixels, std::size_t at, 
 void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) {
   const NeutralFolder neutral;
-  std::function<void(uint64_t)> outside;
-  if (progress) outside = [&](uint64_t samples) { neutral.from_outside([&] { progress(samples); }); };
-  ToldSamples told(std::move(outside));
+  ToldSamples told(outside(neutral, progress));
   std::vector<ImagePixel> pixels;
   for (const uint32_t block : blocks) {
     const std::vector<ImagePixel> some = pixels_of(film.blocks()[block]);
@@ -271,6 +289,56 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
     }
   }
   if (sums && in_one) left_ = {film.seal_sums(), range.replicate, blocks};
+}
+
+/// On the device, from where they come to the film at their end, and now and then before, so that not all is lost with the device.
+/// delivered  how many the film has
+void Renderer::add_replicates(SpectralFilm& film, const ReplicatePlan& plan, const std::atomic<bool>& stop,
+                              ToldSamples& told, uint32_t& delivered) {
+  using Moments = FilmForm::Moments;
+  std::vector<ImagePixel> pixels;
+  std::vector<std::size_t> block_pixels;
+  for (const PixelRect& block : film.blocks()) append_pixels(block, pixels, block_pixels);
+  const bool open = film.keeps_sums();
+  const Moments moments = film.options().variance ? Moments::kMeanAndSquares : Moments::kMean;
+  const auto samples_of = [&](uint32_t r) { return static_cast<uint32_t>(plan.size(r)); };
+  if (!groups_->begin_replicates(block_pixels, {.open = open, .moments = moments}, samples_of(0))) return;
+  DeliveryPace pace;
+  RunTally tally;
+  for (uint32_t r = 0; r < plan.replicates; ++r) {
+    const auto on_samples = [&](uint64_t samples) { told.add(samples); };
+    const SampleRange range{r, 0, samples_of(r)};
+    const uint32_t done = groups_->add_replicate(pixels, range, open, stop, on_samples, tally);
+    if (done < range.count || r + 1 == plan.replicates || pace.is_due()) {
+      pace.measured([&] {
+        const FoldedReplicates& folded = groups_->bring_replicates();
+        deliver_replicates(film, folded);
+        delivered = folded.number;
+      });
+      told.deliver();
+      count(std::exchange(tally, {}));
+    }
+    if (done < range.count) return;
+  }
+}
+
+uint32_t Renderer::render_replicates(SpectralFilm& film, const ReplicatePlan& plan,
+                                     const std::atomic<bool>& stop,
+                                     const std::function<void(uint64_t)>& progress) {
+  if (plan.size(0) > DeviceReplicates::kMostSamples) return 0;
+  const NeutralFolder neutral;
+  left_ = {};
+  ToldSamples told(outside(neutral, progress));
+  uint32_t delivered = 0;
+  try {
+    repeated([&] {
+      told.begin_attempt();
+      if (delivered == 0) add_replicates(film, plan, stop, told, delivered);
+    });
+  } catch (const DeviceOutOfMemory& refusal) {
+    retreat(refusal);
+  }
+  return delivered;
 }
 
 std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {

@@ -10,6 +10,7 @@
 
 #include "base/diagnostics.hpp"
 #include "film/spectral_film.hpp"
+#include "film/statistics.hpp"
 #include "render/traced_path.hpp"
 #include "scene/compile/flat_scene.hpp"
 
@@ -93,6 +94,15 @@ class Backend {
   /// throws DeviceError  the device has failed: every block has all of its samples of the range, or none
   virtual void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) = 0;
+  /// Renders whole replicates of all blocks of a folded film that has nothing yet, the first ones of the plan in their order, where this
+  /// is sooner done than by render() of each. The film is the same as after these and finish_replicates(); of a replicate in
+  /// which stop becomes true, it has the samples that there are.
+  /// returns how many there are: at most all, 0 where there is no such way, or not enough memory for it
+  virtual uint32_t render_replicates(SpectralFilm& /*film*/, const ReplicatePlan& /*plan*/,
+                                     const std::atomic<bool>& /*stop*/,
+                                     const std::function<void(uint64_t)>& /*progress*/) {
+    return 0;
+  }
   /// [y][x] of the rectangle.
   virtual std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) = 0;
 

@@ -80,12 +80,15 @@ void Passes::render(SpectralFilm& film) {
 
 void Passes::render_fixed(SpectralFilm& film) {
   const ReplicatePlan plan = ReplicatePlan::deal(*settings_.stop.samples_per_pixel, replicates_);
-  for (uint32_t r = 0; r < plan.replicates && !stop_; ++r) {
+  const auto on_samples = [this](uint64_t pixels) { advance(pixels); };
+  uint32_t done = 0;
+  if (!film.options().held) done = backend_.render_replicates(film, plan, stop_, on_samples);
+  for (uint32_t r = done; r < plan.replicates && !stop_; ++r) {
     const auto target = static_cast<uint32_t>(plan.size(r));
     if (!film.options().held || !film.keeps_sums()) {
       render_replicate(film, r, target);
     } else {
-      bring_to(film, r, target, stop_, [this](uint64_t pixels) { advance(pixels); });
+      bring_to(film, r, target, stop_, on_samples);
     }
   }
   film.finish_replicates();

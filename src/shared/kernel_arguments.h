@@ -120,6 +120,19 @@
   X(packing, OUT, float, packed) SEP                                                                             \
   X(packing, VALUE, kb_u32, pixels)
 
+/* What the replicates so far have come to: arrays that stand like the film's. */
+#define KB_REPLICATES_ARGUMENTS(X, SEP)                                                                          \
+  X(replicates, SAME, KbSpectraLayout, layout) SEP                                                               \
+  X(replicates, IN, KbFilmPart, parts) SEP                                                                       \
+  X(replicates, IN, KbFloat2, weights) SEP    /* of film pixels: of a difference in the mean, of its square in m2 */ \
+  X(replicates, OUT, float, mean) SEP                                                                            \
+  X(replicates, OUT, float, m2) SEP           /* if there are variances */                                       \
+  X(replicates, OUT, float, sums) SEP         /* [part][film column]: of the replicate's samples, */             \
+  X(replicates, OUT, float, lost) SEP         /* and what rounding has lost of them */                           \
+  X(replicates, VALUE, kb_u32, first_part) SEP                                                                   \
+  X(replicates, VALUE, kb_u32, end_part) SEP                                                                     \
+  X(replicates, VALUE, kb_u32, variance)
+
 /* What the rays through the centres of width x height pixels from (x0, y0) on see. */
 #define KB_AUXILIARY_ARGUMENTS(X, SEP)                                                                           \
   X(auxiliary, OUT, KbAuxiliary, out) SEP                                                                        \
@@ -134,7 +147,8 @@
                  compact, add_tallies
      auxiliary   auxiliary
      evaluation  resample_rows, dpept_batch, dpept_path, derived_add; pt_update, pt_derived, which have a queue
-     film        film_clear, film_close, film_pack, film_unpack, film_finish */
+     film        film_clear, film_close, film_pack, film_unpack, film_finish
+     replicates  replicate_fold */
 #define KB_PATH_KERNEL(X, SEP) \
   X(SCENE, Scene) SEP X(SPECTRA, Spectra) SEP X(BVH, Bvh) SEP X(POOL, Pool) SEP X(QUEUE, Queue)
 #define KB_AUXILIARY_KERNEL(X, SEP) X(SCENE, Scene) SEP X(BVH, Bvh) SEP X(AUXILIARY, Auxiliary)
@@ -142,6 +156,7 @@
   X(SCENE, Scene) SEP X(SPECTRA, Spectra) SEP X(POOL, Pool) SEP X(EVALUATION, Evaluation) SEP X(FILM, Film) SEP  \
   X(QUEUE, Queue)
 #define KB_FILM_KERNEL(X, SEP) X(FILM, Film) SEP X(PACKING, Packing)
+#define KB_REPLICATES_KERNEL(X, SEP) X(FILM, Film) SEP X(REPLICATES, Replicates)
 
 // clang-format on
 #endif

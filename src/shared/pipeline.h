@@ -175,6 +175,12 @@ typedef struct {
 } KB_ALIGNED(16) KbRoundPixel;
 KB_STATIC_ASSERT(sizeof(KbRoundPixel) == 16, round_pixel_size);
 
+/* Film pixels of one block that follow each other. */
+typedef struct {
+  kb_u32 first, count;
+} KB_ALIGNED(8) KbFilmPart;
+KB_STATIC_ASSERT(sizeof(KbFilmPart) == 8, film_part_size);
+
 /* A saved path: arena entries from `chunk` on; count 0: nothing that contributes. */
 #define KB_SAVED_INVALID 0xffffffffu
 typedef struct {

@@ -57,6 +57,7 @@ KB_HOST_GROUP(QUEUE, Queue)
 KB_HOST_GROUP(EVALUATION, Evaluation)
 KB_HOST_GROUP(FILM, Film)
 KB_HOST_GROUP(PACKING, Packing)
+KB_HOST_GROUP(REPLICATES, Replicates)
 KB_HOST_GROUP(AUXILIARY, Auxiliary)
 
 /// A kernel whose parameters are these groups, in this order.
@@ -106,5 +107,6 @@ using PathKernel = KernelOf<KB_PATH_KERNEL(KB_HOST_GROUP_NAME, KB_COMMA)>;
 using AuxiliaryKernel = KernelOf<KB_AUXILIARY_KERNEL(KB_HOST_GROUP_NAME, KB_COMMA)>;
 using EvaluationKernel = KernelOf<KB_EVALUATION_KERNEL(KB_HOST_GROUP_NAME, KB_COMMA)>;
 using FilmKernel = KernelOf<KB_FILM_KERNEL(KB_HOST_GROUP_NAME, KB_COMMA)>;
+using ReplicatesKernel = KernelOf<KB_REPLICATES_KERNEL(KB_HOST_GROUP_NAME, KB_COMMA)>;
 
 }  // namespace kiloband::opencl

@@ -21,6 +21,11 @@ struct FilmSums {
 struct FilmForm {
   bool transposed = false;  // kernels/film/film.clh: neighbouring work-items own neighbouring pixels
   bool open = false;        // it has sums of chunks that go on
+  /// What replicates come to is kept beside it (DeviceReplicates).
+  enum class Moments { kNone, kMean, kMeanAndSquares } moments = Moments::kNone;
+
+  /// Whether a film of this form serves for the other.
+  bool serves(const FilmForm& other) const { return (open || !other.open) && moments >= other.moments; }
 };
 
 /// Numbers of a pixel that leave the device: channels and derived ones.
@@ -49,13 +54,17 @@ class DeviceFilm {
   /// Means [pixel][K + D] and valid samples.
   void finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 
+  const FilmForm& form() const { return form_; }
+  /// An array that stands like the film's, of the first `pixels`: packed[pixel][K + D].
+  void pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
+  void download_counts(uint64_t pixels, std::vector<uint32_t>& counts) const;
+  void clear_counts(uint64_t pixels) { counts_.fill(0, 0, pixels); }
+
  private:
   PackingArguments::Of<BufferRef> packing(const DeviceBuffer<float>& values, uint64_t pixels) const;
   void unpack(const std::vector<float>& packed, DeviceBuffer<float>& values);
-  void pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
   void download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels,
                        std::vector<float>& packed);
-  void download_counts(uint64_t pixels, std::vector<uint32_t>& counts) const;
   void launch_over(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels);
   uint64_t touched_pixels(uint64_t pixels) const;
 

@@ -16,7 +16,7 @@ using nlohmann::json;
 /// What the numbers in a file mean.
 constexpr int kFormat = 2;
 /// No device has more, or gains from less.
-constexpr uint64_t kFewestPaths = 64, kMostPaths = uint64_t{1} << 28, kLargestGroup = 4096;
+constexpr uint64_t kFewestKept = 64, kMostPaths = uint64_t{1} << 28, kLargestGroup = 4096;
 
 /// A conversion of other numbers is undefined where they are too large.
 uint64_t whole_number(const json& from, const char* name) {
@@ -45,8 +45,8 @@ TunedMethod tuned_method(const json& from) {
   one.items_of_path = size_in<uint32_t>(from, "items_of_path", 1, kLargestGroup).value_or(1);
   one.scene = from.at("scene").get<std::string>();
   one.speed_up = from.at("speed_up").get<double>();
-  one.tuning.pool_slots = size_in<uint32_t>(from, "pool_slots", kFewestPaths, kMostPaths);
-  one.tuning.round_paths = size_in<uint64_t>(from, "round_paths", kFewestPaths, kMostPaths);
+  one.tuning.pool_slots = size_in<uint32_t>(from, "pool_slots", kFewestKept, kMostPaths);
+  one.tuning.round_paths = size_in<uint64_t>(from, "round_paths", kFewestKept, kMostPaths);
   one.tuning.path_group = size_in<uint32_t>(from, "path_group", 1, kLargestGroup);
   one.tuning.evaluation_group = size_in<uint32_t>(from, "evaluation_group", 1, kLargestGroup);
   return one;
