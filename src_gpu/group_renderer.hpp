@@ -13,6 +13,7 @@
 #include "base/diagnostics.hpp"
 #include "render/backend.hpp"
 #include "src_gpu/device_state.hpp"
+#include "src_gpu/image_pixels.hpp"
 #include "src_gpu/path/launch_pace.hpp"
 #include "src_gpu/path/round_plan.hpp"
 
@@ -26,22 +27,12 @@ struct RunTally {
   double longest_launch_seconds = 0;           // of all kernels
 };
 
-/// A pixel in full-film coordinates.
-struct ImagePixel {
-  uint32_t x, y;
-};
-
 /// The sums of pixels' samples before a range, which are gone on with.
 struct SumsBefore {
   bool left_on_device =
       false;  // by the render before, of the same pixels; the device may have lost them since
   std::function<const FilmSums&()> of_film;
 };
-
-/// Do they share wavelength offsets?
-inline bool same_block(const ImagePixel& a, const ImagePixel& b) {
-  return a.x / kBlockSize == b.x / kBlockSize && a.y / kBlockSize == b.y / kBlockSize;
-}
 
 /// Means and numbers of valid samples of a group of pixels;
 /// with sums that are gone on with, these instead of both.

@@ -24,20 +24,6 @@ constexpr uint32_t kMostLosses = 3;
 /// Halvings of the memory in use after a device refused what it had promised.
 constexpr uint32_t kMostRetreats = 6;
 
-std::vector<ImagePixel> pixels_of(const PixelRect& rect) {
-  std::vector<ImagePixel> pixels;
-  for (uint32_t i = 0; i < rect.pixels(); ++i)
-    pixels.push_back({rect.x0 + i % rect.width, rect.y0 + i / rect.width});
-  return pixels;
-}
-
-void append_pixels(const PixelRect& block, std::vector<ImagePixel>& pixels,
-                   std::vector<std::size_t>& numbers) {
-  const std::vector<ImagePixel> of_block = pixels_of(block);
-  pixels.insert(pixels.end(), of_block.begin(), of_block.end());
-  numbers.push_back(of_block.size());
-}
-
 /// Progress as it is told to who may be in any folder. Both must outlive it.
 std::function<void(uint64_t)> outside(const NeutralFolder& neutral,
                                       const std::function<void(uint64_t)>& progress) {
@@ -76,7 +62,7 @@ class Renderer final : public Backend {
 
   std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
     const NeutralFolder neutral;
-    return repeated([&] { return groups_->trace(pixels_of(rect), range); });
+    return repeated([&] { return groups_->trace(pixels_of(std::span(&rect, 1)), range); });
   }
 
   void camera_moved() override {
@@ -240,24 +226,13 @@ void Renderer::render_group(std::span<const ImagePixel> pixels, const SampleRang
   });
 }
 
-/// Pixels from `at` on that a group takes: whole blocks where at least one fits, else a part of one.
-std::size_t whole_blocks(const std::vector<ImagePixel>& pixels, std::size_t at, std::size_t room) {
-  const std::size_t end = std::min(pixels.size(), at + room);
-  if (end == pixels.size()) return end - at;
-  std::size_t boundary = end;
-  while (boundary > at && same_block(pixels[boundary - 1], pixels[boundary])) --boundary;
-  return (boundary > at ? boundary : end) - at;
-}
-
 void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
                       const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) {
   const NeutralFolder neutral;
   ToldSamples told(outside(neutral, progress));
-  std::vector<ImagePixel> pixels;
-  for (const uint32_t block : blocks) {
-    const std::vector<ImagePixel> some = pixels_of(film.blocks()[block]);
-    pixels.insert(pixels.end(), some.begin(), some.end());
-  }
+  std::vector<PixelRect> rects;
+  for (const uint32_t block : blocks) rects.push_back(film.blocks()[block]);
+  const std::vector<ImagePixel> pixels = pixels_of(rects);
   FilmDelivery delivery(film, range, blocks, film_scale().size());
   const bool sums = film.keeps_sums();
   const bool left = sums && left_.seal != 0 && left_.seal == film.seal() &&
@@ -296,9 +271,9 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
 void Renderer::add_replicates(SpectralFilm& film, const ReplicatePlan& plan, const std::atomic<bool>& stop,
                               ToldSamples& told, uint32_t& delivered) {
   using Moments = FilmForm::Moments;
-  std::vector<ImagePixel> pixels;
+  const std::vector<ImagePixel> pixels = pixels_of(film.blocks());
   std::vector<std::size_t> block_pixels;
-  for (const PixelRect& block : film.blocks()) append_pixels(block, pixels, block_pixels);
+  for (const PixelRect& block : film.blocks()) block_pixels.push_back(block.pixels());
   const bool open = film.keeps_sums();
   const Moments moments = film.options().variance ? Moments::kMeanAndSquares : Moments::kMean;
   const auto samples_of = [&](uint32_t r) { return static_cast<uint32_t>(plan.size(r)); };
