@@ -67,13 +67,21 @@ void FilmDelivery::read_sums(std::span<const ImagePixel> pixels, FilmSums& sums)
               });
 }
 
-/// The block's pixels are those from `first` on.
-void FilmDelivery::put_sums(const FilmSums& sums, std::size_t first, const PixelRect& block) {
+/// The block's pixels are those from `first` on. A round of the first chunk alone that was meant to have others behind it has gone to the
+/// device's closed sum: in the film a full chunk stays open, and closed sums of fewer samples are 0.
+void FilmDelivery::put_sums(const FilmSums& sums, uint32_t attempted, std::size_t first,
+                            const PixelRect& block) {
+  const bool in_first_chunk = attempted <= film_.options().sums->chunk;
   for (std::size_t i = 0; i < block.pixels(); ++i) {
     const PixelSums to = film_.pixel_sums(range_.replicate, film_.pixel_index(block, i));
     const std::size_t values = (first + i) * channels_;
     to.count = sums.counts[first + i];
     std::copy_n(&sums.open[values], channels_, to.open.begin());
+    if (in_first_chunk) {
+      for (std::size_t c = 0; c < channels_; ++c) to.open[c] += sums.sum[values + c] + sums.lost[values + c];
+      std::ranges::fill(to.closed, ClosedSum{0});
+      continue;
+    }
     for (std::size_t c = 0; c < to.closed.size(); ++c)
       to.closed[c] = std::bit_cast<ClosedSum>(CompensatedSum{sums.sum[values + c], sums.lost[values + c]});
   }
@@ -111,8 +119,9 @@ std::size_t FilmDelivery::finish_blocks(const GroupResult& result) {
 /// The block's pixels are those from `first` on.
 void FilmDelivery::finish_block(const GroupResult& result, std::size_t first, uint32_t block) {
   if (film_.keeps_sums()) {
-    put_sums(result.sums, first, film_.blocks()[block]);
-    return film_.set_attempted(range_.replicate, block, range_.first + result.attempted);
+    const uint32_t attempted = range_.first + result.attempted;
+    put_sums(result.sums, attempted, first, film_.blocks()[block]);
+    return film_.set_attempted(range_.replicate, block, attempted);
   }
   const std::size_t pixels = film_.blocks()[block].pixels();
   const auto means = std::span(result.means).subspan(first * channels_, pixels * channels_);

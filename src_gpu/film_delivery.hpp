@@ -32,7 +32,7 @@ class FilmDelivery {
 
  private:
   std::size_t index(const ImagePixel& pixel) const;
-  void put_sums(const FilmSums& sums, std::size_t first, const PixelRect& block);
+  void put_sums(const FilmSums& sums, uint32_t attempted, std::size_t first, const PixelRect& block);
   std::size_t finish_blocks(const GroupResult& result);
   void finish_block(const GroupResult& result, std::size_t first, uint32_t block);
 

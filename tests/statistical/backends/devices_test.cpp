@@ -211,9 +211,9 @@ TEST(FilmDelivery, LeavesNothingOfABlockThatIsNotComplete) {
   const SampleRange range{0, 0, 3};
   const std::vector<uint32_t> blocks{0};
   const auto group = [&](std::size_t number, float value) {
-    const std::vector<float> values(number * kChannels, value);
+    const std::vector<float> values(number * kChannels, value), none(number * kChannels);  // in a first chunk
     opencl::GroupResult result;
-    result.sums = {values, values, values, std::vector<uint32_t>(number, 3)};
+    result.sums = {values, none, none, std::vector<uint32_t>(number, 3)};
     result.attempted = 3;
     return result;
   };

@@ -2,6 +2,7 @@
 // one that was rendered at one go, and those of a film that keeps means alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <numeric>
@@ -109,6 +110,34 @@ TEST_F(SumsInParts, OfAnySizeGiveTheBitsOfOneDelivery) {
                 0u)
           << name;
     }
+  }
+}
+
+/// A part that is stopped after its first round: the chunk is full, and stays open, as checkpoints have it, which keep no closed sums of so
+/// few samples. What follows gives the bits of one delivery.
+TEST_F(SumsInParts, OfAStoppedPartAreOpen) {
+  const PixelRect large{28, 3, 40, 38};  // rounds of fewer pixels may be one
+  for (const std::string name : {"opencl:dpept-batch", "opencl:dpept-path"}) {
+    const auto renderer = backend(name, SamplerType::kSobol, WavelengthMode::kShared);
+    GrowingFilm growing(*renderer, large, 40);
+    SpectralFilm& film = growing.film();
+    std::vector<uint32_t> blocks(film.blocks().size());
+    std::iota(blocks.begin(), blocks.end(), 0u);
+    std::atomic<bool> stop{false};
+    renderer->render(film, {0, 0, 40}, blocks, stop, [&](uint64_t) { stop = true; });
+    const uint32_t done = film.attempted(0, 0);
+    ASSERT_EQ(done, renderer->sum_rule().chunk) << name;
+    float brightest = 0;
+    for (std::size_t p = 0; p < large.pixels(); ++p) {
+      const PixelSumsView sums = std::as_const(film).pixel_sums(0, p);
+      EXPECT_EQ(std::ranges::count(sums.closed, ClosedSum{0}), std::ranges::ssize(sums.closed)) << name;
+      brightest = std::max(brightest, std::ranges::max(sums.open));
+    }
+    EXPECT_GT(brightest, 0) << name;
+    growing.add(0, 40 - done);
+    growing.add(1, 40);
+    EXPECT_EQ(different_bits(render_part(*renderer, large, kReplicates, 40).means, growing.means()), 0u)
+        << name;
   }
 }
 
