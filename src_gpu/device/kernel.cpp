@@ -1,5 +1,6 @@
 #include "src_gpu/device/kernel.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace kiloband::opencl {
@@ -63,6 +64,7 @@ double Kernel::launch_timed(uint64_t items, uint64_t local) {
 
 void Kernel::enqueue(uint64_t items, uint64_t local, uint64_t first, cl::Event* event) {
   if (items == 0) return;
+  local = std::min(local, max_work_group_size_);
   const cl::NDRange global(local == 0 ? items : round_up(items, local));
   const cl::NDRange group = local == 0 ? cl::NullRange : cl::NDRange(local);
   cl::Event own;

@@ -39,7 +39,8 @@ class Kernel {
   /// throws std::logic_error  the kernel has not `count` parameters
   void check_count(uint64_t count) const;
 
-  /// Enqueues work-items first .. first + items - 1, in groups of `local` (0: the driver chooses). With a
+  /// Enqueues work-items first .. first + items - 1, in groups of `local` (0: the driver chooses), or of
+  /// max_work_group_size() where that is less: kernels to which it matters have groups that fit. With a
   /// local size the number of work-items is rounded up to whole groups: the kernel compares its global id
   /// with its number of items. No items: no launch.
   /// throws DeviceLost, DeviceOutOfMemory, DeviceError  naming the kernel

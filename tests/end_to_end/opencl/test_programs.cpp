@@ -115,6 +115,28 @@ TEST(OpenclProgram, TheFormForGpusGivesTheSameBytes) {
   }
 }
 
+/// OpenCL asks for no more than groups of one work-item.
+TEST(OpenclProgram, SmallWorkGroupsGiveTheSameBytes) {
+  for (const std::string type : {"", "gpu"}) {
+    const TemporaryFolder folder;
+    const auto image = [&](const std::string& group) {
+      const Outcome outcome =
+          run_program(folder,
+                      {"render", cornell_box(), "--size", "20x20", "--bands", "400:700:9", "--spp", "5",
+                       "--backend", "opencl", "--device-memory", "256MiB", "-o", "a.hdr", "--aov", "depth"},
+                      {.environment = {{"LD_PRELOAD", SHIM_LIBRARY},
+                                       {"ASAN_OPTIONS", "verify_asan_link_order=0"},
+                                       {"KILOBAND_SHIM_TYPE", type},
+                                       {"KILOBAND_SHIM_GROUP", group}}});
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      return folder.read("a.img");
+    };
+    const std::string expected = image("0");
+    ASSERT_FALSE(expected.empty());
+    EXPECT_EQ(image("32"), expected) << type;
+  }
+}
+
 /// A cache folder of its own, so that every program is built from source.
 TEST(OpenclProgram, BuildError) {
   const TemporaryFolder cache;

@@ -12,6 +12,7 @@
 //                           were failed
 //   KILOBAND_SHIM_PLATFORM  the name that platforms give
 //   KILOBAND_SHIM_TYPE      gpu: devices say that they are GPUs
+//   KILOBAND_SHIM_GROUP     work-items of a group at most: devices and kernels say so, and launches of larger groups fail
 //
 // In sanitizer builds run with ASAN_OPTIONS=verify_asan_link_order=0.
 #define CL_TARGET_OPENCL_VERSION 120
@@ -121,6 +122,11 @@ struct Plan {
 };
 Plan plan;
 
+/// 0: as the device has it.
+size_t largest_group() {
+  return static_cast<size_t>(number_of("KILOBAND_SHIM_GROUP", 0));
+}
+
 /// The function of libOpenCL that `name` hides.
 template <class Pointer>
 Pointer real(Pointer, const char* name) {
@@ -159,6 +165,9 @@ cl_int clGetPlatformInfo(cl_platform_id platform, cl_platform_info what, size_t 
 
 cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void* value, size_t* needed) {
   const cl_int code = REAL(clGetDeviceInfo)(device, what, size, value, needed);
+  if (const size_t group = largest_group();
+      code == CL_SUCCESS && group > 0 && value && what == CL_DEVICE_MAX_WORK_GROUP_SIZE)
+    std::memcpy(value, &group, sizeof group);
   const char* type = std::getenv("KILOBAND_SHIM_TYPE");
   if (code != CL_SUCCESS || !type || std::strcmp(type, "gpu") != 0 || what != CL_DEVICE_TYPE || !value)
     return code;
@@ -232,10 +241,21 @@ cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* error) {
 cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
                               const size_t* offset, const size_t* global, const size_t* local, cl_uint count,
                               const cl_event* events, cl_event* event) {
-  const cl_int code = plan.next(kEnqueueNDRangeKernel, queue);
+  cl_int code = plan.next(kEnqueueNDRangeKernel, queue);
+  if (const size_t group = largest_group(); group > 0 && local && *local > group)
+    code = CL_INVALID_WORK_GROUP_SIZE;
   return code ? code
               : REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, count, events,
                                              event);
+}
+
+cl_int clGetKernelWorkGroupInfo(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_info what,
+                                size_t size, void* value, size_t* needed) {
+  const cl_int code = REAL(clGetKernelWorkGroupInfo)(kernel, device, what, size, value, needed);
+  if (const size_t group = largest_group();
+      code == CL_SUCCESS && group > 0 && value && what == CL_KERNEL_WORK_GROUP_SIZE)
+    std::memcpy(value, &group, sizeof group);
+  return code;
 }
 
 cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
