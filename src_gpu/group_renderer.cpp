@@ -145,8 +145,7 @@ uint32_t GroupRenderer::fitting_rounds(std::span<const ImagePixel> pixels, uint3
   if (wanted == 1) return 1;
   uint64_t blocks = 1;
   for (std::size_t i = 1; i < pixels.size(); ++i) blocks += !same_block(pixels[i - 1], pixels[i]);
-  const auto of_arena = static_cast<uint64_t>(plan_->pool.arena_chunks / (chunks_per_path_ * kChunkMargin));
-  const uint64_t paths = std::min({plan_->round_jobs, of_arena, paths_pace_.limit()});
+  const uint64_t paths = std::min({plan_->round_jobs, paths_of_arena(), paths_pace_.limit()});
   const uint64_t fitting =
       std::min({paths / pixels.size(), plan_->pool.tables / blocks, samples_pace_.limit()});
   return static_cast<uint32_t>(std::clamp<uint64_t>(fitting / round_samples_, 1, wanted));
@@ -277,11 +276,17 @@ void GroupRenderer::render_part(std::span<const ImagePixel> pixels, uint64_t at,
   learn_evaluation(tally);
 }
 
+/// Paths whose vertices the arena has room for, by what paths have taken so far.
+uint64_t GroupRenderer::paths_of_arena() const {
+  return static_cast<uint64_t>(plan_->pool.arena_chunks / (chunks_per_path_ * kChunkMargin));
+}
+
 /// Pixels of the next round: what the pool holds and launches have time for. The method pt has no launch over
 /// all paths; its slots want many pixels.
 uint64_t GroupRenderer::round_pixels(uint32_t samples) const {
   const bool pt = device_.method == Method::kPt;
-  const uint64_t paths = pt ? plan_->round_jobs : std::min(plan_->round_jobs, paths_pace_.limit());
+  const uint64_t paths =
+      pt ? plan_->round_jobs : std::min({plan_->round_jobs, paths_pace_.limit(), paths_of_arena()});
   return std::clamp<uint64_t>(paths / samples, 1, plan_->round_pixels);
 }
 

@@ -103,6 +103,7 @@ class GroupRenderer {
                           RunTally& tally);
   void learn_last(RunTally& tally);
   void begin_film(uint64_t pixels, const SampleRange& range, const SumsBefore* before);
+  uint64_t paths_of_arena() const;
   uint64_t round_pixels(uint32_t samples) const;
   KbRound make_round(const SampleRange& samples, uint64_t number) const;
   void fill_pixels(std::span<const ImagePixel> pixels, KbRound& round);
