@@ -19,7 +19,7 @@ namespace kiloband::opencl {
 namespace {
 
 constexpr std::size_t kReportedInvalid = 16;
-/// A device that is lost again and again is not worth more attempts.
+/// A device that is lost again and again, with nothing done in between, is not worth more attempts.
 constexpr uint32_t kMostLosses = 3;
 /// Halvings of the memory in use after a device refused what it had promised.
 constexpr uint32_t kMostRetreats = 6;
@@ -51,6 +51,7 @@ class Renderer final : public Backend {
     if (options_.tuned) options_.tuning = merged(options_.tuning, kept_tuning());
     const NeutralFolder neutral;
     repeated([] {});
+    rule_ = groups_->sum_rule();
     warn_of_cache();
   }
 
@@ -77,8 +78,11 @@ class Renderer final : public Backend {
   BackendStatistics statistics() const override;
   std::vector<double> film_scale() const override { return host_->film_scale(); }
 
-  SumRule sum_rule() const override { return groups_->sum_rule(); }
-  uint32_t blocks_at_once(uint32_t samples) const override { return groups_->blocks_at_once(samples); }
+  SumRule sum_rule() const override { return rule_; }
+  /// After a device that could not be set up again there are no groups.
+  uint32_t blocks_at_once(uint32_t samples) const override {
+    return groups_ ? groups_->blocks_at_once(samples) : 1;
+  }
 
  private:
   void limit_memory();
@@ -106,6 +110,8 @@ class Renderer final : public Backend {
   GroupResult result_;  // of the group that was rendered last
   FilmSums before_;     // of the group that was gone on with last
   LeftSums left_;
+  SumRule rule_;
+  uint32_t losses_in_a_row_ = 0;
   BackendStatistics done_;  // but for what the context and the device memory know
   uint32_t retreats_ = 0;
 };
@@ -154,7 +160,8 @@ void Renderer::make_device() {
 
 /// After a lost device: everything on it is made anew, and the work is repeated.
 void Renderer::recover(const DeviceLost& loss) {
-  if (++done_.device_losses > kMostLosses) {
+  ++done_.device_losses;
+  if (++losses_in_a_row_ > kMostLosses) {
     context_.abandon();
     throw loss;
   }
@@ -203,7 +210,9 @@ BackendStatistics Renderer::statistics() const {
   return done;
 }
 
+/// Of work that has got through.
 void Renderer::count(const RunTally& tally) {
+  losses_in_a_row_ = 0;
   done_.rays += tally.rays;
   done_.vertices += tally.vertices;
   done_.paths += tally.paths;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "render/error_sums.hpp"
 #include "render/scene_metadata.hpp"
@@ -194,8 +195,9 @@ void LiveState::set_camera(const nlohmann::json& wanted) {
         glm::length(glm::dvec3((*target)[0], (*target)[1], (*target)[2]) - glm::dvec3(sensor.to_world[3]));
 }
 
+/// After a failure with a backend of its own: the old one may have no device any more.
 void LiveState::restart() {
-  failed_ = false;
+  if (std::exchange(failed_, false)) scene_.reset();
   if (scene_ && film_ && film_ == full_.get()) return begin_revision();
   if (scene_ && film_) return move_to(sensor_, false);
   scene_.reset();

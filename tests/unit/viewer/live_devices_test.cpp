@@ -7,6 +7,7 @@
 #include "render/devices/device_group.hpp"
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
+#include "tests/unit/render/devices/faulty_backend.hpp"
 #include "viewer/api/selections.hpp"
 #include "viewer/live/live_render.hpp"
 
@@ -24,7 +25,9 @@ const char* const kBall = R"(<scene version='3.0.0'>
 <shape type='sphere'><bsdf type='diffuse'/></shape>
 <emitter type='point'><point name='position' x='2' y='3' z='4'/></emitter></scene>)";
 
-std::unique_ptr<ViewedImage> start(std::size_t devices) {
+using Maker = decltype(BackendProvider::make);
+
+std::unique_ptr<ViewedImage> start(Maker make) {
   LiveOptions live;
   live.scene = read_scene_text(kBall, "ball.xml", ".");
   live.channels = parse_channels("500:600:4");
@@ -32,15 +35,19 @@ std::unique_ptr<ViewedImage> start(std::size_t devices) {
   live.settings.backend = "cpu";
   live.settings.method = "dpept-batch";
   live.backends.choices = {{"cpu", "this one", {}, {"dpept-batch"}}};
-  live.backends.make = [devices](const LiveSettings& settings, std::shared_ptr<const FlatScene> scene) {
+  live.backends.make = std::move(make);
+  live.samples = 24;
+  live.threads = 1;
+  return start_live_render(std::move(live));
+}
+
+std::unique_ptr<ViewedImage> start(std::size_t devices) {
+  return start([devices](const LiveSettings& settings, std::shared_ptr<const FlatScene> scene) {
     std::vector<std::unique_ptr<Backend>> backends;
     for (std::size_t d = 0; d < devices; ++d)
       backends.push_back(cpu::make_backend(scene, {}, settings.sampling, {cpu::Isa::kAuto, 1}));
     return make_device_group(std::move(backends), {});
-  };
-  live.samples = 24;
-  live.threads = 1;
-  return start_live_render(std::move(live));
+  });
 }
 
 /// The curve of every pixel, once all samples are there.
@@ -78,6 +85,23 @@ TEST(LiveDevices, ShowWhatOneShows) {
   for (ViewedImage* image : {one.get(), two.get()})
     image->controls()->set_camera({{"origin", {1, 0, 4}}, {"target", {0, 0, 0}}, {"up", {0, 1, 0}}});
   expect_same(curves(*one), curves(*two));
+}
+
+/// What is lost with a device is had again once there is one: by a backend of its own.
+TEST(LiveDevices, AFailedRenderIsRestarted) {
+  int made = 0;
+  const auto image = start([&](const LiveSettings& settings, std::shared_ptr<const FlatScene> scene) {
+    Fault fault;
+    if (++made == 1) fault = {Fault::Kind::kDevice, 2, 0, true};
+    return std::make_unique<FaultyBackend>(
+        cpu::make_backend(std::move(scene), {}, settings.sampling, {cpu::Isa::kAuto, 1}), fault);
+  });
+  for (int i = 0; i < 3000 && image->status().state != "failed"; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(image->status().state, "failed");
+  image->controls()->restart();
+  expect_same(curves(*image), curves(*start(1)));
+  EXPECT_EQ(made, 2);
 }
 
 }  // namespace
