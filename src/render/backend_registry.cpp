@@ -64,9 +64,17 @@ std::unique_ptr<Backend> BackendRegistry::make(const BackendRequest& request,
   BackendRequest each = request;
   each.sink = one_at_a_time(request.sink);
   std::vector<std::unique_ptr<Backend>> backends;
-  for (const auto& [entry, method] : find_all(request.backend)) {
+  const std::vector<Named> all = find_all(request.backend);
+  for (std::size_t i = 0; i < all.size(); ++i) {
     each.reserved_threads = static_cast<int>(backends.size());
-    for (auto& backend : entry->make(input, each, method)) backends.push_back(std::move(backend));
+    try {
+      for (auto& backend : all[i].first->make(input, each, all[i].second))
+        backends.push_back(std::move(backend));
+    } catch (const DeviceError& failure) {
+      const bool last_hope = backends.empty() && i + 1 == all.size();
+      if (last_hope) throw;
+      warn(each.sink, {}, std::string(failure.what()) + ": the render goes without it");
+    }
   }
   if (backends.size() == 1) return std::move(backends.front());
   return make_device_group(std::move(backends), each.sink);

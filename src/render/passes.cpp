@@ -148,7 +148,7 @@ void Passes::adapt_step(uint32_t samples, double seconds) {
   step_ = static_cast<uint32_t>(std::clamp(fitting, 1.0, 0x1p20));
 }
 
-/// Passes over all replicates, each as long as all before it, until a rule is met. Where the number of
+/// Passes over all replicates, each as long as all before it, with a time limit as all before it in this session, until a rule is met. Where the number of
 /// samples has a limit, it is dealt to the replicates as if there were no other rule. Without a time limit
 /// passes end at powers of two, and the error is looked at there and at the limit alone: where a render was
 /// interrupted has no say in where it ends.
@@ -182,7 +182,8 @@ StopReason Passes::render_passes(SpectralFilm& film) {
 /// began with `begin`.
 uint32_t Passes::pass_end(uint32_t done, uint32_t begin, uint32_t most) const {
   if (!settings_.stop.seconds) return std::min(most, std::bit_ceil(done + 1));
-  return done + samples_that_fit(done - begin, std::min(std::max(1u, done), most - done));
+  const uint32_t so_far = done - begin;  // what the rate is known from
+  return done + samples_that_fit(so_far, std::min(std::max(1u, so_far), most - done));
 }
 
 /// Whether all replicates of all blocks have as many samples as after some pass to a target error.

@@ -104,7 +104,8 @@ std::string TuningStore::save(const DeviceInfo& device, const TunedMethod& measu
   tuned.push_back(measured);
   json all{{"format", kFormat}, {"device", device.name}, {"driver", device.driver_version}};
   for (const TunedMethod& one : tuned) all["tuned"].push_back(tuned_json(one));
-  return keep_file(file(device), all.dump(2) + "\n");
+  // Names of devices, scenes too, may be in any encoding.
+  return keep_file(file(device), all.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 bool TuningStore::forget(const DeviceInfo& device) const {

@@ -128,6 +128,20 @@ TEST_F(ProgramDevices, OneMayFailAtTheStart) {
   EXPECT_EQ(without("1").code, 3);
 }
 
+/// Where no OpenCL device has a context the processor renders alone.
+TEST_F(ProgramDevices, AllButTheProcessorMayFailAtTheStart) {
+  ASSERT_EQ(run_program(folder_, box_render({"--spp", "4"}, "cpu")).code, 0);
+  const std::string image = folder_.read("a.img");
+  const Outcome outcome = run_program(folder_, box_render({"--spp", "4"}, "cpu+opencl"),
+                                      {.environment = {{"LD_PRELOAD", SHIM_LIBRARY},
+                                                       {"ASAN_OPTIONS", "verify_asan_link_order=0"},
+                                                       {"KILOBAND_SHIM_FUNCTION", "clCreateContext"},
+                                                       {"KILOBAND_SHIM_REPEAT", "1"}}});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  expect_text(outcome.err, ": the render goes without it\n");
+  EXPECT_TRUE(folder_.read("a.img") == image);
+}
+
 TEST_F(ProgramDevices, WhereAllFailTheRenderFails) {
   const Outcome outcome = run({"--spp", "40", "--device", "0/2"},
                               {.environment = {{"LD_PRELOAD", SHIM_LIBRARY},
