@@ -68,7 +68,7 @@ void FilmDelivery::read_sums(std::span<const ImagePixel> pixels, FilmSums& sums)
 }
 
 /// The block's pixels are those from `first` on. A round of the first chunk alone that was meant to have others behind it has gone to the
-/// device's closed sum: in the film a full chunk stays open, and closed sums of fewer samples are 0.
+/// device's closed sums; in the film a full chunk stays open.
 void FilmDelivery::put_sums(const FilmSums& sums, uint32_t attempted, std::size_t first,
                             const PixelRect& block) {
   const bool in_first_chunk = attempted <= film_.options().sums->chunk;
@@ -76,14 +76,15 @@ void FilmDelivery::put_sums(const FilmSums& sums, uint32_t attempted, std::size_
     const PixelSums to = film_.pixel_sums(range_.replicate, film_.pixel_index(block, i));
     const std::size_t values = (first + i) * channels_;
     to.count = sums.counts[first + i];
-    std::copy_n(&sums.open[values], channels_, to.open.begin());
-    if (in_first_chunk) {
-      for (std::size_t c = 0; c < channels_; ++c) to.open[c] += sums.sum[values + c] + sums.lost[values + c];
-      std::ranges::fill(to.closed, ClosedSum{0});
-      continue;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      CompensatedSum closed{sums.sum[values + c], sums.lost[values + c]};
+      to.open[c] = sums.open[values + c];
+      if (in_first_chunk && closed.sum != 0) {
+        to.open[c] += closed.sum + closed.lost;
+        closed = {};
+      }
+      if (!to.closed.empty()) to.closed[c] = std::bit_cast<ClosedSum>(closed);
     }
-    for (std::size_t c = 0; c < to.closed.size(); ++c)
-      to.closed[c] = std::bit_cast<ClosedSum>(CompensatedSum{sums.sum[values + c], sums.lost[values + c]});
   }
 }
 

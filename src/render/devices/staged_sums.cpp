@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -10,7 +11,7 @@ namespace kiloband {
 namespace {
 
 /// What the blocks lie in.
-PixelRect hull_of(const SpectralFilm& film, const std::vector<uint32_t>& blocks) {
+PixelRect hull_of(const SpectralFilm& film, std::span<const uint32_t> blocks) {
   uint32_t x0 = ~0u, y0 = ~0u, x1 = 0, y1 = 0;
   for (const uint32_t b : blocks) {
     const PixelRect& block = film.blocks()[b];
@@ -20,9 +21,20 @@ PixelRect hull_of(const SpectralFilm& film, const std::vector<uint32_t>& blocks)
   return {x0, y0, x1 - x0, y1 - y0};
 }
 
+/// How many of the first blocks go together: those that fill at least half of what they lie in.
+std::size_t compact_blocks(const SpectralFilm& film, std::span<const uint32_t> blocks) {
+  std::size_t pixels = 0, number = 0;
+  while (number < blocks.size()) {
+    pixels += film.blocks()[blocks[number]].pixels();
+    if (hull_of(film, blocks.first(number + 1)).pixels() > 2 * pixels) break;
+    ++number;
+  }
+  return number;
+}
+
 /// The numbers that `blocks` of a film have in another, which covers them.
 std::vector<uint32_t> numbers_in(const SpectralFilm& other, const SpectralFilm& film,
-                                 const std::vector<uint32_t>& blocks) {
+                                 std::span<const uint32_t> blocks) {
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> at;
   for (uint32_t b = 0; b < other.blocks().size(); ++b) at[{other.blocks()[b].x0, other.blocks()[b].y0}] = b;
   std::vector<uint32_t> numbers;
@@ -48,15 +60,10 @@ void add_block(const SpectralFilm& from, uint32_t source, SpectralFilm& to, uint
   to.set_attempted(range.replicate, target, attempted);
 }
 
-}  // namespace
-
-std::size_t staged_bytes_of_block(std::size_t channels) {
-  return std::size_t{kBlockSize} * kBlockSize * channels * 4 * sizeof(float);
-}
-
-void render_staged(Backend& backend, const SumRule& rule, SpectralFilm& film, const SampleRange& range,
-                   const std::vector<uint32_t>& blocks, const std::atomic<bool>& stop,
-                   const std::function<void(uint64_t)>& progress) {
+/// By way of a film of what the blocks lie in.
+void render_through(Backend& backend, const SumRule& rule, SpectralFilm& film, const SampleRange& range,
+                    std::span<const uint32_t> blocks, const std::atomic<bool>& stop,
+                    const std::function<void(uint64_t)>& progress) {
   FilmOptions options;
   options.channels = film.options().channels;
   options.replicates = film.options().replicates;
@@ -74,6 +81,22 @@ void render_staged(Backend& backend, const SumRule& rule, SpectralFilm& film, co
   }
   backend.render(own, range, numbers, stop, progress);
   for (std::size_t i = 0; i < blocks.size(); ++i) add_block(own, numbers[i], film, blocks[i], range);
+}
+
+}  // namespace
+
+std::size_t staged_bytes_of_block(std::size_t channels) {
+  return std::size_t{kBlockSize} * kBlockSize * channels * 4 * sizeof(float);
+}
+
+void render_staged(Backend& backend, const SumRule& rule, SpectralFilm& film, const SampleRange& range,
+                   const std::vector<uint32_t>& blocks, const std::atomic<bool>& stop,
+                   const std::function<void(uint64_t)>& progress) {
+  for (std::span<const uint32_t> left = blocks; !left.empty();) {
+    const std::span<const uint32_t> some = left.first(compact_blocks(film, left));
+    render_through(backend, rule, film, range, some, stop, progress);
+    left = left.subspan(some.size());
+  }
 }
 
 }  // namespace kiloband
