@@ -61,6 +61,7 @@ Spectrum read_ecostress(const std::filesystem::path& file, std::string_view text
   const WavelengthAxis axis = wavelength_axis(file, first_column(table), table.lines, *unit);
   const ValueScale scale = scale_of_name(file.string(), header.y_units, kind, sink);
   report_assumed_units(table, true, scale, kind, sink);
+  report_small_percents(table, 1, scale, sink);
   return column_spectrum(table, axis, 1, scale);
 }
 
@@ -149,6 +150,7 @@ Spectrum read_spectrum_file(const std::filesystem::path& file, ValueKind kind, c
   const auto unit = stated_wavelength_unit(table);
   const ValueScale scale = scale_of_column(table, 1, kind, sink);
   report_assumed_units(table, unit.has_value(), scale, kind, sink);
+  report_small_percents(table, 1, scale, sink);
   return column_spectrum(table, axis_in(table, unit), 1, scale);
 }
 
@@ -164,6 +166,7 @@ std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::file
   std::vector<std::pair<std::string, Spectrum>> result;
   for (std::size_t column = 1; column < table.columns; ++column) {
     const ValueScale scale = scale_of_column(table, column, ValueKind::kAny, sink);
+    report_small_percents(table, column, scale, sink);
     result.emplace_back(names[column - 1], column_spectrum(table, axis, column, scale));
     check_response(file, result.back().first, result.back().second);
   }

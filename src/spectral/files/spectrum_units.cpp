@@ -137,18 +137,4 @@ std::optional<WavelengthUnit> find_unit_in_comment(std::string_view comment) {
   return first_unit(all);
 }
 
-bool says_percent(std::string_view name) {
-  return name.find('%') != std::string_view::npos || lowered(name).find("percent") != std::string::npos;
-}
-
-bool comment_says_percent(std::string_view comment) {
-  constexpr std::array kQuantities = {"reflectance",    "reflectivity", "transmittance", "transmission",
-                                      "transmissivity", "emissivity",   "absorptance",   "value",
-                                      "values",         "unit",         "units",         "y"};
-  if (!says_percent(comment)) return false;
-  const std::vector<std::string> all = words(comment);
-  return all.size() <= 3 ||
-         std::any_of(all.begin(), all.end(), [&](const auto& w) { return is_one_of(w, kQuantities); });
-}
-
 }  // namespace kiloband

@@ -37,9 +37,4 @@ std::optional<std::string> find_foreign_unit(std::string_view text);
 /// (or precede it, or stand in a comment of at most three words). mm, cm and m are not looked for.
 std::optional<WavelengthUnit> find_unit_in_comment(std::string_view comment);
 
-/// Whether a column's name says percent.
-bool says_percent(std::string_view name);
-/// Whether a comment says that values are in percent.
-bool comment_says_percent(std::string_view comment);
-
 }  // namespace kiloband

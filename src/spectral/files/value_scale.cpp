@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "spectral/files/percent.hpp"
 #include "spectral/files/text_table.hpp"
 #include "spectral/files/value_units.hpp"
 
@@ -21,7 +22,7 @@ bool is_power(ValueKind kind) {
 }
 
 ValueScale percent_scale(bool percent) {
-  return percent ? ValueScale{kFromPercent, false, true} : ValueScale{};
+  return percent ? ValueScale{kFromPercent, false, true, true} : ValueScale{};
 }
 
 std::optional<ValueScale> absorption_scale(const std::string& where, std::string_view text) {
@@ -166,6 +167,17 @@ void report_assumed_units(const NumberTable& table, bool wavelength_is_stated, c
   if (!message.empty())
     note(sink, position,
          message + ": the file states no unit" + (wavelength_is_open && value_is_open ? "s" : ""));
+}
+
+void report_small_percents(const NumberTable& table, std::size_t column, const ValueScale& scale,
+                           const DiagnosticSink& sink) {
+  if (!scale.is_percent) return;
+  double largest = 0;
+  for (const double value : finite_column(table, column)) largest = std::max(largest, value);
+  if (largest <= 0 || largest > 1) return;
+  warn(sink, {table.file.string(), 0, 0},
+       "values up to " + format_number(largest) + " are read as percent, as the file states: up to " +
+           format_number(largest * scale.factor));
 }
 
 Spectrum column_spectrum(const NumberTable& table, const WavelengthAxis& axis, std::size_t column,

@@ -25,6 +25,7 @@ struct ValueScale {
   double factor = 1;
   bool per_wavenumber = false;  // times 1e7 / lambda^2: from an interval of 1 cm-1 to one of 1 nm
   bool is_stated = false;
+  bool is_percent = false;
 };
 
 /// What the text of a column's name (or of an ECOSTRESS header) says.
@@ -41,6 +42,10 @@ ValueScale scale_of_column(const NumberTable& table, std::size_t column, ValueKi
 /// One note (a warning for wavelengths below 100) about what the file leaves open.
 void report_assumed_units(const NumberTable& table, bool wavelength_is_stated, const ValueScale& scale,
                           ValueKind kind, const DiagnosticSink& sink);
+
+/// A warning where the file states percent and has fractions: no value above 1.
+void report_small_percents(const NumberTable& table, std::size_t column, const ValueScale& scale,
+                           const DiagnosticSink& sink);
 
 /// Column `column` of the table in our units over the axis.
 /// throws InputError  "file:line: value nan: must be finite"

@@ -178,6 +178,51 @@ TEST(ValueUnits, WrongOnesHaveTheirMessages) {
   }
 }
 
+// Shares of other things in a name or a comment divided the values by 100.
+TEST(ValueUnits, PercentIsAUnitOnlyWhereItIsOne) {
+  const auto scale = [](const std::string& header) {
+    return read(header + "\n400,40\n500,50\n", ValueKind::kAny).spectrum(400) / 40;
+  };
+  for (const char* header : {"nm,%",
+                             "nm,percent",
+                             "nm,R (%)",
+                             "nm,grass [percent]",
+                             "nm,leaf_percent",
+                             "nm,leaf %",
+                             "nm,%R",
+                             "nm,Reflectance, %",
+                             "nm,percent reflectance",
+                             "nm,reflectance % of a white panel",
+                             "nm,in percent",
+                             "wavelength;R\nnm;%",
+                             "Wavelength nm   Reflectance %",
+                             "# reflectance in percent",
+                             "# %",
+                             "# units: %",
+                             "# values are given in percent",
+                             "# wavelength (nm), reflectance (%)",
+                             "# column 2: % reflectance",
+                             "# Y Units: Reflectance (percentage)"})
+    EXPECT_DOUBLE_EQ(scale(header), 0.01) << header;
+  for (const char* header :
+       {"# Reflectance of loam, 15 % moisture", "# reflectance, 95 % confidence", "nm,soil 10% moisture",
+        "# values: reflectance factor, 99 % Spectralon panel", "nm,R at 50% RH",
+        "nm,reflectance (0-1, not %)", "nm,reflectance not in %", "# reflectance of a 50% reflectance panel",
+        "# humidity (%): 40", "# moisture in percent: 12.5", "# reflectance of a ten percent grey",
+        "nm,soil_10_percent"})
+    EXPECT_EQ(scale(header), 1) << header;
+}
+
+TEST(ValueUnits, FractionsThatAreStatedAsPercentAreWarnedOf) {
+  using Texts = std::vector<std::string>;
+  const Reading fractions = read("nm,reflectance [%]\n400,0.25\n500,0.5\n", ValueKind::kPlain);
+  EXPECT_DOUBLE_EQ(fractions.spectrum(500), 0.005);
+  EXPECT_EQ(fractions.messages,
+            Texts{"warning: values up to 0.5 are read as percent, as the file states: up to 0.005"});
+  EXPECT_EQ(read("nm,reflectance [%]\n400,0.25\n500,1.5\n", ValueKind::kPlain).messages, Texts{});
+  EXPECT_EQ(read("nm,reflectance [%]\n400,0\n500,0\n", ValueKind::kPlain).messages, Texts{});
+}
+
 // Prose in comments is no unit of the values.
 TEST(ValueUnits, OtherComments) {
   const auto read_radiance = [](const std::string& comment) {
