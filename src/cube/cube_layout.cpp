@@ -128,16 +128,11 @@ ChannelList channels_from_centres(const std::vector<double>& centres_nm, const s
   for (std::size_t i = 0; i < order.size(); ++i) {
     const double centre = centres_nm[order[i]];
     const bool first = i == 0, last = i + 1 == order.size();
-    double below = first ? 0 : 0.5 * (centre - centres_nm[order[i - 1]]);
-    double above = last ? 0 : 0.5 * (centres_nm[order[i + 1]] - centre);
-    if (order.size() == 1)
-      below = above = 0.5;
-    else if (first)
-      below = above;
-    else if (last)
-      above = below;
-    channels[order[i]] = {centre - below, centre + above, ""};
-    if (!(below > 0 && above > 0) || !(centre - below > 0))
+    const double below = first ? HUGE_VAL : 0.5 * (centre - centres_nm[order[i - 1]]);
+    const double above = last ? HUGE_VAL : 0.5 * (centres_nm[order[i + 1]] - centre);
+    const double half = order.size() == 1 ? 0.5 : std::min(below, above);
+    channels[order[i]] = {centre - half, centre + half, ""};
+    if (!(half > 0) || !(centre - half > 0))
       throw InputError(where + ": band centre " + format_number(centre) +
                        " nm: intervals can only follow from centres that are distinct and positive");
   }

@@ -100,8 +100,9 @@ std::unique_ptr<CubeWriter> create_envi_writer(const std::filesystem::path& file
 std::unique_ptr<CubeReader> open_exr_cube(const std::filesystem::path& file, const DiagnosticSink& sink);
 std::unique_ptr<CubeReader> open_envi_cube(const std::filesystem::path& file, const DiagnosticSink& sink);
 
-/// Where bands have centres only: each reaches to the middles between it and its neighbours, the outer ones
-/// as far outwards as inwards; a single band is 1 nm wide. The order of the centres (nm, distinct) is free.
+/// Where bands have centres only: each reaches to the middle between it and its nearer neighbour, and as far
+/// on its other side, so that its centre is the one that was given; a single band is 1 nm wide. Between
+/// centres that are not equidistant gaps stay. The order of the centres (nm, distinct) is free.
 /// throws InputError  equal centres; the message begins with `where`
 ChannelList channels_from_centres(const std::vector<double>& centres_nm, const std::string& where);
 

@@ -61,14 +61,15 @@ void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity q
 void convert_cube(const std::filesystem::path& in, const std::filesystem::path& out,
                   const CubeSelection& selection, const DiagnosticSink& sink) {
   const bool exr = lowered_extension(out) == ".exr";
-  const Quantity quantity = selection.quantity.value_or(exr ? Quantity::kDensity : Quantity::kIntegral);
   CubeSelection part = selection;
   part.quantity.reset();  // converted once, by the writer
   // Only sums need the replicates: single channels bring their variances along.
   const auto source =
       part.rebin ? with_replicate_variance(select_from_cube(open_replicated_cube(in, sink), part, sink))
                  : select_from_cube(open_cube(in, sink), part, sink);
-  write_cube(*source, out, quantity, sink);
+  // Densities may be reflectances, and their bands guesses: nothing multiplies them unasked.
+  const Quantity kept = exr ? Quantity::kDensity : source->info().quantity;
+  write_cube(*source, out, selection.quantity.value_or(kept), sink);
 }
 
 }  // namespace kiloband

@@ -61,7 +61,7 @@ void write_cube(CubeReader& source, const std::filesystem::path& out, Quantity q
                 const DiagnosticSink& sink = {});
 
 /// Opens a cube with its replicates if there are any, select_from_cube, write_cube. Without
-/// selection.quantity, EXR gets densities and ENVI integrals.
+/// selection.quantity, EXR gets densities and ENVI what the source holds.
 /// Sums of channels have the variance that the replicates give.
 void convert_cube(const std::filesystem::path& in, const std::filesystem::path& out,
                   const CubeSelection& selection, const DiagnosticSink& sink = {});

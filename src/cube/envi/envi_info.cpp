@@ -42,7 +42,7 @@ std::vector<Band> index_bands(const EnviHeader& header, std::size_t count, const
   return bands;
 }
 
-/// Centres with widths, or with bounds half-way to the neighbours, or names only.
+/// Centres with widths, or with bounds half-way to the nearer neighbours, or names only.
 std::vector<Band> foreign_bands(const EnviHeader& header, std::size_t count, const DiagnosticSink& sink) {
   std::vector<double> centres = header.numbers("wavelength", count), widths = header.numbers("fwhm", count);
   const double unit = centres.empty() ? 0 : wavelength_unit(header, centres, sink);
@@ -50,7 +50,8 @@ std::vector<Band> foreign_bands(const EnviHeader& header, std::size_t count, con
   for (double& centre : centres) centre *= unit;
   std::vector<Band> bands(count);
   if (widths.empty()) {
-    note(sink, {header.file().string()}, "no fwhm: bands are taken to reach half-way to their neighbours");
+    note(sink, {header.file().string()},
+         "no fwhm: bands are taken to reach half-way to their nearer neighbours");
     const ChannelList channels = channels_from_centres(centres, header.where(*header.find("wavelength")));
     for (std::size_t k = 0; k < count; ++k) bands[k].channel = channels[k];
     return bands;

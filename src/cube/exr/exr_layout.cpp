@@ -87,7 +87,7 @@ std::vector<ForeignBand> find_spectral_channels(const Imf::Header& header, const
   return bands;
 }
 
-/// Bounds from sensitivities where there are any, otherwise half-way to the neighbours.
+/// Bounds from sensitivities where there are any, otherwise half-way to the nearer neighbours.
 void read_foreign_bands(const Imf::Header& header, ExrLayout& layout, const std::string& where,
                         const DiagnosticSink& sink) {
   layout.means.clear();
@@ -111,7 +111,8 @@ void read_foreign_bands(const Imf::Header& header, ExrLayout& layout, const std:
   }
   if (shaped)
     warn(sink, {where}, "sensitivities are not constant over their bands: only their ranges are used");
-  if (guessed) note(sink, {where}, "no sensitivities: bands are taken to reach half-way to their neighbours");
+  if (guessed)
+    note(sink, {where}, "no sensitivities: bands are taken to reach half-way to their nearer neighbours");
 }
 
 /// The bands of a file by Mitsuba 3's specfilm, which states neither wavelengths nor units: channels have the

@@ -117,6 +117,15 @@ TEST_F(EnviHeaderText, CentresInAnyOrderGiveMiddles) {
   EXPECT_TRUE(messages.contain("half-way"));
 }
 
+TEST_F(EnviHeaderText, UnevenCentresStay) {
+  const auto cube = open(4, "wavelength units = nm\nwavelength = {865, 945, 1610, 2190}\n");
+  const double centres[] = {865, 945, 1610, 2190}, half_widths[] = {40, 40, 290, 290};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(cube->info().bands[k].channel.centre_nm(), centres[k]);
+    EXPECT_EQ(cube->info().bands[k].channel.width_nm(), 2 * half_widths[k]);
+  }
+}
+
 TEST_F(EnviHeaderText, MissingUnitsAreGuessedAloud) {
   EXPECT_EQ(open(1, "wavelength = {10.5}\nfwhm = {1}\n")->info().bands[0].channel.min_nm, 10000);
   EXPECT_TRUE(messages.contain("taken as micrometers (all are below 100)"));

@@ -99,12 +99,34 @@ TEST_F(Convert, DensitiesAreCopiedWithoutRounding) {
   EXPECT_EQ(count_differences(copy.mean, read_cube(in).mean), 0u);
 }
 
-TEST_F(Convert, TheFormatDecidesTheQuantity) {
+/// Reflectances of others, which state no quantity, were multiplied by widths that were guessed.
+TEST_F(Convert, DensitiesAreMultipliedOnlyIfAsked) {
   const auto in = write(whole_numbers(), "a.hdr");
   const Cube density = converted(in, "b.exr");
   EXPECT_EQ(density.info.quantity, Quantity::kDensity);
   EXPECT_EQ(density.mean[17], 1.7f);
-  EXPECT_EQ(converted(folder / "b.exr", "c.hdr").mean[17], 17);
+  const Cube kept = converted(folder / "b.exr", "c.hdr");
+  EXPECT_EQ(kept.info.quantity, Quantity::kDensity);
+  EXPECT_EQ(kept.mean[17], 1.7f);
+  CubeSelection integral;
+  integral.quantity = Quantity::kIntegral;
+  EXPECT_EQ(converted(folder / "b.exr", "d.hdr", integral).mean[17], 17);
+  EXPECT_EQ(converted(in, "e.hdr").mean[17], 17);
+}
+
+/// Centres of bands without widths moved to the middle between the neighbours.
+TEST_F(Convert, UnevenCentresOfOthersStay) {
+  const std::string size = "ENVI\nsamples = 1\nlines = 1\nbands = 5\ndata type = 4\ninterleave = bip\n";
+  folder.write("s.hdr", size +
+                            "byte order = 0\nwavelength units = Nanometers\n"
+                            "wavelength = {442.7, 492.4, 559.8, 664.6, 1613.7}\n");
+  const float values[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f};
+  folder.write("s.img", std::string(reinterpret_cast<const char*>(values), sizeof values));
+  const Cube cube = converted(folder / "s.hdr", "t.hdr");
+  EXPECT_EQ(cube.mean, std::vector<float>(std::begin(values), std::end(values)));
+  const std::string header = read_file(folder / "t.hdr");
+  EXPECT_NE(header.find("wavelength = {442.7, 492.4, 559.8, 664.6, 1613.7}"), std::string::npos) << header;
+  EXPECT_NE(header.find("band names = {442.7nm, 492.4nm, 559.8nm, 664.6nm, 1613.7nm}"), std::string::npos);
 }
 
 TEST_F(Convert, BandsAreChosenByIndexAndWavelength) {
@@ -143,6 +165,7 @@ TEST_F(Convert, CoarseChannelsAreSumsOfIntegrals) {
   const Cube cube = whole_numbers();
   CubeSelection selection;
   selection.rebin = ChannelList{{400, 430, ""}, {470, 480, "last"}, {430, 470, ""}};
+  selection.quantity = Quantity::kIntegral;
   for (const char* name : {"a.hdr", "a.exr"}) {  // integrals and densities
     Cube stored = cube;
     stored.info.quantity = std::string(name) == "a.exr" ? Quantity::kDensity : Quantity::kIntegral;
