@@ -7,6 +7,7 @@
 
 #include "app/commands.hpp"
 #include "app/console/messages.hpp"
+#include "app/console/output_files.hpp"
 #include "app/options/render_options.hpp"
 #include "app/options/signature_options.hpp"
 #include "cube/cube_io.hpp"
@@ -29,10 +30,31 @@ WavelengthRange parse_range(const std::string& text) {
   return {one.front().min_nm, one.front().max_nm};
 }
 
+bool is_file(const std::string& value) {
+  std::error_code unknown;  // a list that is longer than names can be
+  return std::filesystem::is_regular_file(value, unknown);
+}
+
 /// The option's value, or what stands in the file that it names.
 std::string text_or_file(const std::string& value) {
-  std::error_code unknown;  // a list that is longer than names can be
-  return std::filesystem::is_regular_file(value, unknown) ? read_text_file(value) : value;
+  return is_file(value) ? read_text_file(value) : value;
+}
+
+bool is_table(const ConvertOptions& options) {
+  return lowered_extension(options.out) == ".csv";
+}
+
+OutputFiles output_files(const ConvertOptions& options) {
+  OutputFiles files;
+  files.inputs = options.places.inputs();
+  files.inputs.push_back({"the cube", options.in});
+  if (options.wavelengths && is_file(*options.wavelengths))
+    add_inputs(files, "--wavelengths", {*options.wavelengths});
+  if (is_table(options))
+    files.others.push_back({"OUT", options.out});
+  else
+    files.cubes.emplace_back(options.out);
+  return files;
 }
 
 CubeSelection selection_of(const ConvertOptions& options, const CubeInfo& info) {
@@ -53,7 +75,8 @@ int convert(const ConvertOptions& options) {
   const CubeInfo info = open_cube(options.in)->info();
   check_holds_radiances(options.in, info);
   CubeSelection selection = selection_of(options, info);
-  if (lowered_extension(out) != ".csv") {
+  check_output_files(output_files(options));
+  if (!is_table(options)) {
     if (options.places.any())
       throw InputError("--pixel, --region and --signature write CSV: the output must end in .csv");
     convert_cube(options.in, out, selection, sink);

@@ -49,6 +49,8 @@ uint32_t default_replicates(const RenderOptions& options) {
 OutputFiles output_files(const RenderOptions& options) {
   OutputFiles files;
   files.inputs = {{"the scene", options.scene.scene}};
+  add_inputs(files, "--response", options.responses);
+  if (options.scene.bands_file) add_inputs(files, "--bands-file", {*options.scene.bands_file});
   for (const std::string& output : options.outputs) files.cubes.emplace_back(output);
   if (files.cubes.empty())
     files.cubes.push_back(std::filesystem::path(options.scene.scene).stem().string() + ".exr");

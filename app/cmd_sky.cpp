@@ -1,6 +1,7 @@
 // kiloband sky OUT: a clear sky from 0.38 to 20 um as a spectral environment map.
 #include <fmt/core.h>
 
+#include <fstream>
 #include <map>
 #include <memory>
 
@@ -16,6 +17,7 @@ namespace kiloband {
 namespace {
 
 constexpr uint32_t kRowsAtOnce = 32;
+constexpr std::string_view kSunComment = "<!-- The sun of ";
 
 struct SkyOptions {
   std::string out, size = "512x257";
@@ -105,7 +107,7 @@ std::string sun_spectrum(const SkyMap& map) {
 void write_sun(const SkyOptions& options, const SkyMap& map) {
   const std::string scene = fmt::format(
       R"(<?xml version="1.0" encoding="utf-8"?>
-<!-- The sun of {}, which is without it: include this file where the map is used.
+{}{}, which is without it: include this file where the map is used.
      A map that is turned by its to_world has its sun turned by the same steps at the end of this one. -->
 <scene version="3.0.0">
   <emitter type="directional">
@@ -118,8 +120,8 @@ void write_sun(const SkyOptions& options, const SkyMap& map) {
   </emitter>
 </scene>
 )",
-      std::filesystem::path(options.out).filename().string(), kSunRadiusDeg, options.sky.sun_elevation_deg,
-      -options.sky.sun_azimuth_deg, sun_spectrum(map));
+      kSunComment, std::filesystem::path(options.out).filename().string(), kSunRadiusDeg,
+      options.sky.sun_elevation_deg, -options.sky.sun_azimuth_deg, sun_spectrum(map));
   write_file_atomically(*options.sun, scene);
   tell("wrote {}\n", *options.sun);
 }
@@ -137,12 +139,26 @@ void report(const SkyMap& map) {
        map.bands().size(), direct, diffuse, thermal);
 }
 
+/// The option names an output: a scene of the user's in its place is a mistake.
+void check_sun_file(const std::string& sun) {
+  if (!std::filesystem::is_regular_file(sun)) return;
+  std::ifstream file(sun);
+  std::string first, second;
+  std::getline(std::getline(file, first), second);
+  if (!second.starts_with(kSunComment))
+    throw InputError(fmt::format(
+        "--sun {}: would replace a file that kiloband sky has not written: remove it, or choose another name",
+        sun));
+}
+
 int sky(const SkyOptions& options) {
   OutputFiles files;
+  if (options.bands_file) add_inputs(files, "--bands-file", {*options.bands_file});
   files.cubes.emplace_back(options.out);
   files.preview = options.preview;
   if (options.sun) files.others.push_back({"--sun", *options.sun});
   check_output_files(files);
+  if (options.sun) check_sun_file(*options.sun);
   if (options.sun && !(options.sky.sun_elevation_deg > 0))
     throw InputError(fmt::format("--sun with --elevation {}: the sun is not above the horizon",
                                  options.sky.sun_elevation_deg));

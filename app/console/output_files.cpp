@@ -55,6 +55,10 @@ void claim_cube(Claims& claims, const std::filesystem::path& cube) {
 
 }  // namespace
 
+void add_inputs(OutputFiles& files, const std::string& option, const std::vector<std::string>& names) {
+  for (const std::string& name : names) files.inputs.push_back({"the file of " + option, name});
+}
+
 void check_output_files(const OutputFiles& files) {
   Claims claims(files.inputs);
   for (const auto& cube : files.cubes) {

@@ -108,6 +108,13 @@ void PlaceOptions::add_to(CLI::App& command) {
       "distance of the object in metres (default: from the auxiliary image 'depth')");
 }
 
+std::vector<NamedFile> PlaceOptions::inputs() const {
+  std::vector<NamedFile> files;
+  for (const std::string& mask : masks) files.push_back({"the file of --mask", mask});
+  if (background) files.push_back({"the file of --background", *background});
+  return files;
+}
+
 void write_places(const PlaceOptions& options, const std::filesystem::path& file, const CubeChange& change,
                   const std::filesystem::path& out, const DiagnosticSink& sink) {
   ReplicatedCube cube = change(open_replicated_cube(file, sink));

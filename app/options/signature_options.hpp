@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/console/output_files.hpp"
 #include "post/signature.hpp"
 
 namespace kiloband {
@@ -27,6 +28,8 @@ struct PlaceOptions {
 
   void add_to(CLI::App& command);
   bool any() const { return signature || !pixels.empty() || !regions.empty(); }
+  /// The files that the options read.
+  std::vector<NamedFile> inputs() const;
 };
 
 /// Changes a cube as the command does before anything is measured.

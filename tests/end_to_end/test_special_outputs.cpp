@@ -154,6 +154,40 @@ TEST(SpecialOutputs, SensorAndCompareCheckTheirOutputs) {
           "-o ./a.exr: another output has this name");
   refused({"compare", "box.hdr", "box.hdr", "--paired", "--json", "box.hdr"},
           "--json box.hdr: would replace A");
+  refused({"sensor", "box.hdr", "--response", "xyz", "-o", "box.hdr"}, "-o box.hdr: would replace the cube");
+}
+
+/// Bands, responses, masks and backgrounds were overwritten by outputs of the same name.
+TEST(SpecialOutputs, WhatIsReadStays) {
+  const TemporaryFolder folder;
+  render_box(folder);
+  folder.write("r.csv", "wavelength_nm,r\n400,1\n700,1\n");
+  folder.write("bands.csv", "400,500\n500,600\n");
+  folder.write("field.xml", complete_scene(""));
+  const Names region{"--signature", "--region", "0,0,2,2"};
+  const auto refused = [&](Names arguments, const Names& more, const std::string& message) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(folder, arguments);
+    EXPECT_EQ(outcome.code, 2) << message;
+    EXPECT_EQ(outcome.err, "kiloband: " + message + "\n");
+  };
+  refused({"sensor", "box.hdr", "--response", "r.csv", "-o", "r.csv"}, region,
+          "-o r.csv: would replace the file of --response");
+  refused(
+      {"sensor", "box.hdr", "--response", "r.csv", "-o", "t.csv", "--background", "b.hdr", "--mask", "t.csv"},
+      region, "-o t.csv: would replace the file of --mask");
+  refused({"convert", "box.hdr", "b.csv", "--background", "b.csv"}, region,
+          "OUT b.csv: would replace the file of --background");
+  refused({"convert", "box.hdr", "box.hdr", "--select", "0"}, {}, "-o box.hdr: would replace the cube");
+  refused({"render", "field.xml", "--bands-file", "bands.csv", "--stats", "bands.csv"}, {},
+          "--stats bands.csv: would replace the file of --bands-file");
+  refused({"render", "field.xml", "--response", "r.csv", "--stats", "r.csv"}, {},
+          "--stats r.csv: would replace the file of --response");
+  refused({"sky", "a.exr", "--bands-file", "bands.csv", "--preview", "bands.csv"}, {},
+          "--preview bands.csv: would replace the file of --bands-file");
+  refused({"sky", "a.exr", "--sun", "field.xml"}, {},
+          "--sun field.xml: would replace a file that kiloband sky has not written: remove it, or choose "
+          "another name");
 }
 
 }  // namespace
