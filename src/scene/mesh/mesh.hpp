@@ -47,7 +47,7 @@ struct MeshOptions {
 
 // All readers check everything against the file's size before they allocate, accept only finite numbers and
 // indices in range, and drop no triangle. Polygons are split into a fan around their first corner, as Mitsuba
-// does. Common to all of them:
+// does, or where that would fold by cutting ears off (polygon.hpp). Common to all of them:
 // - zero-area triangles are reported once per file with their count as a warning; a mesh without a triangle
 //   of positive area is an error (area: the cross product of two edges in double precision, compared with 0);
 // - OBJ, PLY and serialized meshes without vertex normals get compute_vertex_normals() unless face_normals is
@@ -58,7 +58,7 @@ struct MeshOptions {
 // throws InputError  "file: ...", "file:line: ..." for text, "file: byte N: ..." (0-based) for binary data
 
 /// Wavefront OBJ. Lines read: v (x y z, further numbers such as w or r g b are checked and ignored), vt (u v
-/// [w]), vn, f; ignored: empty, #, mtllib, usemtl, g, o, s, l, p; any other keyword is an error. Indices
+/// [w]), vn, f; ignored: empty, #, mtllib, usemtl (a note if there are several), g, o, s, l, p; any other keyword is an error. Indices
 /// refer to lines above and start at 1; relative (negative) ones are refused, as by Mitsuba. A vertex is a
 /// distinct index tuple (position, uv, normal), in order of first use: equal positions on different lines are
 /// never merged, so neither are normals smoothed over them.
@@ -66,7 +66,8 @@ Mesh read_obj(const std::filesystem::path& file, const MeshOptions& options, con
 
 /// PLY 1.0: ascii, binary_little_endian, binary_big_endian, every scalar type by its old and new name.
 /// Element vertex: x y z, nx ny nz, texture coordinates u v or texture_u texture_v or s t, the rest goes to
-/// vertex_attributes (lists are skipped). Element face: list vertex_indices or vertex_index, numbers go to face_attributes. Element
+/// vertex_attributes (lists are skipped with a note). Element face: list vertex_indices or vertex_index, numbers go to face_attributes; list
+/// texcoord, two numbers for each corner, takes the place of the vertices' texture coordinates (corner_uvs.hpp). Element
 /// tristrips: the same list
 /// of triangle strips one after another, -1 between them. Other elements are skipped with a note.
 Mesh read_ply(const std::filesystem::path& file, const MeshOptions& options, const DiagnosticSink& sink = {});

@@ -1,8 +1,10 @@
 // Wavefront OBJ: the subset that mesh.hpp states, in one pass over the lines.
 #include <charconv>
+#include <set>
 #include <unordered_map>
 
 #include "scene/mesh/finish.hpp"
+#include "scene/mesh/polygon.hpp"
 #include "scene/mesh/text.hpp"
 
 namespace kiloband {
@@ -54,6 +56,10 @@ class ObjReader {
   std::vector<Corner> vertices_;  // distinct corners in order of first use
   std::unordered_map<Corner, uint32_t, CornerHash> vertex_of_;
   std::vector<std::array<uint32_t, 3>> triangles_;
+  std::vector<uint32_t> ids_;  // of the face that is being read
+  std::vector<Vec3f> points_;
+  PolygonCutter cutter_;
+  std::set<std::string, std::less<>> materials_;  // names of usemtl
 };
 
 Mesh ObjReader::read() {
@@ -62,6 +68,11 @@ Mesh ObjReader::read() {
     ++line_;
     read_line(take_line(rest));
   }
+  cutter_.report(file_, sink_);
+  if (materials_.size() > 1)
+    note(sink_, {file_.name},
+         std::to_string(materials_.size()) +
+             " materials (usemtl) are ignored: the shape has one bsdf for all");
   Mesh mesh = assemble();
   finish_mesh(mesh, file_, options_, sink_);
   return mesh;
@@ -80,8 +91,10 @@ void ObjReader::read_line(std::string_view line) {
     if (options_.flip_tex_coords) uvs_.back()[1] = 1.0f - uvs_.back()[1];
   } else if (keyword == "f") {
     read_face(tokens);
+  } else if (keyword == "usemtl") {
+    materials_.emplace(tokens.next());
   } else {
-    for (const char* ignored : {"mtllib", "usemtl", "g", "o", "s", "l", "p"}) {
+    for (const char* ignored : {"mtllib", "g", "o", "s", "l", "p"}) {
       if (keyword == ignored) return;
     }
     fail("unknown keyword " + quote_text(keyword));
@@ -110,15 +123,14 @@ std::array<float, N> ObjReader::numbers(LineTokens tokens, std::string_view keyw
 }
 
 void ObjReader::read_face(LineTokens tokens) {
-  uint32_t first = 0, last = 0;
-  size_t count = 0;
-  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next(), ++count) {
-    const uint32_t id = vertex(corner(token));
-    if (count == 0) first = id;
-    if (count >= 2) triangles_.push_back({first, last, id});
-    last = id;
+  ids_.clear();
+  points_.clear();
+  for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
+    ids_.push_back(vertex(corner(token)));
+    points_.push_back(positions_[vertices_[ids_.back()].position - 1]);
   }
-  if (count < 3) fail("f: " + std::to_string(count) + " corners, must be at least 3");
+  if (ids_.size() < 3) fail("f: " + std::to_string(ids_.size()) + " corners, must be at least 3");
+  for (const auto& [a, b, c] : cutter_.cut(points_)) triangles_.push_back({ids_[a], ids_[b], ids_[c]});
 }
 
 /// v, v/vt, v//vn or v/vt/vn; trailing slashes as in "1/1/" are written by some programs and mean nothing.

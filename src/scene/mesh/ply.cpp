@@ -1,6 +1,8 @@
 // The body of a PLY file: vertices and faces, whatever else is skipped.
+#include "scene/mesh/corner_uvs.hpp"
 #include "scene/mesh/finish.hpp"
 #include "scene/mesh/ply_source.hpp"
+#include "scene/mesh/polygon.hpp"
 
 namespace kiloband {
 namespace {
@@ -14,6 +16,21 @@ struct Slot {
 /// Triangle strips, as the scans of Stanford's repository have them.
 constexpr std::string_view kStrips = "tristrips";
 
+/// Texture coordinates of a face's corners, u v u v ..., as MeshLab writes them.
+constexpr std::string_view kCornerUvs = "texcoord";
+
+bool has_corner_uvs(const PlyElement& element) {
+  const int i = element.find(std::string(kCornerUvs));
+  return element.name == "face" && i >= 0 && element.properties[i].is_list;
+}
+
+/// What the body says of texture coordinates of corners, and of cut faces.
+struct PlyFaces {
+  std::vector<CornerUvs> uvs;  // by triangle; empty where the file has none
+  uint64_t without_uvs = 0;    // faces among others
+  PolygonCutter cutter;
+};
+
 std::string_view index_list(const PlyElement& element) {
   return element.find("vertex_indices") >= 0 ? "vertex_indices" : "vertex_index";
 }
@@ -22,8 +39,8 @@ std::string_view index_list(const PlyElement& element) {
 template <typename Source>
 class BodyReader {
  public:
-  BodyReader(const PlyHeader& header, Source source, Mesh& mesh)
-      : header_(header), source_(source), mesh_(mesh) {}
+  BodyReader(const PlyHeader& header, Source source, Mesh& mesh, PlyFaces& faces)
+      : header_(header), source_(source), mesh_(mesh), faces_(faces) {}
 
   void read() {
     for (const PlyElement& element : header_.elements) {
@@ -50,6 +67,8 @@ class BodyReader {
   std::vector<std::vector<float>*> face_slots();
   void read_faces();
   void read_polygon();
+  void read_corner_uvs();
+  void add_polygon();
   void read_strips();
   uint32_t read_index();
   uint32_t checked_index(double index) const;
@@ -66,6 +85,11 @@ class BodyReader {
   const PlyHeader& header_;
   Source source_;
   Mesh& mesh_;
+  PlyFaces& faces_;
+  bool with_uvs_ = false;          // the faces have texture coordinates
+  std::vector<uint32_t> corners_;  // of the face that is being read, as the next two
+  std::vector<Vec3f> points_;
+  std::vector<float> corner_uvs_;
   const PlyElement* element_ = nullptr;  // being read, as the next two
   uint64_t row_ = 0;
   const PlyProperty* property_ = nullptr;
@@ -149,19 +173,21 @@ void BodyReader<Source>::read_faces() {
   mesh_.triangles.reserve(mesh_.triangles.size() + element_->count);
   const std::vector<std::vector<float>*> slots = face_slots();
   std::vector<float> numbers(slots.size());
+  with_uvs_ = has_corner_uvs(*element_);
   for (row_ = 0; row_ < element_->count; ++row_) {
     for (size_t i = 0; i < slots.size(); ++i) {
       property_ = &element_->properties[i];
       if (slots[i]) {
         numbers[i] = read_number();
-      } else if (property_->name != list) {
-        skip_property();
-      } else if (element_->name == kStrips) {
-        read_strips();
+      } else if (property_->name == list) {
+        element_->name == kStrips ? read_strips() : read_polygon();
+      } else if (with_uvs_ && property_->name == kCornerUvs) {
+        read_corner_uvs();
       } else {
-        read_polygon();
+        skip_property();
       }
     }
+    if (element_->name != kStrips) add_polygon();
     for (size_t i = 0; i < slots.size(); ++i)
       if (slots[i]) slots[i]->resize(mesh_.triangles.size(), numbers[i]);
   }
@@ -171,12 +197,38 @@ template <typename Source>
 void BodyReader<Source>::read_polygon() {
   const uint64_t count = read_list_count();
   if (count < 3) fail(std::to_string(count) + " corners, must be at least 3");
-  const uint32_t first = read_index();
-  uint32_t last = read_index();
-  for (uint64_t i = 2; i < count; ++i) {
-    const uint32_t next = read_index();
-    mesh_.triangles.push_back({first, last, next});
-    last = next;
+  corners_.clear();
+  for (uint64_t i = 0; i < count; ++i) corners_.push_back(read_index());
+}
+
+template <typename Source>
+void BodyReader<Source>::read_corner_uvs() {
+  const uint64_t count = read_list_count();
+  corner_uvs_.clear();
+  for (uint64_t i = 0; i < count; ++i) corner_uvs_.push_back(read_number());
+}
+
+/// Cuts the face that has been read. Where faces stand before vertices, nothing but a fan is possible.
+template <typename Source>
+void BodyReader<Source>::add_polygon() {
+  points_.assign(corners_.size(), {});
+  for (size_t i = 0; i < corners_.size() && !mesh_.positions.empty(); ++i)
+    points_[i] = mesh_.positions[corners_[i]];
+  if (with_uvs_ && !corner_uvs_.empty() && corner_uvs_.size() != 2 * corners_.size()) {
+    property_ = &element_->properties[element_->find(std::string(kCornerUvs))];
+    fail(std::to_string(corner_uvs_.size()) + " numbers for " + std::to_string(corners_.size()) +
+         " corners, must be two for each");
+  }
+  if (with_uvs_ && corner_uvs_.empty()) {
+    ++faces_.without_uvs;
+    corner_uvs_.resize(2 * corners_.size());
+  }
+  for (const auto& [a, b, c] : faces_.cutter.cut(points_)) {
+    mesh_.triangles.push_back({corners_[a], corners_[b], corners_[c]});
+    if (!with_uvs_) continue;
+    CornerUvs& uvs = faces_.uvs.emplace_back();
+    for (size_t k = 0; const uint32_t corner : {a, b, c})
+      uvs[k++] = {corner_uvs_[2 * corner], corner_uvs_[2 * corner + 1]};
   }
 }
 
@@ -283,6 +335,29 @@ void note_skipped(const PlyHeader& header, const MeshFile& file, const Diagnosti
     note(sink, {file.name, static_cast<int>(element.line)},
          "element " + quote_text(element.name) + " is skipped");
   }
+  for (const PlyElement& element : header.elements)
+    for (const PlyProperty& property : element.properties) {
+      const bool is_face = element.name == "face" || element.name == kStrips;
+      const bool is_read = is_face && (property.name == index_list(element) || property.name == kCornerUvs);
+      if (property.is_list && !is_read && (is_face || element.name == "vertex"))
+        note(sink, {file.name, static_cast<int>(element.line)},
+             "list " + quote_text(property.name) + " of element " + quote_text(element.name) + " is skipped");
+    }
+}
+
+/// Corners of several pictures would be mixed without a word.
+void report_corner_uvs(const Mesh& mesh, const PlyFaces& faces, const MeshFile& file,
+                       const DiagnosticSink& sink) {
+  if (faces.without_uvs > 0)
+    warn(sink, {file.name},
+         std::to_string(faces.without_uvs) + " faces have no texture coordinates: (0, 0) is used");
+  const auto number = mesh.face_attributes.find("texnumber");
+  if (number == mesh.face_attributes.end()) return;
+  const auto others = std::ranges::count_if(number->second, [](float n) { return n > 0; });
+  if (others > 0)
+    warn(sink, {file.name},
+         std::to_string(others) + " of " + std::to_string(mesh.triangles.size()) +
+             " triangles have texture coordinates of a further picture (texnumber): read as those of one");
 }
 
 }  // namespace
@@ -293,15 +368,22 @@ Mesh read_ply(const std::filesystem::path& path, const MeshOptions& options, con
   check_elements(header, file);
   note_skipped(header, file, sink);
   Mesh mesh;
+  PlyFaces faces;
   if (header.format == PlyFormat::kAscii) {
-    BodyReader(header, PlyTextSource(file, header), mesh).read();
+    BodyReader(header, PlyTextSource(file, header), mesh, faces).read();
   } else {
-    BodyReader(header, PlyBinarySource(file, header), mesh).read();
+    BodyReader(header, PlyBinarySource(file, header), mesh, faces).read();
+  }
+  faces.cutter.report(file, sink);
+  finish_mesh(mesh, file, options, sink);
+  // Behind the normals, which are smooth across the borders of a picture.
+  if (faces.uvs.size() == mesh.triangles.size() && !faces.uvs.empty()) {
+    report_corner_uvs(mesh, faces, file, sink);
+    set_corner_uvs(mesh, faces.uvs);
   }
   if (options.flip_tex_coords) {
     for (Vec2f& uv : mesh.uvs) uv[1] = 1.0f - uv[1];
   }
-  finish_mesh(mesh, file, options, sink);
   return mesh;
 }
 

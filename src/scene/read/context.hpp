@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -29,6 +30,7 @@ struct ReadContext {
   /// refer to is read once.
   std::map<std::pair<const Node*, int>, Texture> checked = {};
   std::map<std::pair<std::filesystem::path, int>, Spectrum> spectrum_files = {};  // by file and use
+  std::set<const Node*> without_uvs = {};  // textures on meshes without texture coordinates: told of once
 
   /// The existing file that a parameter names.
   /// throws InputError at its value

@@ -1,4 +1,6 @@
 // <shape type=...>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -179,6 +181,30 @@ void warn_of_opposed_normals(ReadContext& context, const ObjectReader& object, c
            "normals say what is inside for its bsdf");
 }
 
+/// Textures that lie on the surface by its texture coordinates, in a shape's materials and lamps.
+void collect_pictures(Node& node, std::set<const Node*>& seen, std::vector<const Node*>& pictures) {
+  constexpr std::array<std::string_view, 3> kPictures = {"bitmap", "checkerboard", "spectral_bitmap"};
+  for (const auto& child : node.children) {
+    Node& object = child->resolved();
+    if (object.kind != TagKind::kObject || object.tag == "medium" || !seen.insert(&object).second) continue;
+    if (std::ranges::find(kPictures, object.type) != kPictures.end()) pictures.push_back(&object);
+    collect_pictures(object, seen, pictures);
+  }
+}
+
+void warn_of_missing_uvs(ReadContext& context, const ObjectReader& object, const Shape& shape, Node& node) {
+  const auto* mesh = std::get_if<MeshShape>(&shape.geometry);
+  if (!mesh || !mesh->mesh->uvs.empty()) return;
+  std::set<const Node*> seen;
+  std::vector<const Node*> pictures;
+  collect_pictures(node, seen, pictures);
+  for (const Node* picture : pictures)
+    if (context.without_uvs.insert(picture).second)
+      warn(context.sink, shape.position,
+           object.label() + ": a " + picture->type +
+               " on a mesh without texture coordinates: every triangle shows the same half of it");
+}
+
 }  // namespace
 
 Shape read_shape(ReadContext& context, Node& node) {
@@ -210,6 +236,7 @@ Shape read_shape(ReadContext& context, Node& node) {
          object.label() + ": its bsdf is opaque, so that its interior medium has no effect");
   }
   warn_of_opposed_normals(context, object, shape);
+  warn_of_missing_uvs(context, object, shape, node);
   for (Node* sensor : object.nested("sensor"))
     if (sensor->type == "irradiancemeter") ObjectReader(*sensor).refuse_type({});
   object.finish();

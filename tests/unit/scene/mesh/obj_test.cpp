@@ -83,6 +83,14 @@ TEST_F(Obj, IgnoresDocumentedLinesAndExtraNumbers) {
   EXPECT_TRUE(messages.texts.empty());
 }
 
+TEST_F(Obj, SeveralMaterialsAreNoted) {
+  read("mtllib a.mtl\n" + kQuadPositions +
+       "usemtl red\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl red\nf 2 3 4\n");
+  EXPECT_EQ(messages.texts,
+            (std::vector<std::string>{
+                "a.obj: note: 2 materials (usemtl) are ignored: the shape has one bsdf for all"}));
+}
+
 TEST_F(Obj, TinyNumbersUnderflowToZero) {
   EXPECT_EQ(read("v 1e-60 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").positions[0], (Vec3f{}));
 }

@@ -174,6 +174,38 @@ TEST_F(Ply, NumbersOfFaces) {
                   .face_attributes.empty());
 }
 
+/// As MeshLab has them: a vertex is split where its corners differ, and normals stay smooth across.
+TEST_F(Ply, TextureCoordinatesOfCorners) {
+  const std::string faces =
+      "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+      "property int texnumber\nend_header\n";
+  const std::string bent = "0 0 0\n1 0 0\n1 1 0\n0 1 1\n";
+  const Mesh mesh = read(vertex_header("ascii", "property float heat\n") + faces +
+                         "0 0 0 5\n1 0 0 6\n1 1 0 7\n0 1 1 8\n"
+                         "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 0.5 1 0 1 0\n");
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 4, 3}}));
+  EXPECT_EQ(mesh.uvs, (std::vector<Vec2f>{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5f, 1}}));
+  EXPECT_EQ(mesh.positions[4], mesh.positions[2]);
+  EXPECT_EQ(mesh.normals[4], mesh.normals[2]);
+  EXPECT_NE(mesh.normals[1], mesh.normals[2]);
+  EXPECT_EQ(mesh.vertex_attributes.at("heat"), (std::vector<float>{5, 6, 7, 8, 7}));
+  EXPECT_TRUE(messages.texts.empty());
+  MeshOptions flipped;
+  flipped.flip_tex_coords = true;
+  EXPECT_EQ(
+      read(vertex_header("ascii") + faces + bent + "3 0 1 2 6 0 0 1 0 1 1 1\n3 0 2 3 0 0\n", flipped).uvs,
+      (std::vector<Vec2f>{{0, 1}, {1, 1}, {1, 0}, {0, 1}, {0, 1}}));
+  EXPECT_EQ(messages.texts,
+            (std::vector<std::string>{
+                "a.ply: warning: 1 faces have no texture coordinates: (0, 0) is used",
+                "a.ply: warning: 1 of 2 triangles have texture coordinates of a further picture (texnumber): "
+                "read as those of one"}));
+  EXPECT_EQ(
+      error_of(folder,
+               [&] { read(vertex_header("ascii") + faces + bent + "3 0 1 2 4 0 0 1 0 1\n3 0 2 3 0 0\n"); }),
+      "a.ply:16: face 0: property 'texcoord': 4 numbers for 3 corners, must be two for each");
+}
+
 TEST_F(Ply, SkipsOtherElementsWhereverTheyStand) {
   const std::string header =
       "ply\ncomment made by hand\nformat binary_little_endian 1.0\nobj_info x\nelement camera 2\nproperty "
@@ -188,9 +220,11 @@ TEST_F(Ply, SkipsOtherElementsWhereverTheyStand) {
       raw(0.5f) + raw<uint8_t>(4) + raw<int32_t>({0, 1, 2, 3}) + raw<uint8_t>(1) + raw<uint8_t>(7);
   const Mesh mesh = read(header + camera + face + raw<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) + "c");
   EXPECT_EQ(mesh.triangles, kQuad);
-  EXPECT_EQ(messages.texts, (std::vector<std::string>{"a.ply:5: note: element 'camera' is skipped",
-                                                      "a.ply:16: note: element 'empty' is skipped",
-                                                      "a.ply:17: note: element 'tail' is skipped"}));
+  EXPECT_EQ(messages.texts,
+            (std::vector<std::string>{"a.ply:5: note: element 'camera' is skipped",
+                                      "a.ply:16: note: element 'empty' is skipped",
+                                      "a.ply:17: note: element 'tail' is skipped",
+                                      "a.ply:8: note: list 'flags' of element 'face' is skipped"}));
 }
 
 }  // namespace

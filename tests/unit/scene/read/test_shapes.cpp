@@ -41,6 +41,25 @@ TEST(SceneShape, SphereFoldsCentreAndRadius) {
   expect_point(sphere.to_world, {0, 0, 1, 0}, {0, 0, 6});
 }
 
+TEST(SceneShape, TexturesWithoutTextureCoordinatesAreWarnedOf) {
+  const TemporaryFolder folder;
+  folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+  const auto obj = [](const std::string& file) {
+    return R"(<shape type="obj"><string name="filename" value=")" + file + R"("/><ref id="board"/></shape>)";
+  };
+  const std::string board =
+      R"(<bsdf type="twosided" id="board"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf></bsdf>)";
+  Messages messages;
+  read(complete_scene(board + obj("b.obj") + obj("a.obj") + "\n" + obj("a.obj")), folder.path(), {},
+       messages.lines());
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_EQ(
+      messages.texts[0].substr(messages.texts[0].find("warning")),
+      "warning: obj shape: a checkerboard on a mesh without texture coordinates: every triangle shows the "
+      "same half of it");
+}
+
 TEST(SceneShape, DiskIgnoresTheScaleAlongItsAxis) {
   const Shape disk = shape_of(
       R"(<shape type="disk"><transform name="to_world"><scale x="2" y="2" z="9"/></transform></shape>)");
