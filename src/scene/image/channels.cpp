@@ -32,4 +32,12 @@ ImageChannels choose_channels(const std::vector<std::string>& names, int alpha) 
   return {};
 }
 
+bool has_spectra(const std::vector<std::string>& names) {
+  return std::ranges::any_of(names, [](const std::string& name) {
+    const std::size_t number = name.starts_with("S0.") ? 3 : name.starts_with("T.") ? 2 : name.size();
+    const bool has_number = number < name.size() && name[number] >= '0' && name[number] <= '9';
+    return has_number && (name.ends_with('m') || name.ends_with("Hz"));
+  });
+}
+
 }  // namespace kiloband

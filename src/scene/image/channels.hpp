@@ -17,4 +17,7 @@ struct ImageChannels {
 /// alpha  place of the alpha channel, -1 if there is none
 ImageChannels choose_channels(const std::vector<std::string>& names, int alpha);
 
+/// Whether a file has bands of the spectral EXR layout (docs/output_formats.md): "S0.550,0nm", "T.0,55um".
+bool has_spectra(const std::vector<std::string>& names);
+
 }  // namespace kiloband

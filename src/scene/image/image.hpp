@@ -26,6 +26,7 @@ struct Image {
 /// first layer that has them ("layer.R" ...); else the only channel besides alpha. Anything else (X Y Z,
 /// window. Slightly negative values (negative_values.hpp; the mean is that of all channels) become
 /// 0, with one warning.
+/// A spectral EXR file is read by its RGB picture, with a warning.
 /// raw  true: no colour conversion of integer formats
 /// throws InputError  naming the file: missing, unreadable, truncated, values that are not finite or clearly
 ///                    negative, larger than 65535 in a dimension

@@ -66,6 +66,11 @@ class Reader {
   Image read(bool raw, const DiagnosticSink& sink) {
     check();
     const ImageChannels choice = choose();
+    if (has_spectra(input_->spec().channels))
+      warn(
+          sink, {file_.name},
+          "a spectral image: only its RGB picture is read here; spectral_bitmap and spectral_envmap read its "
+          "bands");
     const PictureInput::Spec& spec = input_->spec();
     Image image{static_cast<uint32_t>(spec.width),
                 static_cast<uint32_t>(spec.height),
@@ -97,7 +102,8 @@ class Reader {
     std::string names;
     for (size_t i = 0; i < channels.size() && i < 8; ++i) names += (i ? ", " : "") + channels[i];
     if (channels.size() > 8) names += ", ...";
-    file_.fail("channels " + names + ": must be R, G, B, or Y, or a single one");
+    file_.fail("channels " + names + ": must be R, G, B, or Y, or a single one" +
+               (has_spectra(channels) ? "; spectral_bitmap and spectral_envmap read bands" : ""));
   }
 
   /// Appends rows [begin, end), counted from the top. Channels that do not lie together are read one by one:

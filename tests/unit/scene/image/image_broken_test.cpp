@@ -79,6 +79,9 @@ TEST_F(BrokenImages, Channels) {
   EXPECT_EQ(error(write({"X", "Y", "Z"})), "a.exr: channels X, Y, Z: must be R, G, B, or Y, or a single one");
   EXPECT_EQ(error(write({"s0", "s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8"})),
             "a.exr: channels s0, s1, s2, s3, s4, s5, s6, s7, ...: must be R, G, B, or Y, or a single one");
+  EXPECT_EQ(error(write({"S0.400nm", "S0.500nm"})),
+            "a.exr: channels S0.400nm, S0.500nm: must be R, G, B, or Y, or a single one; spectral_bitmap and "
+            "spectral_envmap read bands");
 }
 
 TEST_F(BrokenImages, PixelTypes) {

@@ -28,6 +28,12 @@ TEST(ImageRules, Channels) {
   EXPECT_EQ(chosen({"A"}, 0), (std::vector<int>{}));
 }
 
+TEST(ImageRules, BandsOfSpectralFiles) {
+  for (const char* name : {"S0.550,000000nm", "T.0,55um", "S0.5e14Hz"}) EXPECT_TRUE(has_spectra({"R", name}));
+  for (const char* name : {"R", "T", "T.R", "S1.550,0nm", "response.S0.550nm", "depth.Z"})
+    EXPECT_FALSE(has_spectra({name}));
+}
+
 TEST(ImageRules, FormatsAreToldByTheirFirstBytes) {
   const TemporaryFolder folder;
   const auto format = [&](const std::string& start) {

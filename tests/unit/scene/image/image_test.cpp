@@ -45,6 +45,22 @@ TEST_F(Images, FloatFormatsAreLinear) {
       1.0 / 128);
 }
 
+TEST_F(Images, PicturesOfSpectralImagesAreWarnedOf) {
+  Messages messages;
+  const auto read = [&](const std::vector<std::string>& channels) {
+    const auto file = write_image(folder / "a.exr", 1, 1, channels, std::vector<float>(channels.size(), 1),
+                                  OIIO::TypeFloat);
+    EXPECT_EQ(read_image(file, false, messages.lines(folder)).channels, 3u);
+  };
+  read({"R", "G", "B", "response.S0"});
+  EXPECT_TRUE(messages.texts.empty());
+  read({"R", "G", "B", "T.500nm"});
+  EXPECT_EQ(messages.texts,
+            std::vector<std::string>{"a.exr: warning: a spectral image: only its RGB picture is "
+                                     "read here; spectral_bitmap and spectral_envmap read its "
+                                     "bands"});
+}
+
 TEST_F(Images, IntegersAreDecodedFromSrgbUnlessRaw) {
   const auto values = ramp(kWidth * kHeight * 3);
   for (const char* name : {"a.png", "a.tif", "a.bmp", "a.tga", "a.ppm"}) {
