@@ -106,6 +106,18 @@ void read_metadata(const EnviHeader& header, bool own, CubeInfo& info) {
   }
 }
 
+/// Bands that an instrument has marked as bad are data like others here.
+void note_bad_bands(const EnviHeader& header, std::size_t count, const DiagnosticSink& sink) {
+  const EnviHeader::Entry* entry = header.find("bbl");
+  if (!entry) return;
+  const std::vector<double> good = header.numbers("bbl", count);
+  const auto bad = std::ranges::count(good, 0.0);
+  if (bad > 0)
+    warn(sink, {},
+         header.where(*entry) + ": marks " + std::to_string(bad) + " of " + std::to_string(count) +
+             " bands as bad: they are read like the others");
+}
+
 /// What others state of the numbers in their files, and we do not apply.
 void check_calibration(const EnviHeader& header, const DiagnosticSink& sink) {
   for (const char* key : {"data gain values", "data offset values", "reflectance scale factor"})
@@ -131,7 +143,10 @@ CubeInfo read_envi_info(const EnviHeader& header, const EnviStorage& storage, co
   info.holds_variances = content && content->value == "variance";
   info.samples_per_pixel = header.count(kEnviSamplesKey, UINT64_MAX, 0);
   info.replicates = static_cast<uint32_t>(header.count(kEnviReplicatesKey, UINT32_MAX, 0));
-  if (!own) check_calibration(header, sink);
+  if (!own) {
+    check_calibration(header, sink);
+    note_bad_bands(header, storage.bands, sink);
+  }
   read_metadata(header, own, info);
   check_cube_info(info, header.file().string());
   return info;

@@ -164,6 +164,14 @@ TEST(EnviForeign, IgnoredFloatsAreRounded) {
   }
 }
 
+TEST_F(EnviHeaderText, BadBandsAreToldOf) {
+  open(3, "wavelength = {500, 600, 700}\nbbl = {1, 1, 1}\n");
+  EXPECT_FALSE(messages.contain("bbl"));
+  open(3, "wavelength = {500, 600, 700}\nbbl = {1, 0, 0}\n");
+  EXPECT_TRUE(messages.contain("f.hdr:9: bbl: marks 2 of 3 bands as bad: they are read like the others"));
+  EXPECT_EQ(open(1, "bbl = {0}\n")->info().metadata.at("bbl"), "0");
+}
+
 TEST_F(EnviHeaderText, CalibrationsAreNotAppliedAloud) {
   open(1, "wavelength = {500}\nfwhm = {10}\ndata gain values = {2}\nreflectance scale factor = 10000\n");
   EXPECT_TRUE(messages.contain("data gain values: not applied"));
