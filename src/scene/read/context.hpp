@@ -122,7 +122,8 @@ ThermalEmitter read_thermal_emitter(ReadContext& context, Node& node);
 /// throws InputError  it is not one number
 double read_ambient_temperature(ReadContext& context, Node& node);
 /// throws InputError  `shape` has no such vertex property, or values that are no temperatures
-void check_temperatures(const Shape& shape, const std::string& label, const Place& place);
+void check_temperatures(ReadContext& context, const Shape& shape, const std::string& label,
+                        const Place& place);
 /// Mitsuba's weight for choosing lights: checked, with a note.
 void accept_sampling_weight(const ReadContext& context, const ObjectReader& object);
 /// An <emitter> of the scene; of type sunsky the sky and the sun.

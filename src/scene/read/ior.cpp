@@ -61,7 +61,11 @@ std::string names_near(const std::string& value, MaterialFamily family) {
     all += (all.empty() ? "; there are " : ", ") + std::string(material.name);
   }
   const std::string near = suggestion(value, names);
-  return near.empty() ? all : near;
+  if (!near.empty() || value.size() < 3) return near.empty() ? all : near;
+  for (const std::string_view name : names)
+    if (lowered(name).find(lowered(value)) != std::string::npos)
+      return "; did you mean '" + std::string(name) + "'?";
+  return all;
 }
 
 [[noreturn]] void refuse_name(const ObjectReader& object, std::string_view name, const std::string& value,
@@ -93,8 +97,8 @@ void check_index(const OpticalConstants& constants, MaterialFamily family, const
   if (metal && constants.k) check_range(*constants.k, 0, kMaxMetalIndex, label + " extinction", place);
 }
 
-void extrapolate_if_asked(const ObjectReader& object, OpticalConstants& constants) {
-  if (!object.get_bool("extrapolate", false)) return;
+void extrapolate_if(bool asked, OpticalConstants& constants) {
+  if (!asked) return;
   constants.n = constants.n.extrapolated();
   if (constants.k) constants.k = constants.k->extrapolated();
 }
@@ -125,6 +129,7 @@ double read_ior(const ObjectReader& object, std::string_view name, double fallba
 std::optional<OpticalConstants> read_material(ReadContext& context, const ObjectReader& object,
                                               std::string_view name, MaterialFamily family) {
   if (!object.has(name)) return std::nullopt;
+  const bool extrapolates = object.get_bool("extrapolate", false);  // asked first: what follows may fail
   const std::string value = object.require_string(name);
   const Place place = object.value_place(name);
   std::optional<OpticalConstants> constants;
@@ -137,13 +142,14 @@ std::optional<OpticalConstants> read_material(ReadContext& context, const Object
     constants = find_built_in(value, family);
     if (!constants) refuse_name(object, name, value, family);
   }
-  extrapolate_if_asked(object, *constants);
+  extrapolate_if(extrapolates, *constants);
   return constants;
 }
 
 std::optional<OpticalConstants> read_conductor_name(ReadContext& context, const ObjectReader& object) {
   const std::string material = object.get_string("material", "none");
   if (material == "none") return std::nullopt;
+  const bool extrapolates = object.get_bool("extrapolate", false);
   constexpr std::string_view kOfPalik =
       "_palik";  // of Palik's handbook, where Mitsuba has data of two sources
   std::string metal = material;
@@ -156,7 +162,7 @@ std::optional<OpticalConstants> read_conductor_name(ReadContext& context, const 
   }
   note(context.sink, object.value_place("material").position(),
        object.label() + ": material '" + material + "': n and k are kiloband's own data of this metal");
-  extrapolate_if_asked(object, *constants);
+  extrapolate_if(extrapolates, *constants);
   return constants;
 }
 

@@ -221,7 +221,7 @@ Shape read_shape(ReadContext& context, Node& node) {
     shape.emitter_position = emitter->place.position();
     if (emitter->type == "thermal") {
       shape.thermal = read_thermal_emitter(context, *emitter);
-      check_temperatures(shape, object.label(), emitter->place);
+      check_temperatures(context, shape, object.label(), emitter->place);
     } else {
       shape.emitter = read_area_emitter(context, *emitter);
     }

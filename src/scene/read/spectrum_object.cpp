@@ -86,10 +86,11 @@ Spectrum read_planck(ReadContext&, const ObjectReader& object, SpectrumUse) {
 
 /// Our own: a spectrum file as an object, so that `extrapolate` can be stated.
 Spectrum read_file(ReadContext& context, const ObjectReader& object, SpectrumUse use) {
+  const bool extrapolates = object.get_bool("extrapolate", false);
   const std::filesystem::path file = context.file(object, "filename");
   const Spectrum spectrum =
       load_at(object.value_place("filename"), [&] { return read_used_file(context, file, use); });
-  return object.get_bool("extrapolate", false) ? spectrum.extrapolated() : spectrum;
+  return extrapolates ? spectrum.extrapolated() : spectrum;
 }
 
 /// A colour as it stands: reflectance in reflectances, times D65 on emitters.

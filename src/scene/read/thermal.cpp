@@ -12,6 +12,15 @@ bool is_temperature(double value) {
   return value >= 0 && value <= kMaxTemperatureK;  // false for NaN
 }
 
+/// Celsius in place of kelvins is dark, and nothing else is.
+void warn_of_celsius(ReadContext& context, float hottest, const std::string& what, const Place& place) {
+  constexpr float kColdK = 100;
+  if (hottest > 0 && hottest <= kColdK)
+    warn(context.sink, place.position(),
+         what + " has no more than " + format_number(static_cast<double>(hottest)) +
+             " K: kelvins are meant, not degrees Celsius");
+}
+
 /// A bitmap whose values are kelvins, whatever it says about colours.
 std::shared_ptr<const BitmapTexture> read_temperature_image(ReadContext& context, const ObjectReader& object,
                                                             Node& parameter) {
@@ -40,7 +49,10 @@ std::shared_ptr<const BitmapTexture> read_temperature_image(ReadContext& context
   if (hottest > 0 && hottest <= 1)
     fail(place, label + ": " + file + " has no more than " + format_number(static_cast<double>(hottest)) +
                     " K: images of integers hold fractions of 1, not kelvins: EXR and PFM do");
-  if (wrong == image.pixels.end()) return bitmap;
+  if (wrong == image.pixels.end()) {
+    warn_of_celsius(context, hottest, label + ": " + file, place);
+    return bitmap;
+  }
   const auto pixel = static_cast<std::size_t>(wrong - image.pixels.begin());
   fail(place, label + " " + format_number(static_cast<double>(*wrong)) + " at pixel (" +
                   std::to_string(pixel % image.width) + ", " + std::to_string(pixel / image.width) + ") of " +
@@ -101,7 +113,8 @@ double read_ambient_temperature(ReadContext& context, Node& node) {
   return temperature_k;
 }
 
-void check_temperatures(const Shape& shape, const std::string& label, const Place& place) {
+void check_temperatures(ReadContext& context, const Shape& shape, const std::string& label,
+                        const Place& place) {
   const std::string& name = shape.thermal->attribute;
   if (name.empty()) return;
   const auto* mesh = std::get_if<MeshShape>(&shape.geometry);
@@ -114,7 +127,10 @@ void check_temperatures(const Shape& shape, const std::string& label, const Plac
   }
   const std::vector<float>& values = found->second;
   const auto wrong = std::find_if_not(values.begin(), values.end(), is_temperature);
-  if (wrong == values.end()) return;
+  if (wrong == values.end()) {
+    const float hottest = values.empty() ? 0 : *std::ranges::max_element(values);
+    return warn_of_celsius(context, hottest, label + ": temperature_attribute: '" + name + "'", place);
+  }
   fail(place, label + ": temperature_attribute: " + name + " " + format_number(static_cast<double>(*wrong)) +
                   " of vertex " + std::to_string(wrong - values.begin()) + ": " + kTemperatureRule);
 }

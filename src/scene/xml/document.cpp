@@ -213,6 +213,43 @@ class Converter {
   const LineTable& lines_;
 };
 
+/// Where the tag at `at` ends; '>' in attribute values does not count.
+std::size_t end_of_tag(std::string_view text, std::size_t at) {
+  for (char quote = 0; at < text.size(); ++at) {
+    if (quote == 0 && text[at] == '>') return at;
+    if (quote == 0 && (text[at] == '"' || text[at] == '\''))
+      quote = text[at];
+    else if (text[at] == quote)
+      quote = 0;
+  }
+  return text.size();
+}
+
+/// ": <shape> of line 3 is not closed" for the innermost element that is open at the end, or where another is closed.
+std::string unclosed_element(std::string_view text, const LineTable& lines) {
+  std::vector<std::pair<std::string_view, std::size_t>> open;  // names and places
+  for (std::size_t at = text.find('<'); at < text.size(); at = text.find('<', at)) {
+    const std::string_view rest = text.substr(at);
+    if (rest.starts_with("<!") || rest.starts_with("<?")) {
+      const std::string_view end = rest.starts_with("<!--") ? "-->" : rest.starts_with("<?") ? "?>" : ">";
+      at = std::min(text.find(end, at), text.size());
+      continue;
+    }
+    const std::size_t end = end_of_tag(text, at);
+    const bool closes = rest.starts_with("</");
+    std::string_view name = text.substr(at + (closes ? 2 : 1), end - at - (closes ? 2 : 1));
+    const bool is_empty = name.ends_with('/');
+    name = name.substr(0, name.find_first_of(" \t\r\n/"));
+    if (closes && (open.empty() || open.back().first != name)) break;
+    if (closes) open.pop_back();
+    if (!closes && !is_empty) open.emplace_back(name, at + 1);
+    at = end;
+  }
+  if (open.empty()) return {};
+  return ": <" + std::string(open.back().first.substr(0, 40)) + "> of line " +
+         std::to_string(lines.at(open.back().second).line) + " is not closed";
+}
+
 }  // namespace
 
 SourcePosition Place::position() const {
@@ -238,11 +275,15 @@ XmlElement parse_xml(std::string text, const std::string* file, XmlTotals& total
   // No escapes, no white space conversion: the buffer stays as it is, and undefined entities remain visible.
   constexpr unsigned kFlags =
       pugi::parse_fragment | pugi::parse_cdata | pugi::parse_doctype | pugi::parse_declaration;
+  constexpr std::size_t kMostCopied = std::size_t{1} << 24;  // parsing cuts names out of the text
+  const std::string copy = text.size() <= kMostCopied ? text : std::string();
   pugi::xml_document document;
   const auto result = document.load_buffer_inplace(text.data(), text.size(), kFlags, pugi::encoding_utf8);
   if (!result) {
+    const bool is_open = result.status == pugi::status_end_element_mismatch;
     fail(lines.at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0))),
-         std::string("not well-formed XML: ") + result.description());
+         std::string("not well-formed XML: ") + result.description() +
+             (is_open ? unclosed_element(copy, lines) : ""));
   }
   return Converter(text.data(), lines).document(document);
 }

@@ -86,7 +86,12 @@ std::string suggestion(std::string_view word, const std::vector<std::string_view
   const std::size_t size = word.size();
   std::size_t best = (size < 2 ? 0 : size < 4 ? 1 : std::clamp<std::size_t>(size / 3, 2, 3)) + 1;
   std::string_view nearest;
+  const std::string lower = lowered(word);
   for (const std::string_view candidate : candidates) {
+    if (candidate != word && lowered(candidate) == lower) {
+      nearest = candidate;
+      break;
+    }
     const std::size_t longer = std::max(size, candidate.size()), shorter = std::min(size, candidate.size());
     if (longer - shorter >= best) continue;  // the distance is at least that
     const std::size_t distance = edit_distance(word, candidate);

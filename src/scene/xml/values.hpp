@@ -27,7 +27,7 @@ bool parse_boolean(std::string_view text, const Place& place, const std::string&
 std::vector<double> parse_numbers(std::string_view text, const Place& place, const std::string& context = {});
 
 /// "; did you mean 'x'?" for the candidate nearest in edit distance (at most a third of the word's length; 2
-/// for 4 to 5 letters, 1 for 2 to 3, never more than 3); empty if none is near. Ties: the first.
+/// for 4 to 5 letters, 1 for 2 to 3, never more than 3) or different in case alone; empty if none is near. Ties: the first.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
 
 }  // namespace kiloband

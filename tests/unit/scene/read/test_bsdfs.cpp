@@ -248,5 +248,25 @@ TEST(SceneBsdf, CheckerboardsAreSharedThroughReferences) {
   EXPECT_EQ(board(0)->color1(550), 0.2);
 }
 
+TEST(SceneBsdf, NamesAndFilesThatAreNearlyRight) {
+  expect_messages({
+      {"material in capitals",
+       complete_scene(R"xml(<bsdf type="dielectric"><string name="int_ior" value="BK7"/></bsdf>)xml"),
+       "scene.xml:2:55: error: dielectric bsdf: int_ior: unknown material 'BK7'; did you mean 'bk7'?"},
+      {"part of a glass's name",
+       complete_scene(R"xml(<bsdf type="dielectric"><string name="int_material" value="bk7"/></bsdf>)xml"),
+       "scene.xml:2:60: error: dielectric bsdf: int_material: 'bk7' is neither a built-in transparent "
+       "material nor a file; did you mean 'N-BK7'?"},
+      {"missing file that is to be continued",
+       complete_scene(
+           R"xml(<bsdf type="conductor"><string name="metal" value="no.yml"/><boolean name="extrapolate" value="true"/></bsdf>)xml"),
+       "scene.xml:2:52: error: file 'no.yml' not found"},
+      {"missing spectrum that is to be continued",
+       complete_scene(
+           R"xml(<bsdf type="diffuse"><spectrum type="file" name="reflectance"><string name="filename" value="no.spd"/><boolean name="extrapolate" value="true"/></spectrum></bsdf>)xml"),
+       "scene.xml:2:94: error: file 'no.spd' not found"},
+  });
+}
+
 }  // namespace
 }  // namespace kiloband::test::test_bsdfs

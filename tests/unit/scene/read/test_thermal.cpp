@@ -45,6 +45,31 @@ TEST(SceneThermal, ConstantTemperature) {
   EXPECT_EQ(std::get<Spectrum>(std::get<DiffuseBsdf>(result.shapes[0].bsdf->model).reflectance)(550), 0);
 }
 
+/// 27 degrees Celsius as kelvins shine 6e-27 times as bright.
+TEST(SceneThermal, CelsiusIsWarnedOf) {
+  const TemporaryFolder folder;
+  folder.write("room.pfm", pfm({20, 27}));
+  folder.write("warm.pfm", pfm({20, 300}));
+  folder.write("dark.pfm", pfm({0, 0}));
+  folder.write(
+      "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float t\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 20\n1 0 0 21\n0 1 0 22\n3 0 1 2\n");
+  Messages messages;
+  for (const char* file : {"room.pfm", "warm.pfm", "dark.pfm"})
+    read(in_sphere(image(file)), folder.path(), {}, messages.sink());
+  read(scene(R"(<shape type="ply"><string name="filename" value="a.ply"/><emitter type="thermal">)"
+             R"(<string name="temperature_attribute" value="t"/></emitter></shape>)" +
+             std::string(kSensor)),
+       folder.path(), {}, messages.sink());
+  EXPECT_EQ(messages.texts, (std::vector<std::string>{
+                                "thermal emitter: temperature: 'room.pfm' has no more than 27 K: kelvins are "
+                                "meant, not degrees Celsius",
+                                "ply shape: temperature_attribute: 't' has no more than 22 K: kelvins are "
+                                "meant, not degrees Celsius"}));
+}
+
 TEST(SceneThermal, AmbientTemperatureLightsTheScene) {
   const SceneDescription result = read(ambient(kWarm));
   EXPECT_EQ(result.ambient_temperature_k, 310);

@@ -24,7 +24,11 @@ std::vector<BrokenScene> table() {
       {"unclosed element", R"xml(<scene version="3.0.0">
   <bsdf type="diffuse">
 </scene>)xml",
-       "scene.xml:3:3: error: not well-formed XML: Start-end tags mismatch"},
+       "scene.xml:3:3: error: not well-formed XML: Start-end tags mismatch: <bsdf> of line 2 is not closed"},
+      {"unclosed root", R"xml(<scene version="3.0.0"><!-- <a> -->
+  <bsdf type="a>b"><float name='x' value="/"/></bsdf>
+)xml",
+       "scene.xml:2:54: error: not well-formed XML: Start-end tags mismatch: <scene> of line 1 is not closed"},
       {"wrong root", R"xml(<bsdf type="diffuse"/>)xml",
        "scene.xml:1:2: error: the root element must be <scene>, found <bsdf>"},
       {"two roots", R"xml(<scene version="3.0.0"/>
