@@ -18,21 +18,28 @@ namespace kiloband {
 namespace fs = std::filesystem;
 namespace {
 
-/// Name of the first element of an XML file; empty if there is none at the beginning.
-std::string root_element(const fs::path& file) {
+/// Where the markup at `at` ends that comes before the first element: a comment, an instruction, a document type.
+std::size_t end_of_markup(const std::string& text, std::size_t at) {
+  if (text.compare(at, 4, "<!--") == 0) return text.find("-->", at);
+  if (text.compare(at, 2, "<?") == 0) return text.find("?>", at);
+  const std::size_t end = text.find('>', at), subset = text.find('[', at);
+  return subset < end ? text.find('>', text.find(']', subset)) : end;
+}
+
+/// Name of the first element of an XML file; nothing where it cannot be told: the reader says what is wrong.
+std::optional<std::string> root_element(const fs::path& file) {
   constexpr std::streamsize kMost = 1 << 16;  // declarations and comments before it
   std::string text(kMost, '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(text.data(), kMost);
   text.resize(static_cast<std::size_t>(stream.gcount()));
   std::size_t at = text.find('<');
-  while (at != std::string::npos) {
-    const bool comment = text.compare(at, 4, "<!--") == 0;
-    if (!comment && text.compare(at, 2, "<?") != 0) break;
-    const std::size_t end = text.find(comment ? "-->" : "?>", at);
+  if (text.find('\0') != std::string::npos) return std::nullopt;  // UTF-16
+  while (at != std::string::npos && (text.compare(at, 2, "<!") == 0 || text.compare(at, 2, "<?") == 0)) {
+    const std::size_t end = end_of_markup(text, at);
     at = end == std::string::npos ? end : text.find('<', end);
   }
-  if (at == std::string::npos) return {};
+  if (at == std::string::npos) return std::nullopt;
   const std::size_t end = text.find_first_of(" \t\r\n/>", at);
   return text.substr(at + 1, end == std::string::npos ? end : end - at - 1);
 }
@@ -44,7 +51,7 @@ std::vector<fs::path> scenes_below(const fs::path& folder) {
   constexpr auto kOptions = fs::directory_options::skip_permission_denied;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, kOptions)) {
     if (entry.path().extension() == ".xml" && entry.is_regular_file(unknown) &&
-        root_element(entry.path()) == "scene")
+        root_element(entry.path()).value_or("scene") == "scene")
       files.push_back(entry.path());
   }
   if (files.empty())

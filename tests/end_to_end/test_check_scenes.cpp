@@ -14,6 +14,9 @@ TEST(CheckScenes, SaysWhatStopsTheOthers) {
                "<?xml version=\"1.0\"?>\n<!-- <mesh> -->\n" + complete_scene(R"(<bsdf type="hair"/>)"));
   folder.write("other.xml", "<mesh/>");  // no scene
   folder.write("empty.xml", "");
+  folder.write("typed.xml", "<!DOCTYPE scene [ <!ENTITY a \"b\"> ]>\n" + complete_scene(""));
+  folder.write("html.xml", "<!DOCTYPE html>\n<html/>");  // no scene
+  folder.write("wide.xml", std::string("\xFF\xFE<\0s\0c\0e\0n\0e\0/\0>\0", 18));
   folder.write("notes.txt", "<scene/>");
   const Outcome outcome = run_program(folder, {"info", "--check", "."});
   EXPECT_EQ(outcome.code, 1);
@@ -24,11 +27,20 @@ TEST(CheckScenes, SaysWhatStopsTheOthers) {
       "  ./a/b/worse.xml:2:13: error: bsdf type 'hair' is not supported: there is no such model; 'roughdielectric' or 'principled' come near\n"
       "  ./a/b/worse.xml:2:32: error: bsdf type 'difuse' is not supported; did you mean 'diffuse'?\n"
       "loads   a/good.xml\n"
+      "stopped empty.xml\n"
+      "  ./empty.xml:1:1: error: no root element\n"
       "stopped hair.xml\n"
       "  ./hair.xml:4:13: error: bsdf type 'hair' is not supported: there is no such model; 'roughdielectric' or 'principled' come near\n"
-      "1 of 3 scenes load\n"
+      "stopped typed.xml\n"
+      "  ./typed.xml:1:11: error: document type declarations are not supported\n"
+      "stopped wide.xml\n"
+      "  ./wide.xml:1:1: error: not valid UTF-8\n"
+      "1 of 6 scenes load\n"
       "    2 stopped by: bsdf type 'hair' is not supported: there is no such model; 'roughdielectric' or 'principled' come near\n"
-      "    1 stopped by: bsdf type 'difuse' is not supported\n");
+      "    1 stopped by: bsdf type 'difuse' is not supported\n"
+      "    1 stopped by: document type declarations are not supported\n"
+      "    1 stopped by: no root element\n"
+      "    1 stopped by: not valid UTF-8\n");
 }
 
 /// Of every material there is a name.

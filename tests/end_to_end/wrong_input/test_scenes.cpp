@@ -23,7 +23,7 @@ TEST(WrongScene, IsRefusedByRenderAndInfo) {
   const std::pair<std::string, std::string> cases[] = {
       {"", "broken.xml:1:1: error: no root element"},
       {"<scene version=\"3.0.0\">\n<shape type=\"sphere\">\n</scene>\n",
-       "broken.xml:3:3: error: not well-formed XML: Start-end tags mismatch"},
+       "broken.xml:3:3: error: not well-formed XML: Start-end tags mismatch: <shape> of line 2 is not closed"},
       {leaf(R"xml(<spectrum name="reflectance" value="400:0.5, 550:1.27"/>)xml"),
        "broken.xml:2:68: error: bsdf 'leaf': reflectance 1.27 at 550 nm: must be in [0, 1]"},
       {complete_scene(kSensor + R"xml(<sensor type="batch"/>)xml"),
