@@ -130,7 +130,9 @@ DerivedChannels load_responses(const std::vector<std::string>& files, const Load
   for (const auto& [name, response] : responses) {
     if (!names.insert(name).second) throw InputError("response '" + name + "' is given twice");
     const double missing = uncovered_part(response, scene.channels);
-    if (missing >= 1) throw InputError("response '" + name + "': is 0 in all channels");
+    const bool is_dark = response.max_over(range.min_nm, range.max_nm) == 0 &&
+                         response.min_over(range.min_nm, range.max_nm) == 0;
+    if (missing >= 1 || is_dark) throw InputError("response '" + name + "': is 0 in all channels");
     if (missing > kUncovered) {
       warn(sink, {},
            fmt::format("response '{}': {:.3g} % of its integral lies outside the channels", name,

@@ -120,6 +120,11 @@ TEST(Responses, WhollyOutsideTheChannelsIsAnError) {
   const Outcome outcome = render_response("700", "800");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err, "kiloband: response 'wide': is 0 in all channels\n");
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  folder.write("dark.csv", "wavelength_nm,dark\n400,0\n700,0\n");
+  const Outcome dark = run_program(folder, quiet_render("scene.xml", {"--response", "dark.csv"}));
+  EXPECT_EQ(dark.err, "kiloband: response 'dark': is 0 in all channels\n");
 }
 
 /// Micrometres taken for nanometres: an image of zeros without a word would be believed.

@@ -9,6 +9,8 @@ namespace kiloband {
 namespace {
 
 constexpr std::size_t kMaxHeaderLines = 3;
+constexpr const char* kHeaderRule =
+    " (before the first row at most 3 lines without numbers are skipped; others must begin with '#')";
 
 bool has_number(const std::vector<std::string_view>& fields) {
   return std::any_of(fields.begin(), fields.end(),
@@ -31,7 +33,10 @@ void append_row(NumberTable& table, const std::vector<std::string_view>& fields,
                                  (rule.ignore_more ? "at least " : "") + std::to_string(table.columns)));
   for (std::size_t column = 0; column < table.columns; ++column) {
     const std::optional<double> number = to_number(fields[column]);
-    if (!number) throw InputError(at_line(table.file, line, quote_text(fields[column]) + " is not a number"));
+    if (!number)
+      throw InputError(
+          at_line(table.file, line,
+                  quote_text(fields[column]) + " is not a number" + (table.rows() == 0 ? kHeaderRule : "")));
     table.numbers.push_back(*number);
   }
   table.lines.push_back(line);
@@ -123,7 +128,13 @@ NumberTable parse_number_table(const std::filesystem::path& file, std::string_vi
       table.headers.push_back(table.names);
       continue;
     }
-    if (table.rows() == 0) table.row_fields = split_fields(line).size();
+    if (table.rows() == 0) {
+      const std::vector<std::string_view> all = split_fields(line);
+      table.row_fields = all.size();
+      table.row_values = all.size() - static_cast<std::size_t>(std::ranges::count(all, std::string_view()));
+      table.has_commas = line.find(',') != std::string_view::npos;
+    }
+    table.has_points = table.has_points || line.find('.') != std::string_view::npos;
     append_row(table, fields, rule, first_line - 1 + lines.line_number());
   }
   if (table.rows() == 0) throw InputError(file.string() + ": no data");
@@ -140,6 +151,43 @@ std::string column_text(const NumberTable& table, std::size_t column) {
     if (line->size() == table.row_fields && !is_title) of_column += line->at(column) + " ; ";
   }
   return of_column.empty() || unit_has_a_field_of_its_own(table) ? whole : of_column;
+}
+
+std::optional<std::size_t> column_with_word(const NumberTable& table, std::span<const std::string_view> words,
+                                            bool in_brackets) {
+  for (std::size_t column = 1; column < table.row_fields; ++column)
+    for (const std::vector<std::string>& line : table.headers) {
+      if (line.size() != table.row_fields) continue;
+      const std::string& whole = line[column];
+      const std::string name =
+          lowered(in_brackets ? whole : whole.substr(0, whole.find_first_of("([", 1))) + " ";
+      std::string word;
+      for (const char c : name) {
+        const bool in_word = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+        if (in_word) word += c;
+        if (!in_word && std::ranges::find(words, word) != words.end()) return column;
+        if (!in_word) word.clear();
+      }
+    }
+  return std::nullopt;
+}
+
+void refuse_decimal_commas(const NumberTable& table) {
+  const bool is_named = !table.names.empty() && table.names.size() == table.row_fields;
+  if (!table.has_commas || table.has_points || is_named || table.row_values < 3 || table.rows() < 2) return;
+  const bool is_header_short = !table.names.empty() && table.names.size() < table.row_fields;
+  bool is_fraction = true;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    is_fraction = is_fraction && (table.at(row, 1) == 0 || table.at(row, 1) == 1);
+  if (is_header_short || is_fraction)
+    throw InputError(
+        at_line(table.file, table.lines.front(),
+                "numbers with decimal commas between commas: write points, or ';' between columns"));
+}
+
+void require_two_rows(const NumberTable& table) {
+  if (table.rows() < 2)
+    throw InputError(at_line(table.file, table.lines.front(), "one row: a spectrum needs at least 2"));
 }
 
 std::optional<WavelengthUnit> stated_wavelength_unit(const NumberTable& table) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,9 @@ struct NumberTable {
   std::vector<std::string> comments;              // without '#', header lines included
   std::size_t columns = 0;
   std::size_t row_fields = 0;   // fields of the first row, those that are not read included
+  std::size_t row_values = 0;   // of these, those that are not empty
+  bool has_points = false;      // in a number of any row
+  bool has_commas = false;      // between the fields of the first row
   std::vector<double> numbers;  // rows x columns
   std::vector<int> lines;       // where each row stands
 
@@ -45,6 +49,17 @@ NumberTable parse_number_table(const std::filesystem::path& file, std::string_vi
 /// What the header says about a column: its names, from the last line to the first, or the whole header where
 /// its lines have other fields than the rows.
 std::string column_text(const NumberTable& table, std::size_t column);
+
+/// The place of the first column from the second on whose name in a header line has one of these words (lower
+/// case), before a bracket or, if asked, anywhere.
+std::optional<std::size_t> column_with_word(const NumberTable& table, std::span<const std::string_view> words,
+                                            bool in_brackets = false);
+
+/// throws InputError  "file:line: ...": numbers with decimal commas between commas, which would be further columns
+void refuse_decimal_commas(const NumberTable& table);
+
+/// throws InputError  a table of one row, which is no spectrum
+void require_two_rows(const NumberTable& table);
 
 /// The unit of the first column as the file states it: its name, RADIS's wavenumber range, comments. Nothing
 /// stated: nm is meant.

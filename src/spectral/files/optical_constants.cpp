@@ -2,6 +2,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "spectral/dispersion_formula.hpp"
@@ -142,14 +143,37 @@ Found read_yaml(const std::filesystem::path& file, const std::string& text, cons
   return found;
 }
 
+/// Columns of n and k, 0 where a file has none: those that its header names, or the second and the third.
+struct NkColumns {
+  std::size_t n = 1, k = 0;
+};
+
+/// throws InputError  a header that names permittivities
+NkColumns nk_columns(const NumberTable& table) {
+  constexpr std::array<std::string_view, 8> kEps = {"eps", "eps1", "eps2",         "epsilon",
+                                                    "e1",  "e2",   "permittivity", "dielectric"};
+  constexpr std::array<std::string_view, 6> kN = {"n", "nr", "re", "ior", "index", "refractive"};
+  constexpr std::array<std::string_view, 5> kK = {"k", "ki", "im", "kappa", "extinction"};
+  if (column_with_word(table, kEps, true))
+    throw InputError(table.file.string() + ": the header names a permittivity: n and k are needed");
+  const auto n = column_with_word(table, kN), k = column_with_word(table, kK);
+  if (!n && !k) return {1, table.row_values > 2 ? std::size_t{2} : 0};
+  if (!n) throw InputError(table.file.string() + ": the header names k and no n");
+  return {*n, k.value_or(0)};
+}
+
 Found read_text(const std::filesystem::path& file, const std::string& text, const DiagnosticSink& sink) {
-  const NumberTable table = parse_number_table(file, text, {2, 3, true});
+  NumberTable table = parse_number_table(file, text, {2, 3, true});
+  refuse_decimal_commas(table);
+  const NkColumns columns = nk_columns(table);
+  const std::size_t last = std::max(columns.n, columns.k);
+  if (last >= table.columns) table = parse_number_table(file, text, {last + 1, last + 1, true});
   const auto unit = stated_wavelength_unit(table);
   report_assumed_units(table, unit.has_value(), {}, ValueKind::kPlain, sink);
   const WavelengthAxis axis = axis_in(table, unit);
   Found found;
-  found.n = column_spectrum(table, axis, 1, {});
-  if (table.columns == 3) found.k = column_spectrum(table, axis, 2, {});
+  found.n = column_spectrum(table, axis, columns.n, {});
+  if (columns.k > 0) found.k = column_spectrum(table, axis, columns.k, {});
   return found;
 }
 

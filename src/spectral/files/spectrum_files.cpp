@@ -46,6 +46,14 @@ EcostressHeader parse_ecostress_header(std::string_view text) {
   return header;
 }
 
+/// What an opaque surface does not reflect.
+void warn_of_other_quantity(const NumberTable& table, std::string_view name, const DiagnosticSink& sink) {
+  for (const char* quantity : {"emissivity", "emittance", "absorbance", "absorptance", "absorptivity"})
+    if (lowered(name).find(quantity) != std::string::npos)
+      return warn(sink, {table.file.string(), 0, 0},
+                  std::string("values are read as a reflectance, the file states ") + quantity);
+}
+
 Spectrum read_ecostress(const std::filesystem::path& file, std::string_view text,
                         const EcostressHeader& header, ValueKind kind, const DiagnosticSink& sink) {
   const std::optional<WavelengthUnit> unit = find_unit(header.x_units);
@@ -62,6 +70,7 @@ Spectrum read_ecostress(const std::filesystem::path& file, std::string_view text
   const ValueScale scale = scale_of_name(file.string(), header.y_units, kind, sink);
   report_assumed_units(table, true, scale, kind, sink);
   report_small_percents(table, 1, scale, sink);
+  if (kind == ValueKind::kPlain) warn_of_other_quantity(table, header.y_units, sink);
   return column_spectrum(table, axis, 1, scale);
 }
 
@@ -139,19 +148,41 @@ std::vector<std::string> response_names(const NumberTable& table) {
   return names;
 }
 
+/// Which of several columns is read.
+void report_columns(const NumberTable& table, const DiagnosticSink& sink) {
+  if (table.row_values < 3) return;
+  const SourcePosition position{table.file.string(), 0, 0};
+  const std::string count = std::to_string(table.row_values) + " columns";
+  if (table.names.size() == table.row_fields)
+    note(sink, position, count + ": " + quote_text(table.names[1]) + " is read");
+  else
+    warn(sink, position, count + " without names of their own: the second is read");
+}
+
 }  // namespace
 
 Spectrum read_spectrum_file(const std::filesystem::path& file, ValueKind kind, const DiagnosticSink& sink) {
   const std::string text = read_text_file(file);
+  const std::string extension = lowered_extension(file);
+  if (extension == ".yml" || extension == ".yaml")
+    throw InputError(file.string() +
+                     ": a file of n and k, which a material reads ('metal', 'int_material'): " +
+                     "a spectrum is a table of two columns");
   const EcostressHeader header = parse_ecostress_header(text);
   if (!header.x_units.empty() && !header.y_units.empty())
     return read_ecostress(file, text, header, kind, sink);
   const NumberTable table = parse_number_table(file, text, {2, 2, true});
+  refuse_decimal_commas(table);
   const auto unit = stated_wavelength_unit(table);
   const ValueScale scale = scale_of_column(table, 1, kind, sink);
   report_assumed_units(table, unit.has_value(), scale, kind, sink);
   report_small_percents(table, 1, scale, sink);
-  return column_spectrum(table, axis_in(table, unit), 1, scale);
+  report_columns(table, sink);
+  if (kind == ValueKind::kPlain && !table.names.empty())
+    warn_of_other_quantity(table, column_text(table, 1), sink);
+  Spectrum spectrum = column_spectrum(table, axis_in(table, unit), 1, scale);
+  require_two_rows(table);
+  return spectrum;
 }
 
 std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::filesystem::path& file,
@@ -170,6 +201,7 @@ std::vector<std::pair<std::string, Spectrum>> read_response_file(const std::file
     result.emplace_back(names[column - 1], column_spectrum(table, axis, column, scale));
     check_response(file, result.back().first, result.back().second);
   }
+  require_two_rows(table);
   return result;
 }
 

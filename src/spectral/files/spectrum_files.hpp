@@ -13,7 +13,8 @@
 
 namespace kiloband {
 
-/// Reads "lambda value" per line (nm; '#' comments; commas or blanks between; further columns ignored),
+/// Reads "lambda value" per line (nm; '#' comments; commas or blanks between; further columns ignored, with a note
+/// or, where no header names them, a warning), at least two lines,
 /// ascending or descending; an ECOSTRESS file (recognised by its header: X Units, Y Units; Latin-1;
 /// micrometres; percent) or a CSV with a header line. Units that the file states, in its header or in
 /// comments, are converted: of wavelengths (spectrum_units.hpp) and of values (value_scale.hpp); what it
@@ -32,7 +33,7 @@ struct OpticalConstants {
 
 /// Reads a refractiveindex.info YAML file (.yml, .yaml) (tabulated n, k, nk, and dispersion formulas 1 to 9,
 /// which are tabulated finely over their stated range with interpolation error < 1e-6), or a two- or
-/// three-column text file (lambda, n[, k]; units as in read_spectrum_file). Rows of a YAML table with the
+/// three-column text file (lambda, n[, k], or the columns that a header names n and k; units as in read_spectrum_file). Rows of a YAML table with the
 /// same wavelength (rounding in the database) are averaged with a warning. Outside their ranges n and k are
 /// 0, as for any spectrum.
 /// throws InputError  "file:line: ..." or "file: ..."; n must be positive, k at least 0

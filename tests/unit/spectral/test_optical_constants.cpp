@@ -156,6 +156,28 @@ TEST(OpticalConstants, WrongFilesHaveTheirMessages) {
   }
 }
 
+TEST(OpticalConstants, HeadersSayWhichColumnIsWhich) {
+  const auto values = [](const std::string& text) {
+    const OpticalConstants read = read_text("a.csv", text);
+    return std::pair(read.n(500), read.k ? (*read.k)(500) : -1);
+  };
+  EXPECT_EQ(values("nm,k,n\n400,1,2\n500,3,4\n"), (std::pair{4.0, 3.0}));
+  EXPECT_EQ(values("nm;T (K);n;sigma;k\n400;300;2;0;1\n500;300;4;0;3\n"), (std::pair{4.0, 3.0}));
+  EXPECT_EQ(values("nm,n,temperature\n400,2,300\n500,4,300\n"), (std::pair{4.0, -1.0}));
+  EXPECT_EQ(values("nm,extinction coefficient,refractive index\n400,1,2\n500,3,4\n"), (std::pair{4.0, 3.0}));
+  EXPECT_EQ(values("nm,a,b\n400,1,2\n500,3,4\n"), (std::pair{3.0, 4.0}));
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& text) {
+    return error_of(folder, [&] { read_optical_constants(folder.write("a.csv", text)); });
+  };
+  EXPECT_EQ(error("nm,eps1,eps2\n400,1,2\n500,3,4\n"),
+            "a.csv: the header names a permittivity: n and k are needed");
+  EXPECT_EQ(error("nm,Re(eps),Im(eps)\n400,1,2\n500,3,4\n"),
+            "a.csv: the header names a permittivity: n and k are needed");
+  EXPECT_EQ(values("nm,Re(n),Im(n)\n400,1,2\n500,3,4\n"), (std::pair{3.0, 4.0}));
+  EXPECT_EQ(error("nm,k\n400,1\n500,3\n"), "a.csv: the header names k and no n");
+}
+
 TEST(OpticalConstants, DeepNestingIsAnErrorNotACrash) {
   const TemporaryFolder folder;
   for (const char* open : {"[", "{a: "}) {

@@ -96,15 +96,23 @@ TEST(SpectrumFile, EcostressUnitsAndOrder) {
 
 TEST(SpectrumFile, WrongFilesHaveTheirMessages) {
   const TemporaryFolder folder;
-  const std::pair<std::string, const char*> cases[] = {
+  const std::string kHeaderRule =
+      " (before the first row at most 3 lines without numbers are skipped; others must begin with '#')";
+  const std::string kDecimalCommas =
+      "f.txt:1: numbers with decimal commas between commas: write points, or ';' between columns";
+  const std::pair<std::string, std::string> cases[] = {
       {"", "f.txt: no data"},
       {"# only\n", "f.txt: no data"},
       {"wavelength,value\n", "f.txt: no data"},
-      {"a,b\nc,d\ne,f\ng,h\n1,2\n", "f.txt:4: 'g' is not a number"},
+      {"a,b\nc,d\ne,f\ng,h\n1,2\n", "f.txt:4: 'g' is not a number" + kHeaderRule},
       {"400\n", "f.txt:1: 1 columns: must be at least 2"},
       {"400 0.1\n500\n", "f.txt:2: 1 columns: must be at least 2"},
       {"400 0.1\nx500 0.2\n", "f.txt:2: 'x500' is not a number"},
-      {"x400 0.1\n", "f.txt:1: 'x400' is not a number"},
+      {"x400 0.1\n", "f.txt:1: 'x400' is not a number" + kHeaderRule},
+      {"Sample 12 grass\n400 0.1\n500 0.2\n", "f.txt:1: 'Sample' is not a number" + kHeaderRule},
+      {"400 0.1\n", "f.txt:1: one row: a spectrum needs at least 2"},
+      {"400,0,2\n500,0,35\n600,1,0\n", kDecimalCommas},
+      {"# nm\nwavelength,value\n400,12,5\n500,10,2\n", "f.txt:3" + kDecimalCommas.substr(7)},
       {"400 0.1\n500 0,2\n", "f.txt:2: '500 0' is not a number"},
       {"400,0.1\n500,\n", "f.txt:2: '' is not a number"},
       {"400 nan\n", "f.txt:1: value nan: must be finite"},
@@ -149,7 +157,40 @@ TEST(SpectrumFile, LongLinesAreNoTrouble) {
   std::string wide = "400";
   for (int i = 0; i < 200000; ++i) wide += " 1";
   EXPECT_EQ(read_text(wide + "\n500 2\n")(400), 1);
-  EXPECT_EQ(read_text(std::string(1000000, '#') + "\n500 2\n")(500), 2);
+  EXPECT_EQ(read_text(std::string(1000000, '#') + "\n400 1\n500 2\n")(500), 2);
+}
+
+TEST(SpectrumFile, WhichOfSeveralColumnsIsReadIsTold) {
+  const auto told = [](const std::string& text) {
+    std::vector<Diagnostic> diagnostics;
+    read_text(text, &diagnostics);
+    return diagnostics.empty()                          ? std::string()
+           : diagnostics[0].severity == Severity::kNote ? "note: " + diagnostics[0].message
+                                                        : "warning: " + diagnostics[0].message;
+  };
+  EXPECT_EQ(told("nm,extraterrestrial,global,direct\n400,1,2,3\n500,1.5,2,3\n"),
+            "note: 4 columns: 'extraterrestrial' is read");
+  EXPECT_EQ(told("# nm\n400 1 0.1\n500 2 0.1\n"),
+            "warning: 3 columns without names of their own: the second is read");
+  EXPECT_EQ(told("nm,value,\n400,1.5,\n500,2,\n"), "");
+}
+
+TEST(SpectrumFile, EmissivitiesAreNoReflectances) {
+  std::vector<Diagnostic> diagnostics;
+  read_text("nm,Emissivity\n400,0.9\n500,0.8\n", &diagnostics);
+  ASSERT_EQ(diagnostics.size(), 1u);
+  EXPECT_EQ(diagnostics[0].message, "values are read as a reflectance, the file states emissivity");
+  read_text(ecostress("Wavelength (micrometers)", "Emissivity", "2", "1 0.9\n2 0.8\n"), &diagnostics);
+  EXPECT_EQ(diagnostics.size(), 2u);
+}
+
+TEST(SpectrumFile, FilesOfIndicesAreRefused) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("n.yml", "DATA:\n  - type: formula 1\n");
+  EXPECT_EQ(
+      error_of(folder, [&] { read_spectrum_file(file); }),
+      "n.yml: a file of n and k, which a material reads ('metal', 'int_material'): a spectrum is a table of "
+      "two columns");
 }
 
 TEST(ResponseFile, HeaderNamesTheColumns) {
@@ -199,6 +240,7 @@ TEST(ResponseFile, WrongFilesHaveTheirMessages) {
       {"wavelength_nm,a,b\n400,1,nan\n", "f.csv:2: value nan: must be finite"},
       {"wavelength_nm,a,b\n400,1,-3e38\n",
        "f.csv: response 'b' -3e+38 at 400 nm: must be from -1e+15 to 1e+15"},
+      {"wavelength_nm,a,b\n400,1,2\n", "f.csv:2: one row: a spectrum needs at least 2"},
       {wide + "\n", "f.csv:1: more than 4097 columns"},
       {"# Band Channel Wavelength RSR\n1 1 500 -99\n", "f.csv: no data"},
       {"# Band Channel Wavelength RSR\n1 1 500 1\n1 1 500 1\n", "f.csv:3: wavelength 500 nm is repeated"},

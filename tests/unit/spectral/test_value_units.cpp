@@ -102,7 +102,7 @@ TEST(ValueUnits, SolarTables) {
   const Reading further =
       read("Wvlgth nm,Etr W*m-2*nm-1,Global tilt  W*m-2*nm-1\n280,0.082,4.7E-23\n281,0.15,5.7E-21\n", kind);
   EXPECT_EQ(further.spectrum(280), 0.082);
-  EXPECT_TRUE(further.messages.empty());
+  EXPECT_EQ(further.messages, std::vector<std::string>{"note: 3 columns: 'Etr W*m-2*nm-1' is read"});
 }
 
 TEST(ValueUnits, PerWavenumber) {
