@@ -87,6 +87,20 @@ KbMaterial Flattener::make(const ConductorBsdf& model, const std::string& name,
   return record;
 }
 
+/// What is opaque within a few wavelengths is no glass.
+static void warn_of_extinction(const DielectricBsdf& model, const FlatScene& scene, const std::string& name,
+                               const SourcePosition& position, const DiagnosticSink& sink) {
+  constexpr double kNegligible = 0.01;
+  double largest = 0;
+  for (const Channel& channel : scene.channels)
+    if (model.int_k) largest = std::max(largest, model.int_k->max_over(channel.min_nm, channel.max_nm));
+  if (largest <= kNegligible) return;
+  warn(sink, position,
+       fmt::format("{}: int_material: its extinction k, up to {:.3g} in the channels, has no effect: nothing "
+                   "absorbs inside; a conductor takes the file as 'metal'",
+                   name, largest));
+}
+
 KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
                            const SourcePosition& position) {
   KbMaterial record = empty_material(model.roughness ? KB_MATERIAL_ROUGH_DIELECTRIC : KB_MATERIAL_DIELECTRIC);
@@ -100,6 +114,7 @@ KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
   const SpectrumSource ext_use{name + ": ext_ior", position, false};
   require_data(model.int_ior, out_, int_use);
   require_data(model.ext_ior, out_, ext_use);
+  warn_of_extinction(model, out_, name, position, options_.sink);
   const double ext = spectra_.guide_mean(model.ext_ior);
   record.eta = static_cast<float>(spectra_.guide_mean(model.int_ior) / ext);
   record.eta_ext = static_cast<float>(ext);

@@ -1,5 +1,4 @@
-// SceneDescription: the scene as the user wrote it, checked and loaded;
-// what the reader produces and flattening reads.
+// SceneDescription: the scene as the user wrote it, checked and loaded; what the reader produces and flattening reads.
 #pragma once
 
 #include <array>
@@ -109,7 +108,8 @@ struct DielectricBsdf {
   Texture specular_reflectance = Spectrum::constant(1);
   Texture specular_transmittance = Spectrum::constant(1);
   std::optional<Roughness> roughness;
-  std::string material;  // inside, as the scene names it; empty: given by a number
+  std::string material;           // inside, as the scene names it; empty: given by a number
+  std::optional<Spectrum> int_k;  // that its file gives; nothing absorbs here
   bool thin = false;
 };
 struct PlasticBsdf {

@@ -87,15 +87,15 @@ BsdfModel read_conductor(ReadContext& context, const ObjectReader& object, bool 
 }
 
 /// int_ior or int_material (the same for ext): a constant or a dispersive index.
-Spectrum read_index(ReadContext& context, const ObjectReader& object, std::string_view ior,
-                    std::string_view material, double fallback) {
+OpticalConstants read_index(ReadContext& context, const ObjectReader& object, std::string_view ior,
+                            std::string_view material, double fallback) {
   const double index = read_ior(object, ior, fallback);
   const auto constants = read_material(context, object, material, MaterialFamily::kDielectric);
-  if (!constants) return Spectrum::constant(index);
+  if (!constants) return {Spectrum::constant(index), std::nullopt};
   if (object.has(ior)) {
     object.fail_at(material, "'" + std::string(material) + "' together with '" + std::string(ior) + "'");
   }
-  return constants->n;
+  return *constants;
 }
 
 /// The material that read_index() takes; empty: it takes a number.
@@ -107,8 +107,10 @@ std::string name_of_index(const ObjectReader& object, std::string_view ior, std:
 
 DielectricBsdf read_dielectric(ReadContext& context, const ObjectReader& object, bool rough) {
   DielectricBsdf bsdf;
-  bsdf.int_ior = read_index(context, object, "int_ior", "int_material", 1.5046);
-  bsdf.ext_ior = read_index(context, object, "ext_ior", "ext_material", 1.000277);
+  const OpticalConstants inside = read_index(context, object, "int_ior", "int_material", 1.5046);
+  bsdf.int_ior = inside.n;
+  bsdf.int_k = inside.k;
+  bsdf.ext_ior = read_index(context, object, "ext_ior", "ext_material", 1.000277).n;
   bsdf.material = name_of_index(object, "int_ior", "int_material");
   bsdf.specular_reflectance = reflectance(context, object, "specular_reflectance", bsdf.specular_reflectance);
   bsdf.specular_transmittance =
