@@ -135,7 +135,7 @@ void report(const SkyMap& map) {
     diffuse += width * map.diffuse(b);
     thermal += width * map.thermal(b);
   }
-  tell("in {} bands: direct normal {:.1f}, scattered {:.1f}, thermal {:.1f} W/m^2 on the horizontal plane\n",
+  tell("in {} bands, W/m^2: direct normal {:.1f}; on the horizontal plane scattered {:.1f}, thermal {:.1f}\n",
        map.bands().size(), direct, diffuse, thermal);
 }
 
@@ -145,7 +145,7 @@ void check_sun_file(const std::string& sun) {
   std::ifstream file(sun);
   std::string first, second;
   std::getline(std::getline(file, first), second);
-  if (!second.starts_with(kSunComment))
+  if (!first.empty() && !second.starts_with(kSunComment))
     throw InputError(fmt::format(
         "--sun {}: would replace a file that kiloband sky has not written: remove it, or choose another name",
         sun));
