@@ -17,6 +17,12 @@ bool has_number(const std::vector<std::string_view>& fields) {
                      [](std::string_view f) { return to_number(f).has_value(); });
 }
 
+/// Whether it may belong to a header: numbers with commas, quotes or exponents of other languages do not.
+bool begins_a_word(std::string_view field) {
+  const std::string first = lowered(field.substr(0, 1));
+  return !first.empty() && first[0] >= 'a' && first[0] <= 'z';
+}
+
 /// The first row says how many columns there are, within the rule.
 void set_columns(NumberTable& table, std::size_t fields, const ColumnRule& rule, int line) {
   if (!rule.ignore_more && fields > rule.max_columns)
@@ -34,9 +40,9 @@ void append_row(NumberTable& table, const std::vector<std::string_view>& fields,
   for (std::size_t column = 0; column < table.columns; ++column) {
     const std::optional<double> number = to_number(fields[column]);
     if (!number)
-      throw InputError(
-          at_line(table.file, line,
-                  quote_text(fields[column]) + " is not a number" + (table.rows() == 0 ? kHeaderRule : "")));
+      throw InputError(at_line(table.file, line,
+                               quote_text(fields[column]) + " is not a number" +
+                                   (table.rows() == 0 && begins_a_word(fields[column]) ? kHeaderRule : "")));
     table.numbers.push_back(*number);
   }
   table.lines.push_back(line);

@@ -153,8 +153,12 @@ void report_columns(const NumberTable& table, const DiagnosticSink& sink) {
   if (table.row_values < 3) return;
   const SourcePosition position{table.file.string(), 0, 0};
   const std::string count = std::to_string(table.row_values) + " columns";
-  if (table.names.size() == table.row_fields)
-    note(sink, position, count + ": " + quote_text(table.names[1]) + " is read");
+  const bool is_named = table.names.size() == table.row_fields;
+  const std::string name = is_named ? table.names[1] : std::string();
+  if (find_unit(name) || lowered(name).find("wavelength") != std::string::npos)
+    warn(sink, position, count + ": " + quote_text(name) + " is read, and the first as wavelengths");
+  else if (is_named)
+    note(sink, position, count + ": " + quote_text(name) + " is read");
   else
     warn(sink, position, count + " without names of their own: the second is read");
 }

@@ -170,6 +170,8 @@ TEST(SpectrumFile, WhichOfSeveralColumnsIsReadIsTold) {
   };
   EXPECT_EQ(told("nm,extraterrestrial,global,direct\n400,1,2,3\n500,1.5,2,3\n"),
             "note: 4 columns: 'extraterrestrial' is read");
+  EXPECT_EQ(told("row nm,wavelength,value\n1,400,2\n2,500,2\n"),
+            "warning: 3 columns: 'wavelength' is read, and the first as wavelengths");
   EXPECT_EQ(told("# nm\n400 1 0.1\n500 2 0.1\n"),
             "warning: 3 columns without names of their own: the second is read");
   EXPECT_EQ(told("nm,value,\n400,1.5,\n500,2,\n"), "");
