@@ -1,4 +1,6 @@
 // The body of a PLY file: vertices and faces, whatever else is skipped.
+#include <algorithm>
+
 #include "scene/mesh/corner_uvs.hpp"
 #include "scene/mesh/finish.hpp"
 #include "scene/mesh/ply_source.hpp"
