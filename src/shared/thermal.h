@@ -31,15 +31,28 @@
                          c_2 = 1 - c_0 - c_1, of dielectrics c_1 = 1 - R and all times index^2 seen from inside, where
                          equilibrium radiance is higher by that. R is Fresnel's reflectance F, of panes 2 F / (1 + F)
                          with c_1 = 1 - R. ref[i] is chosen in proportion to c_i
-     KB_THERMAL_ROUGH    the same with R from a table of KB_COMPENSATION_NODES by nodes_s positions as above (dielectrics:
-                         outside, then inside); of plastics q (1 - R) is replaced by KB_COAT_NODES values at equidistant
-                         cosines, which follow it */
+     KB_THERMAL_ROUGH    the same with R from a table of KB_COMPENSATION_NODES by nodes_s positions (dielectrics:
+                         outside, then inside), s as above, x = kb_reflected_position(); of plastics q (1 - R) is
+                         replaced by KB_COAT_NODES values at equidistant cosines, which follow it */
 enum KbThermalType {
   KB_THERMAL_UNIFORM = 0,
   KB_THERMAL_NODES = 1,
   KB_THERMAL_SMOOTH = 2,
   KB_THERMAL_ROUGH = 3
 };
+
+/* Where a cosine lies in a table of reflected parts, in [0, 1]; eta: index of the far side over that of the near one.
+   E is a function of cos / (alpha sin), R of the cosine, whatever the roughness: at alpha = 1e-4 all directions up to
+   88.5 degrees share the last cell of a grid that suits E. R bends within some alpha of grazing incidence and, where
+   eta < 1, is steepest at the critical angle, at a smooth boundary as a root: 1 - R ~ sqrt(cos - cos_c). So positions
+   are roots of distances from there, by which R is smooth; below the critical angle is one half, above it the other. */
+KB_FN float kb_reflected_position(float cosine, float eta) {
+  if (eta >= 1.0f) return kb_sqrt(cosine);
+  const float critical = kb_sqrt(1.0f - eta * eta);
+  if (cosine < critical) return 0.5f - 0.5f * kb_sqrt((critical - cosine) / critical);
+  return 0.5f + 0.5f * kb_sqrt((cosine - critical) / (1.0f - critical));
+}
+
 #define KB_THERMAL_TRANSMITS 1u /* a dielectric with an inside */
 #define KB_THERMAL_THIN 2u      /* a pane */
 

@@ -18,18 +18,16 @@ namespace {
 /// Where a direction lies in the tables of a record.
 struct Aspect {
   float cosine;  // in [0, 1]
-  float x, s;    // shared/thermal.h
+  float s;       // shared/thermal.h
   bool below;
 };
 
 Aspect aspect_of(const KbThermal& thermal, glm::vec3 w) {
-  const float ax = thermal.alpha_u * w.x, ay = thermal.alpha_v * w.y;
-  const float cosine = std::min(std::abs(w.z), 1.0f);
   const bool glass = thermal.flags & KB_THERMAL_TRANSMITS;
-  const float px = glass ? std::sqrt(std::sqrt(thermal.alpha_u)) * w.x : ax;
-  const float py = glass ? std::sqrt(std::sqrt(thermal.alpha_v)) * w.y : ay;
+  const float px = (glass ? std::sqrt(std::sqrt(thermal.alpha_u)) : thermal.alpha_u) * w.x;
+  const float py = (glass ? std::sqrt(std::sqrt(thermal.alpha_v)) : thermal.alpha_v) * w.y;
   const float sum = px * px + py * py;
-  return {cosine, cosine / (cosine + std::sqrt(ax * ax + ay * ay)), sum > 0 ? py * py / sum : 0, w.z < 0};
+  return {std::min(std::abs(w.z), 1.0f), sum > 0 ? py * py / sum : 0, w.z < 0};
 }
 
 /// Linear between equidistant nodes; position in units of nodes.
@@ -57,10 +55,10 @@ uint32_t row_of_nodes(const FlatScene& scene, const KbThermal& thermal, const As
   return thermal.first_row + i + thermal.nodes_cos * j;
 }
 
-/// The reflected part R of KB_THERMAL_ROUGH.
-float reflected_part(const KbThermal& thermal, const float* table, const Aspect& aspect) {
+/// The reflected part R of KB_THERMAL_ROUGH; eta: far over near index.
+float reflected_part(const KbThermal& thermal, const float* table, const Aspect& aspect, float eta) {
   const bool inside = aspect.below && (thermal.flags & KB_THERMAL_TRANSMITS);
-  const float position = aspect.x * (KB_COMPENSATION_NODES - 1);
+  const float position = kb_reflected_position(aspect.cosine, eta) * (KB_COMPENSATION_NODES - 1);
   const float* rows = table + (inside ? thermal.nodes_s * KB_COMPENSATION_NODES : 0);
   if (thermal.nodes_s == 1) return interpolated(rows, KB_COMPENSATION_NODES, position);
   const float s = aspect.s * static_cast<float>(thermal.nodes_s - 1);
@@ -75,7 +73,7 @@ void coefficients(const FlatScene& scene, const KbThermal& thermal, const Aspect
   const bool transmits = thermal.flags & KB_THERMAL_TRANSMITS;
   const float* table = thermal.table == KB_NONE ? nullptr : &scene.tables[thermal.table];
   const float eta = aspect.below && transmits ? 1 / thermal.eta : thermal.eta;
-  c[0] = table ? reflected_part(thermal, table, aspect)
+  c[0] = table ? reflected_part(thermal, table, aspect, eta)
                : one_lane::fresnel_dielectric(aspect.cosine, eta).reflectance.v;
   if (thermal.flags & KB_THERMAL_THIN) c[0] = 2 * c[0] / (1 + c[0]);
   if (transmits) {

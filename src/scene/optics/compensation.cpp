@@ -17,18 +17,41 @@ bool transmits(const KbMaterial& material) {
   return material.type == KB_MATERIAL_ROUGH_DIELECTRIC;
 }
 
-/// Appends f over the grid of (x, s).
-void append_grid(const KbMaterial& material, const std::function<double(const glm::dvec3&)>& f,
-                 std::vector<float>& out) {
-  const Facets facets(material);
-  const uint32_t nodes_s = nodes_of_s(material);
+using DirectionFunction = std::function<double(const glm::dvec3&)>;
+
+/// Appends f over the grid of (x, s) whose directions are direction(x, s).
+void append_nodes(uint32_t nodes_s, const std::function<glm::dvec3(double, double)>& direction,
+                  const DirectionFunction& f, std::vector<float>& out) {
   for (uint32_t j = 0; j < nodes_s; ++j) {
     const double s = nodes_s > 1 ? static_cast<double>(j) / (nodes_s - 1) : 0;
     for (int i = 0; i < KB_COMPENSATION_NODES; ++i) {
       const double x = static_cast<double>(i) / (KB_COMPENSATION_NODES - 1);
-      out.push_back(static_cast<float>(f(compensation_direction(facets, x, s, transmits(material)))));
+      out.push_back(static_cast<float>(f(direction(x, s))));
     }
   }
+}
+
+/// Of energy compensation.
+void append_grid(const KbMaterial& material, const DirectionFunction& f, std::vector<float>& out) {
+  const Facets facets(material);
+  append_nodes(
+      nodes_of_s(material),
+      [&](double x, double s) { return compensation_direction(facets, x, s, transmits(material)); }, f, out);
+}
+
+/// Of the reflected part, whose x is kb_reflected_position(); eta: far over near index.
+void append_reflected_grid(const KbMaterial& material, double eta, const DirectionFunction& f,
+                           std::vector<float>& out) {
+  const Facets facets(material);
+  const double critical = eta < 1 ? std::sqrt(1 - eta * eta) : 0, start = eta < 1 ? 0.5 : 0;
+  const auto direction = [&](double x, double s) {
+    const double t = x < start ? 1 - x / start : (x - start) / (1 - start);
+    const double cosine = x < start ? critical * (1 - t * t) : critical + (1 - critical) * t * t;
+    const glm::dvec3 grazing = compensation_direction(facets, 0, s, transmits(material));
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    return glm::dvec3(sine * grazing.x, sine * grazing.y, cosine);
+  };
+  append_nodes(nodes_of_s(material), direction, f, out);
 }
 
 /// Of anisotropic dielectrics, whose tables are coarse in s anyway, with fewer nodes: seconds are at stake.
@@ -70,8 +93,8 @@ std::vector<float> make_reflected_part(const KbMaterial& material) {
   const Facets facets(material);
   std::vector<float> table;
   if (!transmits(material)) {
-    append_grid(
-        material,
+    append_reflected_grid(
+        material, material.eta,
         [&](const glm::dvec3& v) {
           return boundary_albedo(facets, v, material.eta).reflected / mirror_albedo(facets, v);
         },
@@ -79,8 +102,8 @@ std::vector<float> make_reflected_part(const KbMaterial& material) {
     return table;
   }
   for (const double eta : {double{material.eta}, 1.0 / material.eta}) {
-    append_grid(
-        material,
+    append_reflected_grid(
+        material, eta,
         [&](const glm::dvec3& v) {
           const Albedo albedo = table_albedo(material, facets, v, eta);
           return albedo.reflected / (albedo.reflected + albedo.transmitted);

@@ -126,6 +126,39 @@ TEST(Compensation, TablesFollowTheAlbedo) {
   }
 }
 
+/// R / E between the nodes, from the smoothest boundary on, to what compensation.hpp states; at random directions, and close
+/// to grazing and to the critical angle.
+TEST(ReflectedPart, TablesFollowTheAlbedo) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double alpha : {1e-4, 1e-3, 0.01, 0.1, 1.0}) {
+    for (const uint32_t type : {KB_MATERIAL_ROUGH_PLASTIC, KB_MATERIAL_ROUGH_DIELECTRIC}) {
+      const KbMaterial m = material(type, {true, alpha, alpha});
+      const Facets stored(m);
+      const std::vector<float> table = make_reflected_part(m);
+      const bool glass = type == KB_MATERIAL_ROUGH_DIELECTRIC;
+      ASSERT_EQ(table.size(), (glass ? 2u : 1u) * KB_COMPENSATION_NODES);
+      for (int i = 0; i < 60; ++i) {
+        const bool below = glass && i % 2;
+        const double eta = below ? 1 / 1.5 : 1.5, edge = below ? std::sqrt(1 - eta * eta) : 0;
+        const double u = uniform(random), near = edge + (i % 4 < 2 ? 1 - edge : -edge) * u * u * u;
+        const double cosine = i % 3 ? std::clamp(near, 0.01, 1.0) : std::max(0.01, u);
+        const glm::dvec3 v(std::sqrt(1 - cosine * cosine), 0, cosine);
+        const Albedo albedo = boundary_albedo(stored, v, eta);
+        const double all = glass ? albedo.reflected + albedo.transmitted : mirror_albedo(stored, v);
+        const float* const nodes = &table[below ? KB_COMPENSATION_NODES : 0];
+        const float x = kb_reflected_position(static_cast<float>(cosine), static_cast<float>(eta)) *
+                        (KB_COMPENSATION_NODES - 1);
+        const auto node = std::min(static_cast<std::size_t>(x), std::size_t{KB_COMPENSATION_NODES - 2});
+        const double t = x - static_cast<float>(node);
+        const double bound = !below ? 7e-5 : std::abs(cosine - edge) < 1e-3 ? 6e-3 : 7e-4;
+        EXPECT_NEAR((1 - t) * nodes[node] + t * nodes[node + 1], albedo.reflected / all, bound)
+            << "alpha " << alpha << ", eta " << eta << ", cosine " << cosine;
+      }
+    }
+  }
+}
+
 /// A dispersive boundary: between the nodes of the index.
 TEST(Compensation, TablesFollowTheIndex) {
   KbMaterial m = material(KB_MATERIAL_ROUGH_DIELECTRIC, {true, 0.3, 0.3});
