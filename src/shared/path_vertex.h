@@ -16,7 +16,7 @@
 
      KB_KIND_SCALED         B(w0, w1) = w0 * S_a
      KB_KIND_TWO_TERM       B(w0, w1) = w0 * S_a + w1 * S_b
-     KB_KIND_NONLINEAR      B(w0, w1) = w0 * S_a + w1 * S_b / (1 - S_b * fdr_int(material))
+     KB_KIND_NONLINEAR      B(w0, w1) = w0 * S_a + w1 * S_b / (1 - S_b + S_b * escape(material))
      KB_KIND_CONDUCTOR      B(w0, w1) = w0 * S_a * F_conductor(cos = w1; eta_row, k_row of the material)
      KB_KIND_DISPERSIVE     B(w0, w1) = w0 * S_a * F_dielectric(cos = w1 signed, eta_row / ext_row or eta_ext of the material);
                             of panes (KB_MATERIAL_THIN), F = F_dielectric(|w1|) from outside: w0 * S_a * 2 F / (1 + F)

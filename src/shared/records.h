@@ -52,7 +52,7 @@ typedef struct {
   float alpha_v;
   float eta;             /* dielectric, plastic: interior over exterior index (guide mean when dispersive) */
   float eta_ext;         /* dispersive: constant exterior index */
-  float fdr_int;         /* plastic: diffuse Fresnel reflectance from inside */
+  float escape;          /* plastic: of diffuse light from inside, what leaves through the coating; > 0 */
   float specular_weight; /* plastic: probability scale of the specular lobe,
                             s / (s + d) of the guide means, mixed with uniform */
   float bound_a;         /* upper bound of ref_a over guide and rendered channels */

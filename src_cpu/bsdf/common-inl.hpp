@@ -36,7 +36,7 @@ struct Principled {
 /// What the BSDFs read of a KbMaterial, which is described there.
 struct Material {
   U type, flags, ref_a, ref_b;
-  F alpha_u, alpha_v, eta, specular_weight, fdr_int, bound_a, bound_b;
+  F alpha_u, alpha_v, eta, specular_weight, escape, bound_a, bound_b;
   U table;         // where its tables begin in `tables`, or KB_NONE
   U compensation;  // where its table of energy compensation begins there, or KB_NONE
   /// Dispersive: interior over exterior index at the wavelength chosen by degradation; 0: not degraded. Before it, reflection by a
@@ -48,8 +48,8 @@ struct Material {
 
 /// The same material in every lane, without its tables.
 KB_INLINE Material one_material(const KbMaterial& m) {
-  return {m.type,    m.flags,   m.ref_a,   m.ref_b,    m.alpha_u,  m.alpha_v, m.eta,   m.specular_weight,
-          m.fdr_int, m.bound_a, m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr, nullptr};
+  return {m.type,   m.flags,   m.ref_a,   m.ref_b,    m.alpha_u,  m.alpha_v, m.eta,   m.specular_weight,
+          m.escape, m.bound_a, m.bound_b, U(KB_NONE), U(KB_NONE), F(0),      nullptr, nullptr};
 }
 
 /// The weights of one direction pair, for KbVertexKind eval_kind(material).
@@ -139,7 +139,7 @@ KB_INLINE Material gather_material(const KbMaterial* materials, const float* tab
   m.alpha_v = as_floats(words[1]);
   m.eta = as_floats(words[2]);
   records.load(44, words);
-  m.fdr_int = as_floats(words[0]);
+  m.escape = as_floats(words[0]);
   m.specular_weight = as_floats(words[1]);
   m.bound_a = as_floats(words[2]);
   m.bound_b = as_floats(words[3]);

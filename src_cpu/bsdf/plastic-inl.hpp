@@ -1,9 +1,10 @@
 // A diffuse base under a dielectric coating, smooth and rough (Mitsuba 3's model). wi.z > 0, wo.z > 0.
 //
 //   specular  F(wi) delta, or F D G / (4 cos_i)
-//   diffuse   rho / (1 - rho' R_int) T(cos_i) T(cos_o) cos_o / (pi eta^2),   rho' = rho if nonlinear, else 1
+//   diffuse   rho / (1 - rho' + rho' e) T(cos_i) T(cos_o) cos_o / (pi eta^2),   rho' = rho if nonlinear, else 1
 //
-// T = 1 - F for the smooth coating and the tabulated transmittance for the rough one. w0 goes with S_a
+// T = 1 - F for the smooth coating and the tabulated transmittance for the rough one; e = 1 - R_int, `escape`, is kept
+// instead of R_int, of which 1 - R_int = 1 / 250,000 could not be had at index 1000. w0 goes with S_a
 // (specular), w1 with S_b (diffuse); for KB_KIND_NONLINEAR the denominator is applied by evaluation.
 //
 // For one lane or a vector of them: see lanes/one_lane.hpp and lanes/highway_lanes-inl.hpp, one of which comes first.
@@ -37,12 +38,12 @@ KB_INLINE F specular_probability(const Material& material, F reflectance) {
 /// the denominator stays out for KB_KIND_NONLINEAR.
 KB_INLINE F diffuse_scale(const Material& material) {
   const F scale = F(1) / (material.eta * material.eta);
-  return select(is_nonlinear(material), scale, scale / (F(1) - material.fdr_int));
+  return select(is_nonlinear(material), scale, scale / material.escape);
 }
 
 KB_INLINE F bound_of_lobes(const Material& material, F w0, F w1) {
   const F b = material.bound_b;
-  const F diffuse = select(is_nonlinear(material), b / (F(1) - b * material.fdr_int), b);
+  const F diffuse = select(is_nonlinear(material), b / (F(1) - b + b * material.escape), b);
   return w0 * material.bound_a + w1 * diffuse;
 }
 

@@ -158,7 +158,8 @@ double scattering(const Point& at, const KbPathVertex& vertex, double a, double 
     case KB_KIND_TWO_TERM:
       return w0 * a + w1 * b;
     case KB_KIND_NONLINEAR:
-      return w0 * a + w1 * b / (1 - b * at.scene.materials[vertex.head >> KB_VERTEX_MATERIAL_SHIFT].fdr_int);
+      return w0 * a +
+             w1 * b / (1 - b + b * at.scene.materials[vertex.head >> KB_VERTEX_MATERIAL_SHIFT].escape);
     case KB_KIND_CONDUCTOR:
     case KB_KIND_DISPERSIVE:
       return w0 * a * vertex_fresnel(at, vertex, w1);

@@ -80,9 +80,9 @@ inline void transmission_row(const TransmissionTerms& terms, const float* a, std
     fill([&](std::size_t k) HWY_ATTR { return rough_transmission<false>(p, k); });
 }
 
-inline void internal_row(float fdr_int, const float* a, std::size_t begin, std::size_t end, float* out) {
+inline void internal_row(float escape, const float* a, std::size_t begin, std::size_t end, float* out) {
   fill_factor(a, begin, end, out, [&](Floats s, std::size_t) HWY_ATTR {
-    return hn::Div(s, hn::NegMulAdd(s, constant(fdr_int), constant(1)));
+    return hn::Div(s, hn::MulAdd(s, constant(escape), hn::Sub(constant(1), s)));
   });
 }
 

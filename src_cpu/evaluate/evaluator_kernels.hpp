@@ -172,8 +172,8 @@ struct EvaluatorKernels {
   /// The same with T of a rough boundary.
   void (*transmission_row)(const TransmissionTerms& terms, const float* a, std::size_t begin, std::size_t end,
                            float* out);
-  /// The same with a / (1 - a fdr_int): what KB_KIND_NONLINEAR makes of S_b.
-  void (*internal_row)(float fdr_int, const float* a, std::size_t begin, std::size_t end, float* out);
+  /// The same with a / (1 - a + a escape): what KB_KIND_NONLINEAR makes of S_b.
+  void (*internal_row)(float escape, const float* a, std::size_t begin, std::size_t end, float* out);
   /// The same with B(w0, w1) of KB_KIND_TINTED.
   void (*tinted_row)(float w0, float w1, const float* a, std::size_t begin, std::size_t end, float* out);
   /// out[i] = terms(offsets.nm[i]), or the polynomial of its cell, for i < count rounded up to the lanes of a vector. All arrays begin at

@@ -172,7 +172,7 @@ void ProgramBuilder::add_vertex(const KbPathVertex& vertex, Factors from, bool l
   if ((light || scatters) && (head & KB_VERTEX_KIND_MASK) == KB_KIND_NONLINEAR) {
     float* const internal = scratch_.take();
     const ChannelRange range = needed(spectra);
-    factors_.internal_row(material_of(vertex).fdr_int, from.b, range.begin, range.end, internal);
+    factors_.internal_row(material_of(vertex).escape, from.b, range.begin, range.end, internal);
     from.b = internal;
   }
   if (light) {

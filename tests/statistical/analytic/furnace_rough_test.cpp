@@ -177,7 +177,7 @@ double plastic_albedo(const FlatScene& flat_scene, double theta, double a, doubl
   const MaterialContext context{&material, &flat_scene.tables[material.table], {}};
   const glm::vec3 wi(std::sin(theta), 0, std::cos(theta));
   constexpr int kRings = 600, kSpokes = 600;
-  const double share = material.flags & KB_MATERIAL_NONLINEAR ? b / (1 - b * material.fdr_int) : b;
+  const double share = material.flags & KB_MATERIAL_NONLINEAR ? b / (1 - b + b * material.escape) : b;
   double sum = 0;
   for (int r = 0; r < kRings; ++r) {
     const double z = (r + 0.5) / kRings, ring = std::sqrt(1 - z * z);

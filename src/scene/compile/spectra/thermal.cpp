@@ -219,10 +219,10 @@ KbThermal Flattener::thermal_of_metal(const KbMaterial& material, const std::str
   return record;
 }
 
-/// 1 - rho (1 - R) / (1 - rho R), R = fdr_int: what a base of reflectance rho under a nonlinear coating
-/// absorbs of what one of reflectance 1 would return.
+/// 1 - rho e / (1 - rho + rho e) = (1 - rho) / (1 - rho + rho e), e = escape: what a base of reflectance rho under a
+/// nonlinear coating absorbs of what one of reflectance 1 would return.
 uint32_t Flattener::nonlinear_complement(const KbMaterial& material, uint32_t heat) {
-  const double r = material.fdr_int;
+  const auto absorbed_of = [&](double value) { return (1 - value) / (1 - value + value * material.escape); };
   const RegularTable& rho = out_.spectra[material.ref_b & KB_REF_INDEX_MASK].table;
   constexpr int kParts = 32;  // of a cell: the formula bends between the reflectance's entries
   RegularTable absorbed;
@@ -233,10 +233,10 @@ uint32_t Flattener::nonlinear_complement(const KbMaterial& material, uint32_t he
     for (int part = 0; part < kParts; ++part) {
       const double t = static_cast<double>(part) / kParts;
       const double value = (1 - t) * rho.values[i] + t * rho.values[i + 1];
-      absorbed.values.push_back((1 - value) / (1 - value * r));
+      absorbed.values.push_back(absorbed_of(value));
     }
   }
-  absorbed.values.push_back((1 - rho.values.back()) / (1 - rho.values.back() * r));
+  absorbed.values.push_back(absorbed_of(rho.values.back()));
   return largest(absorbed) > 0 ? KB_REF_SPECTRUM | emission_row(heat, absorbed, "emissivity of a coated base")
                                : KB_NONE;
 }

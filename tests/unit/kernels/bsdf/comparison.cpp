@@ -71,7 +71,7 @@ double expected_bound(const KbMaterial& m, const Sample& s) {
     return (double(s.w0) * m.bound_a + second) * s.eta * s.eta;
   }
   if (s.kind == KB_KIND_NONLINEAR)
-    return double(s.w0) * m.bound_a + double(s.w1) * m.bound_b / (1 - double(m.bound_b) * m.fdr_int);
+    return double(s.w0) * m.bound_a + double(s.w1) * m.bound_b / (1 - double(m.bound_b) * (1 - m.escape));
   return double(s.w0) * s.eta * s.eta * (s.flags & kLobeB ? m.bound_b : m.bound_a);
 }
 

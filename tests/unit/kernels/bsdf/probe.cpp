@@ -99,7 +99,7 @@ uint32_t Scene::add(const KbMaterial& given) {
     const auto key = std::make_tuple(material.flags & KB_MATERIAL_GGX, material.alpha_u, material.eta);
     if (!made.count(key)) made[key] = make_coating(material);
     const Coating& coating = made[key];
-    material.fdr_int = static_cast<float>(coating.internal_reflectance);
+    material.escape = static_cast<float>(1 - coating.internal_reflectance);
     material.table = static_cast<uint32_t>(tables_.size());
     tables_.insert(tables_.end(), coating.transmittance.begin(), coating.transmittance.end());
   }
@@ -195,7 +195,7 @@ KbMaterial material_of(KbMaterialType type, float eta) {
   m.flags = KB_MATERIAL_SAMPLE_VISIBLE;
   m.eta = eta;
   m.alpha_u = m.alpha_v = 0.1f;
-  m.fdr_int = 0.6f;
+  m.escape = 0.4f;
   m.specular_weight = 0.6f;
   m.bound_a = 0.9f;
   m.bound_b = 0.8f;

@@ -32,11 +32,12 @@ KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, floa
 }
 
 KbMaterial plastic(KbMaterialType type, bool nonlinear, float alpha) {
-  static const float fdr_int = static_cast<float>(reference::diffuse_fresnel(1 / 1.49));
+  static const float escape = static_cast<float>(1 - reference::diffuse_fresnel(1 / 1.49));
   KbMaterial m = rough(type, KB_MATERIAL_GGX, alpha, alpha, true, 1.49f);
   m.specular_weight = 0.6f;
-  m.fdr_int = fdr_int;
-  if (type == KB_MATERIAL_ROUGH_PLASTIC) m.fdr_int = static_cast<float>(coating_of(m).internal_reflectance);
+  m.escape = escape;
+  if (type == KB_MATERIAL_ROUGH_PLASTIC)
+    m.escape = static_cast<float>(1 - coating_of(m).internal_reflectance);
   if (nonlinear) m.flags |= KB_MATERIAL_NONLINEAR;
   return m;
 }

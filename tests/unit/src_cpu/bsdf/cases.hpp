@@ -13,7 +13,7 @@ namespace kiloband::test {
 KbMaterial material_of(KbMaterialType type);
 KbMaterial rough(KbMaterialType type, uint32_t distribution, float alpha_u, float alpha_v, bool visible,
                  float eta = 1.5f);
-/// Plastic with 1.49 / 1 and specular weight 0.6; fdr_int from the independent quadrature, or of its coating.
+/// Plastic with 1.49 / 1 and specular weight 0.6; escape from the independent quadrature, or of its coating.
 KbMaterial plastic(KbMaterialType type, bool nonlinear, float alpha = 0.1f);
 
 /// Unit vector at `degrees` from the normal (above 90: from below) and azimuth phi [rad].

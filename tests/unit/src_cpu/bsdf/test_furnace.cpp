@@ -31,7 +31,7 @@ Mean mean_weight(const Case& c, int count, uint64_t seed) {
     const BsdfSample s = sample_bsdf(context, c.wi, u_lobe, uniform.pair());
     if (!(s.pdf > 0)) continue;
     double w = s.w0 * s.eta * s.eta;
-    if (two_terms) w += nonlinear ? s.w1 / (1 - c.material.fdr_int) : s.w1;
+    if (two_terms) w += nonlinear ? s.w1 / c.material.escape : s.w1;
     (s.transmission ? mean.transmitted : mean.reflected) += w / count;
     squares += w * w / count;
   }

@@ -86,7 +86,7 @@ TEST(HardCases, SmoothAndCoatedMaterialsStayFinite) {
         KbMaterial m = material_of(type);
         m.eta = eta;
         m.specular_weight = weight;
-        m.fdr_int = 0.9f;
+        m.escape = 0.1f;
         ASSERT_NO_FATAL_FAILURE(check_material({"", m, {}, {}}, all));
       }
     }

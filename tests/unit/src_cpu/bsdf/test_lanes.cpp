@@ -45,7 +45,7 @@ struct RandomScene {
     m.alpha_v = chance(0.5f) ? m.alpha_u : std::pow(10.0f, between(-3, 0));
     m.eta = chance(0.1f) ? 1 + between(-1e-4f, 1e-4f) : between(0.5f, 2.5f);
     m.specular_weight = between(0, 1);
-    m.fdr_int = between(0, 0.9f);
+    m.escape = between(0.1f, 1);
     m.bound_a = between(0, 1);
     m.bound_b = between(0, 1);
     m.table = static_cast<uint32_t>(tables.size());

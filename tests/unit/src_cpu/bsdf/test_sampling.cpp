@@ -24,7 +24,7 @@ double factor(const KbMaterial& m, const BsdfSample& s) {
     case KB_KIND_TWO_TERM:
       return s.w0 * kSa + s.w1 * kSb;
     case KB_KIND_NONLINEAR:
-      return s.w0 * kSa + s.w1 * kSb / (1 - kSb * m.fdr_int);
+      return s.w0 * kSa + s.w1 * kSb / (1 - kSb + kSb * m.escape);
     case KB_KIND_TINTED:
       return s.w0 * kSa + (s.w1 < 0 ? -s.w1 * std::sqrt(kSa) : s.w1);
     default:

@@ -77,7 +77,7 @@ void add_materials(FlatScene& scene) {
   mirror.flags = KB_MATERIAL_PERFECT_MIRROR;
   mirror.eta_row = mirror.k_row = KB_NONE;
   KbMaterial plastic{};
-  plastic.fdr_int = 0.596f;
+  plastic.escape = 0.404f;
   KbMaterial pane = scene.materials[3];
   pane.flags |= KB_MATERIAL_THIN;
   for (const KbMaterial& material : {mirror, plastic, pane}) scene.materials.push_back(material);

@@ -110,7 +110,7 @@ TEST_P(Formulas, LightsByTurnsAndFarWeights) {
 TEST_P(Formulas, NonlinearAndDegraded) {
   FlatScene scene = constant_scene({{500, 501, {}}, {600, 601, {}}, {700, 701, {}}});
   KbMaterial plastic{};
-  plastic.fdr_int = 0.5f;
+  plastic.escape = 0.5f;
   scene.materials = {plastic};
   KbPathVertex first = vertex_of(KB_KIND_NONLINEAR | KB_VERTEX_NEE | KB_VERTEX_SCATTER);
   first.nee1 = 1;
