@@ -165,7 +165,7 @@ class Flattener {
   uint32_t medium(const std::shared_ptr<const Medium>& medium, uint32_t boundary);
   uint32_t gas_emission_row(double temperature_k, uint32_t boundary, const std::string& name);
   uint32_t add_medium(const KbMedium& record, const std::string& name, const SourcePosition& position);
-  void refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const;
+  bool refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const;
   uint32_t interior(uint32_t shape_index);
   void set_grid(KbMedium& record, const GridField& grid);
   void set_jet(KbMedium& record, const JetField& jet);

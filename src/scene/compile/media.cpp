@@ -114,30 +114,48 @@ uint32_t Flattener::medium(const std::shared_ptr<const Medium>& medium, uint32_t
   return place->second = add_medium(record, label, medium->position);
 }
 
-/// The dielectrics by which light gets inside; panes have no inside.
-void Flattener::refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const {
+/// The dielectrics by which light gets inside; panes have no inside. Returns whether light gets in without refraction, too:
+/// by the openings of a mask or by a pane.
+bool Flattener::refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const {
   if (surface.flags & KB_SURFACE_BLEND) {
-    refracting_materials(out_.surfaces[surface.first], found);
-    refracting_materials(out_.surfaces[surface.second], found);
-  } else if ((surface.flags & KB_SURFACE_TRANSMISSIVE) &&
-             !(out_.materials[surface.front].flags & KB_MATERIAL_THIN) &&
-             std::ranges::find(found, surface.front) == found.end()) {
-    found.push_back(surface.front);
+    const bool first = refracting_materials(out_.surfaces[surface.first], found);
+    return refracting_materials(out_.surfaces[surface.second], found) || first;
   }
+  const bool open = surface.opacity_ref != KB_NONE || surface.opacity < 1;
+  if (!(surface.flags & KB_SURFACE_TRANSMISSIVE)) return open;
+  if (out_.materials[surface.front].flags & KB_MATERIAL_THIN) return true;
+  if (std::ranges::find(found, surface.front) == found.end()) found.push_back(surface.front);
+  return open;
 }
 
-/// What is inside a shape: its medium; nothing, where light enters a body without one.
+/// What is inside a shape: its medium; nothing, where light enters a body without one. A hot gas inside has to radiate
+/// n^2 B towards where its light is refracted on leaving, which divides by n^2, and B towards where it is not: no one
+/// radiance would do for both.
 uint32_t Flattener::interior(uint32_t shape_index) {
   const Shape& shape = *sources_[shape_index];
   std::vector<uint32_t> boundaries;
-  refracting_materials(out_.surfaces[out_.shapes[shape_index].surface], boundaries);
+  const bool open = refracting_materials(out_.surfaces[out_.shapes[shape_index].surface], boundaries);
   if (boundaries.size() > 1 && shape.interior) {
     throw InputError(shape.position,
                      fmt::format("shape '{}': blended dielectrics cannot bound a medium: what it "
                                  "emits inside depends on the index that light enters by",
                                  out_.shape_names[shape_index]));
   }
-  if (shape.interior) return medium(shape.interior, boundaries.empty() ? KB_NONE : boundaries.front());
+  if (shape.interior) {
+    const uint32_t boundary = boundaries.empty() ? KB_NONE : boundaries.front();
+    const uint32_t inside = medium(shape.interior, boundary);
+    const auto refracts = [](const KbMaterial& m) {
+      return m.eta != 1 || (m.flags & KB_MATERIAL_DISPERSIVE);
+    };
+    const bool hot = out_.media[inside].emit_row != KB_NONE;
+    if (open && hot && boundary != KB_NONE && refracts(out_.materials[boundary]))
+      throw InputError(shape.position,
+                       fmt::format("shape '{}': a dielectric in a mask or blended with a pane cannot bound a "
+                                   "medium with a temperature: what it emits inside depends on whether light "
+                                   "leaves by refraction",
+                                   out_.shape_names[shape_index]));
+    return inside;
+  }
   if (boundaries.empty()) return KB_NONE;
   const auto [inside, is_new] = interiors_.try_emplace(&shape);
   if (is_new)

@@ -1,0 +1,69 @@
+// What bodies that emit may be made of: dielectrics around hot gas.
+#include <gtest/gtest.h>
+
+#include "scene/compile/flat_scene.hpp"
+#include "tests/unit/scene/compile/support.hpp"
+
+namespace kiloband::test::thermal_body_test {
+namespace {
+
+/// What flattening says of a shape under a sky: its first warning, or its error behind the position.
+std::string flattened(const std::string& content) {
+  const ChannelList channels = parse_channels("500-510");
+  Messages warnings;
+  const std::string error = error_of([&] {
+    compile_scene(
+        read_scene_text(
+            "<scene version='3.0.0'><sensor type='perspective'/><emitter type='constant'/><shape type='cube' id='body'>" +
+                content + "</shape></scene>",
+            "scene.xml", "."),
+        {channels, channels, warnings.sink()});
+  });
+  if (error != "accepted") return error.substr(error.find("error: "));
+  return warnings.texts.empty() ? "" : warnings.texts.front();
+}
+
+std::string number(const std::string& name, const std::string& value) {
+  return "<float name='" + name + "' value='" + value + "'/>";
+}
+std::string bsdf(const std::string& type, const std::string& content = "") {
+  return "<bsdf type='" + type + "'>" + content + "</bsdf>";
+}
+std::string mask(const std::string& opacity, const std::string& nested) {
+  return bsdf("mask", number("opacity", opacity) + nested);
+}
+std::string blend(const std::string& first, const std::string& second) {
+  return bsdf("blendbsdf", number("weight", "0.5") + first + second);
+}
+std::string gas(bool hot) {
+  return "<medium type='absorbing' name='interior'><spectrum name='absorption' value='1'/>" +
+         (hot ? number("temperature", "900") : "") + "</medium>";
+}
+
+const std::string kGlass = bsdf("dielectric"), kPane = bsdf("thindielectric"), kPaint = bsdf("diffuse"),
+                  kPrincipled = bsdf("principled", number("spec_trans", "1")),
+                  kThin = bsdf("principledthin", number("spec_trans", "1"));
+
+/// Behind the one part of such a boundary equilibrium radiance is n^2 B, behind the other B.
+TEST(ThermalBody, HotGasHasOneIndexAroundIt) {
+  const std::string message =
+      "error: shape 'body': a dielectric in a mask or blended with a pane cannot bound a medium with a "
+      "temperature: what it emits inside depends on whether light leaves by refraction";
+  for (const std::string& boundary :
+       {mask("0.3", kGlass), mask("0.3", bsdf("roughdielectric")), mask("0.3", kPrincipled),
+        blend(kGlass, kPane), blend(kPane, kGlass), blend(kGlass, kThin), blend(kGlass, mask("0", kPaint)),
+        blend(kPaint, mask("0.3", kGlass)), mask("0.3", blend(kPaint, kGlass))}) {
+    EXPECT_EQ(flattened(boundary + gas(true)), message) << boundary;
+    EXPECT_EQ(flattened(boundary + gas(false)), "") << boundary;  // what only absorbs has no index
+    EXPECT_EQ(flattened(boundary), "") << boundary;
+  }
+  const std::string none =
+      bsdf("dielectric", number("int_ior", "1.5") + number("ext_ior", "1.5"));  // refracts nothing
+  for (const std::string& boundary :
+       {kGlass, kPane, kThin, kPrincipled, mask("1", kGlass), mask("0.3", kPaint), blend(kGlass, kPaint),
+        mask("0.3", none), bsdf("null")})
+    EXPECT_EQ(flattened(boundary + gas(true)), "") << boundary;
+}
+
+}  // namespace
+}  // namespace kiloband::test::thermal_body_test
