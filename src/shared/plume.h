@@ -6,7 +6,7 @@
 //
 // - Steps. A step ends where the ray changes the box of a grid, in which c is a cubic of s, and after a
 //   quarter of a jet's width at most: Simpson's rule then gives its column, exactly in a grid, to 2e-5 in a
-//   jet. It is halved until B in its middle is off the straight line between its ends by at most half of
+//   jet (kb_plume_enter_jet()). It is halved until B in its middle is off the straight line between its ends by at most half of
 //   KB_PLUME_TOLERANCE B_hot, at KB_PLUME_LADDER wavelengths from the shortest to the longest of the scene
 //   (B_hot: at the hottest temperature of the plume), and grows again where the line does well.
 // - Cells. A cell goes on over further steps while the straight line from its first to its last point keeps
@@ -30,6 +30,9 @@
 #define KB_GRID_STEP 0.25f
 #define KB_JET_STEP 0.25f
 #define KB_SMALLEST_STEP (1.0f / 4096.0f)
+/* Where steps grow with a jet's width: of the length on which it changes; the smallest, for floats' sake. */
+#define KB_WIDENING_STEP 0.18f
+#define KB_SMALLEST_WIDENING_STEP (1.0f / 1048576.0f)
 /* A jet is followed to this many of its widths from the axis, where its scale is exp(-9) of the axis'. */
 #define KB_JET_WIDTHS 3.0f
 
@@ -39,6 +42,7 @@ typedef struct {
   float at, end;              /* m along the ray: reached, and where the plume or the segment ends */
   float stride;               /* m, of the next step */
   float longest, shortest;    /* m, of any */
+  float rate;                 /* jet whose steps grow with its width w: they are of w / rate; 0: others */
   float plane[3];             /* grid: the next planes of nodes */
   float last_scale;           /* where `at` is */
   float start_k, end_k;       /* temperatures at the cell's first and last point */
@@ -95,7 +99,12 @@ KB_FN void kb_plume_clip_jet(KbPlumeWalk* w, float reach) {
   kb_plume_clip(w, w->origin.y, w->direction.y, -reach, reach);
 }
 
-/* The jet is a cone: after its longest width the ray is clipped to the largest that it meets. */
+/* The jet is a cone: after its longest width the ray is clipped to the largest that it meets.
+   Steps are a part of the narrowest width that is met, which is enough where the width changes little on the way. Along the
+   axis it changes on the scale w / spread, which is shorter for spread > 1, and where a wide jet begins narrowly the way
+   has more than 4096 such steps. There steps are a part of w / (|d_xy| + spread |d_z|), d the direction, which is what
+   the jet changes on where the ray is: some dozens in all, as many as the logarithm of the ratio of widths along the axis.
+   Single precision adds an error of up to 5e-9 times the distance over radius / spread. */
 KB_FN void kb_plume_enter_jet(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
   kb_plume_clip_jet(w, KB_JET_WIDTHS * (m->radius + m->spread * m->length));
   kb_plume_clip(w, w->origin.z, w->direction.z, 0.0f, m->length);
@@ -104,6 +113,18 @@ KB_FN void kb_plume_enter_jet(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
   const float narrowest = m->radius + m->spread * kb_fmax(kb_fmin(z0, z1), 0.0f);
   const KbFloat3 d = w->direction;
   w->longest = KB_JET_STEP * narrowest / kb_sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+  const float way = w->end - w->at;
+  if (m->spread > 1.0f || (m->spread > 0.0f && w->longest < KB_SMALLEST_STEP * way)) {
+    w->rate = kb_sqrt(d.x * d.x + d.y * d.y) + m->spread * kb_fabs(d.z);
+    w->longest = way;
+  }
+}
+
+/* m, of the step from `at` in a jet whose steps grow with its width. */
+KB_FN float kb_plume_widening_step(const KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
+  const float width = m->radius + m->spread * kb_fmax(kb_plume_position(w, w->at).z, 0.0f);
+  const float least = KB_SMALLEST_WIDENING_STEP / KB_SMALLEST_STEP * w->shortest;
+  return kb_fmax(KB_WIDENING_STEP * width / w->rate, least);
 }
 
 /* The cell begins anew where the walk is. */
@@ -131,6 +152,7 @@ KB_FN kb_u32 kb_plume_begin(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_GLOB
   w->direction = kb_affine_vector(m->to_local, direction);
   w->at = t_min;
   w->end = t_max;
+  w->rate = 0.0f;
   w->count = 0u;
   if (m->type == KB_MEDIUM_GRID)
     kb_plume_enter_grid(w, m);
@@ -149,6 +171,10 @@ KB_FN kb_u32 kb_plume_begin(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_GLOB
 /* Where the step from `at` ends. */
 KB_FN float kb_plume_stop(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
   float stop = kb_fmin(w->at + w->stride, w->end);
+  if (w->rate > 0.0f) {
+    const float near = w->at + kb_plume_widening_step(w, m);
+    if (near > w->at) stop = kb_fmin(stop, near);
+  }
   if (m->type != KB_MEDIUM_GRID) return stop > w->at ? stop : w->end;
   const float origin[3] = {w->origin.x, w->origin.y, w->origin.z};
   const float direction[3] = {w->direction.x, w->direction.y, w->direction.z};

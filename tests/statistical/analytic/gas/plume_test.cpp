@@ -115,6 +115,66 @@ TEST(Plume, JetAgainstFineQuadrature) {
   }
 }
 
+/// The column of a ray from `from` towards `to` through a jet: by shared/plume.h, by steps and by cells, against Simpson's
+/// rule in double with steps of a 400th of the jet's scale where they are.
+void expect_column(double radius, double spread, const Ray& ray) {
+  SCOPED_TRACE("radius " + std::to_string(radius) + " spread " + std::to_string(spread));
+  KbMedium m{};
+  m.type = KB_MEDIUM_JET;
+  m.scale = 1;
+  m.temperature_k = m.reference_k = 1800;
+  m.ambient_k = 290;
+  m.radius = static_cast<float>(radius);
+  m.spread = static_cast<float>(spread);
+  m.length = 10;
+  m.to_local[0] = m.to_local[5] = m.to_local[10] = 1;
+  for (float& x : m.second) x = 4;
+  const glm::dvec3 from(ray.from[0], ray.from[1], ray.from[2]), to(ray.to[0], ray.to[1], ray.to[2]);
+  const glm::dvec3 d = glm::normalize(to - from);
+  const KbFloat3 origin{float(from.x), float(from.y), float(from.z)},
+      direction{float(d.x), float(d.y), float(d.z)};
+  KbPlumeWalk walk;
+  ASSERT_TRUE(kb_plume_begin(&walk, &m, nullptr, origin, direction, 0, float(glm::length(to - from))));
+  double cells = 0, exact = 0;
+  KbPlumeWalk again = walk;
+  KbPlumeCell cell[2];
+  while (const kb_u32 count = kb_plume_next(&again, &m, nullptr, cell))
+    for (kb_u32 i = 0; i < count; ++i) cells += cell[i].column;
+  const auto excess = [&](double s) {
+    const double x = origin.x + s * direction.x, y = origin.y + s * direction.y,
+                 w = m.radius + m.spread * (origin.z + s * double{direction.z});
+    return m.radius / w * std::exp(-(x * x + y * y) / (w * w));
+  };
+  for (double s = walk.at; s < walk.end;) {
+    const double w = m.radius + m.spread * (origin.z + s * double{direction.z});
+    const double h = std::min(w / (1 + m.spread) / 400, walk.end - s);
+    exact += h / 6 * (excess(s) + 4 * excess(s + 0.5 * h) + excess(s + h));
+    if (!(s + h > s)) break;
+    s += h;
+  }
+  EXPECT_NEAR(kb_plume_column(&walk, &m, nullptr) / exact, 1, 2e-5);
+  EXPECT_NEAR(cells / exact, 1, 2e-5);
+}
+
+/// From a nozzle on a jet widens `spread` times as fast as it goes on: along the axis, where it is narrow, it changes on
+/// radius / spread, however long the way.
+TEST(Plume, ColumnsOfJetsThatWiden) {
+  for (const auto& [radius, spread] : {std::pair{0.3, 0.12},
+                                       {1.0, 1.0},
+                                       {0.03, 1.0},
+                                       {1.0, 3.0},
+                                       {0.1, 10.0},
+                                       {1.0, 100.0},
+                                       {1.0, 1000.0},
+                                       {0.001, 0.1}}) {
+    expect_column(radius, spread, {{0, 0, 11}, {0, 0, 0}});
+    expect_column(radius, spread, {{0, 0, 0}, {0, 0, 12}});
+    const double far = radius + 10 * spread;
+    expect_column(radius, spread, {{radius, 0.3 * radius, 0}, {0.5 * far, -0.4 * far, 10}});
+    expect_column(radius, spread, {{-far, 0.2 * far, 5}, {far, 0.1 * far, 4}});
+  }
+}
+
 /// A lattice with no symmetry: 5 x 4 x 6 nodes over [-1, 1]^3.
 constexpr int kNodes[3] = {5, 4, 6};
 
