@@ -36,11 +36,12 @@ KB_INLINE PrincipledLobes principled_lobes(const Material& m, V3 wi, M below) {
   const F dielectric = F(1) - number_of(m, KB_PRINCIPLED_METALLIC);
   const F trans = number_of(m, KB_PRINCIPLED_SPEC_TRANS), base = sampled_base(m);
   const F cosine = min(wi.z, F(1));
-  const F f = fresnel_dielectric(cosine, number_of(m, KB_PRINCIPLED_ETA)).reflectance;
+  const F index = number_of(m, KB_PRINCIPLED_ETA), f = fresnel_dielectric(cosine, index).reflectance;
+  const F reflected = dielectric_reflection(m, f, schlick_share(cosine, index));
   const F weights[3] = {
       dielectric * (F(1) - trans) * base + F(0.1f) * dielectric * number_of(m, KB_PRINCIPLED_SHEEN),
       F(0.25f) * number_of(m, KB_PRINCIPLED_CLEARCOAT) * (F(0.04f) + F(0.96f) * schlick_weight(cosine)),
-      (F(1) - dielectric) * base + dielectric * (f + trans * (F(1) - f))};
+      (F(1) - dielectric) * base + dielectric * (reflected + trans * (F(1) - f))};
   const uint32_t rates[3] = {0, 2, 1};
   F p[3];
   lobe_probabilities(m, weights, rates, p);
@@ -51,7 +52,8 @@ KB_INLINE PrincipledLobes principled_lobes(const Material& m, V3 wi, M below) {
 KB_INLINE F reflected_part(const Material& m, F f, F share, M below) {
   const F metallic = number_of(m, KB_PRINCIPLED_METALLIC), base = sampled_base(m);
   const F passes = number_of(m, KB_PRINCIPLED_SPEC_TRANS);
-  const F reflected = metallic * (base + (F(1) - base) * share) + (F(1) - metallic) * f;
+  const F reflected =
+      metallic * (base + (F(1) - base) * share) + (F(1) - metallic) * dielectric_reflection(m, f, share);
   const F refracted = (F(1) - metallic) * passes * (F(1) - f);
   return select(below, f, select(refracted > F(0), reflected / (reflected + refracted), F(1)));
 }

@@ -58,6 +58,14 @@ KB_INLINE F normal_reflectance(const Material& m) {
   return r * r;
 }
 
+/// The part of white light that the dielectric's facets reflect: F, of which the tint replaces its share by Schlick's
+/// R0 + (1 - R0) s. The two are far apart where the index is near 1: F is 0 almost everywhere and s is not.
+/// share: s
+KB_INLINE F dielectric_reflection(const Material& m, F f, F share) {
+  const F schlick = normal_reflectance(m) * (F(1) - share) + share;
+  return f + number_of(m, KB_PRINCIPLED_SPEC_TINT) * (schlick - f);
+}
+
 /// What sampling takes the base colour for.
 KB_INLINE F sampled_base(const Material& m) {
   return F(KB_PRINCIPLED_LEAST_BASE) + F(1 - KB_PRINCIPLED_LEAST_BASE) * number_of(m, KB_PRINCIPLED_BASE);

@@ -32,10 +32,11 @@ KB_INLINE F diffuse_transmission(const Material& m) {
 /// wi.z > 0
 KB_INLINE SheetLobes sheet_lobes(const Material& m, V3 wi) {
   const F trans = number_of(m, KB_PRINCIPLED_SPEC_TRANS), base = sampled_base(m), d = diffuse_transmission(m);
-  const F f = fresnel_dielectric(min(wi.z, F(1)), number_of(m, KB_PRINCIPLED_ETA)).reflectance;
-  const F diffuse = (F(1) - trans) * (F(1) - d);
-  const F weights[4] = {diffuse * base + F(0.1f) * diffuse * number_of(m, KB_PRINCIPLED_SHEEN), trans * f,
-                        trans * (F(1) - f) * base, (F(1) - trans) * d * base};
+  const F cosine = min(wi.z, F(1)), eta = number_of(m, KB_PRINCIPLED_ETA);
+  const F f = fresnel_dielectric(cosine, eta).reflectance, diffuse = (F(1) - trans) * (F(1) - d);
+  const F reflected = dielectric_reflection(m, f, schlick_share(cosine, eta));
+  const F weights[4] = {diffuse * base + F(0.1f) * diffuse * number_of(m, KB_PRINCIPLED_SHEEN),
+                        trans * reflected, trans * (F(1) - f) * base, (F(1) - trans) * d * base};
   const uint32_t rates[4] = {0, 1, 2, 3};
   F p[4];
   lobe_probabilities(m, weights, rates, p);
