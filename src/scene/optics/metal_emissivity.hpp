@@ -28,7 +28,9 @@ struct MetalSpectra {
 /// exceeds 1e-3, by 1e-3 of itself, at cosines above 1e-3. Nodes crowd towards grazing directions, where the
 /// emissivity of metals has a narrow maximum in the infrared. Anisotropic roughness: also in
 /// s = alpha_v y^2 / (alpha_u x^2 + alpha_v y^2), between at most 17 nodes, which keep those bounds for
-/// ratios of the roughnesses up to 4; at 10 errors are up to 4 times larger.
+/// ratios of the roughnesses up to 4; at 10 errors are up to 4 times larger (0.01 x 0.1 seen at grazing angles: 15
+/// times), 7e-4 at 20, 5e-3 at 100, 6e-2 at 300, for n = 1.5, k = 2. Four times as many nodes would divide these by 4 to
+/// 8 only, and multiply the spectra, 2,000 at such ratios, of which each is evaluated in all channels.
 class MetalEmissivity {
  public:
   /// facets: absent for a smooth metal. range: of wavelengths

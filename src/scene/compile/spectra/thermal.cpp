@@ -118,6 +118,19 @@ void Flattener::check_thermal(const Bsdf& bsdf, const KbMaterial& material) cons
   }
 }
 
+/// Emissivities of metals are tabulated at 17 azimuths at most, which ratios of a brushed metal suit.
+void Flattener::warn_of_ratio(const Bsdf& bsdf, const KbMaterial& material) const {
+  constexpr float kRatio = 20;  // error 7e-4 (metal_emissivity.hpp)
+  if (!is_metal(material) || !(material.flags & KB_MATERIAL_COMPENSATED)) return;
+  const float u = std::max(material.alpha_u, KB_MIN_ALPHA), v = std::max(material.alpha_v, KB_MIN_ALPHA);
+  const float ratio = std::max(u, v) / std::min(u, v);
+  if (ratio <= kRatio * (1 + 1e-6f) || (material.flags & KB_MATERIAL_PERFECT_MIRROR)) return;
+  warn(options_.sink, bsdf.position,
+       fmt::format("{}: alpha: roughnesses in a ratio of {:.3g}, more than {:g}: the emissivity may be off "
+                   "by {}",
+                   describe(bsdf), ratio, kRatio, ratio <= 100 ? 0.01 : 0.2));
+}
+
 /// Single scattering scaled up to what would leave with multiple scattering; see shared/thermal.h.
 std::vector<float> Flattener::compensate(KbMaterial& material, const Bsdf& bsdf) {
   material.flags |= KB_MATERIAL_COMPENSATED;
@@ -167,6 +180,7 @@ uint32_t Flattener::thermal(const std::shared_ptr<const Bsdf>& bsdf, uint32_t ma
   if (heats_[heat].temperature_k == 0) return KB_NONE;
   const auto [place, is_new] = thermals_.try_emplace({material, heat}, KB_NONE);
   if (!is_new) return place->second;
+  warn_of_ratio(*bsdf, record);
   const KbThermal made = thermal_of(record, describe(*bsdf), heat);
   const bool nothing = std::ranges::all_of(made.ref, [](uint32_t ref) { return ref == KB_NONE; });
   if (!nothing || made.type == KB_THERMAL_NODES) place->second = add_thermal(made, heat);

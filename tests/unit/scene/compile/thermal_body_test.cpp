@@ -1,4 +1,4 @@
-// What bodies that emit may be made of: dielectrics around hot gas.
+// What bodies that emit may be made of: dielectrics around hot gas, brushed metals.
 #include <gtest/gtest.h>
 
 #include "scene/compile/flat_scene.hpp"
@@ -63,6 +63,25 @@ TEST(ThermalBody, HotGasHasOneIndexAroundIt) {
        {kGlass, kPane, kThin, kPrincipled, mask("1", kGlass), mask("0.3", kPaint), blend(kGlass, kPaint),
         mask("0.3", none), bsdf("null")})
     EXPECT_EQ(flattened(boundary + gas(true)), "") << boundary;
+}
+
+TEST(ThermalBody, EmissivitiesOfExtremelyBrushedMetalsAreWarnedOf) {
+  const auto brushed = [](const std::string& type, const std::string& u, const std::string& v,
+                          const std::string& more = "") {
+    return bsdf(type, "<string name='distribution' value='ggx'/>" + number("alpha_u", u) +
+                          number("alpha_v", v) + more);
+  };
+  const std::string hot = "<emitter type='thermal'>" + number("temperature", "900") + "</emitter>";
+  const std::string metal = "<spectrum name='eta' value='1.5'/><spectrum name='k' value='2'/>";
+  EXPECT_EQ(flattened(brushed("roughconductor", "0.02", "0.4", metal) + hot), "");
+  EXPECT_EQ(flattened(brushed("roughconductor", "0.5", "0.02", metal) + hot),
+            "bsdf: alpha: roughnesses in a ratio of 25, more than 20: the emissivity may be off by 0.01");
+  EXPECT_EQ(flattened(brushed("roughconductor", "0.001", "0.3", metal) + hot),
+            "bsdf: alpha: roughnesses in a ratio of 300, more than 20: the emissivity may be off by 0.2");
+  EXPECT_EQ(flattened(brushed("roughconductor", "0.001", "0.3", metal)), "");
+  EXPECT_EQ(
+      flattened(brushed("roughconductor", "0.001", "0.3", "<string name='material' value='none'/>") + hot),
+      "");
 }
 
 }  // namespace
