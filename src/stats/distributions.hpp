@@ -9,8 +9,6 @@ double student_p(double t, double dof);
 double student_upper(double p, double dof);
 /// P(sqrt(n) D >= x) of Kolmogorov's D for large n.
 double kolmogorov_p(double x);
-/// Mean of Kolmogorov's distribution: sqrt(pi / 2) ln 2.
-inline constexpr double kKolmogorovMean = 0.86873116063615;
 
 /// P(the smallest of `tests` p-values <= p) if they are independent (Sidak 1967); an upper bound for
 /// two-sided normal tests of any correlation. Exact for tiny p.

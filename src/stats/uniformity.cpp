@@ -2,129 +2,161 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "stats/distributions.hpp"
+#include "stats/divisions.hpp"
 #include "stats/random.hpp"
+#include "stats/scale_test.hpp"
 
 namespace kiloband::stats {
 namespace {
 
-struct Sums {
-  double n = 0, x = 0, squares = 0;
+constexpr std::size_t kNoChannel = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kBatch = 32;  // divisions at a time
 
-  void add(double value) {
-    ++n;
-    x += value;
-    squares += value * value;
+bool varies(const UnitSample& a, const UnitSample* b, std::size_t c) {
+  const double first = a.mean_at(0, c);
+  for (std::size_t r = 0; r < a.replicates(); ++r) {
+    if (a.mean_at(r, c) != first) return true;
   }
-  double mean() const { return x / n; }
-  double variance_of_mean() const { return std::max(0.0, squares - x * x / n) / (n * (n - 1)); }
-};
-
-/// The order in which replicates are dealt to sides, or their signs: one for all units.
-struct Division {
-  std::vector<std::size_t> order;
-  std::vector<double> signs;
-};
-
-Division draw(std::size_t count, bool shuffled, Random& random) {
-  Division d{std::vector<std::size_t>(count), std::vector<double>(count, 1.0)};
-  std::iota(d.order.begin(), d.order.end(), std::size_t{0});
-  if (!shuffled) return d;
-  for (std::size_t k = count - 1; k > 0; --k) std::swap(d.order[k], d.order[random.below(k + 1)]);
-  for (double& sign : d.signs) sign = random.uniform() < 0.5 ? -1 : 1;
-  return d;
+  for (std::size_t r = 0; b != nullptr && r < b->replicates(); ++r) {
+    if (b->mean_at(r, c) != first) return true;
+  }
+  return false;
 }
 
-/// |t| of a unit whose values are dealt so; sizes of the sides: first_side, the rest (none: one-sample).
-double t_of(const std::vector<double>& values, std::size_t first_side, const Division& division) {
-  Sums a, b;
-  const bool one_sample = first_side == values.size();
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double value = one_sample ? division.signs[k] * values[k] : values[division.order[k]];
-    (k < first_side ? a : b).add(value);
+/// Contributions to both sides as if they were one: what decides whether a unit is looked at must not know
+/// the sides apart, or it would choose those in which they differ.
+double joint_contributions(const UnitSample& a, const UnitSample& b, std::size_t c) {
+  double zero = 0;
+  for (const UnitSample* side : {&a, &b}) {
+    for (std::size_t r = 0; r < side->replicates(); ++r) zero += side->mean_at(r, c) == 0;
   }
-  const double difference = a.mean() - (one_sample ? 0 : b.mean());
-  const double variance = a.variance_of_mean() + (one_sample ? 0 : b.variance_of_mean());
-  return variance > 0 ? std::abs(difference) / std::sqrt(variance) : 0;
+  const auto all = static_cast<double>(a.replicates() + b.replicates());
+  return zero == 0 ? std::numeric_limits<double>::infinity() : -all * std::log(zero / all);
 }
 
-/// sup |F - G| of two sorted samples.
-double distance(const std::vector<double>& f, const std::vector<double>& g) {
+/// sup (F_0 - F) over the cells' ends.
+double distance(const Cells& cells, std::size_t units, const std::vector<double>& reference) {
   double largest = 0;
-  std::size_t j = 0;
-  for (std::size_t i = 0; i < f.size();) {
-    const double x = f[i];
-    const double before = static_cast<double>(i) / static_cast<double>(f.size());
-    while (j < g.size() && g[j] < x) ++j;
-    largest = std::max(largest, std::abs(before - static_cast<double>(j) / static_cast<double>(g.size())));
-    while (i < f.size() && f[i] == x) ++i;
-    while (j < g.size() && g[j] == x) ++j;
-    const double after = static_cast<double>(i) / static_cast<double>(f.size());
-    largest = std::max(largest, std::abs(after - static_cast<double>(j) / static_cast<double>(g.size())));
+  uint64_t below = 0;
+  for (std::size_t i = 0; i < kCells; ++i) {
+    below += cells[i];
+    largest = std::max(largest, reference[i] - static_cast<double>(below) / static_cast<double>(units));
   }
   return largest;
 }
 
-}  // namespace
-
-Uniformity::Uniformity(std::size_t units, uint64_t seed)
-    : keep_(static_cast<double>(kUniformityMostUnits) / static_cast<double>(std::max<std::size_t>(1, units))),
-      seed_(seed) {}
-
-std::ptrdiff_t Uniformity::choose(const Contrast& contrast, const std::vector<bool>& wanted) {
-  Random random(mix_seed(seed_, ++seen_));
-  if (!contrast.valid || random.uniform() > keep_) return -1;
-  std::vector<std::size_t> channels;
-  for (std::size_t c = 0; c < contrast.channels; ++c) {
-    if ((wanted.empty() || wanted[c]) && !contrast.constant(c)) channels.push_back(c);
-  }
-  return channels.empty() ? -1 : static_cast<std::ptrdiff_t>(channels[random.below(channels.size())]);
+std::vector<Cells> draw_cells(const DividedUnits& units, std::size_t count, Random& random) {
+  std::vector<Division> divisions;
+  for (std::size_t d = 0; d < count; ++d) divisions.push_back(units.draw(random));
+  return units.divided(divisions);
 }
 
-// Values are centred and scaled, so that sums of squares lose no digits.
-void Uniformity::add(const Contrast& contrast, const UnitSample& a, const UnitSample& b,
-                     const std::vector<bool>& wanted) {
-  const std::ptrdiff_t chosen = choose(contrast, wanted);
-  if (chosen < 0 || a.sampled() < a.replicates() || b.sampled() < b.replicates()) return;
-  const auto c = static_cast<std::size_t>(chosen);
-  const double scale = 1 / std::sqrt(contrast.variance[c]);
-  Unit unit;
-  for (std::size_t r = 0; r < a.replicates(); ++r)
-    unit.a.push_back(scale * (a.mean_at(r, c) - contrast.b[c]));
-  for (std::size_t r = 0; r < b.replicates(); ++r)
-    unit.b.push_back(scale * (b.mean_at(r, c) - contrast.b[c]));
+/// F_0 at the cells' ends.
+std::vector<double> reference_of(const DividedUnits& units, Random& random) {
+  std::vector<double> reference(kCells);
+  for (const Cells& cells : draw_cells(units, kReferenceDivisions, random)) {
+    uint64_t below = 0;
+    for (std::size_t i = 0; i < kCells; ++i) {
+      below += cells[i];
+      reference[i] += static_cast<double>(below) / (kReferenceDivisions * static_cast<double>(units.size()));
+    }
+  }
+  return reference;
+}
+
+double permutation_p(const DividedUnits& units, double observed, const std::vector<double>& reference,
+                     double level, Random& random) {
+  const auto most = static_cast<std::size_t>(
+      std::min(std::ceil(kUniformityBeyond / level), static_cast<double>(kMostDivisions)));
+  double hits = 0;
+  for (std::size_t drawn = 0; drawn < most;) {
+    for (const Cells& cells : draw_cells(units, std::min(kBatch, most - drawn), random)) {
+      ++drawn;
+      hits += distance(cells, units.size(), reference) >= observed;
+      if (hits >= kUniformityHits) return hits / static_cast<double>(drawn);
+    }
+  }
+  return (1 + hits) / (1 + static_cast<double>(most));
+}
+
+}  // namespace
+
+/// Whether the unit that comes may stay.
+bool Uniformity::next(uint64_t& order) {
+  order = mix_seed(seed_, ++seen_);
+  return units_.size() < kUniformityMostUnits || order < units_.front().order;
+}
+
+void Uniformity::keep(Unit unit) {
   units_.push_back(std::move(unit));
-  result_.p_values.push_back(student_p(scale * contrast.difference[c], contrast.dof[c]));
+  std::ranges::push_heap(units_, {}, &Unit::order);
+  if (units_.size() <= kUniformityMostUnits) return;
+  std::ranges::pop_heap(units_, {}, &Unit::order);
+  units_.pop_back();
+}
+
+namespace {
+
+std::size_t choose(const std::vector<std::size_t>& channels, uint64_t order) {
+  if (channels.empty()) return kNoChannel;
+  Random random(order);
+  return channels[random.below(channels.size())];
+}
+
+}  // namespace
+
+void Uniformity::add(const Contrast& contrast, const UnitSample& a, const UnitSample& b) {
+  Unit unit{0, seen_, a.replicates()};
+  if (!contrast.valid || a.sampled() < a.replicates() || b.sampled() < b.replicates() || !next(unit.order))
+    return;
+  std::vector<std::size_t> channels;
+  for (std::size_t c = 0; c < contrast.channels; ++c) {
+    if (varies(a, &b, c) && joint_contributions(a, b, c) >= kMinContributions) channels.push_back(c);
+  }
+  const std::size_t c = choose(channels, unit.order);
+  if (c == kNoChannel) return;
+  for (std::size_t r = 0; r < a.replicates(); ++r) unit.values.push_back(a.mean_at(r, c));
+  for (std::size_t r = 0; r < b.replicates(); ++r) unit.values.push_back(b.mean_at(r, c));
+  unit.slack = contrast.slack[c];
+  unit.p = student_p(contrast.t(c), contrast.dof[c]);
+  keep(std::move(unit));
 }
 
 void Uniformity::add(const Contrast& contrast, const UnitSample& a, const std::vector<bool>& wanted) {
-  UnitSample none{a.channels, {}, {}};
-  add(contrast, a, none, wanted);
+  Unit unit{0, seen_, a.replicates()};
+  if (!contrast.valid || a.sampled() < a.replicates() || !next(unit.order)) return;
+  std::vector<std::size_t> channels;
+  for (std::size_t c = 0; c < contrast.channels; ++c) {
+    if ((wanted.empty() || wanted[c]) && varies(a, nullptr, c)) channels.push_back(c);
+  }
+  const std::size_t c = choose(channels, unit.order);
+  if (c == kNoChannel) return;
+  for (std::size_t r = 0; r < a.replicates(); ++r) unit.values.push_back(a.mean_at(r, c) - contrast.b[c]);
+  unit.slack = contrast.slack[c];
+  unit.p = student_p(contrast.t(c), contrast.dof[c]);
+  keep(std::move(unit));
 }
 
-UniformityResult Uniformity::finish() {
-  result_.units = units_.size();
-  if (units_.size() < kUniformityUnits) return std::move(result_);
-  const std::size_t first = units_.front().a.size();
-  for (Unit& unit : units_) unit.a.insert(unit.a.end(), unit.b.begin(), unit.b.end());
-  Random random(mix_seed(seed_, 0));
-  std::vector<std::vector<double>> t(kDivisions + 1);  // the first: as observed
-  std::vector<double> reference;
-  for (int d = 0; d <= kDivisions; ++d) {
-    const Division division = draw(units_.front().a.size(), d > 0, random);
-    for (const Unit& unit : units_) t[d].push_back(t_of(unit.a, first, division));
-    std::ranges::sort(t[d]);
-    if (d > 0) reference.insert(reference.end(), t[d].begin(), t[d].end());
+UniformityResult Uniformity::finish(double level) {
+  UniformityResult result;
+  result.units = units_.size();
+  if (units_.size() < kUniformityUnits) return result;
+  std::ranges::sort(units_, {}, &Unit::index);
+  const std::size_t first = units_.front().first;
+  DividedUnits units(first, units_.front().values.size() - first);
+  for (Unit& unit : units_) {
+    units.add(std::move(unit.values), unit.slack);
+    result.p_values.push_back(unit.p);
   }
-  std::ranges::sort(reference);
-  result_.distance = distance(t[0], reference);
-  double mean = 0;
-  for (int d = 1; d <= kDivisions; ++d) mean += distance(t[d], reference) / kDivisions;
-  const double root = kKolmogorovMean / mean;  // of n_eff
-  result_.p = kolmogorov_p(root * result_.distance);
-  return std::move(result_);
+  units_.clear();
+  Random random(mix_seed(seed_, 0));
+  const std::vector<double> reference = reference_of(units, random);
+  result.distance = distance(units.observed(), units.size(), reference);
+  result.p = permutation_p(units, result.distance, reference, std::max(level, kUniformityLevel), random);
+  return result;
 }
 
 }  // namespace kiloband::stats

@@ -17,7 +17,7 @@ struct FineScale {
             uint64_t seed)
       : means(columns, rows, mix_seed(seed, 1)),
         variances(columns, rows, mix_seed(seed, 2)),
-        uniformity(std::size_t{columns} * rows, mix_seed(seed, 3)),
+        uniformity(mix_seed(seed, 3)),
         thin(kind, channels, ra, rb) {}
 
   ScaleTest means, variances;
@@ -49,11 +49,17 @@ struct StripComparison::State {
     return kind == Kind::kIndependent && options.variances && same_sizes && replicates_b == shape_.replicates;
   }
 
+  /// Not of pairs, nor of a truth that is known to a bound only.
+  bool has_uniformity() const { return options.fine_scales && kind != Kind::kPaired && exact; }
+
+  void add_uniformity(FineScale& scale, const Contrast& contrast, const Sides& sides,
+                      const std::vector<bool>& wanted);
   void add_rows(const PixelSource& source);
   void add_pixel(const PixelSource& source, std::size_t in_strip, uint32_t x, uint32_t y);
   void add_unit(FineScale& scale, std::ptrdiff_t index, const UnitPlace& place, const Sides& sides);
   void flush_thin(FineScale& scale, const UnitPlace& place);
   void finish_tile(const UnitPlace& place);
+  void finish_uniformity(Comparison& c);
 
   Kind kind;
   ComparisonOptions options;
@@ -70,6 +76,15 @@ struct StripComparison::State {
   Sides sides;
 };
 
+void StripComparison::State::add_uniformity(FineScale& scale, const Contrast& contrast, const Sides& unit,
+                                            const std::vector<bool>& wanted) {
+  if (!has_uniformity()) return;
+  if (kind == Kind::kTruth)
+    scale.uniformity.add(contrast, unit.a, wanted);
+  else if (options.variances && same_sizes)
+    scale.uniformity.add(contrast, unit.a, unit.b);
+}
+
 /// A pixel or tile: means, variances, uniformity; its thin channels to the pool.
 void StripComparison::State::add_unit(FineScale& scale, std::ptrdiff_t index, const UnitPlace& place,
                                       const Sides& unit) {
@@ -85,9 +100,7 @@ void StripComparison::State::add_unit(FineScale& scale, std::ptrdiff_t index, co
     scale.thin.add_marked(unit, marked);
     scale.any_thin = true;
   }
-  if (kind == Kind::kTruth && exact) scale.uniformity.add(contrast, unit.a, wanted);
-  if (kind != Kind::kIndependent) return;
-  scale.uniformity.add(contrast, unit.a, unit.b, wanted);
+  add_uniformity(scale, contrast, unit, wanted);
   if (!has_variances()) return;
   scale.variances.add(index, place, deviation_contrast(unit.a, unit.b, options.rounding), wanted);
   if (&scale == &pixels) pooled.add(unit.a, unit.b, wanted, options.rounding);
@@ -128,6 +141,15 @@ void StripComparison::State::finish_tile(const UnitPlace& place) {
     add_unit(tiles, static_cast<std::ptrdiff_t>(index), place, tile.mean());
   }
   tile.clear();
+}
+
+/// Where the verdict is known already its p need not be small.
+void StripComparison::State::finish_uniformity(Comparison& c) {
+  if (!has_uniformity()) return;
+  const double least = options.alpha / kMostTests;
+  const double level = is_different(c, least) ? std::max(least, kUniformityCoarse) : least;
+  if (std::ranges::count(c.scales, Scale::kPixel) > 0) c.uniform_pixels = pixels.uniformity.finish(level);
+  if (std::ranges::count(c.scales, Scale::kTile) > 0) c.uniform_tiles = tiles.uniformity.finish(level);
 }
 
 void StripComparison::State::add_rows(const PixelSource& source) {
@@ -204,14 +226,13 @@ Comparison StripComparison::finish() {
       c.pooled_scatter = s.pooled.scatter(mix_seed(s.options.seed, 4));
       c.pooled_variance = s.pooled.variance(mix_seed(s.options.seed, 5));
     }
-    c.uniform_pixels = s.pixels.uniformity.finish();
-    c.uniform_tiles = s.tiles.uniformity.finish();
   }
   c.means.push_back(s.whole.finish());
   c.tails_a = s.tails_a.finish();
   if (s.kind != Kind::kTruth) c.tails_b = s.tails_b.finish();
   add_image_means(contrast, c);
   if (s.kind == Kind::kTruth) leave_out_skewed(c);
+  s.finish_uniformity(c);
   judge(c, s.options, s.same_sizes);
   return c;
 }

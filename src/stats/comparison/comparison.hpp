@@ -4,8 +4,9 @@
 //     if (!result.passed) ... result.tests says which test failed, where, and by how much
 //
 // Tests: means of pixels, 8x8 tiles and the image; variances of pixels, tiles and pooled over the image;
-// uniformity of the p-values of pixels and tiles where there are 1000 of them. Each gets an equal share of
-// alpha; a comparison passes if every one does. Nothing is forgiven: no share of pixels may differ.
+// uniformity of the p-values of pixels and tiles where there are 1000 of them and both sides are the same
+// estimator. Each gets an equal share of alpha; a comparison passes if every one does. Nothing is forgiven:
+// no share of pixels may differ.
 //
 // What is needed: replicates that are independent of each other; independent sides (other seeds), or pairs of
 // equal seed for compare_paired. 32 replicates are wanted; fewer work, with wider tails, and are noted.

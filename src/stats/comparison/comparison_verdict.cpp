@@ -59,10 +59,40 @@ void add_variances(Comparison& c, Untested& untested) {
   }
 }
 
-void add_uniformity(Comparison& c, std::optional<UniformityResult>& result, Scale scale) {
-  if (result && result->units < kUniformityUnits) result.reset();
+uint32_t fewest_replicates(const Comparison& c) {
+  return c.kind == Kind::kTruth ? c.replicates_a : std::min(c.replicates_a, c.replicates_b);
+}
+
+/// Why the units of a scale were not tested; nothing if they were.
+std::string missing_for_uniformity(const Comparison& c, const UniformityResult& result, Scale scale,
+                                   bool one_distribution) {
+  if (!one_distribution) return "the noise of the two sides need not have one distribution";
+  if (fewest_replicates(c) < kUniformityReplicates)
+    return std::to_string(kUniformityReplicates) + " replicates on every side are needed";
+  if (result.units < kUniformityUnits)
+    return std::to_string(result.units) + " " + name_of(scale) +
+           "s vary and have contributions enough and all replicates, " + std::to_string(kUniformityUnits) +
+           " are needed";
+  if (c.alpha / kMostTests < kUniformityLevel)
+    return "divisions of the replicates do not resolve so small an alpha";
+  return {};
+}
+
+/// Images that are too small for it say nothing of it.
+void add_uniformity(Comparison& c, std::optional<UniformityResult>& result, Scale scale,
+                    bool one_distribution, std::vector<std::string>& notes) {
   if (!result) return;
-  TestVerdict verdict{std::string("uniform/") + name_of(scale), result->p};
+  const std::string name = std::string("uniform/") + name_of(scale);
+  const bool tiles = scale == Scale::kTile;
+  const std::size_t units =
+      std::size_t{tiles ? tiles_along(c.width) : c.width} * (tiles ? tiles_along(c.height) : c.height);
+  const std::string missing = missing_for_uniformity(c, *result, scale, one_distribution);
+  if (!missing.empty()) {
+    if (units >= kUniformityUnits) notes.push_back(name + ": not tested, " + missing);
+    result.reset();
+    return;
+  }
+  TestVerdict verdict{name, result->p};
   verdict.detectable = {kUnknown, kUnknown, kUnknown, 0};
   c.tests.push_back(verdict);
 }
@@ -103,7 +133,7 @@ void add_unmet_paths_note(Comparison& c, const ComparisonOptions& options) {
 
 void add_notes(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
   const auto say = [&](std::string text) { c.notes.push_back(std::move(text)); };
-  const uint32_t fewest = c.kind == Kind::kTruth ? c.replicates_a : std::min(c.replicates_a, c.replicates_b);
+  const uint32_t fewest = fewest_replicates(c);
   if (fewest > 0 && fewest < kWantedReplicates)
     say(std::to_string(fewest) + " replicates on a side: " + std::to_string(kWantedReplicates) +
         " or more are wanted; the tests hold but see less");
@@ -166,10 +196,15 @@ void leave_out_skewed(Comparison& c) {
     if (found == c.scales.end() || !(excess / pooled > kTruthKurtosis - 3)) continue;
     c.means.erase(c.means.begin() + (found - c.scales.begin()));
     c.scales.erase(found);
-    (scale == Scale::kTile ? c.uniform_tiles : c.uniform_pixels).reset();
     c.notes.push_back(std::string(name_of(scale)) +
                       "s were not held against the truth: the noise is too skewed");
   }
+}
+
+bool is_different(const Comparison& c, double level) {
+  const auto below = [level](const auto& result) { return result.p < level; };
+  return c.non_finite > 0 || std::ranges::any_of(c.means, below) || std::ranges::any_of(c.variances, below) ||
+         (c.pooled_scatter && below(*c.pooled_scatter)) || (c.pooled_variance && below(*c.pooled_variance));
 }
 
 void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
@@ -177,8 +212,10 @@ void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
   Untested untested;
   add_means(c, untested);
   add_variances(c, untested);
-  add_uniformity(c, c.uniform_pixels, Scale::kPixel);
-  add_uniformity(c, c.uniform_tiles, Scale::kTile);
+  const bool one_distribution = c.kind == Kind::kTruth || (options.variances && same_sizes);
+  std::vector<std::string> not_uniform;
+  add_uniformity(c, c.uniform_pixels, Scale::kPixel, one_distribution, not_uniform);
+  add_uniformity(c, c.uniform_tiles, Scale::kTile, one_distribution, not_uniform);
   if (c.tests.empty() && c.non_finite == 0)
     throw InputError("no pixel has values and errors on both sides: there is nothing to compare");
   const double level = options.alpha / static_cast<double>(std::max<std::size_t>(1, c.tests.size()));
@@ -194,6 +231,7 @@ void judge(Comparison& c, const ComparisonOptions& options, bool same_sizes) {
   c.passed = std::ranges::all_of(c.tests, &TestVerdict::passed);
   add_notes(c, options, same_sizes);
   add_untested_note(c, untested);
+  for (std::string& note : not_uniform) c.notes.push_back(std::move(note));
 }
 
 const TestVerdict& Comparison::decisive() const {
