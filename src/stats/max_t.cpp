@@ -10,6 +10,9 @@
 namespace kiloband::stats {
 namespace {
 
+/// Shares of smaller tails come near the smallest double, where there are no quantiles.
+constexpr double kSmallestTail = 1e-290;
+
 bool is_wanted(const std::vector<bool>& wanted, std::size_t channel) {
   return wanted.empty() || wanted[channel];
 }
@@ -114,7 +117,7 @@ double max_t_p(const Contrast& contrast, const std::vector<bool>& wanted, const 
                uint64_t seed) {
   const auto tests = static_cast<double>(strongest.tested);
   if (strongest.p <= 0 || strongest.tested <= 1) return strongest.p;
-  if (contrast.rows.empty()) return std::min(1.0, tests * strongest.p);
+  if (contrast.rows.empty() || strongest.p < kSmallestTail) return std::min(1.0, tests * strongest.p);
   const Directions directions(contrast, wanted);
   if (strongest.p >= 1 || directions.dof() < 1) return std::min(1.0, tests * strongest.p);
   const double t = student_upper(0.5 * strongest.p, directions.dof());

@@ -146,5 +146,19 @@ TEST(MaxT, TheStrongestChannelHasTheSmallestP) {
   }
 }
 
+/// Differences whose p is near the smallest double, and 0 beyond.
+TEST(MaxT, TheSmallestTails) {
+  double p = 1;
+  for (double bias = 0.5; bias < 1.1; bias *= 1.003) {
+    UnitSample a = draw(2, 0.5, 300, 64), b = draw(2, 0.5, 301, 64);
+    for (double& x : a.means) x = 1 + 1e-3 * x;
+    for (double& x : b.means) x = 1 + bias + 1e-3 * x;
+    const double before = p;
+    ASSERT_NO_THROW(p = rotation_p(a, b, 1)) << bias;
+    EXPECT_LE(p, before);
+  }
+  EXPECT_LT(p, 1e-300);
+}
+
 }  // namespace
 }  // namespace kiloband::stats::max_t_test
