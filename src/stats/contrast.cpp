@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "stats/distributions.hpp"
+
 namespace kiloband::stats {
 namespace {
 
@@ -85,6 +87,11 @@ double Contrast::t(std::size_t c) const {
   return std::copysign(t, difference[c]);
 }
 
+double Contrast::p(std::size_t c) const {
+  if (share.empty()) return student_p(t(c), dof[c]);
+  return behrens_fisher_p(t(c), share[c], dof_a, dof_b);
+}
+
 Contrast independent_contrast(const UnitSample& a, const UnitSample& b, double rounding) {
   Contrast contrast = empty_contrast(a.channels, a.sampled() >= 2 && b.sampled() >= 2);
   if (!contrast.valid) return contrast;
@@ -96,8 +103,11 @@ Contrast independent_contrast(const UnitSample& a, const UnitSample& b, double r
     contrast.variance.push_back(va + vb);
     // In shares, since squares of tiny variances would underflow.
     const double share = va + vb > 0 ? va / (va + vb) : 0.5;
+    contrast.share.push_back(share);
     contrast.dof.push_back(1 / (share * share / sa.dof + (1 - share) * (1 - share) / sb.dof));
   }
+  contrast.dof_a = sa.dof;
+  contrast.dof_b = sb.dof;
   set_slack(contrast, rounding);
   return contrast;
 }

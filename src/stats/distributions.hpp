@@ -7,6 +7,9 @@ namespace kiloband::stats {
 double student_p(double t, double dof);
 /// t with P(T >= t) = p, 0 < p < 1.
 double student_upper(double p, double dof);
+/// P(|sqrt(share) T_a + sqrt(1 - share) T_b| >= |t|) of independent Student's T_a, T_b: Behrens and Fisher's
+/// law of a difference over its estimated error, of which side A has the share `share` (contrast.hpp).
+double behrens_fisher_p(double t, double share, double dof_a, double dof_b);
 /// P(sqrt(n) D >= x) of Kolmogorov's D for large n.
 double kolmogorov_p(double x);
 

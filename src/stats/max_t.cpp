@@ -116,17 +116,18 @@ Strongest strongest_channel(const Contrast& contrast, const std::vector<bool>& w
 double max_t_p(const Contrast& contrast, const std::vector<bool>& wanted, const Strongest& strongest,
                uint64_t seed) {
   const auto tests = static_cast<double>(strongest.tested);
-  if (strongest.p <= 0 || strongest.tested <= 1) return strongest.p;
-  if (contrast.rows.empty() || strongest.p < kSmallestTail) return std::min(1.0, tests * strongest.p);
+  const double p = std::max(strongest.p, contrast.p(strongest.channel));
+  if (p <= 0 || strongest.tested <= 1) return p;
+  if (contrast.rows.empty() || p < kSmallestTail) return std::min(1.0, tests * p);
   const Directions directions(contrast, wanted);
-  if (strongest.p >= 1 || directions.dof() < 1) return std::min(1.0, tests * strongest.p);
-  const double t = student_upper(0.5 * strongest.p, directions.dof());
+  if (p >= 1 || directions.dof() < 1) return std::min(1.0, tests * p);
+  const double t = student_upper(0.5 * p, directions.dof());
   const double cosine = t / std::sqrt(t * t + directions.dof());
   Random random(seed);
   double shares = 0;
   for (int i = 0; i < kRotations; ++i)
-    shares += draw_share(directions, random.below(directions.count()), strongest.p, cosine, random);
-  return std::clamp(tests * strongest.p * shares / kRotations, strongest.p, 1.0);
+    shares += draw_share(directions, random.below(directions.count()), p, cosine, random);
+  return std::clamp(tests * p * shares / kRotations, p, 1.0);
 }
 
 double label_permutation_p(const UnitSample& a, const UnitSample& b, int permutations, uint64_t seed) {

@@ -29,7 +29,7 @@ namespace kiloband::stats {
 struct Strongest {
   std::size_t channel = 0;
   double t = 0;
-  double p = 1;              // Student's, of this channel alone
+  double p = 1;              // Student's, of this channel alone; Contrast::p is not smaller
   std::size_t tested = 0;    // channels that vary
   std::size_t constant = 0;  // channels that do not: they must be equal
 };

@@ -95,6 +95,7 @@ Contrast deviation_contrast(const UnitSample& a, const UnitSample& b, double rou
       side->means[i] = std::sqrt(std::max(0.0, side->means[i] - means.slack[i % side->channels]));
   }
   Contrast contrast = independent_contrast(da, db, 0);
+  contrast.share.clear();  // sides that agree have one distribution
   contrast.dof.assign(contrast.channels, static_cast<double>(a.sampled() + b.sampled()) - 2);
   return contrast;
 }

@@ -12,10 +12,11 @@
 namespace kiloband::stats {
 namespace {
 
-/// dof of va + vb, in shares of the sum (contrast.cpp).
-double joint_dof(double va, double dof_a, double vb, double dof_b) {
+/// The share of A in the variance, and the dof of the sum (contrast.cpp).
+void add_share(double va, double vb, Contrast& contrast) {
   const double share = va + vb > 0 ? va / (va + vb) : 0.5;
-  return 1 / (share * share / dof_a + (1 - share) * (1 - share) / dof_b);
+  contrast.share.push_back(share);
+  contrast.dof.push_back(1 / (share * share / contrast.dof_a + (1 - share) * (1 - share) / contrast.dof_b));
 }
 
 /// The moments of one pixel's replicates, of which `lost` are not finite; appended. zero: of all channels
@@ -32,7 +33,7 @@ void add_moments(const UnitSample& pixel, std::size_t lost, const TruthValues& z
     if (sampled == 1) mean = pixel.mean_at(only, c);
     if (lost > 0) mean = std::numeric_limits<float>::infinity();
     moments.mean.push_back(static_cast<float>(mean));
-    moments.variance.push_back(contrast.valid ? static_cast<float>(contrast.variance[c]) : kNone);
+    moments.variance.push_back(contrast.valid ? contrast.variance[c] : kNone);
   }
 }
 
@@ -100,6 +101,8 @@ void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uin
   Contrast contrast;
   contrast.channels = channels_;
   contrast.valid = has_a && has_b;
+  contrast.dof_a = a.dof_of(pixel);
+  contrast.dof_b = b.dof_of(pixel);
   for (std::size_t c = 0; c < channels_ && contrast.valid; ++c) {
     const double va = a.variance[first + c], vb = b.variance[first + c];
     contrast.valid = va >= 0 && vb >= 0 && std::isfinite(va + vb);
@@ -107,7 +110,7 @@ void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uin
     contrast.b.push_back(mb[c]);
     contrast.difference.push_back(double{ma[c]} - mb[c]);
     contrast.variance.push_back(va + vb);
-    contrast.dof.push_back(joint_dof(va, a.dof_of(pixel), vb, b.dof_of(pixel)));
+    add_share(va, vb, contrast);
     contrast.slack.push_back(options_.rounding * std::max(std::abs(ma[c]), std::abs(mb[c])));
   }
   const auto index = static_cast<std::ptrdiff_t>(std::size_t{y} * width_ + x);

@@ -33,6 +33,27 @@ TEST(Distributions, QuantilesInvert) {
   }
 }
 
+/// One side alone is Student's law, two of infinitely many degrees the normal one; sides in between by the
+/// tables of Sukhatme (5 % for 6 and 12 degrees: 2.301 where the error is half of each side's), and never
+/// below Welch's p.
+TEST(Distributions, BehrensAndFisher) {
+  constexpr double kMany = std::numeric_limits<double>::infinity();
+  for (const double t : {0.5, 3.0, 40.0, 1e6}) {
+    for (const double dof : {1.0, 2.0, 15.0}) {
+      EXPECT_NEAR(behrens_fisher_p(t, 1, dof, 31) / student_p(t, dof), 1, 1e-6) << t << " " << dof;
+      EXPECT_NEAR(behrens_fisher_p(-t, 0, 31, dof) / student_p(t, dof), 1, 1e-6) << t << " " << dof;
+      EXPECT_NEAR(behrens_fisher_p(t, 1, dof, kMany) / student_p(t, dof), 1, 1e-6) << t << " " << dof;
+    }
+  }
+  EXPECT_NEAR(behrens_fisher_p(5, 0.3, kMany, kMany) / student_p(5, kMany), 1, 1e-5);
+  EXPECT_NEAR(behrens_fisher_p(2.301, 0.5, 6, 12), 0.05, 2e-4);
+  for (const double share : {0.01, 0.2, 0.5, 0.9}) {
+    const double welch = 1 / (share * share / 7 + (1 - share) * (1 - share) / 31);
+    EXPECT_GT(behrens_fisher_p(6, share, 7, 31), student_p(6, welch)) << share;
+  }
+  EXPECT_EQ(behrens_fisher_p(kMany, 0.5, 3, 3), 0);
+}
+
 /// Kolmogorov's critical values (Smirnov 1948); both series meet.
 TEST(Distributions, Kolmogorov) {
   EXPECT_NEAR(kolmogorov_p(1.3581), 0.05, 1e-5);

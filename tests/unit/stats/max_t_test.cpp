@@ -51,7 +51,7 @@ double sign_flip_p(const UnitSample& a, const UnitSample& b, int flips, uint64_t
 TEST(MaxT, OneChannelManyTimesIsOneTest) {
   const UnitSample a = draw(20, 1, 1), b = draw(20, 1, 2);
   const Contrast contrast = independent_contrast(a, b, 0);
-  EXPECT_NEAR(rotation_p(a, b, 3), student_p(contrast.t(0), contrast.dof[0]), 1e-6);
+  EXPECT_NEAR(rotation_p(a, b, 3), contrast.p(0), 1e-6);
 }
 
 TEST(MaxT, IndependentChannelsAreSidak) {
@@ -95,18 +95,21 @@ TEST(MaxT, ResolvesTinyLevels) {
   const Strongest strongest = strongest_channel(contrast, {});
   ASSERT_LT(strongest.p, 1e-10);
   const double p = max_t_p(contrast, {}, strongest, 1);
-  EXPECT_GE(p, strongest.p);
-  EXPECT_LT(p, 29 * strongest.p) << "of 30 channels";
+  const double single = contrast.p(strongest.channel);
+  EXPECT_GE(p, single);
+  EXPECT_LT(p, 29 * single) << "of 30 channels";
   EXPECT_EQ(p, max_t_p(contrast, {}, strongest, 1)) << "deterministic";
 }
 
 /// 500 pairs without difference; p < 5 % and < 1 % as often as they say (binomial, two-sided 1e-4).
-/// Dependent channels, few replicates and unequal sides as well; Bonferroni would find 1.9 % instead of 5 %.
+/// Dependent channels and unequal sides as well; Bonferroni would find 1.9 % instead of 5 %. With few
+/// replicates less often: the law of Behrens and Fisher has to hold for any ratio of variances.
 TEST(MaxT, HoldsItsLevel) {
   const struct {
     uint32_t replicates_a, replicates_b;
     const char* distribution;
-  } cases[] = {{32, 32, "normal"}, {32, 32, "exponential"}, {6, 6, "normal"}, {32, 16, "normal"}};
+    bool few = false;
+  } cases[] = {{32, 32, "normal"}, {32, 32, "exponential"}, {6, 6, "normal", true}, {32, 16, "normal"}};
   for (const auto& c : cases) {
     constexpr int kPairs = 500;
     int below5 = 0, below1 = 0;
@@ -118,9 +121,9 @@ TEST(MaxT, HoldsItsLevel) {
       below5 += p < 0.05;
       below1 += p < 0.01;
     }
-    EXPECT_GT(binomial_p(below5, kPairs, 0.05), 1e-4)
+    EXPECT_TRUE((c.few && below5 < 0.05 * kPairs) || binomial_p(below5, kPairs, 0.05) > 1e-4)
         << c.distribution << " " << c.replicates_a << ": " << below5;
-    EXPECT_GT(binomial_p(below1, kPairs, 0.01), 1e-4)
+    EXPECT_TRUE((c.few && below1 < 0.01 * kPairs) || binomial_p(below1, kPairs, 0.01) > 1e-4)
         << c.distribution << " " << c.replicates_a << ": " << below1;
   }
 }
@@ -130,7 +133,7 @@ TEST(MaxT, VariancesAloneGiveBonferroni) {
   Contrast contrast = independent_contrast(draw(8, 0.9, 500), draw(8, 0.9, 501), 0);
   contrast.rows.clear();
   const Strongest strongest = strongest_channel(contrast, {});
-  EXPECT_DOUBLE_EQ(max_t_p(contrast, {}, strongest, 1), std::min(1.0, 8 * strongest.p));
+  EXPECT_DOUBLE_EQ(max_t_p(contrast, {}, strongest, 1), std::min(1.0, 8 * contrast.p(strongest.channel)));
 }
 
 /// The shortcut that skips tails must find the smallest p.
@@ -149,7 +152,7 @@ TEST(MaxT, TheStrongestChannelHasTheSmallestP) {
 /// Differences whose p is near the smallest double, and 0 beyond.
 TEST(MaxT, TheSmallestTails) {
   double p = 1;
-  for (double bias = 0.5; bias < 1.1; bias *= 1.003) {
+  for (double bias = 0.64; bias < 1e4; bias *= bias < 0.7 ? 1.003 : 1.06) {
     UnitSample a = draw(2, 0.5, 300, 64), b = draw(2, 0.5, 301, 64);
     for (double& x : a.means) x = 1 + 1e-3 * x;
     for (double& x : b.means) x = 1 + bias + 1e-3 * x;

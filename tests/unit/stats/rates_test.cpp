@@ -71,6 +71,26 @@ TEST(RatesOfEstimators, NoMoreFalseAlarmsThanStated) {
   EXPECT_GT(alarms["mean/image"], 0);
 }
 
+/// Few renders against many, and few that scatter unlike: a pixel where they agree by chance is no
+/// difference. Alarms of 20 comparisons at 1e-3: none (Welch's degrees of freedom: in 17 to 20).
+TEST(RatesOfFewReplicates, NoMoreFalseAlarmsThanStated) {
+  const test::BatchPool pool("normal", 8);
+  const struct {
+    uint32_t a, b;
+    double spread;
+  } cases[] = {{2, 32, 1}, {3, 32, 1}, {4, 4, 0.05}};
+  for (const auto& c : cases) {
+    test::SimulatedImage few{32, 32, c.a, 2, 0}, many{32, 32, c.b, 2, 0};
+    many.spread = [&](uint32_t, uint32_t, std::size_t) { return c.spread; };
+    int failed = 0;
+    for (uint64_t i = 0; i < 20; ++i)
+      failed += !compare_independent(simulate(few, pool, 2 * i), simulate(many, pool, 2 * i + 1),
+                                     {.seed = i, .variances = false})
+                     .passed;
+    EXPECT_EQ(failed, 0) << c.a << " " << c.b;
+  }
+}
+
 /// A known truth, light tails.
 TEST(RatesOfTruths, NoMoreFalseAlarmsThanStated) {
   const test::BatchPool pool("exponential", 64);
