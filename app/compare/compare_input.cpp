@@ -39,6 +39,17 @@ double factor_of(const CubeInfo& info, std::size_t band, Quantity wanted) {
   return wanted == Quantity::kIntegral ? width : 1 / width;
 }
 
+/// A variance that a file has as a float, with what it may hide: the smallest floats are coarse, and where a
+/// program has them rounded to 0 any below the smallest normal one is 0. Where such an error is below the
+/// rounding of the mean a variance of 0 is taken as it is.
+double variance_with_hidden(float variance, float mean) {
+  using Limits = std::numeric_limits<float>;
+  if (!(variance >= 0 && variance < Limits::min())) return variance;
+  const double rounding = double{Limits::epsilon()} * mean,
+               hidden = variance > 0 ? Limits::denorm_min() : Limits::min();
+  return variance + (hidden > rounding * rounding ? hidden : 0);
+}
+
 bool is_missing(const std::vector<float>& values, std::size_t pixel, std::size_t channels) {
   const auto first = values.begin() + static_cast<std::ptrdiff_t>(pixel * channels);
   return std::all_of(first, first + static_cast<std::ptrdiff_t>(channels),
@@ -132,7 +143,7 @@ void CompareSide::open_single(const SideOptions& options, const DiagnosticSink& 
     source_ = options.exact ? ErrorSource::kExact : ErrorSource::kVariance;
     cubes_.push_back(std::move(cube.mean));
     samples_ = {1};
-    if (!options.exact) open_variance(options);
+    if (!options.exact) open_variance(options, sink);
     return;
   }
   if (options.dof)
@@ -143,9 +154,9 @@ void CompareSide::open_single(const SideOptions& options, const DiagnosticSink& 
   for (const double n : cube.samples) samples_.push_back(static_cast<uint64_t>(n));
 }
 
-void CompareSide::open_variance(const SideOptions& options) {
+void CompareSide::open_variance(const SideOptions& options, const DiagnosticSink& sink) {
   if (options.variance) {
-    variance_ = open_cube(*options.variance);
+    variance_ = open_cube(*options.variance, sink);
     check_same_shape(files_, info(), *options.variance, variance_->info());
   } else if (!info().variance) {
     throw InputError(fmt::format(
@@ -224,14 +235,15 @@ stats::MomentImage CompareSide::read_moments(uint32_t y0, uint32_t rows, Quantit
     image.dof = std::numeric_limits<double>::infinity();
     return image;
   }
-  std::vector<float> unused(image.mean.size());
+  std::vector<float> unused(image.mean.size()), variance(image.mean.size());
   if (variance_)
-    variance_->read_rows(y0, rows, image.variance, {});
+    variance_->read_rows(y0, rows, variance, {});
   else
-    cubes_.front()->read_rows(y0, rows, unused, image.variance);
-  for (std::size_t i = 0; i < image.variance.size(); ++i) {
-    const double factor = factor_of(info(), i % image.channels, quantity);
-    if (factor != 1) image.variance[i] = static_cast<float>(image.variance[i] * factor * factor);
+    cubes_.front()->read_rows(y0, rows, unused, variance);
+  const CubeInfo& info_of_variance = variance_ ? variance_->info() : info();
+  for (std::size_t i = 0; i < variance.size(); ++i) {
+    const double factor = factor_of(info_of_variance, i % image.channels, quantity);
+    image.variance[i] = variance_with_hidden(variance[i], image.mean[i]) * factor * factor;
   }
   return image;
 }

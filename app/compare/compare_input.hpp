@@ -59,7 +59,7 @@ class CompareSide {
  private:
   void open_renders(const std::vector<std::string>& files, const DiagnosticSink& sink);
   void open_single(const SideOptions& options, const DiagnosticSink& sink);
-  void open_variance(const SideOptions& options);
+  void open_variance(const SideOptions& options, const DiagnosticSink& sink);
   std::vector<float> read_mean(CubeReader& cube, uint32_t y0, uint32_t rows, Quantity quantity) const;
 
   std::string name_, files_;

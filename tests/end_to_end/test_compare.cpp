@@ -127,15 +127,50 @@ TEST(Compare, EveryKindOfCube) {
   EXPECT_EQ(compare(folder, {"a.hdr", "c.hdr", "--dof-b", "15", "--independent-pixels"}).code, 1);
 }
 
-/// 2 x 2 pixels in one channel.
-void write_small_cube(const std::filesystem::path& file, float value) {
+/// 2 x 2 pixels in one channel of 100 nm; the values are integrals.
+void write_small_cube(const std::filesystem::path& file, float value, std::optional<float> variance = {},
+                      Quantity quantity = Quantity::kIntegral) {
   CubeInfo info;
   info.width = info.height = 2;
   info.bands = {{{400, 500, ""}, false}};
+  info.variance = variance.has_value();
+  info.quantity = quantity;
   auto writer = create_cube_writer(file, info, 2);
-  const std::vector<float> values{value, 2 * value, value, value};
-  writer->write_rows({0, 2, values, {}, {}});
+  const std::vector<float> values{value, 2 * value, value, value},
+      variances(variance ? 4 : 0, variance.value_or(0));
+  writer->write_rows({0, 2, values, variances, {}});
   writer->finish();
+}
+
+/// A variance that no float holds is 0 in the file: nothing is known of such a difference. Of a mean of 1 it
+/// says that there is no noise.
+TEST(Compare, VariancesThatAFileCannotHold) {
+  const TemporaryFolder folder;
+  for (const auto& [name, value, variance] :
+       {std::tuple{"a.hdr", 1e-24f, 0.0f}, std::tuple{"b.hdr", 1.1e-24f, 0.0f},
+        std::tuple{"tiny_a.exr", 2e-23f, 1e-45f}, std::tuple{"tiny_b.exr", 1.9e-23f, 0.0f},
+        std::tuple{"one.hdr", 1.0f, 0.0f}, std::tuple{"more.hdr", 1.1f, 0.0f}})
+    write_small_cube(folder / name, value, variance);
+  EXPECT_EQ(compare(folder, {"a.hdr", "b.hdr"}).code, 0);
+  EXPECT_EQ(compare(folder, {"tiny_a.exr", "tiny_b.exr"}).code, 0);
+  EXPECT_EQ(compare(folder, {"one.hdr", "more.hdr"}).code, 1);
+}
+
+/// A cube of variances has a quantity of its own: variances 1 of integrals over 100 nm are 10^-4 of densities.
+TEST(Compare, VariancesInTheQuantityOfTheirCube) {
+  const TemporaryFolder folder;
+  write_small_cube(folder / "a.hdr", 10);
+  write_small_cube(folder / "b.hdr", 12);
+  write_small_cube(folder / "integrals.hdr", 1);
+  write_small_cube(folder / "densities.hdr", 1e-2f, {}, Quantity::kDensity);  // writers divide by the width
+  std::vector<std::string> p;
+  for (const char* variances : {"integrals.hdr", "densities.hdr"}) {
+    const Outcome outcome = compare(folder, {"a.hdr", "b.hdr", "--variance-a", variances, "--variance-b",
+                                             variances, "--json", "result.json"});
+    EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    p.push_back(fmt::format("{:.4f}", read_json(folder, "result.json")["tests"][0]["p"].get<double>()));
+  }
+  EXPECT_EQ(p[0], p[1]);
 }
 
 /// Longer than a file name may be (255 bytes), and than a path (4096).

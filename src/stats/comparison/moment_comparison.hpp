@@ -11,11 +11,13 @@
 namespace kiloband::stats {
 
 /// dof: of the variances; infinite where unknown (normal). A variance that is negative or not finite is none.
+/// In double: of means below 1e-19 or above 1e19 floats do not hold the squares.
 struct MomentImage {
   uint32_t width = 0, height = 0;
   std::size_t channels = 0;
   double dof = 0;
-  std::vector<float> mean, variance;   // [pixel][channel], variance of the mean
+  std::vector<float> mean;             // [pixel][channel]
+  std::vector<double> variance;        // [pixel][channel], of the mean
   std::vector<double> pixel_dof = {};  // [pixel] instead of dof; may be empty
 
   double dof_of(std::size_t pixel) const { return pixel_dof.empty() ? dof : pixel_dof[pixel]; }

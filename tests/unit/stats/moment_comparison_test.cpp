@@ -67,5 +67,24 @@ TEST(Moments, MissingPixels) {
   EXPECT_EQ(no_error.means[0].entries.unsampled, 1u);
 }
 
+/// Means whose squares no float holds: the same result as at 1, not variances that are 0 or infinite.
+TEST(Moments, TinyAndHugeValues) {
+  const test::BatchPool pool("normal", 4);
+  const auto result = [&](float scale) {
+    ReplicateImage a = simulate({12, 9, 16, 1}, pool, 1), b = simulate({12, 9, 16, 1}, pool, 2);
+    for (ReplicateImage* image : {&a, &b}) {
+      for (float& value : image->means) value *= scale;
+    }
+    return compare(moments_of(a), moments_of(b));
+  };
+  const Comparison one = result(1);
+  EXPECT_TRUE(one.passed);
+  for (const float scale : {0x1p-100f, 0x1p-70f, 0x1p100f}) {
+    const Comparison scaled = result(scale);
+    EXPECT_NEAR(scaled.tests[0].p, one.tests[0].p, 1e-6) << scale;
+    EXPECT_EQ(scaled.means[0].entries.tested, one.means[0].entries.tested) << scale;
+  }
+}
+
 }  // namespace
 }  // namespace kiloband::stats::moment_comparison_test
