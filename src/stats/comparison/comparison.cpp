@@ -49,6 +49,8 @@ struct StripComparison::State {
     return kind == Kind::kIndependent && options.variances && same_sizes && replicates_b == shape_.replicates;
   }
 
+  bool has_unit_variances() const { return has_variances() && replicates_b >= kVarianceReplicates; }
+
   /// Not of pairs, nor of a truth that is known to a bound only.
   bool has_uniformity() const { return options.fine_scales && kind != Kind::kPaired && exact; }
 
@@ -102,7 +104,8 @@ void StripComparison::State::add_unit(FineScale& scale, std::ptrdiff_t index, co
   }
   add_uniformity(scale, contrast, unit, wanted);
   if (!has_variances()) return;
-  scale.variances.add(index, place, deviation_contrast(unit.a, unit.b, options.rounding), wanted);
+  if (has_unit_variances())
+    scale.variances.add(index, place, deviation_contrast(unit.a, unit.b, options.rounding), wanted);
   if (&scale == &pixels) pooled.add(unit.a, unit.b, wanted, options.rounding);
 }
 
@@ -220,9 +223,11 @@ Comparison StripComparison::finish() {
   if (s.options.fine_scales) {
     c.means.push_back(s.pixels.means.finish());
     c.means.push_back(s.tiles.means.finish());
-    if (s.has_variances()) {
+    if (s.has_unit_variances()) {
       c.variances.push_back(s.pixels.variances.finish());
       c.variances.push_back(s.tiles.variances.finish());
+    }
+    if (s.has_variances()) {
       c.pooled_scatter = s.pooled.scatter(mix_seed(s.options.seed, 4));
       c.pooled_variance = s.pooled.variance(mix_seed(s.options.seed, 5));
     }

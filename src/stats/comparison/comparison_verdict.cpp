@@ -142,6 +142,9 @@ void add_notes(Comparison& c, const ComparisonOptions& options, bool same_sizes)
     say("variances were not compared: the sides have different numbers of replicates");
   else if (variances && !same_sizes)
     say("variances were not compared: the replicates of the two sides have different numbers of samples");
+  else if (variances && options.fine_scales && fewest < kVarianceReplicates)
+    say("variance/pixel, variance/tile: not tested, " + std::to_string(kVarianceReplicates) +
+        " replicates on every side are needed");
   add_unmet_paths_note(c, options);
   if (c.kind == Kind::kPaired) say("variances were not compared: the sides are paired");
   for (std::size_t i = 0; i < c.means.size(); ++i) {
@@ -176,10 +179,14 @@ std::string non_finite_note(const Comparison& c) {
 }  // namespace
 
 bool replicates_have_same_sizes(const UnitSample& a, const UnitSample& b) {
-  const auto [least_a, most_a] = std::ranges::minmax(a.weights);
-  const auto [least_b, most_b] = std::ranges::minmax(b.weights);
-  if (least_a == 0 || least_b == 0) return true;  // a replicate that lost its samples here says nothing
-  return std::max(most_a, most_b) - std::min(least_a, least_b) <= std::max(1.0, 0.001 * most_a);
+  double mean[2] = {0, 0};
+  for (const UnitSample* side : {&a, &b}) {
+    const auto [least, most] = std::ranges::minmax(side->weights);
+    if (least == 0) return true;  // a replicate that lost its samples here says nothing
+    if (most - least > std::max(1.0, 0.001 * most)) return false;
+    for (const double w : side->weights) mean[side == &b] += w / static_cast<double>(side->replicates());
+  }
+  return std::abs(mean[0] - mean[1]) <= 0.001 * mean[0];
 }
 
 void add_image_means(const Contrast& contrast, Comparison& c) {

@@ -8,8 +8,9 @@ namespace kiloband::stats {
 /// Tests that share alpha, at most: no test's level is below alpha / kMostTests.
 inline constexpr double kMostTests = 9;
 
-/// Whether the replicates of both sides hold the same number of samples (to one sample),
-/// as tests of variances need.
+/// Whether the replicates of both sides hold the same number of samples, as tests of variances need: to one
+/// sample within a side, whose samples may not divide by its replicates; to 1e-3 in the mean between the
+/// sides.
 bool replicates_have_same_sizes(const UnitSample& a, const UnitSample& b);
 
 /// Means of the whole image.

@@ -72,7 +72,8 @@ TEST(RatesOfEstimators, NoMoreFalseAlarmsThanStated) {
 }
 
 /// Few renders against many, and few that scatter unlike: a pixel where they agree by chance is no
-/// difference. Alarms of 20 comparisons at 1e-3: none (Welch's degrees of freedom: in 17 to 20).
+/// difference. Alarms of 20 comparisons at 1e-3: none (with Welch's degrees of freedom, and p-values of
+/// pixels against Kolmogorov's law: in 16 to 20).
 TEST(RatesOfFewReplicates, NoMoreFalseAlarmsThanStated) {
   const test::BatchPool pool("normal", 8);
   const struct {

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "stats/comparison/comparison.hpp"
+#include "stats/comparison/comparison_verdict.hpp"
 #include "tests/support/simulated_image.hpp"
+#include "tests/unit/stats/support.hpp"
 
 namespace kiloband::stats::variance_test {
 namespace {
@@ -57,6 +59,42 @@ TEST(Variances, TheRatioIsEstimated) {
   EXPECT_NEAR(c.pooled_variance->log_error_all, std::sqrt(2 * 2.0 / 31 / 4096), 0.0015);
   EXPECT_NEAR(c.pooled_scatter->ratio_all, std::pow(1.5, 0.9), 0.04) << "cut deviations";
   EXPECT_EQ(c.pooled_variance->entries, 4096u);
+}
+
+/// Replicates of 4 and of 5 samples scatter differently without a difference: 130 samples in 32 replicates of
+/// either side do not, and 160 against 128 do.
+TEST(Variances, AreOfEqualNumbersOfSamples) {
+  const auto dealt = [](double samples) {
+    UnitSample sample = one_channel(std::vector<double>(32, 1.0));
+    for (std::size_t r = 0; r < 32; ++r)
+      sample.weights[r] = std::floor(samples / 32) + (static_cast<double>(r) < std::fmod(samples, 32));
+    return sample;
+  };
+  EXPECT_TRUE(replicates_have_same_sizes(dealt(130), dealt(130)));
+  EXPECT_TRUE(replicates_have_same_sizes(dealt(4000), dealt(4004)));
+  EXPECT_FALSE(replicates_have_same_sizes(dealt(128), dealt(160)));
+  EXPECT_FALSE(replicates_have_same_sizes(dealt(32), dealt(64)));
+  EXPECT_FALSE(replicates_have_same_sizes(dealt(4000), dealt(4006)));
+  UnitSample uneven = dealt(128);
+  uneven.weights[3] = 6;
+  EXPECT_FALSE(replicates_have_same_sizes(uneven, uneven));
+}
+
+TEST(Variances, OfUnitsWantEightReplicates) {
+  const test::BatchPool pool("normal", 4);
+  for (const uint32_t replicates : {2u, 7u, 8u}) {
+    const test::SimulatedImage shape{16, 16, replicates, 2};
+    const Comparison c = compare_independent(simulate(shape, pool, 1), simulate(shape, pool, 2), {});
+    const std::vector<std::string> names = names_of(c);
+    EXPECT_EQ(std::ranges::count(names, "variance/pixel"), replicates == 8) << replicates;
+    EXPECT_EQ(std::ranges::count(names, "variance/tile"), replicates == 8) << replicates;
+    EXPECT_EQ(std::ranges::count(names, "scatter/image"), 1) << replicates;
+    EXPECT_EQ(
+        std::ranges::count(
+            c.notes, "variance/pixel, variance/tile: not tested, 8 replicates on every side are needed"),
+        replicates < 8)
+        << replicates;
+  }
 }
 
 }  // namespace
