@@ -75,7 +75,8 @@ void ScaleTest::add_errors(const Contrast& contrast, const std::vector<bool>& wa
 }
 
 ScaleResult ScaleTest::finish() {
-  if (best_p_ <= 1) result_.p = sidak(best_p_, static_cast<double>(std::max<std::size_t>(1, result_.units)));
+  if (best_p_ <= 1)
+    result_.p = sidak(best_p_, static_cast<double>(std::max<std::size_t>(1, result_.units) + left_));
   return std::move(result_);
 }
 

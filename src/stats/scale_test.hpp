@@ -5,6 +5,10 @@
 // distribution to speak of: its channels with fewer than kMinContributions contributions are not tested there
 // but pooled with those of the tile, and pools that are still too thin are left to the next scale.
 // All of it is counted.
+// Against a truth there are no pools: the data say which pixels are thin, and those that happened to receive
+// less are darker than the truth, together by many standard errors (two sides are so alike). The tile has
+// them all. And what was not tested since it is thin counts among the tests: else those that happened to
+// receive more would be tested at the level of few.
 #pragma once
 
 #include <cstdint>
@@ -60,7 +64,11 @@ class ScaleTest {
   /// index: in the grid; -1 for a pool. wanted: the channels to test (empty: all).
   void add(std::ptrdiff_t index, const UnitPlace& place, const Contrast& contrast,
            const std::vector<bool>& wanted);
-  void count_thin(std::size_t entries) { result_.entries.thin += entries; }
+  /// pooled: they are added again with a pool, else they are left to the next scale.
+  void count_thin(std::size_t entries, bool pooled) {
+    result_.entries.thin += entries;
+    if (!pooled) left_ += entries;
+  }
   ScaleResult finish();
 
  private:
@@ -69,7 +77,8 @@ class ScaleTest {
 
   uint64_t seed_;
   ScaleResult result_;
-  double best_p_ = 2;  // of a unit
+  std::size_t left_ = 0;  // thin entries
+  double best_p_ = 2;     // of a unit
 };
 
 }  // namespace kiloband::stats

@@ -95,10 +95,10 @@ void StripComparison::State::add_unit(FineScale& scale, std::ptrdiff_t index, co
   const Contrast contrast = contrast_of(kind, unit, options.rounding);
   scale.means.add(index, place, contrast, wanted);
   if (!contrast.valid) return;
-  if (thin > 0) {
+  scale.means.count_thin(thin, kind != Kind::kTruth);
+  if (thin > 0 && kind != Kind::kTruth) {
     std::vector<bool> marked = wanted;
     marked.flip();
-    scale.means.count_thin(thin);
     scale.thin.add_marked(unit, marked);
     scale.any_thin = true;
   }

@@ -67,6 +67,10 @@ uint32_t fewest_replicates(const Comparison& c) {
 std::string missing_for_uniformity(const Comparison& c, const UniformityResult& result, Scale scale,
                                    bool one_distribution) {
   if (!one_distribution) return "the noise of the two sides need not have one distribution";
+  const auto at = std::ranges::find(c.scales, scale) - c.scales.begin();
+  if (c.kind == Kind::kTruth && c.means[static_cast<std::size_t>(at)].entries.thin > 0)
+    return std::string("the truth is that of all ") + name_of(scale) +
+           "s, and some have too few contributions";
   if (fewest_replicates(c) < kUniformityReplicates)
     return std::to_string(kUniformityReplicates) + " replicates on every side are needed";
   if (result.units < kUniformityUnits)
@@ -154,7 +158,8 @@ void add_notes(Comparison& c, const ComparisonOptions& options, bool same_sizes)
     if (n.thin > 0)
       say(scale + "s: " + std::to_string(n.thin) + " of " +
           std::to_string(c.means[i].t_map.size() * c.channels) +
-          " values have too few contributions and were pooled");
+          " values have too few contributions and were " +
+          (c.kind == Kind::kTruth ? "left to larger units" : "pooled"));
     if (n.unsampled > 0)
       say(scale + "s: " + std::to_string(n.unsampled) +
           " values have no error on a side and were not compared");
