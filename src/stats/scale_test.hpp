@@ -69,6 +69,8 @@ class ScaleTest {
     result_.entries.thin += entries;
     if (!pooled) left_ += entries;
   }
+  /// Entries of a unit that has others.
+  void count_unsampled(std::size_t entries) { result_.entries.unsampled += entries; }
   ScaleResult finish();
 
  private:

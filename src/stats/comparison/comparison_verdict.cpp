@@ -69,8 +69,8 @@ std::string missing_for_uniformity(const Comparison& c, const UniformityResult& 
   if (!one_distribution) return "the noise of the two sides need not have one distribution";
   const auto at = std::ranges::find(c.scales, scale) - c.scales.begin();
   if (c.kind == Kind::kTruth && c.means[static_cast<std::size_t>(at)].entries.thin > 0)
-    return std::string("the truth is that of all ") + name_of(scale) +
-           "s, and some have too few contributions";
+    return std::string("against a truth no ") + name_of(scale) +
+           " may be left out, and some have too few contributions";
   if (fewest_replicates(c) < kUniformityReplicates)
     return std::to_string(kUniformityReplicates) + " replicates on every side are needed";
   if (result.units < kUniformityUnits)

@@ -61,10 +61,12 @@ MomentComparison::MomentComparison(uint32_t width, uint32_t height, std::size_t 
       tiles_(tiles_along(width), tiles_along(height), mix_seed(options.seed, 2)),
       whole_(1, 1, mix_seed(options.seed, 3)) {}
 
-void MomentComparison::add_sums(Sums& sums, const Contrast& pixel) const {
-  for (auto* numbers : {&sums.a, &sums.b, &sums.variance, &sums.spread}) numbers->resize(channels_);
-  ++sums.pixels;
+void MomentComparison::add_sums(Sums& sums, const Contrast& pixel, const std::vector<bool>& wanted) const {
+  for (auto* numbers : {&sums.pixels, &sums.a, &sums.b, &sums.variance, &sums.spread})
+    numbers->resize(channels_);
   for (std::size_t c = 0; c < channels_; ++c) {
+    if (!wanted[c]) continue;
+    ++sums.pixels[c];
     sums.a[c] += pixel.a[c];
     sums.b[c] += pixel.b[c];
     sums.variance[c] += pixel.variance[c];
@@ -75,17 +77,48 @@ void MomentComparison::add_sums(Sums& sums, const Contrast& pixel) const {
 Contrast MomentComparison::contrast_of(const Sums& sums) const {
   Contrast contrast;
   contrast.channels = channels_;
-  contrast.valid = sums.pixels > 0;
+  contrast.valid = !sums.pixels.empty();
   for (std::size_t c = 0; c < channels_ && contrast.valid; ++c) {
-    const double a = sums.a[c] / sums.pixels, b = sums.b[c] / sums.pixels;
+    const double n = std::max(1.0, sums.pixels[c]), a = sums.a[c] / n, b = sums.b[c] / n;
     contrast.a.push_back(a);
     contrast.b.push_back(b);
     contrast.difference.push_back(a - b);
-    contrast.variance.push_back(sums.variance[c] / (sums.pixels * sums.pixels));
+    contrast.variance.push_back(sums.variance[c] / (n * n));
     const double v = sums.variance[c];
     contrast.dof.push_back(sums.spread[c] > 0 ? v * v / sums.spread[c]
                                               : std::numeric_limits<double>::infinity());
     contrast.slack.push_back(options_.rounding * std::max(std::abs(a), std::abs(b)));
+  }
+  return contrast;
+}
+
+void MomentComparison::add_unit(ScaleTest& scale, std::ptrdiff_t index, const UnitPlace& place,
+                                const Sums& sums) const {
+  std::vector<bool> wanted;
+  for (const double n : sums.pixels) wanted.push_back(n > 0);
+  if (!wanted.empty()) scale.count_unsampled(static_cast<std::size_t>(std::ranges::count(wanted, false)));
+  scale.add(index, place, contrast_of(sums), wanted);
+}
+
+/// Of finite means. wanted: the channels with a variance; if there is none it is not valid.
+Contrast MomentComparison::pixel_contrast(const MomentImage& a, const MomentImage& b, std::size_t pixel,
+                                          std::vector<bool>& wanted) const {
+  Contrast contrast;
+  contrast.channels = channels_;
+  contrast.dof_a = a.dof_of(pixel);
+  contrast.dof_b = b.dof_of(pixel);
+  for (std::size_t i = pixel * channels_; i < (pixel + 1) * channels_; ++i) {
+    const bool known =
+        a.variance[i] >= 0 && b.variance[i] >= 0 && std::isfinite(a.variance[i] + b.variance[i]);
+    const double va = known ? a.variance[i] : 0, vb = known ? b.variance[i] : 0;
+    wanted.push_back(known);
+    contrast.valid = contrast.valid || known;
+    contrast.a.push_back(a.mean[i]);
+    contrast.b.push_back(b.mean[i]);
+    contrast.difference.push_back(double{a.mean[i]} - b.mean[i]);
+    contrast.variance.push_back(va + vb);
+    add_share(va, vb, contrast);
+    contrast.slack.push_back(options_.rounding * std::max(std::abs(a.mean[i]), std::abs(b.mean[i])));
   }
   return contrast;
 }
@@ -95,29 +128,18 @@ void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uin
   const std::span<const float> ma(&a.mean[first], channels_), mb(&b.mean[first], channels_);
   const auto finite = [](float v) { return std::isfinite(v); };
   const auto none = [](float v) { return std::isnan(v); };
-  const bool has_a = std::ranges::all_of(ma, finite), has_b = std::ranges::all_of(mb, finite);
+  const bool both = std::ranges::all_of(ma, finite) && std::ranges::all_of(mb, finite);
   const bool missing = std::ranges::all_of(ma, none) && std::ranges::all_of(mb, none);
-  non_finite_ += !missing && !(has_a && has_b);
+  non_finite_ += !missing && !both;
+  std::vector<bool> wanted;
   Contrast contrast;
   contrast.channels = channels_;
-  contrast.valid = has_a && has_b;
-  contrast.dof_a = a.dof_of(pixel);
-  contrast.dof_b = b.dof_of(pixel);
-  for (std::size_t c = 0; c < channels_ && contrast.valid; ++c) {
-    const double va = a.variance[first + c], vb = b.variance[first + c];
-    contrast.valid = va >= 0 && vb >= 0 && std::isfinite(va + vb);
-    contrast.a.push_back(ma[c]);
-    contrast.b.push_back(mb[c]);
-    contrast.difference.push_back(double{ma[c]} - mb[c]);
-    contrast.variance.push_back(va + vb);
-    add_share(va, vb, contrast);
-    contrast.slack.push_back(options_.rounding * std::max(std::abs(ma[c]), std::abs(mb[c])));
-  }
-  const auto index = static_cast<std::ptrdiff_t>(std::size_t{y} * width_ + x);
-  pixels_.add(index, {x, y, 1, 1}, contrast, {});
+  if (both) contrast = pixel_contrast(a, b, pixel, wanted);
+  if (contrast.valid) pixels_.count_unsampled(static_cast<std::size_t>(std::ranges::count(wanted, false)));
+  pixels_.add(static_cast<std::ptrdiff_t>(std::size_t{y} * width_ + x), {x, y, 1, 1}, contrast, wanted);
   if (!contrast.valid || !independent_) return;
-  add_sums(tile_, contrast);
-  add_sums(image_, contrast);
+  add_sums(tile_, contrast, wanted);
+  add_sums(image_, contrast, wanted);
 }
 
 void MomentComparison::add(const MomentImage& a, const MomentImage& b) {
@@ -135,7 +157,7 @@ void MomentComparison::add(const MomentImage& a, const MomentImage& b) {
         for (uint32_t x = x0; x < x0 + place.width; ++x) add_pixel(a, b, x, y);
       }
       const std::size_t index = std::size_t{y0 / kTileEdge} * tiles_along(width_) + x0 / kTileEdge;
-      if (independent_) tiles_.add(static_cast<std::ptrdiff_t>(index), place, contrast_of(tile_), {});
+      if (independent_) add_unit(tiles_, static_cast<std::ptrdiff_t>(index), place, tile_);
       tile_ = {};
     }
   }
@@ -152,12 +174,11 @@ Comparison MomentComparison::finish() {
   c.scales = {Scale::kPixel};
   c.means.push_back(pixels_.finish());
   if (independent_) {
-    const Contrast contrast = contrast_of(image_);
-    whole_.add(0, {0, 0, width_, height_}, contrast, {});
+    add_unit(whole_, 0, {0, 0, width_, height_}, image_);
     c.scales = {Scale::kPixel, Scale::kTile, Scale::kImage};
     c.means.push_back(tiles_.finish());
     c.means.push_back(whole_.finish());
-    add_image_means(contrast, c);
+    add_image_means(contrast_of(image_), c);
   } else {
     c.notes.push_back(
         "tiles and the image were not compared: from variances alone their errors are not known, unless "

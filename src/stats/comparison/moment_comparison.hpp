@@ -29,7 +29,8 @@ struct MomentImage {
 MomentImage moments_of(const ReplicateImage& image);
 
 /// Strips as in StripComparison. A pixel whose mean is NaN in all channels on both sides is left out;
-/// any other mean that is not finite is a difference.
+/// any other mean that is not finite is a difference. A channel without a variance on a side is left out of
+/// its pixel, and the pixel out of the channel's tile and image.
 class MomentComparison {
  public:
   MomentComparison(uint32_t width, uint32_t height, std::size_t channels, bool independent_pixels,
@@ -40,12 +41,14 @@ class MomentComparison {
  private:
   /// Sums over the pixels of a unit.
   struct Sums {
-    double pixels = 0;
-    std::vector<double> a, b, variance, spread;  // [channel]; spread: sum of v^2 / dof
+    std::vector<double> pixels, a, b, variance, spread;  // [channel]; spread: sum of v^2 / dof
   };
   void add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y);
-  void add_sums(Sums& sums, const Contrast& pixel) const;
+  Contrast pixel_contrast(const MomentImage& a, const MomentImage& b, std::size_t pixel,
+                          std::vector<bool>& wanted) const;
+  void add_sums(Sums& sums, const Contrast& pixel, const std::vector<bool>& wanted) const;
   Contrast contrast_of(const Sums& sums) const;
+  void add_unit(ScaleTest& scale, std::ptrdiff_t index, const UnitPlace& place, const Sums& sums) const;
 
   uint32_t width_, height_, next_row_ = 0;
   std::size_t channels_, non_finite_ = 0;

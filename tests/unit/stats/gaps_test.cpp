@@ -81,6 +81,26 @@ TEST(Gaps, AnInfiniteVarianceIsNoError) {
   EXPECT_THROW(compare({1, 1, 1, 9, {1}, {kInfinite}}, {1, 1, 1, 9, {1}, {kInfinite}}), InputError);
 }
 
+/// The other channels of the pixel are compared: a difference there does not hide behind a variance that is
+/// not there.
+TEST(Gaps, AVarianceIsMissingInOneChannelAlone) {
+  const MomentImage a{2, 1, 2, 9, {1, 1, 1, 1}, {1, 1, 1, 1}};
+  const MomentImage b{2, 1, 2, 9, {1, 1, 1000, 1}, {1, 1, 1, kNaN}};
+  for (const bool independent : {false, true}) {
+    MomentComparison comparison(2, 1, 2, independent, {});
+    comparison.add(a, b);
+    const Comparison c = comparison.finish();
+    EXPECT_FALSE(c.passed);
+    EXPECT_EQ(c.means[0].entries.unsampled, 1u);
+    EXPECT_EQ(c.means[0].entries.tested, 3u);
+    EXPECT_TRUE(says(c, "pixels: 1 values have no error on a side and were not compared"));
+    if (independent) {
+      EXPECT_EQ(c.image_b[0], 500.5);
+      EXPECT_EQ(c.image_b[1], 1) << "of the pixels that have a variance";
+    }
+  }
+}
+
 TEST(Gaps, MomentsLeaveOutPixelsWithoutValuesAlone) {
   const auto pixels = [](float a, float b) { return MomentImage{2, 1, 2, 9, {1, 1, a, b}, {1, 1, 1, 1}}; };
   EXPECT_TRUE(compare(pixels(kNaN, kNaN), pixels(kNaN, kNaN)).passed);
