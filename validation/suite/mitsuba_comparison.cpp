@@ -87,6 +87,14 @@ void check_cube(const fs::path& file, const CubeInfo& info, const ChannelList& c
       info.quantity != Quantity::kIntegral)
     throw InputError(fmt::format("{}: not {} x {} pixels of {} integrals over channels", file.string(),
                                  kMitsubaSize, kMitsubaSize, channels.size()));
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const Band& band = info.bands[c];
+    const double allowed = 1e-3 * (channels[c].max_nm - channels[c].min_nm);
+    if (band.derived || std::abs(band.channel.min_nm - channels[c].min_nm) > allowed ||
+        std::abs(band.channel.max_nm - channels[c].max_nm) > allowed)
+      throw InputError(fmt::format("{}: channel {} is not {:.10g}-{:.10g} nm", file.string(), c,
+                                   channels[c].min_nm, channels[c].max_nm));
+  }
 }
 
 }  // namespace

@@ -129,12 +129,12 @@ stats::ReplicateImage noise(uint32_t seed, float factor = 1) {
 
 /// As render_mitsuba.py writes it.
 void write_cubes(const stats::ReplicateImage& image, const fs::path& stem,
-                 Quantity quantity = Quantity::kIntegral) {
+                 Quantity quantity = Quantity::kIntegral, const std::string& bands = kMitsubaBands) {
   CubeInfo info;
   info.width = image.width;
   info.height = image.height;
   info.quantity = quantity;
-  for (const Channel& channel : parse_channels(kMitsubaBands)) info.bands.push_back({channel, false});
+  for (const Channel& channel : parse_channels(bands)) info.bands.push_back({channel, false});
   const std::size_t values = image.pixels() * image.channels;
   for (uint32_t r = 0; r < image.replicates; ++r) {
     const auto writer =
@@ -198,6 +198,10 @@ TEST(MitsubaComparison, ReadsTheCubes) {
               read_mitsuba_cubes(folder / "density", 8);
             }).find("not 32 x 32 pixels of 8 integrals"),
             std::string::npos);
+  write_cubes(image, folder / "bands", Quantity::kIntegral, "400:708:8");
+  EXPECT_NE(
+      test::error_of([&] { read_mitsuba_cubes(folder / "bands", 8); }).find("channel 0 is not 400-437.5 nm"),
+      std::string::npos);
   EXPECT_NE(test::error_of([&] { read_mitsuba_cubes(folder / "none", 8); }), "accepted");
 }
 
