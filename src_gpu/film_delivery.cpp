@@ -12,6 +12,8 @@ namespace {
 
 /// What a thread has to do for a film value, in bytes of memory.
 constexpr uint64_t kBytesOfValue = 16;
+/// Values of replicates that are brought to the host together: 64 MiB of means.
+constexpr std::size_t kValuesAtOnce = std::size_t{1} << 24;
 
 template <class Value>
 void append(std::vector<Value>& to, const std::vector<Value>& from) {
@@ -129,25 +131,37 @@ void FilmDelivery::finish_block(const GroupResult& result, std::size_t first, ui
   film_.add({block, range_.replicate, std::span(result.counts).subspan(first, pixels), means, channels_});
 }
 
-void deliver_replicates(SpectralFilm& film, const FoldedReplicates& folded) {
-  const std::size_t channels = film.options().channels, blocks = film.blocks().size();
-  std::vector<std::size_t> firsts;
-  for (std::size_t b = 0, first = 0; b < blocks; first += film.blocks()[b++].pixels())
-    firsts.push_back(first);
-  const auto deliver = [&](std::size_t b) {
-    const std::size_t first = firsts[b], pixels = film.blocks()[b].pixels();
-    const auto values = [&](const std::vector<float>& all) {
-      return std::span(all).subspan(first * channels, pixels * channels);
+void deliver_replicates(SpectralFilm& film, DeviceReplicates& replicates) {
+  const std::vector<PixelRect>& blocks = film.blocks();
+  const std::size_t channels = film.options().channels;
+  const FoldedReplicates& folded = replicates.folded();
+  std::vector<float> mean, m2;
+  for (std::size_t block = 0, pixel = 0; block < blocks.size();) {
+    std::vector<std::size_t> firsts;  // of the blocks that are brought together
+    std::size_t pixels = 0;
+    for (std::size_t b = block; b < blocks.size() && (pixels == 0 || pixels * channels < kValuesAtOnce);
+         ++b) {
+      firsts.push_back(pixels);
+      pixels += blocks[b].pixels();
+    }
+    replicates.bring({pixel, pixels}, mean, m2);
+    const auto deliver = [&](std::size_t i) {
+      const std::size_t first = firsts[i], number = blocks[block + i].pixels();
+      const auto values = [&](const std::vector<float>& all) {
+        return std::span(all).subspan(first * channels, number * channels);
+      };
+      film.set({static_cast<uint32_t>(block + i), std::span(folded.samples).subspan(pixel + first, number),
+                std::span(folded.replicates).subspan(pixel + first, number), values(mean),
+                film.options().variance ? values(m2) : std::span<const float>(), folded.sums[block + i],
+                folded.counts[block + i]});
     };
-    film.set({static_cast<uint32_t>(b), std::span(folded.samples).subspan(first, pixels),
-              std::span(folded.replicates).subspan(first, pixels), values(folded.mean),
-              film.options().variance ? values(folded.m2) : std::span<const float>(), folded.sums[b],
-              folded.counts[b]});
-  };
-  deal_ranges(blocks, threads_for(kBytesOfValue * folded.mean.size()),
-              [&](std::size_t begin, std::size_t end) {
-                for (std::size_t b = begin; b < end; ++b) deliver(b);
-              });
+    deal_ranges(firsts.size(), threads_for(kBytesOfValue * mean.size()),
+                [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i) deliver(i);
+                });
+    block += firsts.size();
+    pixel += pixels;
+  }
 }
 
 }  // namespace kiloband::opencl

@@ -43,7 +43,7 @@ class FilmDelivery {
   GroupResult collected_;  // of the block that is open
 };
 
-/// All blocks of a folded film become what their replicates have come to. Blocks are dealt to threads.
-void deliver_replicates(SpectralFilm& film, const FoldedReplicates& folded);
+/// All blocks of a folded film become what their replicates have come to; some at a time, which are dealt to threads.
+void deliver_replicates(SpectralFilm& film, DeviceReplicates& replicates);
 
 }  // namespace kiloband::opencl

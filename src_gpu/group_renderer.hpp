@@ -79,8 +79,8 @@ class GroupRenderer {
   uint32_t add_replicate(std::span<const ImagePixel> pixels, const SampleRange& range, bool open,
                          const std::atomic<bool>& stop, const std::function<void(uint64_t)>& on_samples,
                          RunTally& tally);
-  /// All that was added; valid until the next call.
-  const FoldedReplicates& bring_replicates() { return device_.replicates().bring(); }
+  /// All that was added.
+  DeviceReplicates& replicates() { return device_.replicates(); }
 
   /// The paths of one sample of each pixel (methods dpept: with pt vertices are not kept). hits: as DeviceState::trace.
   std::vector<TracedPath> trace(std::span<const ImagePixel> pixels, const SampleRange& range,

@@ -295,9 +295,8 @@ void Renderer::add_replicates(SpectralFilm& film, const ReplicatePlan& plan, con
     const uint32_t done = groups_->add_replicate(pixels, range, open, stop, on_samples, tally);
     if (done < range.count || r + 1 == plan.replicates || pace.is_due()) {
       pace.measured([&] {
-        const FoldedReplicates& folded = groups_->bring_replicates();
-        deliver_replicates(film, folded);
-        delivered = folded.number;
+        deliver_replicates(film, groups_->replicates());
+        delivered = groups_->replicates().folded().number;
       });
       told.deliver();
       count(std::exchange(tally, {}));

@@ -110,10 +110,10 @@ void DeviceFilm::unpack(const std::vector<float>& packed, DeviceBuffer<float>& v
 }
 
 /// Film pixels, packed by `kernel` from `values`, piece by piece: while one comes down the host puts the one before in its place.
-void DeviceFilm::download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels,
+void DeviceFilm::download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, const Pixels& pixels,
                                  std::vector<float>& packed) {
   const uint64_t of_pixel = film_values(layout_);
-  packed.resize(pixels * of_pixel);
+  packed.resize(pixels.number * of_pixel);
   struct Piece {
     std::span<float> from;
     float* to;
@@ -128,20 +128,20 @@ void DeviceFilm::download_packed(FilmKernel& kernel, const DeviceBuffer<float>& 
                             piece.from.begin() + static_cast<std::ptrdiff_t>(end), piece.to + begin);
                 });
   };
-  for (uint64_t first = 0, number = 0; first < pixels; first += packed_pixels_, ++number) {
-    const uint64_t some = std::min(packed_pixels_, pixels - first);
-    kernel.set(arguments(first), packing(values, some));
+  for (uint64_t at = 0, number = 0; at < pixels.number; at += packed_pixels_, ++number) {
+    const uint64_t some = std::min(packed_pixels_, pixels.number - at);
+    kernel.set(arguments(pixels.first + at), packing(values, some));
     kernel->launch(some * of_pixel, kFilmGroup);
     const std::span<float> from = landing_[number % 2].values().first(some * of_pixel);
     const DeviceBuffer<float>& device_packed = packed_;
-    Piece piece{from, packed.data() + first * of_pixel, device_packed.download_event(from)};
+    Piece piece{from, packed.data() + at * of_pixel, device_packed.download_event(from)};
     if (before) put(*before);
     before = std::move(piece);
   }
   if (before) put(*before);
 }
 
-void DeviceFilm::pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed) {
+void DeviceFilm::pack(const Pixels& pixels, const DeviceBuffer<float>& values, std::vector<float>& packed) {
   download_packed(pack_, values, pixels, packed);
 }
 
@@ -158,14 +158,14 @@ void DeviceFilm::load(const FilmSums& sums) {
 }
 
 void DeviceFilm::save(uint64_t pixels, FilmSums& sums) {
-  pack(pixels, open_, sums.open);
-  pack(pixels, sum_, sums.sum);
-  pack(pixels, compensation_, sums.lost);
+  pack({0, pixels}, open_, sums.open);
+  pack({0, pixels}, sum_, sums.sum);
+  pack({0, pixels}, compensation_, sums.lost);
   download_counts(pixels, sums.counts);
 }
 
 void DeviceFilm::finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts) {
-  download_packed(finish_, sum_, pixels, means);
+  download_packed(finish_, sum_, {0, pixels}, means);
   download_counts(pixels, counts);
 }
 

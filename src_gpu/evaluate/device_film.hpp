@@ -55,15 +55,18 @@ class DeviceFilm {
   void finish(uint64_t pixels, std::vector<float>& means, std::vector<uint32_t>& counts);
 
   const FilmForm& form() const { return form_; }
-  /// An array that stands like the film's, of the first `pixels`: packed[pixel][K + D].
-  void pack(uint64_t pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
+  /// Pixels of an array that stands like the film's: packed[pixel][K + D].
+  struct Pixels {
+    uint64_t first = 0, number = 0;
+  };
+  void pack(const Pixels& pixels, const DeviceBuffer<float>& values, std::vector<float>& packed);
   void download_counts(uint64_t pixels, std::vector<uint32_t>& counts) const;
   void clear_counts(uint64_t pixels) { counts_.fill(0, 0, pixels); }
 
  private:
   PackingArguments::Of<BufferRef> packing(const DeviceBuffer<float>& values, uint64_t pixels) const;
   void unpack(const std::vector<float>& packed, DeviceBuffer<float>& values);
-  void download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels,
+  void download_packed(FilmKernel& kernel, const DeviceBuffer<float>& values, const Pixels& pixels,
                        std::vector<float>& packed);
   void launch_over(FilmKernel& kernel, const DeviceBuffer<float>& values, uint64_t pixels);
   uint64_t touched_pixels(uint64_t pixels) const;

@@ -144,11 +144,10 @@ void DeviceReplicates::add_sums() {
   }
 }
 
-const FoldedReplicates& DeviceReplicates::bring() {
-  const uint64_t pixels = folded_.samples.size();
-  film_.pack(pixels, mean_, folded_.mean);
-  if (variance_) film_.pack(pixels, m2_, folded_.m2);
-  return folded_;
+void DeviceReplicates::bring(const DeviceFilm::Pixels& pixels, std::vector<float>& mean,
+                             std::vector<float>& m2) {
+  film_.pack(pixels, mean_, mean);
+  if (variance_) film_.pack(pixels, m2_, m2);
 }
 
 }  // namespace kiloband::opencl

@@ -10,10 +10,9 @@
 
 namespace kiloband::opencl {
 
-/// Replicates of the pixels of whole blocks, one block behind the other; values are [pixel][K + D].
+/// Replicates of the pixels of whole blocks, one block behind the other: all but their means and squares.
 struct FoldedReplicates {
-  uint32_t number = 0;  // of replicates
-  std::vector<float> mean, m2;
+  uint32_t number = 0;                        // of replicates
   std::vector<uint64_t> samples;              // [pixel]
   std::vector<uint32_t> replicates;           // [pixel], those with samples
   std::vector<std::vector<double>> sums;      // [block][replicate * (K + D) + value]: of the block's samples
@@ -37,8 +36,10 @@ class DeviceReplicates {
   void begin(std::span<const std::size_t> block_pixels);
   /// The film has all samples of the next replicate, none of them in an open chunk: they become part of the moments, and it has none.
   void fold();
-  /// Everything that was folded; valid until the next call.
-  const FoldedReplicates& bring();
+  /// What was folded.
+  const FoldedReplicates& folded() const { return folded_; }
+  /// Means and squares of some pixels, [pixel][K + D]; m2 is left alone where there are none.
+  void bring(const DeviceFilm::Pixels& pixels, std::vector<float>& mean, std::vector<float>& m2);
 
  private:
   uint32_t pixels_of_part() const;
