@@ -164,4 +164,20 @@ void deliver_replicates(SpectralFilm& film, DeviceReplicates& replicates) {
   }
 }
 
+void forget_replicates(SpectralFilm& film) {
+  for (uint32_t b = 0; b < film.blocks().size(); ++b) {
+    const std::size_t pixels = film.blocks()[b].pixels();
+    const std::vector<uint64_t> samples(pixels);
+    const std::vector<uint32_t> replicates(pixels);
+    const std::vector<float> values(pixels * film.options().channels);
+    film.set({b,
+              samples,
+              replicates,
+              values,
+              film.options().variance ? std::span<const float>(values) : std::span<const float>(),
+              {},
+              {}});
+  }
+}
+
 }  // namespace kiloband::opencl

@@ -44,6 +44,9 @@ class FilmDelivery {
 };
 
 /// All blocks of a folded film become what their replicates have come to; some at a time, which are dealt to threads.
+/// Where it throws, some blocks are, and some are as they were.
 void deliver_replicates(SpectralFilm& film, DeviceReplicates& replicates);
+/// No block of a folded film has a replicate.
+void forget_replicates(SpectralFilm& film);
 
 }  // namespace kiloband::opencl

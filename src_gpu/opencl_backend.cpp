@@ -294,10 +294,9 @@ void Renderer::add_replicates(SpectralFilm& film, const ReplicatePlan& plan, con
     const SampleRange range{r, 0, samples_of(r)};
     const uint32_t done = groups_->add_replicate(pixels, range, open, stop, on_samples, tally);
     if (done < range.count || r + 1 == plan.replicates || pace.is_due()) {
-      pace.measured([&] {
-        deliver_replicates(film, groups_->replicates());
-        delivered = groups_->replicates().folded().number;
-      });
+      delivered = 0;  // of some blocks, should the device fail meanwhile
+      pace.measured([&] { deliver_replicates(film, groups_->replicates()); });
+      delivered = groups_->replicates().folded().number;
       told.deliver();
       count(std::exchange(tally, {}));
     }
@@ -312,13 +311,16 @@ uint32_t Renderer::render_replicates(SpectralFilm& film, const ReplicatePlan& pl
   const NeutralFolder neutral;
   left_ = {};
   ToldSamples told(outside(neutral, progress));
-  uint32_t delivered = 0;
+  uint32_t attempts = 0, delivered = 0;
   try {
     repeated([&] {
       told.begin_attempt();
-      if (delivered == 0) add_replicates(film, plan, stop, told, delivered);
+      if (delivered > 0) return;
+      if (attempts++ > 0) forget_replicates(film);
+      add_replicates(film, plan, stop, told, delivered);
     });
   } catch (const DeviceOutOfMemory& refusal) {
+    if (delivered == 0) forget_replicates(film);
     retreat(refusal);
   }
   return delivered;

@@ -176,7 +176,9 @@ void SpectralFilm::set_coarse(const BlockMoments& moments) {
   std::ranges::copy(moments.sums, sums.begin());
   std::ranges::fill(counts, 0);
   std::ranges::copy(moments.counts, counts.begin());
-  if (!sums_) std::fill_n(added_[moments.block].begin(), moments.counts.size(), char{1});
+  if (sums_) return;
+  std::ranges::fill(added_[moments.block], char{0});
+  std::fill_n(added_[moments.block].begin(), moments.counts.size(), char{1});
 }
 
 void SpectralFilm::row(uint32_t y, std::span<float> mean, std::span<float> variance) const {

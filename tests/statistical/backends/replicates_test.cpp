@@ -6,6 +6,7 @@
 
 #include "backend_images.hpp"
 #include "scene/read/reader.hpp"
+#include "src_gpu/film_delivery.hpp"
 
 namespace kiloband::test::replicates_test {
 namespace {
@@ -185,6 +186,24 @@ TEST_F(GatheredReplicates, NeedMemory) {
   render_one_by_one(*small, film, plan);
   EXPECT_EQ(large->render_replicates(expected, plan, go_on, {}), 2u);
   expect_same(contents_of(expected), contents_of(film));
+}
+
+/// What a film was given may be taken back, should the device fail while it hands the rest over.
+TEST_F(GatheredReplicates, MayBeForgotten) {
+  const FlatScene scene = folder.flatten(scene_zoo().front());
+  const auto renderer = backend("opencl:dpept-batch", scene, 2);
+  const PixelRect rect{28, 3, 6, 3};
+  const ReplicatePlan plan{4, 2};
+  for (const bool sums : {true, false}) {
+    SpectralFilm film = make_film(*renderer, rect, plan, true, sums);
+    SpectralFilm expected = make_film(*renderer, rect, plan, true, sums);
+    EXPECT_EQ(renderer->render_replicates(film, plan, go_on, {}), 2u);
+    opencl::forget_replicates(film);
+    EXPECT_EQ(film.samples(0, 0), 0u);
+    render_one_by_one(*renderer, film, plan);
+    render_one_by_one(*renderer, expected, plan);
+    expect_same(contents_of(film), contents_of(expected));
+  }
 }
 
 /// The CPU's films are gathered where they are.

@@ -205,6 +205,7 @@ TEST(SpectralFilm, SetBlocksGoOnAsAddedOnes) {
   };
   expect_equal();
   EXPECT_TRUE(film.has(1, 0));
+  EXPECT_FALSE(film.has(2, 0));
   for (SpectralFilm* one : {&added, &film}) one->add({0, 2, counts, replicates[2], 2});
   expect_equal();
 }
