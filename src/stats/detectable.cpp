@@ -1,6 +1,9 @@
 #include "stats/detectable.hpp"
 
 #include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "stats/distributions.hpp"
@@ -8,8 +11,28 @@
 namespace kiloband::stats {
 namespace {
 
+/// The |t| from which on the test says that there is a difference, to six digits.
+double critical_t(const RelativeError& e, double one_level) {
+  const double least = student_upper(one_level / 2, e.dof);
+  if (e.share < 0) return least;
+  // BF's law lies between Student's of Welch's and of the smaller dof, and p is nearly a power of t.
+  const double most = student_upper(one_level / 2, std::min(e.dof_a, e.dof_b));
+  const auto excess = [&](double log_t) {
+    return std::log(behrens_fisher_p(std::exp(log_t), e.share, e.dof_a, e.dof_b) / one_level);
+  };
+  const double low = std::log(least), high = std::log(most), at_low = excess(low);
+  const double at_high = at_low > 0 ? excess(high) : 0;
+  if (!(at_low > 0)) return least;
+  if (!(at_high < 0)) return most;
+  const auto close = [](double a, double b) { return std::abs(b - a) < 1e-6; };
+  std::uintmax_t evaluations = 30;
+  const auto found =
+      boost::math::tools::toms748_solve(excess, low, high, at_low, at_high, close, evaluations);
+  return std::exp(found.second);
+}
+
 double bias_of(const RelativeError& e, double one_level) {
-  return e.slack + e.error * (student_upper(one_level / 2, e.dof) + student_upper(1 - kPower, e.dof));
+  return e.slack + e.error * noncentral_shift(critical_t(e, one_level), e.dof, kPower);
 }
 
 }  // namespace

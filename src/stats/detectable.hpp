@@ -10,16 +10,19 @@ namespace kiloband::stats {
 inline constexpr double kPower = 0.9;
 
 /// Of a unit and channel, relative to |mean of A|: standard error of the difference,
-/// and what counts as rounding.
+/// and what counts as rounding. share, dof_a, dof_b as in Contrast; share -1: Student's law with dof.
 struct RelativeError {
   float error = 0, slack = 0, dof = 0;
   uint32_t channel = 0;
+  float share = -1, dof_a = 0, dof_b = 0;
 };
 
 /// Biases relative to the channel's mean that a test detects with probability kPower:
-///     MDB = (t_{1 - level / (2 tests)} + t_{power}) SE / mean + slack,
-/// with Student's quantiles, and Bonferroni over units and channels
-/// (so it is stated too large rather than too small).
+///     MDB = delta SE / mean + slack,
+/// where the noncentral t with the shift delta is above the test's quantile at level / (2 tests) with
+/// probability kPower: Bonferroni over units and channels (so it is stated too large rather than too small).
+/// (The sum of two quantiles of Student's law in the place of delta was found in 67 % of the cases by 2
+/// replicates, in 86 % by 8.)
 struct Detectable {
   double typical = 0;  // median over units of the median channel
   double best = 0;     // smallest over units of the median channel

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 namespace kiloband::stats {
 
@@ -46,6 +48,31 @@ double behrens_fisher_p(double t, double share, double dof_a, double dof_b) {
     weights += weight;
   }
   return std::min(1.0, sum / weights);
+}
+
+// P(T >= t) = E_X Phi(delta - t sqrt(X / dof)), summed over ln X, as above. delta / t lies between sqrt(X /
+// dof) for the smallest and the largest X that occur.
+double noncentral_shift(double t, double dof, double p) {
+  const double n = std::min(dof, 1e8), width = std::sqrt(2 / n);
+  const double first = std::log(n) - 12 * width - 80 / n, last = std::log(n) + 12 * width;
+  const auto steps = static_cast<int>(std::ceil((last - first) / std::min(0.1, width / 10)));
+  std::vector<double> scales, weights;
+  double total = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const double y = first + (last - first) * i / steps;
+    scales.push_back(t * std::exp(0.5 * (y - std::log(n))));
+    weights.push_back(std::exp(0.5 * (n * (y - std::log(n)) - std::exp(y) + n)));
+    total += weights.back();
+  }
+  double low = 0, high = 10 + scales.back();
+  for (int k = 0; k < 36; ++k) {  // to 1e-9 of it
+    const double delta = 0.5 * (low + high);
+    double above = 0;
+    for (std::size_t i = 0; i < scales.size(); ++i)
+      above += weights[i] * 0.5 * std::erfc((scales[i] - delta) * std::numbers::sqrt2 / 2);
+    (above < p * total ? low : high) = delta;
+  }
+  return high;
 }
 
 // Two series for the same function: the first converges at once for large x, the second for small x.

@@ -10,6 +10,9 @@ double student_upper(double p, double dof);
 /// P(|sqrt(share) T_a + sqrt(1 - share) T_b| >= |t|) of independent Student's T_a, T_b: Behrens and Fisher's
 /// law of a difference over its estimated error, of which side A has the share `share` (contrast.hpp).
 double behrens_fisher_p(double t, double share, double dof_a, double dof_b);
+/// delta with P(T >= t) = p for the noncentral T = (Z + delta) / sqrt(X / dof), X of chi^2 with dof degrees
+/// of freedom; dof may be infinite. t > 0, p >= 0.5.
+double noncentral_shift(double t, double dof, double p);
 /// P(sqrt(n) D >= x) of Kolmogorov's D for large n.
 double kolmogorov_p(double x);
 

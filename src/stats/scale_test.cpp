@@ -22,6 +22,12 @@ WorstUnit describe(const UnitPlace& place, const Contrast& contrast, const Stron
 
 }  // namespace
 
+void set_sides(const Contrast& contrast, std::size_t channel, RelativeError& error) {
+  error.share = static_cast<float>(contrast.share[channel]);
+  error.dof_a = static_cast<float>(contrast.dof_a);
+  error.dof_b = static_cast<float>(contrast.dof_b);
+}
+
 ScaleTest::ScaleTest(uint32_t columns, uint32_t rows, uint64_t seed) : seed_(seed) {
   result_.columns = columns;
   result_.rows = rows;
@@ -68,6 +74,7 @@ void ScaleTest::add_errors(const Contrast& contrast, const std::vector<bool>& wa
     errors.push_back({static_cast<float>(std::sqrt(contrast.variance[c]) / mean),
                       static_cast<float>(contrast.slack[c] / mean), static_cast<float>(contrast.dof[c]),
                       static_cast<uint32_t>(c)});
+    if (!contrast.share.empty()) set_sides(contrast, c, errors.back());
   }
   if (errors.empty()) return;
   std::ranges::sort(errors, {}, &RelativeError::error);

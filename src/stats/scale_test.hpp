@@ -56,6 +56,9 @@ struct ScaleResult {
   DetectableBias errors;
 };
 
+/// Of a contrast of two sides: what its p depends on.
+void set_sides(const Contrast& contrast, std::size_t channel, RelativeError& error);
+
 class ScaleTest {
  public:
   /// columns x rows: grid of units.

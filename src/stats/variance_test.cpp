@@ -137,8 +137,9 @@ PooledVariance PooledReplicates::finish(uint64_t seed) const {
   result.ratio_all = ratio_of(contrast.difference[channels_]);
   result.log_error_all = std::sqrt(contrast.variance[channels_]);
   for (std::size_t k = 0; k <= channels_; ++k) {
-    const RelativeError e{static_cast<float>(std::sqrt(contrast.variance[k])), 0,
-                          static_cast<float>(contrast.dof[k]), static_cast<uint32_t>(k)};
+    RelativeError e{static_cast<float>(std::sqrt(contrast.variance[k])), 0,
+                    static_cast<float>(contrast.dof[k]), static_cast<uint32_t>(k)};
+    set_sides(contrast, k, e);
     if (used[k]) result.errors.add(e, e);
   }
   return result;

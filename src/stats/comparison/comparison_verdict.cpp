@@ -208,8 +208,9 @@ void leave_out_skewed(Comparison& c) {
     if (found == c.scales.end() || !(excess / pooled > kTruthKurtosis - 3)) continue;
     c.means.erase(c.means.begin() + (found - c.scales.begin()));
     c.scales.erase(found);
-    c.notes.push_back(std::string(name_of(scale)) +
-                      "s were not held against the truth: the noise is too skewed");
+    c.notes.push_back(
+        std::string(name_of(scale)) +
+        "s were not held against the truth: the noise is too skewed, or too unlike from one to another");
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "stats/random.hpp"
 #include "tests/unit/stats/support.hpp"
 
 namespace kiloband::stats::distributions_test {
@@ -52,6 +53,23 @@ TEST(Distributions, BehrensAndFisher) {
     EXPECT_GT(behrens_fisher_p(6, share, 7, 31), student_p(6, welch)) << share;
   }
   EXPECT_EQ(behrens_fisher_p(kMany, 0.5, 3, 3), 0);
+}
+
+/// Found in 90 % of 40000 draws (4.5 standard errors), for few and for many degrees of freedom; of the normal
+/// law the shift is a sum of quantiles.
+TEST(Distributions, NoncentralShiftIsTheOneOfThePower) {
+  Random random(1);
+  for (const int dof : {2, 7, 31}) {
+    const double t = student_upper(1e-4, dof), shift = noncentral_shift(t, dof, 0.9);
+    int found = 0;
+    for (int i = 0; i < 40000; ++i) {
+      double squares = 0;
+      for (int k = 0; k < dof; ++k) squares += std::pow(random.normal(), 2);
+      found += random.normal() + shift >= t * std::sqrt(squares / dof);
+    }
+    EXPECT_NEAR(found, 36000, 4.5 * 60) << dof;
+  }
+  EXPECT_NEAR(noncentral_shift(4, kInfinite, 0.9), 4 + student_upper(0.1, kInfinite), 1e-5);
 }
 
 /// Kolmogorov's critical values (Smirnov 1948); both series meet.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/non_central_t.hpp>
+
 #include "stats/detectable.hpp"
 #include "stats/distributions.hpp"
 
@@ -27,17 +29,19 @@ TEST(Family, TheRepetitionHasFreshSeeds) {
   }
 }
 
-/// MDB = (t(1 - level / 2 tests) + t(0.9)) SE + slack.
+/// MDB = delta SE + slack: the noncentral t with that shift is above t(1 - level / 2 tests) with probability
+/// 0.9.
 TEST(Detectable, ByHand) {
   DetectableBias errors;
   errors.add({0.01f, 0, 30, 0}, {0.02f, 0.001f, 30, 3});
   errors.add({0.02f, 0, 30, 1}, {0.03f, 0, 30, 2});
   errors.add({0.04f, 0, 30, 1}, {0.05f, 0, 30, 2});
   const Detectable d = errors.at(0.05, 1);
-  const double quantiles = 2.042272 + 1.310415;  // tables: 97.5 % and 90 %, 30 degrees of freedom
-  EXPECT_NEAR(d.best, 0.01 * quantiles, 1e-7);
-  EXPECT_NEAR(d.typical, 0.02 * quantiles, 1e-7);
-  EXPECT_NEAR(d.largest, 0.05 * quantiles, 1e-7);
+  const double shift = d.best / 0.01, critical = 2.042272;  // table: 97.5 %, 30 degrees of freedom
+  EXPECT_NEAR(boost::math::cdf(boost::math::complement(boost::math::non_central_t(30, shift), critical)), 0.9,
+              1e-5);
+  EXPECT_NEAR(d.typical, 0.02 * shift, 1e-7);
+  EXPECT_NEAR(d.largest, 0.05 * shift, 1e-7);
   EXPECT_EQ(d.largest_channel, 2u);
   EXPECT_GT(errors.at(0.05, 1000).best, d.best);
 }
