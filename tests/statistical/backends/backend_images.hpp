@@ -25,6 +25,10 @@ inline const std::vector<std::string> kOpenclMethods{"opencl:pt", "opencl:dpept-
 /// Names of all scenes, for parameterised tests.
 std::vector<std::string> zoo_names();
 
+/// A lamp 1e-18 m before a wall: a sample that selects it is beyond floats, and leaves the mean. Others meet the directional
+/// light, which is far brighter and so is selected nearly always.
+FlatScene scene_beyond_floats(uint32_t width, uint32_t height);
+
 using validation::film_rect;
 
 /// In film units, which are equal on all backends; derived channels included.

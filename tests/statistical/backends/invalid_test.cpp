@@ -5,23 +5,9 @@
 #include <tuple>
 
 #include "backend_images.hpp"
-#include "scene/read/reader.hpp"
 
 namespace kiloband::test::invalid_test {
 namespace {
-
-/// A lamp 1e-18 m before a wall: a sample that selects it is beyond floats. Others meet the directional
-/// light, which is far brighter and so is selected nearly always.
-const char* const kScene = R"(<scene version='3.0.0'>
-<integrator type='path'><integer name='max_depth' value='2'/></integrator>
-<sensor type='orthographic'>
- <transform name='to_world'><scale value='1e-9'/><lookat origin='0,0,1' target='0,0,0' up='0,1,0'/></transform>
- <film type='hdrfilm'><integer name='width' value='9'/><integer name='height' value='7'/><rfilter type='box'/></film>
-</sensor>
-<shape type='rectangle'/>
-<emitter type='point'><point name='position' x='0' y='0' z='1e-18'/><spectrum name='intensity' value='0.01'/></emitter>
-<emitter type='directional'><vector name='direction' x='0' y='0' z='-1'/>
- <spectrum name='irradiance' value='2'/></emitter></scene>)";
 
 using Sample = std::tuple<uint32_t, uint32_t, uint32_t>;  // x, y, sample
 
@@ -33,8 +19,7 @@ std::vector<Sample> sorted(const std::vector<InvalidSample>& invalid) {
 }
 
 struct InvalidSamples : testing::Test {
-  FlatScene scene =
-      *compile_scene(read_scene_text(kScene, "invalid.xml", ".", {}), {parse_channels("500:600:4"), {}, {}});
+  FlatScene scene = scene_beyond_floats(9, 7);
   SamplingSettings settings{WavelengthMode::kShared, SamplerType::kIndependent, 3, 2};
   std::unique_ptr<Backend> backend(const std::string& name) {
     return make_zoo_backend(name, scene, {}, settings);

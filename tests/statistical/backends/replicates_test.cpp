@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "backend_images.hpp"
-#include "scene/read/reader.hpp"
 #include "src_gpu/film_delivery.hpp"
 
 namespace kiloband::test::replicates_test {
@@ -119,20 +118,8 @@ TEST_F(GatheredReplicates, MakeTheFilmOfOneByOne) {
   }
 }
 
-/// A lamp 1e-18 m before a wall: samples that select it are beyond floats, and leave the mean.
 TEST_F(GatheredReplicates, WithSamplesThatAreNotFinite) {
-  const char* const text = R"(<scene version='3.0.0'>
-<integrator type='path'><integer name='max_depth' value='2'/></integrator>
-<sensor type='orthographic'>
- <transform name='to_world'><scale value='1e-9'/><lookat origin='0,0,1' target='0,0,0' up='0,1,0'/></transform>
- <film type='hdrfilm'><integer name='width' value='40'/><integer name='height' value='9'/><rfilter type='box'/></film>
-</sensor>
-<shape type='rectangle'/>
-<emitter type='point'><point name='position' x='0' y='0' z='1e-18'/><spectrum name='intensity' value='0.01'/></emitter>
-<emitter type='directional'><vector name='direction' x='0' y='0' z='-1'/>
- <spectrum name='irradiance' value='2'/></emitter></scene>)";
-  const FlatScene scene =
-      *compile_scene(read_scene_text(text, "invalid.xml", ".", {}), {parse_channels("500:600:4"), {}, {}});
+  const FlatScene scene = scene_beyond_floats(40, 9);
   const auto renderer = backend("opencl:dpept-batch", scene, 4);
   expect_same_films(*renderer, film_rect(scene), {8, 4});
   EXPECT_GT(renderer->statistics().invalid_samples, 16u);
