@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "stats/random.hpp"
 #include "tests/unit/stats/support.hpp"
@@ -25,6 +26,20 @@ TEST(Distributions, StudentOfTheTables) {
   EXPECT_NEAR(student_p(1, 1), 0.5, 1e-15) << "Cauchy";
   EXPECT_NEAR(student_p(3, 2), 1 - 3 / std::sqrt(11.0), 1e-14) << "two degrees: 1 - t / sqrt(2 + t^2)";
   EXPECT_NEAR(student_p(6, kInfinite) / 1.973175e-9, 1, 1e-6);
+}
+
+/// Where closed forms are known: one degree of freedom (2 / pi atan(1 / t)) and two.
+TEST(Distributions, StudentFarOut) {
+  for (const double t : {1e-3, 0.1, 1.0, 30.0, 1e6, 1e60, 1e140}) {
+    const double root = std::sqrt(2 + t * t), two = 2 / (root * (root + t));  // 1 - t / root
+    EXPECT_NEAR(student_p(t, 1) / (2 / std::numbers::pi * std::atan(1 / t)), 1, 1e-12) << t;
+    EXPECT_NEAR(student_p(t, 2) / two, 1, 1e-12) << t;
+  }
+  for (const double p : {1e-290, 1e-200, 1e-61, 1e-59, 1e-20, 0.01}) {
+    EXPECT_NEAR(student_upper(p, 1) * std::tan(std::numbers::pi * p), 1, 1e-12) << p;
+    for (const double dof : {3.0, 4.7, 7.0, 15.0, 62.0, 1e4})
+      EXPECT_NEAR(student_p(student_upper(p / 2, dof), dof) / p, 1, 1e-8) << p << " " << dof;
+  }
 }
 
 TEST(Distributions, QuantilesInvert) {
