@@ -112,6 +112,26 @@ TEST(SceneShape, CubeFacesOutwardsWithVerticesOfItsOwn) {
   EXPECT_EQ(sum, glm::vec3(0));
 }
 
+/// As pictures on Mitsuba 3.9.1's cube show, face by face.
+TEST(SceneShape, CubeHasMitsubasTextureCoordinates) {
+  const Shape shape = shape_of(R"(<shape type="cube"/>)");
+  const Mesh& mesh = mesh_of(shape);
+  const auto uv_at = [](const glm::vec3& p, const glm::vec3& normal) -> glm::vec2 {
+    if (normal.x > 0) return {p.y, -p.z};
+    if (normal.x < 0) return {p.y, p.z};
+    if (normal.y > 0) return {-p.x, -p.z};
+    if (normal.y < 0) return {p.z, p.x};
+    return {normal.z > 0 ? p.y : -p.y, p.x};
+  };
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const uint32_t corner : mesh.triangles[i]) {
+      const glm::vec2 expected = uv_at(to_vector(mesh.positions[corner]), face_normal(mesh, i));
+      EXPECT_EQ(mesh.uvs[corner][0], (expected.x + 1) / 2) << i << " " << corner;
+      EXPECT_EQ(mesh.uvs[corner][1], (expected.y + 1) / 2) << i << " " << corner;
+    }
+  }
+}
+
 TEST(SceneShape, MeshFilesAreSharedAndFlipTheirTexturesByFormat) {
   const TemporaryFolder folder;
   folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0.25\nvt 1 0.25\nvt 0 1\nf 1/1 2/2 3/3\n");
