@@ -19,7 +19,7 @@ class Flattener {
   FlatScene run();
 
  private:
-  // textures.cpp
+  // texture/textures.cpp
   uint32_t reference(const Texture& texture, const SpectrumSource& use);
   /// What a bitmap's values stand for; one image used in two ways is flattened twice.
   enum class BitmapUse { kReflectance, kEmission, kPicture, kOpacity, kRoughness, kHeight, kNormals };
@@ -27,7 +27,7 @@ class Flattener {
   uint32_t bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use, float height = 1);
   static KbFloat4 texel_of(const float* rgb, BitmapUse use, float height);
   float texel_bound(const KbFloat4& texel) const;
-  // attributes.cpp
+  // texture/attributes.cpp
   /// What was compiled of a bsdf for every mesh, or for this one; or null.
   const uint32_t* find_of_mesh(const auto& known, const void* bsdf, auto key) {
     const auto for_all = known.find({bsdf, key, nullptr});
@@ -43,7 +43,7 @@ class Flattener {
   static KbFloat4 attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
                                   double unit, bool share);
   void finish_attribute(const KbTexture& record, std::size_t count, bool emits);
-  // spectral.cpp
+  // texture/spectral_textures.cpp
   uint32_t spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
                            const SpectrumSource& use);
   uint32_t add_spectral_texture(const SpectralBitmapTexture& texture, const SpectrumSource& use,
@@ -55,13 +55,13 @@ class Flattener {
   void add_spectral_environment(KbEmitter& record, const SpectralEnvmapEmitter& emitter,
                                 const SpectrumSource& use);
 
-  // textures.cpp
+  // texture/textures.cpp
   uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use);
   double texture_mean(const Texture& texture);   // over the guide bands; a bitmap's by its texels' values
   double texture_bound(const Texture& texture);  // over guide bands and channels
   uint32_t d65_row();
 
-  // materials.cpp
+  // material/materials.cpp
   uint32_t material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated, const std::string& outer_id);
   KbBump bump(const BumpedBsdf& bumped);
   KbRoughness roughness_maps(const Bsdf& scattering);
@@ -69,14 +69,14 @@ class Flattener {
   KbMaterial make(const ConductorBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const DielectricBsdf& model, const std::string& name, const SourcePosition& position);
   KbMaterial make(const PlasticBsdf& model, const std::string& name, const SourcePosition& position);
-  // principled.cpp
+  // material/principled.cpp
   KbMaterial make(const PrincipledBsdf& model, const std::string& name, const SourcePosition& position);
   /// The material's table.
   std::vector<float> principled_numbers(const PrincipledBsdf& model, const std::string& name,
                                         const SourcePosition& position);
   void add_principled_maps(const PrincipledBsdf& model);
 
-  // surfaces.cpp
+  // material/surfaces.cpp
   /// heat: of the shape, or KB_NONE. Materials and surfaces with different heat are different.
   uint32_t surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
   /// A number, or a reference to a bitmap: a share from 0 to 1.
@@ -85,13 +85,13 @@ class Flattener {
   uint32_t blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t heat);
   double mean_weight(const KbSurface& blend) const;
 
-  // material_tables.cpp
+  // material/material_tables.cpp
   uint32_t append_table(const std::vector<float>& table);
   const Coating& coating(const KbMaterial& material);
   const std::vector<float>& conductor_bound(const KbMaterial& material);
   void set_tables(KbMaterial& material, const std::vector<float>& compensation);
 
-  // thermal.cpp
+  // material/thermal.cpp
   /// A temperature: of shapes that have the same, number or field.
   struct Heat {
     double temperature_k = 0;
