@@ -1,14 +1,18 @@
+#include "scene/compile/camera.hpp"
+
 #include <cmath>
 
 #include "film/signed_filter.hpp"
 #include "scene/compile/camera_media.hpp"
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/place.hpp"
+#include "scene/compile/record_vectors.hpp"
 
 namespace kiloband {
 
-void Flattener::set_filter() {
-  const Film& film = in_.sensor.film;
-  KbCamera& camera = out_.camera;
+namespace {
+
+void set_filter(FlatScene& scene, const Film& film) {
+  KbCamera& camera = scene.camera;
   camera.filter_radius = static_cast<float>(film.filter_radius);
   camera.filter_stddev = static_cast<float>(film.filter_stddev);
   switch (film.filter) {
@@ -32,12 +36,10 @@ void Flattener::set_filter() {
       },
       film.filter_radius);
   camera.filter = KB_FILTER_TABULATED;
-  out_.filter_cells = std::move(filter.cells);
-  out_.filter_scale = filter.scale;
-  out_.features.signed_filter = filter.negative;
+  scene.filter_cells = std::move(filter.cells);
+  scene.filter_scale = filter.scale;
+  scene.features.signed_filter = filter.negative;
 }
-
-namespace {
 
 /// All of the camera but its filter, and the media in which its rays begin.
 void place_camera(FlatScene& scene, const Sensor& sensor) {
@@ -67,9 +69,9 @@ void place_camera(FlatScene& scene, const Sensor& sensor) {
 
 }  // namespace
 
-void Flattener::set_camera() {
-  set_filter();
-  place_camera(out_, in_.sensor);
+void set_camera(FlatScene& scene, const Sensor& sensor) {
+  set_filter(scene, sensor.film);
+  place_camera(scene, sensor);
 }
 
 void move_camera(FlatScene& scene, const Sensor& sensor) {

@@ -1,6 +1,11 @@
 #include <fmt/format.h>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/camera.hpp"
+#include "scene/compile/media.hpp"
+#include "scene/compile/place.hpp"
+#include "scene/compile/shapes.hpp"
+#include "scene/compile/spectra/channel_bins.hpp"
+#include "scene/compile/spectra/channel_scales.hpp"
 
 namespace kiloband {
 namespace {
@@ -12,50 +17,53 @@ FlatScene scene_with_channels(const CompileOptions& options) {
   return scene;
 }
 
-}  // namespace
-
-void store_transform(const Transform& transform, float (&out)[12]) {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      out[4 * row + column] = static_cast<float>(transform[column][row]);
-    }
-  }
-}
-
-Flattener::Flattener(const SceneDescription& description, const CompileOptions& options)
-    : in_(description), options_(options), out_(scene_with_channels(options)), spectra_(out_, options.sink) {}
-
-FlatScene Flattener::run() {
-  out_.film = in_.sensor.film;
-  out_.integrator = in_.integrator;
-  check_places();
-  set_origin();
-  add_shapes();
-  add_instances();
-  compute_bounds();
-  add_emitters();
-  select_emitters();
-  add_media();
-  set_channel_scales();
-  set_camera();
-  set_channel_bins();
-  add_spares();
-  return std::move(out_);
-}
-
 /// See FlatScene.
-void Flattener::add_spares() {
-  out_.positions.push_back({0, 0, 0});
-  if (!out_.normals.empty()) out_.normals.push_back({0, 0, 0});
-  if (!out_.triangles.empty()) out_.triangles.push_back(0);
-  if (!out_.principled_maps.empty())
-    out_.principled_maps.resize(out_.materials.size() * KB_PRINCIPLED_MAPPED, KB_NONE);
+void add_spares(FlatScene& scene) {
+  scene.positions.push_back({0, 0, 0});
+  if (!scene.normals.empty()) scene.normals.push_back({0, 0, 0});
+  if (!scene.triangles.empty()) scene.triangles.push_back(0);
+  if (!scene.principled_maps.empty())
+    scene.principled_maps.resize(scene.materials.size() * KB_PRINCIPLED_MAPPED, KB_NONE);
 }
+
+/// Each kind of thing has a compiler of its own that adds to the one scene. Shapes come first: with them their surfaces,
+/// materials and textures, and how large the scene is, which lights without a shape depend on.
+FlatScene flatten(const SceneDescription& description, const CompileOptions& options) {
+  FlatScene scene = scene_with_channels(options);
+  scene.film = description.sensor.film;
+  scene.integrator = description.integrator;
+  SpectrumTableBuilder spectra(scene, options.sink);
+  CurrentMesh mesh;
+  GroupExtents extents;
+  const CompileContext context{description, options, scene, spectra, mesh, extents};
+  TextureCompiler textures(context);
+  MaterialCompiler materials(context, textures);
+  ThermalCompiler thermal(context, textures, materials);
+  SurfaceCompiler surfaces(context, textures, materials, thermal);
+  EmitterCompiler emitters(context, textures, thermal);
+  ShapeCompiler shapes(context, surfaces, thermal, emitters);
+
+  check_places(description, extents, options.sink);
+  scene.origin = origin_of(description, extents);
+  shapes.add_shapes();
+  shapes.add_instances();
+  shapes.set_radius();
+  emitters.add_emitters();
+  emitters.select_emitters();
+  MediumCompiler(context, shapes.sources()).add_media();
+  set_channel_scales(scene, textures.peaks(), thermal.heats());
+  set_camera(scene, description.sensor);
+  set_channel_bins(scene);
+  add_spares(scene);
+  return scene;
+}
+
+}  // namespace
 
 std::shared_ptr<FlatScene> compile_scene_to_move(const SceneDescription& scene,
                                                  const CompileOptions& options) {
   if (options.channels.empty()) throw InputError("no channel to render");
-  return std::make_shared<FlatScene>(Flattener(scene, options).run());
+  return std::make_shared<FlatScene>(flatten(scene, options));
 }
 
 std::shared_ptr<const FlatScene> compile_scene(const SceneDescription& scene, const CompileOptions& options) {

@@ -6,7 +6,9 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/place.hpp"
+#include "scene/compile/record_vectors.hpp"
+#include "scene/compile/shapes.hpp"
 
 namespace kiloband {
 namespace {
@@ -20,11 +22,12 @@ bool is_mesh(const Shape& shape) {
 
 }  // namespace
 
-void Flattener::add_instances() {
-  for (const Instance& instance : in_.instances) add_instance(instance, placed(instance.to_world));
+void ShapeCompiler::add_instances() {
+  for (const Instance& instance : in_.instances)
+    add_instance(instance, placed_at(out_.origin, instance.to_world));
 }
 
-const Flattener::FlatGroup& Flattener::flat_group(const ShapeGroup& group) {
+const ShapeCompiler::FlatGroup& ShapeCompiler::flat_group(const ShapeGroup& group) {
   const auto [found, is_new] = flat_groups_.try_emplace(&group);
   FlatGroup& flat = found->second;
   if (!is_new) return flat;
@@ -36,18 +39,17 @@ const Flattener::FlatGroup& Flattener::flat_group(const ShapeGroup& group) {
   const Transform to_middle = glm::translate(Transform{1.0}, -flat.middle);
   for (const Shape& shape : group.shapes) {
     if (!is_mesh(shape)) continue;
-    const uint32_t heat = heat_of(shape);
-    KbShape record = begin_shape(shape, heat);
+    KbShape record = begin_shape(shape, thermal_.heat_of(shape));
     record.flags |= KB_SHAPE_INSTANCED;
     add_mesh(record, shape, to_middle * shape.to_world);
-    flat.meshes.push_back({&shape, record, heat});
+    flat.meshes.push_back({&shape, record});
   }
   flat.index = static_cast<uint32_t>(out_.groups.size());
   out_.groups.push_back({KB_NONE, static_cast<uint32_t>(flat.meshes.size())});
   return flat;
 }
 
-void Flattener::add_instance(const Instance& instance, const Transform& to_world) {
+void ShapeCompiler::add_instance(const Instance& instance, const Transform& to_world) {
   const ShapeGroup& group = *instance.group;
   const FlatGroup& flat = flat_group(group);
   if (out_.shapes.size() + group.shapes.size() > kMostShapes)
@@ -66,10 +68,10 @@ void Flattener::add_instance(const Instance& instance, const Transform& to_world
     set_transforms(record, matrix);
     if (mirrored)
       record.flags ^= KB_SHAPE_MIRRORED;  // what is outside of a group is outside of its mirror image
-    add_record(record, *mesh.shape, mesh.heat, instance.id);
+    add_record(record, *mesh.shape, instance.id);
   }
   for (const Shape& shape : group.shapes)
-    if (!is_mesh(shape)) add_analytic(shape, to_world * shape.to_world, instance.id);
+    if (!is_mesh(shape)) add_analytic(shape, thermal_.heat_of(shape), to_world * shape.to_world, instance.id);
   for (const Instance& nested : group.instances) add_instance(nested, to_world * nested.to_world);
 }
 

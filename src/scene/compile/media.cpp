@@ -1,10 +1,13 @@
+#include "scene/compile/media.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/place.hpp"
+#include "scene/compile/record_vectors.hpp"
 #include "spectral/planck.hpp"
 
 namespace kiloband {
@@ -30,8 +33,11 @@ void set_to_local(KbMedium& record, const Transform& to_world, const glm::dvec3&
 
 }  // namespace
 
+MediumCompiler::MediumCompiler(const CompileContext& context, const std::vector<const Shape*>& sources)
+    : in_(context.in), out_(context.out), spectra_(context.spectra), sources_(sources) {}
+
 /// hc / (k lambda T) from the longest to the shortest rendered wavelength, in equal ratios.
-void Flattener::set_ladder(KbMedium& record) const {
+void MediumCompiler::set_ladder(KbMedium& record) const {
   const Channel range = hull(out_.channels);
   const double low = kPlanckSecond_nm_k / (range.max_nm * record.reference_k);
   const double ratio = range.max_nm / range.min_nm;
@@ -39,7 +45,7 @@ void Flattener::set_ladder(KbMedium& record) const {
     record.second[j] = static_cast<float>(low * std::pow(ratio, j / (KB_PLUME_LADDER - 1.0)));
 }
 
-void Flattener::set_grid(KbMedium& record, const GridField& grid) {
+void MediumCompiler::set_grid(KbMedium& record, const GridField& grid) {
   record.type = KB_MEDIUM_GRID;
   record.first_node = static_cast<uint32_t>(out_.plume_nodes.size());
   std::ranges::copy(grid.nodes, record.nodes);
@@ -47,11 +53,11 @@ void Flattener::set_grid(KbMedium& record, const GridField& grid) {
     record.reference_k = std::max(record.reference_k, node.temperature_k);
     out_.plume_nodes.push_back({node.temperature_k, node.scale});
   }
-  set_to_local(record, placed(grid.to_world),
+  set_to_local(record, placed_at(out_.origin, grid.to_world),
                {grid.nodes[0] - 1.0, grid.nodes[1] - 1.0, grid.nodes[2] - 1.0});
 }
 
-void Flattener::set_jet(KbMedium& record, const JetField& jet) {
+void MediumCompiler::set_jet(KbMedium& record, const JetField& jet) {
   record.type = KB_MEDIUM_JET;
   record.temperature_k = static_cast<float>(jet.temperature_k);
   record.ambient_k = static_cast<float>(jet.ambient_k);
@@ -59,11 +65,11 @@ void Flattener::set_jet(KbMedium& record, const JetField& jet) {
   record.spread = static_cast<float>(jet.spread);
   record.length = static_cast<float>(jet.length);
   record.reference_k = std::max(record.temperature_k, record.ambient_k);
-  set_to_local(record, placed(jet.to_world), {1, 1, 1});
+  set_to_local(record, placed_at(out_.origin, jet.to_world), {1, 1, 1});
 }
 
-uint32_t Flattener::add_medium(const KbMedium& record, const std::string& name,
-                               const SourcePosition& position) {
+uint32_t MediumCompiler::add_medium(const KbMedium& record, const std::string& name,
+                                    const SourcePosition& position) {
   if (out_.media.size() >= kMaxMedia)
     throw InputError(position, fmt::format("more than {} media and shapes that transmit light", kMaxMedia));
   out_.media.push_back(record);
@@ -73,7 +79,7 @@ uint32_t Flattener::add_medium(const KbMedium& record, const std::string& name,
 
 /// In a body of relative index n the radiance of equilibrium is n^2 B: what refraction into it multiplies by
 /// n^2, its gas has to add. `boundary`: the body's material, KB_NONE for a null boundary or the atmosphere.
-uint32_t Flattener::gas_emission_row(double temperature_k, uint32_t boundary, const std::string& name) {
+uint32_t MediumCompiler::gas_emission_row(double temperature_k, uint32_t boundary, const std::string& name) {
   SpectrumRow row;
   row.name = name + ": temperature";
   row.is_planck = row.is_emission = true;
@@ -94,7 +100,7 @@ uint32_t Flattener::gas_emission_row(double temperature_k, uint32_t boundary, co
   return spectra_.add(std::move(row));
 }
 
-uint32_t Flattener::medium(const std::shared_ptr<const Medium>& medium, uint32_t boundary) {
+uint32_t MediumCompiler::medium(const std::shared_ptr<const Medium>& medium, uint32_t boundary) {
   const auto [place, is_new] = media_.try_emplace({medium.get(), boundary}, KB_NONE);
   if (!is_new) return place->second;
   const std::string name = describe(*medium);
@@ -116,7 +122,7 @@ uint32_t Flattener::medium(const std::shared_ptr<const Medium>& medium, uint32_t
 
 /// The dielectrics by which light gets inside; panes have no inside. Returns whether light gets in without refraction, too:
 /// by the openings of a mask or by a pane.
-bool Flattener::refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const {
+bool MediumCompiler::refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const {
   if (surface.flags & KB_SURFACE_BLEND) {
     const bool first = refracting_materials(out_.surfaces[surface.first], found);
     return refracting_materials(out_.surfaces[surface.second], found) || first;
@@ -131,7 +137,7 @@ bool Flattener::refracting_materials(const KbSurface& surface, std::vector<uint3
 /// What is inside a shape: its medium; nothing, where light enters a body without one. A hot gas inside has to radiate
 /// n^2 B towards where its light is refracted on leaving, which divides by n^2, and B towards where it is not: no one
 /// radiance would do for both.
-uint32_t Flattener::interior(uint32_t shape_index) {
+uint32_t MediumCompiler::interior(uint32_t shape_index) {
   const Shape& shape = *sources_[shape_index];
   std::vector<uint32_t> boundaries;
   const bool open = refracting_materials(out_.surfaces[out_.shapes[shape_index].surface], boundaries);
@@ -164,8 +170,7 @@ uint32_t Flattener::interior(uint32_t shape_index) {
   return inside->second;
 }
 
-/// A scene has gas if it has a medium or a null boundary; otherwise nothing of all this exists.
-void Flattener::add_media() {
+void MediumCompiler::add_media() {
   const bool bounded =
       std::ranges::any_of(out_.shapes, [](const KbShape& s) { return s.flags & KB_SHAPE_NULL; });
   const bool filled = std::ranges::any_of(in_.shapes, [](const Shape& s) { return s.interior != nullptr; });

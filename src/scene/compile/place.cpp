@@ -1,6 +1,8 @@
 // Scenes that stand far from their origin. Coordinates are floats: at 10^6 m they are 6 cm apart, too coarse
 // for an aircraft in map coordinates. Everything is therefore moved, in double, so that the shapes are about
 // the origin; what stands there already keeps its very coordinates.
+#include "scene/compile/place.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <optional>
 
-#include "scene/compile/flattener.hpp"
 #include "scene/read/object/limits.hpp"
 
 namespace kiloband {
@@ -83,13 +84,13 @@ void check_camera_place(const Sensor& sensor) {
   check_frame(sensor.to_world, camera);
 }
 
-void Flattener::check_places() {
+void check_places(const SceneDescription& scene, GroupExtents& extents, const DiagnosticSink& sink) {
   Extent all;
   const auto add = [&](const glm::dvec3& p, const Part& part) {
     check_reach(p, part);
     all.add(p);
   };
-  for (const Shape& shape : in_.shapes) {
+  for (const Shape& shape : scene.shapes) {
     const Part part{shape.position, named("shape", shape.id)};
     Extent box;
     extend(shape, box);
@@ -99,42 +100,37 @@ void Flattener::check_places() {
     if (!std::holds_alternative<MeshShape>(shape.geometry)) check_frame(shape.to_world, part);
     check_field(shape.interior);
   }
-  for (const Instance& instance : in_.instances) {
+  for (const Instance& instance : scene.instances) {
     const Part part{instance.position, named("instance", instance.id)};
     check_frame(instance.to_world, part);
     Extent box;
-    box.add_placed(group_extents_.of(*instance.group), instance.to_world);
+    box.add_placed(extents.of(*instance.group), instance.to_world);
     add(box.low, part);
     add(box.high, part);
   }
-  check_field(in_.atmosphere);
-  for (const Emitter& emitter : in_.emitters)
+  check_field(scene.atmosphere);
+  for (const Emitter& emitter : scene.emitters)
     if (const auto place = place_of(emitter)) add(*place, {emitter.position, named("emitter", emitter.id)});
-  check_camera_place(in_.sensor);
-  all.add(glm::dvec3(in_.sensor.to_world[3]));
+  check_camera_place(scene.sensor);
+  all.add(glm::dvec3(scene.sensor.to_world[3]));
   const double side = all.largest_side();
   if (side <= kFarApart * (1 + 1e-6)) return;
-  warn(options_.sink, {in_.file.string(), 0, 0},
+  warn(sink, {scene.file.string(), 0, 0},
        fmt::format(
            "parts of the scene are {:.3g} m apart, more than {:g} m: single precision loses details smaller "
            "than {:.2g} m",
            side, kFarApart, side / 2 * kOffset));
 }
 
-void Flattener::set_origin() {
+std::array<double, 3> origin_of(const SceneDescription& scene, GroupExtents& extents) {
   Extent box;
-  for (const Shape& shape : in_.shapes) extend(shape, box);
-  for (const Instance& instance : in_.instances)
-    box.add_placed(group_extents_.of(*instance.group), instance.to_world);
-  if (box.is_empty()) return;
+  for (const Shape& shape : scene.shapes) extend(shape, box);
+  for (const Instance& instance : scene.instances)
+    box.add_placed(extents.of(*instance.group), instance.to_world);
+  if (box.is_empty()) return {};
   const glm::dvec3 centre = 0.5 * (box.low + box.high);
-  if (!(glm::length(centre) > kFar * 0.5 * glm::length(box.high - box.low))) return;
-  for (int axis = 0; axis < 3; ++axis) out_.origin[axis] = centre[axis];
-}
-
-/// The transform to the coordinates of FlatScene.
-Transform Flattener::placed(const Transform& to_world) const {
-  return placed_at(out_.origin, to_world);
+  if (!(glm::length(centre) > kFar * 0.5 * glm::length(box.high - box.low))) return {};
+  return {centre.x, centre.y, centre.z};
 }
 
 Transform placed_at(const std::array<double, 3>& origin, const Transform& to_world) {

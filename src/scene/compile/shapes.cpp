@@ -1,11 +1,13 @@
+#include "scene/compile/shapes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 
-#include "scene/compile/flattener.hpp"
 #include "scene/compile/light/lattice_cdf.hpp"
+#include "scene/compile/place.hpp"
 #include "scene/compile/record_vectors.hpp"
 #include "scene/compile/shape_bounds.hpp"
 
@@ -59,55 +61,58 @@ void extend_bounds(const KbShape& shape, glm::dvec3& low, glm::dvec3& high) {
 
 }  // namespace
 
-void Flattener::add_shapes() {
+ShapeCompiler::ShapeCompiler(const CompileContext& context, SurfaceCompiler& surfaces,
+                             ThermalCompiler& thermal, EmitterCompiler& emitters)
+    : in_(context.in),
+      out_(context.out),
+      current_(context.mesh),
+      extents_(context.extents),
+      surfaces_(surfaces),
+      thermal_(thermal),
+      emitters_(emitters) {}
+
+void ShapeCompiler::add_shapes() {
   for (const Shape& shape : in_.shapes) {
+    const uint32_t heat = thermal_.heat_of(shape);
     if (std::holds_alternative<MeshShape>(shape.geometry)) {
-      const uint32_t heat = heat_of(shape);
       KbShape record = begin_shape(shape, heat);
-      const Transform to_world = placed(shape.to_world);
+      const Transform to_world = placed_at(out_.origin, shape.to_world);
       set_transforms(record, to_world);
       add_mesh(record, shape, to_world);
-      add_record(record, shape, heat, {});
+      add_record(record, shape, {});
     } else {
-      add_analytic(shape, placed(shape.to_world), {});
+      add_analytic(shape, heat, placed_at(out_.origin, shape.to_world), {});
     }
-    if (shape.emitter) add_area_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
-    if (shape.thermal) add_thermal_emitter(static_cast<uint32_t>(out_.shapes.size() - 1));
+    if (shape.emitter) emitters_.add_area_emitter(shape);
+    if (shape.thermal) emitters_.add_thermal_emitter(thermal_.heats()[heat]);
   }
   plain_positions_ = out_.positions.size();
 }
 
 /// What does not depend on the geometry.
-KbShape Flattener::begin_shape(const Shape& shape, uint32_t heat) {
+KbShape ShapeCompiler::begin_shape(const Shape& shape, uint32_t heat) {
   const auto* mesh = std::get_if<MeshShape>(&shape.geometry);
-  mesh_ = mesh ? mesh->mesh.get() : nullptr;
+  current_.mesh = mesh ? mesh->mesh.get() : nullptr;
   KbShape record{};
-  record.surface = surface(shape.bsdf, heat);
+  record.surface = surfaces_.surface(shape.bsdf, heat);
   record.emitter = record.first_cdf = KB_NONE;
   record.flags = shape.flip_normals ? KB_SHAPE_FLIP_NORMALS : 0;
   if (out_.surfaces[record.surface].flags & KB_SURFACE_NULL) record.flags |= KB_SHAPE_NULL;
   return record;
 }
 
-void Flattener::set_transforms(KbShape& record, const Transform& to_world) {
-  store_transform(to_world, record.to_world);
-  store_transform(glm::inverse(to_world), record.to_object);
-}
-
 /// instance: its id, or empty
-void Flattener::add_record(const KbShape& record, const Shape& shape, uint32_t heat,
-                           const std::string& instance) {
+void ShapeCompiler::add_record(const KbShape& record, const Shape& shape, const std::string& instance) {
   const std::string name =
       shape.id.empty() || instance.empty() ? instance + shape.id : instance + "/" + shape.id;
   out_.shape_names.push_back(name.empty() ? fmt::format("shape {}", out_.shapes.size()) : name);
   out_.shapes.push_back(record);
   sources_.push_back(&shape);
-  heat_of_shape_.push_back(heat);
 }
 
 /// to_world: of the scene; the shape's own says whether it is mirrored
-void Flattener::add_analytic(const Shape& shape, const Transform& to_world, const std::string& instance) {
-  const uint32_t heat = heat_of(shape);
+void ShapeCompiler::add_analytic(const Shape& shape, uint32_t heat, const Transform& to_world,
+                                 const std::string& instance) {
   KbShape record = begin_shape(shape, heat);
   set_transforms(record, to_world);
   record.type = std::holds_alternative<SphereShape>(shape.geometry) ? KB_SHAPE_SPHERE
@@ -117,11 +122,11 @@ void Flattener::add_analytic(const Shape& shape, const Transform& to_world, cons
   // A mirrored sphere shows its inside, as in Mitsuba, where disks and cylinders do not turn over.
   if (record.type == KB_SHAPE_SPHERE && mirrors(shape.to_world)) record.flags ^= KB_SHAPE_FLIP_NORMALS;
   out_.features.analytic_shapes = true;
-  add_record(record, shape, heat, instance);
+  add_record(record, shape, instance);
 }
 
 /// to_world: to the coordinates of FlatScene::positions
-void Flattener::add_mesh(KbShape& record, const Shape& shape, const Transform& to_world) {
+void ShapeCompiler::add_mesh(KbShape& record, const Shape& shape, const Transform& to_world) {
   const Mesh& mesh = *std::get<MeshShape>(shape.geometry).mesh;
   record.type = KB_SHAPE_MESH;
   const std::size_t first = out_.positions.size();
@@ -155,7 +160,7 @@ void Flattener::add_mesh(KbShape& record, const Shape& shape, const Transform& t
 }
 
 /// The record's area; an area light also gets the table that its triangles are chosen by.
-void Flattener::add_areas(KbShape& record, const Shape& shape) {
+void ShapeCompiler::add_areas(KbShape& record, const Shape& shape) {
   std::vector<double> areas(record.triangle_count);
   double total = 0;
   for (uint32_t i = 0; i < record.triangle_count; ++i) {
@@ -176,7 +181,7 @@ void Flattener::add_areas(KbShape& record, const Shape& shape) {
   out_.area_cdf.insert(out_.area_cdf.end(), cdf.begin(), cdf.end());
 }
 
-void Flattener::compute_bounds() {
+void ShapeCompiler::set_radius() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   glm::dvec3 low(kInfinity), high(-kInfinity);
   for (const KbFloat3& p : std::span(out_.positions).first(plain_positions_)) {
@@ -188,7 +193,7 @@ void Flattener::compute_bounds() {
   }
   Extent instances;
   for (const Instance& instance : in_.instances)
-    instances.add_placed(group_extents_.of(*instance.group), placed(instance.to_world));
+    instances.add_placed(extents_.of(*instance.group), placed_at(out_.origin, instance.to_world));
   low = glm::min(low, instances.low);
   high = glm::max(high, instances.high);
   if (!(low.x <= high.x)) return;  // no geometry: radius 0

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/light/emitters.hpp"
 #include "scene/compile/light/lattice_cdf.hpp"
 #include "scene/compile/light/light_tree.hpp"
 #include "scene/compile/record_vectors.hpp"
@@ -89,7 +89,7 @@ struct TreeLights {
 
 }  // namespace
 
-std::size_t Flattener::tree_light_count() const {
+std::size_t EmitterCompiler::tree_light_count() const {
   std::size_t count = 0;
   for (const KbEmitter& emitter : out_.emitters) {
     if (!in_tree(emitter.type)) continue;
@@ -99,7 +99,7 @@ std::size_t Flattener::tree_light_count() const {
   return count;
 }
 
-bool Flattener::wants_light_tree() const {
+bool EmitterCompiler::wants_light_tree() const {
   const LightSelection selection = in_.integrator.light_selection;
   if (selection == LightSelection::kPower) return false;
   const std::size_t count = tree_light_count();
@@ -108,7 +108,7 @@ bool Flattener::wants_light_tree() const {
 }
 
 /// shares: of the emitters; those of the tree become 0. Returns theirs together.
-double Flattener::add_light_tree(std::vector<double>& shares) {
+double EmitterCompiler::add_light_tree(std::vector<double>& shares) {
   TreeLights tree;
   double whole = 0;
   const auto add = [&](LightBounds bounds, uint32_t emitter, uint32_t triangle, double area, double share) {

@@ -1,9 +1,10 @@
+#include "scene/compile/material/materials.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/compile/flattener.hpp"
 #include "scene/optics/facet_quadrature.hpp"
 
 namespace kiloband {
@@ -52,11 +53,23 @@ KbMaterial empty_material(uint32_t type) {
   return record;
 }
 
-KbMaterial Flattener::make(const DiffuseBsdf& model, const std::string& name,
-                           const SourcePosition& position) {
+MaterialCompiler::MaterialCompiler(const CompileContext& context, TextureCompiler& textures)
+    : sink_(context.options.sink),
+      out_(context.out),
+      spectra_(context.spectra),
+      current_(context.mesh),
+      textures_(textures),
+      materials_(context.mesh) {}
+
+bool is_metal(const KbMaterial& material) {
+  return material.type == KB_MATERIAL_CONDUCTOR || material.type == KB_MATERIAL_ROUGH_CONDUCTOR;
+}
+
+KbMaterial MaterialCompiler::make(const DiffuseBsdf& model, const std::string& name,
+                                  const SourcePosition& position) {
   KbMaterial record = empty_material(KB_MATERIAL_DIFFUSE);
-  record.ref_a = reference(model.reflectance, {name + ": reflectance", position, false});
-  record.bound_a = static_cast<float>(texture_bound(model.reflectance));
+  record.ref_a = textures_.reference(model.reflectance, {name + ": reflectance", position, false});
+  record.bound_a = static_cast<float>(textures_.bound(model.reflectance));
   out_.features.diffuse = true;
   return record;
 }
@@ -77,11 +90,12 @@ static void require_data(const Spectrum& spectrum, const FlatScene& scene, const
   }
 }
 
-KbMaterial Flattener::make(const ConductorBsdf& model, const std::string& name,
-                           const SourcePosition& position) {
+KbMaterial MaterialCompiler::make(const ConductorBsdf& model, const std::string& name,
+                                  const SourcePosition& position) {
   KbMaterial record = empty_material(model.roughness ? KB_MATERIAL_ROUGH_CONDUCTOR : KB_MATERIAL_CONDUCTOR);
-  record.ref_a = reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
-  record.bound_a = static_cast<float>(texture_bound(model.specular_reflectance));
+  record.ref_a =
+      textures_.reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
+  record.bound_a = static_cast<float>(textures_.bound(model.specular_reflectance));
   const bool mirror =
       model.eta.is_constant() && model.eta(550) == 0 && model.k.is_constant() && model.k(550) == 1;
   if (mirror) {
@@ -113,20 +127,21 @@ static void warn_of_extinction(const DielectricBsdf& model, const FlatScene& sce
                    name, largest));
 }
 
-KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
-                           const SourcePosition& position) {
+KbMaterial MaterialCompiler::make(const DielectricBsdf& model, const std::string& name,
+                                  const SourcePosition& position) {
   KbMaterial record = empty_material(model.roughness ? KB_MATERIAL_ROUGH_DIELECTRIC : KB_MATERIAL_DIELECTRIC);
-  record.ref_a = reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
+  record.ref_a =
+      textures_.reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
   record.ref_b =
-      reference(model.specular_transmittance, {name + ": specular_transmittance", position, false});
-  record.bound_a = static_cast<float>(texture_bound(model.specular_reflectance));
-  record.bound_b = static_cast<float>(texture_bound(model.specular_transmittance));
+      textures_.reference(model.specular_transmittance, {name + ": specular_transmittance", position, false});
+  record.bound_a = static_cast<float>(textures_.bound(model.specular_reflectance));
+  record.bound_b = static_cast<float>(textures_.bound(model.specular_transmittance));
   if (model.thin) record.flags |= KB_MATERIAL_THIN;
   const SpectrumSource int_use{name + ": int_ior", position, false};
   const SpectrumSource ext_use{name + ": ext_ior", position, false};
   require_data(model.int_ior, out_, int_use);
   require_data(model.ext_ior, out_, ext_use);
-  warn_of_extinction(model, out_, name, position, options_.sink);
+  warn_of_extinction(model, out_, name, position, sink_);
   const double ext = spectra_.guide_mean(model.ext_ior);
   record.eta = static_cast<float>(spectra_.guide_mean(model.int_ior) / ext);
   record.eta_ext = static_cast<float>(ext);
@@ -144,17 +159,19 @@ KbMaterial Flattener::make(const DielectricBsdf& model, const std::string& name,
   return record;
 }
 
-KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name,
-                           const SourcePosition& position) {
+KbMaterial MaterialCompiler::make(const PlasticBsdf& model, const std::string& name,
+                                  const SourcePosition& position) {
   KbMaterial record = empty_material(model.roughness ? KB_MATERIAL_ROUGH_PLASTIC : KB_MATERIAL_PLASTIC);
-  record.ref_a = reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
-  record.ref_b = reference(model.diffuse_reflectance, {name + ": diffuse_reflectance", position, false});
-  record.bound_a = static_cast<float>(texture_bound(model.specular_reflectance));
-  record.bound_b = static_cast<float>(texture_bound(model.diffuse_reflectance));
+  record.ref_a =
+      textures_.reference(model.specular_reflectance, {name + ": specular_reflectance", position, false});
+  record.ref_b =
+      textures_.reference(model.diffuse_reflectance, {name + ": diffuse_reflectance", position, false});
+  record.bound_a = static_cast<float>(textures_.bound(model.specular_reflectance));
+  record.bound_b = static_cast<float>(textures_.bound(model.diffuse_reflectance));
   record.eta = static_cast<float>(model.int_ior / model.ext_ior);
   record.escape = static_cast<float>(diffuse_escape(model.int_ior / model.ext_ior));
-  const double specular = texture_mean(model.specular_reflectance);
-  const double diffuse = texture_mean(model.diffuse_reflectance);
+  const double specular = textures_.mean(model.specular_reflectance);
+  const double diffuse = textures_.mean(model.diffuse_reflectance);
   record.specular_weight =
       specular + diffuse > 0 ? static_cast<float>(specular / (specular + diffuse)) : 0.5f;
   if (model.nonlinear) record.flags |= KB_MATERIAL_NONLINEAR;
@@ -166,10 +183,10 @@ KbMaterial Flattener::make(const PlasticBsdf& model, const std::string& name,
   return record;
 }
 
-KbBump Flattener::bump(const BumpedBsdf& bumped) {
+KbBump MaterialCompiler::bump(const BumpedBsdf& bumped) {
   out_.features.bump = true;
   const BitmapUse use = bumped.normals ? BitmapUse::kNormals : BitmapUse::kHeight;
-  KbBump record{bitmap(bumped.texture, use, static_cast<float>(bumped.scale)), 0};
+  KbBump record{textures_.bitmap(bumped.texture, use, static_cast<float>(bumped.scale)), 0};
   if (bumped.flip) record.flags |= KB_BUMP_FLIP;
   if (bumped.shadow) record.flags |= KB_BUMP_SHADOW;
   if (bumped.around_two_sided) record.flags |= KB_BUMP_OUTSIDE;
@@ -177,7 +194,7 @@ KbBump Flattener::bump(const BumpedBsdf& bumped) {
 }
 
 /// throws InputError where the roughness is that of all wavelengths' tables
-KbRoughness Flattener::roughness_maps(const Bsdf& scattering) {
+KbRoughness MaterialCompiler::roughness_maps(const Bsdf& scattering) {
   const std::optional<Roughness>* rough = nullptr;
   if (const auto* metal = std::get_if<ConductorBsdf>(&scattering.model)) rough = &metal->roughness;
   const auto* glass = std::get_if<DielectricBsdf>(&scattering.model);
@@ -185,7 +202,7 @@ KbRoughness Flattener::roughness_maps(const Bsdf& scattering) {
   KbRoughness record{KB_NONE, KB_NONE};
   if (!rough || !*rough) return record;
   const auto use = [&](const std::shared_ptr<const BitmapTexture>& map) {
-    return map ? KB_REF_BITMAP | bitmap(map, BitmapUse::kRoughness) : KB_NONE;
+    return map ? KB_REF_BITMAP | textures_.bitmap(map, BitmapUse::kRoughness) : KB_NONE;
   };
   record = {use((*rough)->map_u), use((*rough)->map_v)};
   if (record.alpha_u_ref == KB_NONE && record.alpha_v_ref == KB_NONE) return record;
@@ -197,11 +214,10 @@ KbRoughness Flattener::roughness_maps(const Bsdf& scattering) {
   return record;
 }
 
-/// Its name: its own id, or that of the bsdf that it is nested in, or a number.
-uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated,
-                             const std::string& outer_id) {
-  if (const auto* known = find_of_mesh(materials_, bsdf.get(), compensated)) return *known;
-  const std::size_t lookups = mesh_lookups_;
+uint32_t MaterialCompiler::material(const std::shared_ptr<const Bsdf>& bsdf, bool compensated,
+                                    const std::string& outer_id) {
+  if (const auto* known = materials_.find(*bsdf, compensated)) return *known;
+  const std::size_t lookups = current_.lookups;
   const std::string name = describe(*bsdf);
   const auto* bumped = std::get_if<BumpedBsdf>(&bsdf->model);
   const std::shared_ptr<const Bsdf>& scattering = bumped ? bumped->nested : bsdf;
@@ -233,7 +249,7 @@ uint32_t Flattener::material(const std::shared_ptr<const Bsdf>& bsdf, bool compe
   const auto index = static_cast<uint32_t>(out_.materials.size() - 1);
   if (constexpr uint32_t kMost = 1u << (32 - KB_VERTEX_MATERIAL_SHIFT); index >= kMost)
     throw InputError(bsdf->position, fmt::format("more than {} bsdfs", kMost));
-  materials_[{bsdf.get(), compensated, mesh_lookups_ > lookups ? mesh_ : nullptr}] = index;
+  materials_.add(*bsdf, compensated, lookups, index);
   return index;
 }
 

@@ -1,7 +1,7 @@
 // Principled materials: shared/principled.h.
 #include <algorithm>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/material/materials.hpp"
 #include "spectral/colour/colour.hpp"
 
 namespace kiloband {
@@ -27,20 +27,20 @@ bool is_tinted(const PrincipledBsdf& model) {
 
 }  // namespace
 
-KbMaterial Flattener::make(const PrincipledBsdf& model, const std::string& name,
-                           const SourcePosition& position) {
+KbMaterial MaterialCompiler::make(const PrincipledBsdf& model, const std::string& name,
+                                  const SourcePosition& position) {
   KbMaterial record = empty_material(KB_MATERIAL_PRINCIPLED);
   record.flags = KB_MATERIAL_GGX | KB_MATERIAL_SAMPLE_VISIBLE | (model.thin ? KB_MATERIAL_THIN : 0);
-  record.ref_a = reference(model.base_color, {name + ": base_color", position, false});
-  record.bound_a = static_cast<float>(texture_bound(model.base_color));
+  record.ref_a = textures_.reference(model.base_color, {name + ": base_color", position, false});
+  record.bound_a = static_cast<float>(textures_.bound(model.base_color));
   record.bound_b = 1;
   record.eta = static_cast<float>(model.numbers[KB_PRINCIPLED_ETA].number);
   out_.features.principled = true;
   return record;
 }
 
-std::vector<float> Flattener::principled_numbers(const PrincipledBsdf& model, const std::string& name,
-                                                 const SourcePosition& position) {
+std::vector<float> MaterialCompiler::principled_numbers(const PrincipledBsdf& model, const std::string& name,
+                                                        const SourcePosition& position) {
   std::vector<float> numbers(KB_PRINCIPLED_NUMBERS);
   for (std::size_t n = 0; n < model.numbers.size(); ++n)
     numbers[n] = static_cast<float>(model.numbers[n].number);
@@ -49,17 +49,17 @@ std::vector<float> Flattener::principled_numbers(const PrincipledBsdf& model, co
     numbers[KB_PRINCIPLED_LUMINANCE] = tinted ? static_cast<float>(luminance_under_d65(*spectrum)) : 0;
   else if (tinted && !std::holds_alternative<std::shared_ptr<const BitmapTexture>>(model.base_color))
     throw InputError(position, name + ": base_color: tints need a spectrum or a bitmap here");
-  numbers[KB_PRINCIPLED_BASE] = static_cast<float>(texture_mean(model.base_color));
+  numbers[KB_PRINCIPLED_BASE] = static_cast<float>(textures_.mean(model.base_color));
   for (std::size_t i = 0; i < model.rates.size(); ++i)
     numbers[KB_PRINCIPLED_RATES + i] = static_cast<float>(model.rates[i]);
   return numbers;
 }
 
 /// Of the last material; rows of those before it are filled up.
-void Flattener::add_principled_maps(const PrincipledBsdf& model) {
+void MaterialCompiler::add_principled_maps(const PrincipledBsdf& model) {
   std::vector<uint32_t> row(KB_PRINCIPLED_MAPPED, KB_NONE);
   const auto use = [&](const std::shared_ptr<const BitmapTexture>& map) {
-    return KB_REF_BITMAP | bitmap(map, BitmapUse::kRoughness);
+    return KB_REF_BITMAP | textures_.bitmap(map, BitmapUse::kRoughness);
   };
   for (std::size_t n = 0; n < model.numbers.size(); ++n)
     if (model.numbers[n].map) row[n] = use(model.numbers[n].map);

@@ -1,7 +1,6 @@
-// What the bsdf of a shape comes to: the materials of its two sides, its opacity, what is blended.
-#include <algorithm>
+#include "scene/compile/material/surfaces.hpp"
 
-#include "scene/compile/flattener.hpp"
+#include <algorithm>
 
 namespace kiloband {
 namespace {
@@ -59,26 +58,36 @@ KbSurface empty_surface() {
 
 }  // namespace
 
-void Flattener::set_share(const Texture& texture, const SpectrumSource& use, uint32_t& ref, float& constant) {
+SurfaceCompiler::SurfaceCompiler(const CompileContext& context, TextureCompiler& textures,
+                                 MaterialCompiler& materials, ThermalCompiler& thermal)
+    : out_(context.out),
+      spectra_(context.spectra),
+      current_(context.mesh),
+      textures_(textures),
+      materials_(materials),
+      thermal_(thermal),
+      surfaces_(context.mesh) {}
+
+uint32_t SurfaceCompiler::add(const KbSurface& record) {
+  out_.surfaces.push_back(record);
+  return static_cast<uint32_t>(out_.surfaces.size() - 1);
+}
+
+void SurfaceCompiler::set_share(const Texture& texture, const SpectrumSource& use, uint32_t& ref,
+                                float& constant) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) {
     constant = static_cast<float>(spectra_.guide_mean(*spectrum));
   } else if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
-    ref = KB_REF_BITMAP | bitmap(*image, BitmapUse::kOpacity);
+    ref = KB_REF_BITMAP | textures_.bitmap(*image, BitmapUse::kOpacity);
   } else if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture)) {
-    ref = KB_REF_BITMAP | mesh_attribute(*attribute, use, true);
+    ref = KB_REF_BITMAP | textures_.mesh_attribute(*attribute, use, true);
   } else {
     throw InputError(use.position, use.name + ": only a number or a bitmap is supported here");
   }
 }
 
-/// Of a texture the mean of its values, as of all that only noise depends on.
-double Flattener::mean_weight(const KbSurface& blend) const {
-  if (blend.weight_ref == KB_NONE) return std::clamp<double>(blend.weight, 0, 1);
-  return std::clamp(texture_means_[blend.weight_ref & KB_REF_INDEX_MASK], 0.0, 1.0);
-}
-
 /// Blends are outermost: what is in a mask or a twosided bsdf was moved out.
-uint32_t Flattener::blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t heat) {
+uint32_t SurfaceCompiler::blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t heat) {
   out_.features.blend = true;
   KbSurface record = empty_surface();
   record.flags = KB_SURFACE_BLEND;
@@ -90,23 +99,22 @@ uint32_t Flattener::blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t hea
   record.front = first.front;
   record.back = first.back;
   record.flags |= (first.flags | out_.surfaces[record.second].flags) & KB_SURFACE_THERMAL;
-  out_.surfaces.push_back(record);
-  return static_cast<uint32_t>(out_.surfaces.size() - 1);
+  return add(record);
 }
 
-uint32_t Flattener::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
-  if (const auto* known = find_of_mesh(surfaces_, bsdf.get(), heat)) return *known;
-  const std::size_t lookups = mesh_lookups_;
+uint32_t SurfaceCompiler::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
+  if (const auto* known = surfaces_.find(*bsdf, heat)) return *known;
+  const std::size_t lookups = current_.lookups;
   const BsdfPointer outermost = distributed(*bsdf);
   if (outermost) distributed_.push_back(outermost);  // keeps its parts, too
   const Bsdf& used = outermost ? *outermost : *bsdf;
   const auto* parts = std::get_if<BlendBsdf>(&used.model);
   const uint32_t index = parts ? blend(*parts, used, heat) : new_surface(bsdf, heat);
-  surfaces_[{bsdf.get(), heat, mesh_lookups_ > lookups ? mesh_ : nullptr}] = index;
+  surfaces_.add(*bsdf, heat, lookups, index);
   return index;
 }
 
-uint32_t Flattener::new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
+uint32_t SurfaceCompiler::new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
   KbSurface record = empty_surface();
   std::shared_ptr<const Bsdf> inner = bsdf;
   if (const auto* mask = std::get_if<MaskBsdf>(&inner->model)) {
@@ -117,8 +125,7 @@ uint32_t Flattener::new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_
   }
   if (std::holds_alternative<NullBsdf>(inner->model)) {  // nothing is there that could emit
     record.flags |= KB_SURFACE_NULL;
-    out_.surfaces.push_back(record);
-    return static_cast<uint32_t>(out_.surfaces.size() - 1);
+    return add(record);
   }
   const std::string& outer_id = inner->id.empty() ? bsdf->id : inner->id;
   std::shared_ptr<const Bsdf> front = inner, back;
@@ -129,8 +136,8 @@ uint32_t Flattener::new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_
     out_.features.two_sided = true;
   }
   const bool emits = heat != KB_NONE;
-  record.front = material(front, emits && is_rough(*front), outer_id);
-  if (back) record.back = material(back, emits && is_rough(*back), outer_id);
+  record.front = materials_.material(front, emits && is_rough(*front), outer_id);
+  if (back) record.back = materials_.material(back, emits && is_rough(*back), outer_id);
   const uint32_t type = out_.materials[record.front].type;
   const auto* bumped = std::get_if<BumpedBsdf>(&front->model);
   const auto* principled = std::get_if<PrincipledBsdf>(bumped ? &bumped->nested->model : &front->model);
@@ -139,13 +146,14 @@ uint32_t Flattener::new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_
     record.flags |= KB_SURFACE_TRANSMISSIVE;
   if (emits) {
     record.flags |= KB_SURFACE_THERMAL;
-    record.front_thermal = thermal(front, record.front, heat);
+    record.front_thermal = thermal_.thermal(front, record.front, heat);
     const bool same = record.flags & KB_SURFACE_TRANSMISSIVE;
-    record.back_thermal = same ? record.front_thermal : back ? thermal(back, record.back, heat) : black(heat);
+    record.back_thermal = same   ? record.front_thermal
+                          : back ? thermal_.thermal(back, record.back, heat)
+                                 : thermal_.black(heat);
     out_.features.thermal |= record.front_thermal != KB_NONE || record.back_thermal != KB_NONE;
   }
-  out_.surfaces.push_back(record);
-  return static_cast<uint32_t>(out_.surfaces.size() - 1);
+  return add(record);
 }
 
 }  // namespace kiloband

@@ -5,24 +5,24 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/material/thermal.hpp"
 #include "spectral/planck.hpp"
 
 namespace kiloband {
 
-uint32_t Flattener::image_heat(const std::shared_ptr<const BitmapTexture>& image) {
+uint32_t ThermalCompiler::image_heat(const std::shared_ptr<const BitmapTexture>& image) {
   const auto [place, is_new] = image_heats_.try_emplace(image.get(), static_cast<uint32_t>(heats_.size()));
   if (!is_new) return place->second;
   Heat heat;
-  heat.field = bitmap(image, BitmapUse::kOpacity);
+  heat.field = textures_.bitmap(image, BitmapUse::kOpacity);
   heat.temperature_k = *std::ranges::max_element(image->image->pixels);
-  heat.mean_k = texture_means_[heat.field];
+  heat.mean_k = textures_.mean_of(heat.field);
   heats_.push_back(heat);
   return place->second;
 }
 
 /// The vertices are those that add_mesh() is about to add.
-uint32_t Flattener::vertex_heat(const std::vector<float>& temperatures) {
+uint32_t ThermalCompiler::vertex_heat(const std::vector<float>& temperatures) {
   Heat heat;
   heat.field = KB_FIELD_VERTEX;
   heat.field_offset =
@@ -34,7 +34,7 @@ uint32_t Flattener::vertex_heat(const std::vector<float>& temperatures) {
   return static_cast<uint32_t>(heats_.size() - 1);
 }
 
-uint32_t Flattener::heat_of(const Shape& shape) {
+uint32_t ThermalCompiler::heat_of(const Shape& shape) {
   if (shape.thermal && shape.thermal->texture) return image_heat(shape.thermal->texture);
   if (shape.thermal && !shape.thermal->attribute.empty())
     return vertex_heat(
@@ -48,7 +48,8 @@ uint32_t Flattener::heat_of(const Shape& shape) {
   return static_cast<uint32_t>(heats_.size() - 1);
 }
 
-uint32_t Flattener::emission_row(uint32_t heat, const RegularTable& emissivity, const std::string& name) {
+uint32_t ThermalCompiler::emission_row(uint32_t heat, const RegularTable& emissivity,
+                                       const std::string& name) {
   SpectrumRow row;
   row.name = name;
   row.table = emissivity;
@@ -60,7 +61,7 @@ uint32_t Flattener::emission_row(uint32_t heat, const RegularTable& emissivity, 
   return spectra_.add(std::move(row));
 }
 
-uint32_t Flattener::black_row(uint32_t heat) {
+uint32_t ThermalCompiler::black_row(uint32_t heat) {
   const auto [place, is_new] = emission_rows_.try_emplace({KB_NONE, heat}, KB_NONE);
   if (!is_new) return place->second;
   RegularTable one;  // Planck's law alone needs none
@@ -69,7 +70,7 @@ uint32_t Flattener::black_row(uint32_t heat) {
   return place->second = emission_row(heat, one, "black body");
 }
 
-uint32_t Flattener::complement_row(uint32_t row, uint32_t heat) {
+uint32_t ThermalCompiler::complement_row(uint32_t row, uint32_t heat) {
   const auto [place, is_new] = emission_rows_.try_emplace({row, heat}, KB_NONE);
   if (!is_new) return place->second;
   RegularTable table = out_.spectra[row].table;
@@ -82,7 +83,7 @@ uint32_t Flattener::complement_row(uint32_t row, uint32_t heat) {
 /// 1 - S(v) = S(-v): the complement of a sigmoid of scale 1 is the one with negated coefficients; of a flat
 /// texel, 1 - its value. Lookups are linear in texels, so the complement of a lookup is
 /// the lookup of complements.
-uint32_t Flattener::complement_bitmap(uint32_t index, uint32_t heat) {
+uint32_t ThermalCompiler::complement_bitmap(uint32_t index, uint32_t heat) {
   KbTexture record = out_.textures[index];
   const std::size_t count = std::size_t{record.width} * record.height;
   const auto [place, is_new] = complement_texels_.try_emplace(index, 0);
@@ -101,13 +102,10 @@ uint32_t Flattener::complement_bitmap(uint32_t index, uint32_t heat) {
   }
   record.first_texel = place->second;
   record.illuminant_row = heats_[heat].field == KB_NONE ? black_row(heat) : KB_NONE;
-  texture_means_.push_back(1 - texture_means_[index]);
-  texture_bounds_.push_back(1);
-  out_.textures.push_back(record);
-  return static_cast<uint32_t>(out_.textures.size() - 1);
+  return textures_.add_record(record, 1 - textures_.mean_of(index), 1);
 }
 
-uint32_t Flattener::complement_checkerboard(uint32_t index, uint32_t heat) {
+uint32_t ThermalCompiler::complement_checkerboard(uint32_t index, uint32_t heat) {
   KbCheckerboard record = out_.checkerboards[index];
   record.ref0 = complement_row(record.ref0 & KB_REF_INDEX_MASK, heat);
   record.ref1 = complement_row(record.ref1 & KB_REF_INDEX_MASK, heat);
@@ -115,7 +113,7 @@ uint32_t Flattener::complement_checkerboard(uint32_t index, uint32_t heat) {
   return static_cast<uint32_t>(out_.checkerboards.size() - 1);
 }
 
-uint32_t Flattener::complement(uint32_t ref, uint32_t heat) {
+uint32_t ThermalCompiler::complement(uint32_t ref, uint32_t heat) {
   const auto [place, is_new] = complements_.try_emplace({ref, heat}, KB_NONE);
   if (!is_new) return place->second;
   const uint32_t index = ref & KB_REF_INDEX_MASK;
@@ -131,20 +129,20 @@ uint32_t Flattener::complement(uint32_t ref, uint32_t heat) {
 
 // ---- selection of lights: estimates that only noise depends on ----
 
-double Flattener::reference_estimate(uint32_t ref, double lambda_nm) const {
+double ThermalCompiler::reference_estimate(uint32_t ref, double lambda_nm) const {
   if (ref == KB_NONE) return 0;
   const uint32_t index = ref & KB_REF_INDEX_MASK;
   const auto row = [&](uint32_t r) {
     const RegularTable& table = out_.spectra[r & KB_REF_INDEX_MASK].table;
     return table.values.empty() ? 1 : table(lambda_nm);
   };
-  if ((ref & KB_REF_KIND_MASK) == KB_REF_BITMAP) return texture_means_[index];
+  if ((ref & KB_REF_KIND_MASK) == KB_REF_BITMAP) return textures_.mean_of(index);
   if ((ref & KB_REF_KIND_MASK) == KB_REF_SPECTRUM) return row(index);
   return 0.5 * (row(out_.checkerboards[index].ref0) + row(out_.checkerboards[index].ref1));
 }
 
 /// At about 45 degrees.
-double Flattener::emissivity_estimate(uint32_t thermal, double lambda_nm) const {
+double ThermalCompiler::emissivity_estimate(uint32_t thermal, double lambda_nm) const {
   if (thermal == KB_NONE) return 0;
   const KbThermal& record = out_.thermals[thermal];
   if (record.type == KB_THERMAL_UNIFORM) return reference_estimate(record.ref[0], lambda_nm);
@@ -158,8 +156,14 @@ double Flattener::emissivity_estimate(uint32_t thermal, double lambda_nm) const 
          (1 - r) * reference_estimate(record.ref[1], lambda_nm);
 }
 
+/// Of a texture the mean of its values, as of all that only noise depends on.
+double ThermalCompiler::mean_weight(const KbSurface& blend) const {
+  if (blend.weight_ref == KB_NONE) return std::clamp<double>(blend.weight, 0, 1);
+  return std::clamp(textures_.mean_of(blend.weight_ref & KB_REF_INDEX_MASK), 0.0, 1.0);
+}
+
 /// Of one side; of blends by their mean weight.
-double Flattener::side_estimate(const KbSurface& surface, bool front, double lambda_nm) const {
+double ThermalCompiler::side_estimate(const KbSurface& surface, bool front, double lambda_nm) const {
   if (!(surface.flags & KB_SURFACE_BLEND))
     return emissivity_estimate(front ? surface.front_thermal : surface.back_thermal, lambda_nm);
   const double weight = mean_weight(surface);
@@ -167,38 +171,10 @@ double Flattener::side_estimate(const KbSurface& surface, bool front, double lam
          weight * side_estimate(out_.surfaces[surface.second], front, lambda_nm);
 }
 
-bool Flattener::emits(const KbSurface& surface) const {
+bool ThermalCompiler::emits(const KbSurface& surface) const {
   if (!(surface.flags & KB_SURFACE_BLEND))
     return surface.front_thermal != KB_NONE || surface.back_thermal != KB_NONE;
   return emits(out_.surfaces[surface.first]) || emits(out_.surfaces[surface.second]);
-}
-
-/// A shape with a temperature of its own is a light for next-event estimation, on both sides.
-void Flattener::add_thermal_emitter(uint32_t shape_index) {
-  KbShape& shape = out_.shapes[shape_index];
-  const KbSurface& surface = out_.surfaces[shape.surface];
-  if (!emits(surface)) return;
-  KbEmitter record{};
-  record.type = KB_EMITTER_THERMAL;
-  record.ref = KB_NONE;
-  record.shape = shape_index;
-  store_transform(Transform{1.0}, record.to_world);
-  store_transform(Transform{1.0}, record.to_object);
-  shape.flags |= KB_SHAPE_LIT_BOTH_SIDES;
-  shape.emitter = static_cast<uint32_t>(out_.emitters.size());
-  out_.emitters.push_back(record);
-  out_.emitter_names.push_back(out_.shape_names[shape_index]);
-  out_.features.area_light = true;
-  const Heat& heat = heats_[heat_of_shape_[shape_index]];
-  const double temperature_k = heat.field == KB_NONE ? heat.temperature_k : heat.mean_k;
-  EmitterPower power{Spectrum(), 0};
-  for (const Channel& band : out_.guide) {
-    const double emissivity =
-        side_estimate(surface, true, band.centre_nm()) + side_estimate(surface, false, band.centre_nm());
-    power.by_band.push_back(emissivity * std::numbers::pi * shape.area *
-                            planck_integral(band.min_nm, band.max_nm, temperature_k));
-  }
-  powers_.push_back(power);
 }
 
 }  // namespace kiloband

@@ -1,25 +1,17 @@
 // What surfaces emit by Kirchhoff's law: a thermal record for each pair of material and temperature.
+#include "scene/compile/material/thermal.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/compile/flattener.hpp"
 #include "scene/optics/compensation.hpp"
 #include "scene/optics/metal_emissivity.hpp"
 #include "shared/estimator.h"
 
 namespace kiloband {
 namespace {
-
-/// Largest value in a table.
-double largest(const RegularTable& table) {
-  return table.values.empty() ? 1 : *std::ranges::max_element(table.values);
-}
-
-bool is_metal(const KbMaterial& material) {
-  return material.type == KB_MATERIAL_CONDUCTOR || material.type == KB_MATERIAL_ROUGH_CONDUCTOR;
-}
 
 bool is_textured(const Texture& texture) {
   return !std::holds_alternative<Spectrum>(texture);
@@ -41,8 +33,17 @@ KbThermal empty_thermal(uint32_t type) {
 
 }  // namespace
 
+ThermalCompiler::ThermalCompiler(const CompileContext& context, TextureCompiler& textures,
+                                 MaterialCompiler& materials)
+    : in_(context.in),
+      sink_(context.options.sink),
+      out_(context.out),
+      spectra_(context.spectra),
+      textures_(textures),
+      materials_(materials) {}
+
 /// A reflectance of 0 outside its data would be an emissivity of 1.
-void Flattener::require_emission_data(const Texture& texture, const SpectrumSource& use) const {
+void ThermalCompiler::require_emission_data(const Texture& texture, const SpectrumSource& use) const {
   if (const auto* board = std::get_if<std::shared_ptr<const CheckerboardTexture>>(&texture)) {
     require_emission_data((*board)->color0, {use.name + " color0", use.position});
     require_emission_data((*board)->color1, {use.name + " color1", use.position});
@@ -67,7 +68,7 @@ void Flattener::require_emission_data(const Texture& texture, const SpectrumSour
 }
 
 /// throws InputError for materials whose emission cannot be had
-void Flattener::check_thermal(const Bsdf& bsdf, const KbMaterial& material) const {
+void ThermalCompiler::check_thermal(const Bsdf& bsdf, const KbMaterial& material) const {
   const std::string name = describe(bsdf);
   if (std::holds_alternative<BumpedBsdf>(bsdf.model))
     throw InputError(bsdf.position, name + ": a shape that emits thermally cannot have a bump or normal map");
@@ -119,45 +120,19 @@ void Flattener::check_thermal(const Bsdf& bsdf, const KbMaterial& material) cons
 }
 
 /// Emissivities of metals are tabulated at 17 azimuths at most, which ratios of a brushed metal suit.
-void Flattener::warn_of_ratio(const Bsdf& bsdf, const KbMaterial& material) const {
+void ThermalCompiler::warn_of_ratio(const Bsdf& bsdf, const KbMaterial& material) const {
   constexpr float kRatio = 20;  // error 7e-4 (metal_emissivity.hpp)
   if (!is_metal(material) || !(material.flags & KB_MATERIAL_COMPENSATED)) return;
   const float u = std::max(material.alpha_u, KB_MIN_ALPHA), v = std::max(material.alpha_v, KB_MIN_ALPHA);
   const float ratio = std::max(u, v) / std::min(u, v);
   if (ratio <= kRatio * (1 + 1e-6f) || (material.flags & KB_MATERIAL_PERFECT_MIRROR)) return;
-  warn(options_.sink, bsdf.position,
+  warn(sink_, bsdf.position,
        fmt::format("{}: alpha: roughnesses in a ratio of {:.3g}, more than {:g}: the emissivity may be off "
                    "by {}",
                    describe(bsdf), ratio, kRatio, ratio <= 100 ? 0.01 : 0.2));
 }
 
-/// Single scattering scaled up to what would leave with multiple scattering; see shared/thermal.h.
-std::vector<float> Flattener::compensate(KbMaterial& material, const Bsdf& bsdf) {
-  material.flags |= KB_MATERIAL_COMPENSATED;
-  out_.features.compensation = true;
-  IndexRange index{material.eta, material.eta};
-  if (material.flags & KB_MATERIAL_DISPERSIVE) {
-    const auto& glass = std::get<DielectricBsdf>(bsdf.model);
-    const Channel& r = spectra_.range();
-    index.min = glass.int_ior.min_over(r.min_nm, r.max_nm) / glass.ext_ior.max_over(r.min_nm, r.max_nm);
-    index.max = glass.int_ior.max_over(r.min_nm, r.max_nm) / glass.ext_ior.min_over(r.min_nm, r.max_nm);
-  }
-  std::vector<float> table = make_compensation_table(material, index);
-  const bool mirror = material.flags & KB_MATERIAL_PERFECT_MIRROR;
-  if (!is_metal(material) || mirror || (material.ref_a & KB_REF_KIND_MASK) != KB_REF_SPECTRUM) return table;
-  const MetalEmissivity metal({out_.spectra[material.eta_row].table, out_.spectra[material.k_row].table,
-                               out_.spectra[material.ref_a].table},
-                              std::nullopt, spectra_.range());
-  SpectrumRow row;
-  row.name = describe(bsdf) + ": reflectance at normal incidence";
-  row.table = metal.normal_reflectance();
-  row.bound = static_cast<float>(largest(row.table));
-  material.bound_b = row.bound;
-  material.ref_b = KB_REF_SPECTRUM | spectra_.add(std::move(row), bsdf.position);
-  return table;
-}
-
-uint32_t Flattener::add_thermal(KbThermal record, uint32_t heat) {
+uint32_t ThermalCompiler::add_thermal(KbThermal record, uint32_t heat) {
   record.field = heats_[heat].field;
   record.field_offset = heats_[heat].field_offset;
   out_.features.temperature_field |= record.field != KB_NONE;
@@ -165,7 +140,7 @@ uint32_t Flattener::add_thermal(KbThermal record, uint32_t heat) {
   return static_cast<uint32_t>(out_.thermals.size() - 1);
 }
 
-uint32_t Flattener::black(uint32_t heat) {
+uint32_t ThermalCompiler::black(uint32_t heat) {
   if (heats_[heat].temperature_k == 0) return KB_NONE;
   const auto [place, is_new] = thermals_.try_emplace({KB_NONE, heat}, KB_NONE);
   if (!is_new) return place->second;
@@ -174,7 +149,7 @@ uint32_t Flattener::black(uint32_t heat) {
   return place->second = add_thermal(record, heat);
 }
 
-uint32_t Flattener::thermal(const std::shared_ptr<const Bsdf>& bsdf, uint32_t material, uint32_t heat) {
+uint32_t ThermalCompiler::thermal(const std::shared_ptr<const Bsdf>& bsdf, uint32_t material, uint32_t heat) {
   const KbMaterial& record = out_.materials[material];
   check_thermal(*bsdf, record);
   if (heats_[heat].temperature_k == 0) return KB_NONE;
@@ -187,7 +162,7 @@ uint32_t Flattener::thermal(const std::shared_ptr<const Bsdf>& bsdf, uint32_t ma
   return place->second;
 }
 
-KbThermal Flattener::thermal_of(const KbMaterial& material, const std::string& name, uint32_t heat) {
+KbThermal ThermalCompiler::thermal_of(const KbMaterial& material, const std::string& name, uint32_t heat) {
   const bool mirror = material.flags & KB_MATERIAL_PERFECT_MIRROR;
   if (is_metal(material) && !mirror) return thermal_of_metal(material, name, heat);
   if (material.type == KB_MATERIAL_DIFFUSE || is_metal(material)) {
@@ -209,13 +184,14 @@ KbThermal Flattener::thermal_of(const KbMaterial& material, const std::string& n
   record.q = 1;
   if (!rough || (!plastic && record.ref[0] == KB_NONE && record.ref[1] == KB_NONE)) return record;
   if (plastic) record.ref[2] = black_row(heat);
-  record.table = append_table(make_reflected_part(material));
-  if (plastic) append_table(make_coat_part(coating(material), material.eta));
+  record.table = append_table(out_, make_reflected_part(material));
+  if (plastic) append_table(out_, make_coat_part(materials_.coating(material), material.eta));
   return record;
 }
 
 /// Rows at nodes of directions.
-KbThermal Flattener::thermal_of_metal(const KbMaterial& material, const std::string& name, uint32_t heat) {
+KbThermal ThermalCompiler::thermal_of_metal(const KbMaterial& material, const std::string& name,
+                                            uint32_t heat) {
   const bool rough = material.flags & KB_MATERIAL_COMPENSATED;
   const MetalEmissivity metal({out_.spectra[material.eta_row].table, out_.spectra[material.k_row].table,
                                out_.spectra[material.ref_a].table},
@@ -227,7 +203,7 @@ KbThermal Flattener::thermal_of_metal(const KbMaterial& material, const std::str
   record.nodes_s = metal.nodes_s();
   std::vector<float> cosines;
   for (const double cosine : metal.cosines()) cosines.push_back(static_cast<float>(cosine));
-  record.table = append_table(cosines);
+  record.table = append_table(out_, cosines);
   record.first_row = static_cast<uint32_t>(out_.spectra.size());
   for (const RegularTable& row : metal.rows()) emission_row(heat, row, name + ": emissivity");
   return record;
@@ -235,7 +211,7 @@ KbThermal Flattener::thermal_of_metal(const KbMaterial& material, const std::str
 
 /// 1 - rho e / (1 - rho + rho e) = (1 - rho) / (1 - rho + rho e), e = escape: what a base of reflectance rho under a
 /// nonlinear coating absorbs of what one of reflectance 1 would return.
-uint32_t Flattener::nonlinear_complement(const KbMaterial& material, uint32_t heat) {
+uint32_t ThermalCompiler::nonlinear_complement(const KbMaterial& material, uint32_t heat) {
   const auto absorbed_of = [&](double value) { return (1 - value) / (1 - value + value * material.escape); };
   const RegularTable& rho = out_.spectra[material.ref_b & KB_REF_INDEX_MASK].table;
   constexpr int kParts = 32;  // of a cell: the formula bends between the reflectance's entries
@@ -251,8 +227,9 @@ uint32_t Flattener::nonlinear_complement(const KbMaterial& material, uint32_t he
     }
   }
   absorbed.values.push_back(absorbed_of(rho.values.back()));
-  return largest(absorbed) > 0 ? KB_REF_SPECTRUM | emission_row(heat, absorbed, "emissivity of a coated base")
-                               : KB_NONE;
+  return largest_value(absorbed) > 0
+             ? KB_REF_SPECTRUM | emission_row(heat, absorbed, "emissivity of a coated base")
+             : KB_NONE;
 }
 
 }  // namespace kiloband

@@ -1,6 +1,7 @@
+#include "scene/compile/spectra/channel_bins.hpp"
+
 #include <algorithm>
 
-#include "scene/compile/flattener.hpp"
 #include "shared/spectra_layout.h"
 
 namespace kiloband {
@@ -17,16 +18,14 @@ float bin_mean(const RegularTable& table, const ChannelList& channels, uint32_t 
 
 }  // namespace
 
-/// Where the channel that survives a dispersive refraction is chosen by what each can still carry, the
-/// reflectances on the path so far are followed in a few bins of channels.
-void Flattener::set_channel_bins() {
-  if (!out_.features.dispersion) return;
-  out_.channel_bins.assign(out_.spectra.size() * KB_CHANNEL_BINS, 1.0f);
-  for (std::size_t row = 0; row < out_.spectra.size(); ++row) {
-    const SpectrumRow& spectrum = out_.spectra[row];
+void set_channel_bins(FlatScene& scene) {
+  if (!scene.features.dispersion) return;
+  scene.channel_bins.assign(scene.spectra.size() * KB_CHANNEL_BINS, 1.0f);
+  for (std::size_t row = 0; row < scene.spectra.size(); ++row) {
+    const SpectrumRow& spectrum = scene.spectra[row];
     if (spectrum.is_planck || spectrum.is_emission || spectrum.absorption) continue;
     for (uint32_t bin = 0; bin < KB_CHANNEL_BINS; ++bin)
-      out_.channel_bins[row * KB_CHANNEL_BINS + bin] = bin_mean(spectrum.table, out_.channels, bin);
+      scene.channel_bins[row * KB_CHANNEL_BINS + bin] = bin_mean(spectrum.table, scene.channels, bin);
   }
 }
 

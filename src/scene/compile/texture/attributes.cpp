@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/texture/textures.hpp"
 #include "spectral/colour/rgb.hpp"
 
 namespace kiloband {
@@ -69,8 +69,8 @@ struct Cells {
 }  // namespace
 
 /// Of a colour the spectrum of a reflectance, or a multiple of one; of one value, and of a share, a flat one.
-KbFloat4 Flattener::attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
-                                    double unit, bool share) {
+KbFloat4 TextureCompiler::attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
+                                          double unit, bool share) {
   float values[3];
   for (std::size_t i = 0; i < 3; ++i)
     values[i] = static_cast<float>(unit * (*parts[parts.size() == 3 ? i : 0])[at]);
@@ -78,18 +78,18 @@ KbFloat4 Flattener::attribute_texel(const std::vector<const std::vector<float>*>
   return texel_of(values, BitmapUse::kPicture, 1);
 }
 
-uint32_t Flattener::mesh_attribute(const std::shared_ptr<const MeshAttributeTexture>& texture,
-                                   const SpectrumSource& use, bool share) {
+uint32_t TextureCompiler::mesh_attribute(const std::shared_ptr<const MeshAttributeTexture>& texture,
+                                         const SpectrumSource& use, bool share) {
   const std::string label = fmt::format("{}: mesh_attribute '{}'", use.name, texture->name);
-  if (!mesh_) throw InputError(texture->position, label + ": only meshes have attributes");
-  ++mesh_lookups_;
+  if (!current_.mesh) throw InputError(texture->position, label + ": only meshes have attributes");
+  ++current_.lookups;
   const BitmapUse kind = share          ? BitmapUse::kOpacity
                          : use.emission ? BitmapUse::kEmission
                                         : BitmapUse::kPicture;
-  const auto [place, is_new] =
-      attributes_.try_emplace({texture.get(), mesh_, kind}, static_cast<uint32_t>(out_.textures.size()));
+  const auto [place, is_new] = attributes_.try_emplace({texture.get(), current_.mesh, kind},
+                                                       static_cast<uint32_t>(out_.textures.size()));
   if (!is_new) return place->second;
-  const Attribute attribute = find_attribute(*mesh_, *texture);
+  const Attribute attribute = find_attribute(*current_.mesh, *texture);
   if (attribute.parts.empty())
     throw InputError(texture->position, label + ": the mesh has no properties of this name");
   const double unit = attribute.unit * texture->scale, most = use.emission ? kMaxEmission : 1;
@@ -99,7 +99,7 @@ uint32_t Flattener::mesh_attribute(const std::shared_ptr<const MeshAttributeText
         throw InputError(texture->position, fmt::format("{}: a value is {:g}: must be from 0 to {:g}", label,
                                                         value * unit, most));
   out_.features.bitmap = out_.features.mesh_attribute = true;
-  const auto& triangles = mesh_->triangles;
+  const auto& triangles = current_.mesh->triangles;
   const Cells cells(attribute.of_faces, triangles.size());
   KbTexture record{};
   record.width = cells.width();
@@ -126,7 +126,7 @@ uint32_t Flattener::mesh_attribute(const std::shared_ptr<const MeshAttributeText
 }
 
 /// Bounds, mean and largest of the texels that were added last.
-void Flattener::finish_attribute(const KbTexture& record, std::size_t count, bool emits) {
+void TextureCompiler::finish_attribute(const KbTexture& record, std::size_t count, bool emits) {
   double sum = 0, largest = 0, peak = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const KbFloat4& texel = out_.texels[record.first_texel + i];
@@ -136,10 +136,8 @@ void Flattener::finish_attribute(const KbTexture& record, std::size_t count, boo
     largest = std::max(largest, bound);
     peak = std::max(peak, double{texel.w});
   }
-  if (emits) raw_emission_peak_ = std::max(raw_emission_peak_, peak);
-  texture_means_.push_back(sum / static_cast<double>(count));
-  texture_bounds_.push_back(largest);
-  out_.textures.push_back(record);
+  if (emits) peaks_.raw = std::max(peaks_.raw, peak);
+  add_record(record, sum / static_cast<double>(count), largest);
 }
 
 }  // namespace kiloband

@@ -6,40 +6,12 @@
 #include <limits>
 #include <numbers>
 
-#include "scene/compile/flattener.hpp"
-#include "scene/compile/light/envmap_sampling.hpp"
 #include "scene/compile/spectra/band_set.hpp"
+#include "scene/compile/spectra/spectral_values.hpp"
+#include "scene/compile/texture/textures.hpp"
 
 namespace kiloband {
 namespace {
-
-std::span<const float> texel(const SpectralImage& image, std::size_t i) {
-  return std::span(*image.values).subspan(i * image.values_per_pixel, image.values_per_pixel);
-}
-
-double dot(std::span<const float> values, std::span<const double> weights) {
-  double sum = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) sum += values[i] * weights[i];
-  return sum;
-}
-
-/// The mean and the largest of every value over the image; row_weights: of its rows, their mean is 1.
-struct ValueStatistics {
-  std::vector<double> mean, largest;
-
-  ValueStatistics(const SpectralImage& image, std::span<const double> row_weights)
-      : mean(image.values_per_pixel, 0.0), largest(image.values_per_pixel, 0.0) {
-    const std::size_t count = std::size_t{image.width} * image.height;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::span<const float> values = texel(image, i);
-      const double weight = row_weights[i / image.width] / static_cast<double>(count);
-      for (std::size_t v = 0; v < values.size(); ++v) {
-        mean[v] += weight * values[v];
-        largest[v] = std::max(largest[v], double{values[v]});
-      }
-    }
-  }
-};
 
 BandSet band_set_of(const SpectralImage& image, bool extrapolate, bool emission, double scale) {
   BandSet set;
@@ -57,8 +29,8 @@ BandSet band_set_of(const SpectralImage& image, bool extrapolate, bool emission,
 
 }  // namespace
 
-uint32_t Flattener::spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
-                                    const SpectrumSource& use) {
+uint32_t TextureCompiler::spectral_bitmap(const std::shared_ptr<const SpectralBitmapTexture>& texture,
+                                          const SpectrumSource& use) {
   const auto [place, is_new] = spectral_bitmaps_.try_emplace({texture.get(), use.emission},
                                                              static_cast<uint32_t>(out_.textures.size()));
   if (is_new) {
@@ -68,8 +40,8 @@ uint32_t Flattener::spectral_bitmap(const std::shared_ptr<const SpectralBitmapTe
   return place->second;
 }
 
-uint32_t Flattener::add_spectral_texture(const SpectralBitmapTexture& texture, const SpectrumSource& use,
-                                         double scale) {
+uint32_t TextureCompiler::add_spectral_texture(const SpectralBitmapTexture& texture,
+                                               const SpectrumSource& use, double scale) {
   out_.features.spectral_texture = true;
   const SpectralImage& image = *texture.image;
   const std::size_t count = std::size_t{image.width} * image.height;
@@ -97,7 +69,7 @@ uint32_t Flattener::add_spectral_texture(const SpectralBitmapTexture& texture, c
 }
 
 /// Where the image's values begin on a device.
-uint32_t Flattener::first_value_unit(const SpectralImage& image, const SourcePosition& position) {
+uint32_t TextureCompiler::first_value_unit(const SpectralImage& image, const SourcePosition& position) {
   const uint64_t first = value_units_;
   value_units_ += (image.values->size() + KB_VALUE_UNIT - 1) / KB_VALUE_UNIT;
   if (value_units_ > std::numeric_limits<uint32_t>::max())
@@ -106,8 +78,8 @@ uint32_t Flattener::first_value_unit(const SpectralImage& image, const SourcePos
   return static_cast<uint32_t>(first);
 }
 
-void Flattener::add_bands(KbTexture& record, const SpectralBitmapTexture& texture, const SpectrumSource& use,
-                          double scale) {
+void TextureCompiler::add_bands(KbTexture& record, const SpectralBitmapTexture& texture,
+                                const SpectrumSource& use, double scale) {
   const SpectralImage& image = *texture.image;
   const BandSet set = band_set_of(image, texture.extrapolate, use.emission, scale);
   spectra_.check_range({{set.min_nm, set.max_nm}}, set.extrapolate, use);
@@ -134,22 +106,21 @@ void Flattener::add_bands(KbTexture& record, const SpectralBitmapTexture& textur
   double mean = 0;
   for (std::size_t v = 0; v < guide.size(); ++v)
     mean += statistics.mean[v] * guide[v] * scale / static_cast<double>(out_.guide.size());
-  texture_means_.push_back(mean);
-  texture_bounds_.push_back(largest);
-  texture_colours_[static_cast<uint32_t>(out_.textures.size())] = {
-      {band_spectrum(set, statistics.mean), 1.0}};
-  if (use.emission) emission_peaks_.push_back(band_spectrum(set, statistics.largest));
+  means_.push_back(mean);
+  bounds_.push_back(largest);
+  colours_[static_cast<uint32_t>(out_.textures.size())] = {{band_spectrum(set, statistics.mean), 1.0}};
+  if (use.emission) peaks_.spectra.push_back(band_spectrum(set, statistics.largest));
 }
 
 /// The rows of a texture's endmembers follow each other; weights need no unit.
-void Flattener::add_weights(KbTexture& record, const SpectralBitmapTexture& texture,
-                            const SpectrumSource& use) {
+void TextureCompiler::add_weights(KbTexture& record, const SpectralBitmapTexture& texture,
+                                  const SpectrumSource& use) {
   const SpectralImage& image = *texture.image;
   const ValueStatistics statistics(image, std::vector<double>(image.height, 1.0));
   record.first_row = static_cast<uint32_t>(out_.spectra.size());
   std::vector<double> bounds;
   double mean = 0;
-  auto& colour = texture_colours_[static_cast<uint32_t>(out_.textures.size())];
+  auto& colour = colours_[static_cast<uint32_t>(out_.textures.size())];
   for (std::size_t p = 0; p < texture.endmembers.size(); ++p) {
     const Spectrum& spectrum = texture.endmembers[p];
     const uint32_t row = spectra_.new_row(
@@ -157,7 +128,7 @@ void Flattener::add_weights(KbTexture& record, const SpectralBitmapTexture& text
     bounds.push_back(out_.spectra[row].bound);
     mean += statistics.mean[p] * spectra_.guide_mean(spectrum);
     colour.emplace_back(spectrum, statistics.mean[p]);
-    if (use.emission) emission_row_factors_[row] = statistics.largest[p];
+    if (use.emission) peaks_.row_factors[row] = statistics.largest[p];
   }
   const std::size_t count = std::size_t{image.width} * image.height;
   float largest = 0;
@@ -167,42 +138,8 @@ void Flattener::add_weights(KbTexture& record, const SpectralBitmapTexture& text
     out_.texel_bounds.push_back(use.emission ? bound : std::min(bound, 1.0f));
     largest = std::max(largest, out_.texel_bounds.back());
   }
-  texture_means_.push_back(mean);
-  texture_bounds_.push_back(largest);
-}
-
-void Flattener::add_spectral_environment(KbEmitter& record, const SpectralEnvmapEmitter& emitter,
-                                         const SpectrumSource& use) {
-  record.type = KB_EMITTER_ENVMAP;
-  set_emitter_transforms(record, emitter.to_world);
-  SpectralBitmapTexture texture;
-  texture.image = emitter.image;
-  texture.position = use.position;
-  const uint32_t index = add_spectral_texture(texture, use, emitter.scale);
-  out_.textures[index].flags |= KB_TEXTURE_ENVMAP;
-  record.ref = KB_REF_BITMAP | index;
-  out_.features.envmap_light = true;
-
-  // Directions are sampled by sum_g L_g(texel) / mean L_g over the guide bands g: each has one vote. As a
-  // weighted sum of a texel's values v: the weight of v_i is sum_g A_gi / (A v_mean)_g, A_gi its part in the
-  // mean of guide band g.
-  const SpectralImage& image = *emitter.image;
-  const BandSet& set = out_.band_sets[out_.textures[index].first_row];
-  const ValueStatistics statistics(image, row_solid_angles(image.height));
-  std::vector<double> votes(set.centres_nm.size(), 0.0), part(votes.size());
-  for (const Channel& band : out_.guide) {
-    std::ranges::fill(part, 0.0);
-    add_mean_weights(set, band, part);
-    double mean = 0;
-    for (std::size_t v = 0; v < part.size(); ++v) mean += part[v] * statistics.mean[v];
-    for (std::size_t v = 0; v < part.size() && mean > 0; ++v) votes[v] += part[v] / mean;
-  }
-  const std::size_t count = std::size_t{image.width} * image.height;
-  std::vector<float> weights(count);
-  for (std::size_t i = 0; i < count; ++i) weights[i] = static_cast<float>(dot(texel(image, i), votes));
-  out_.envmap = build_envmap_sampling(image.width, image.height, weights);
-  powers_.push_back({band_spectrum(set, statistics.mean),
-                     4 * std::numbers::pi * std::numbers::pi * out_.scene_radius * out_.scene_radius});
+  means_.push_back(mean);
+  bounds_.push_back(largest);
 }
 
 }  // namespace kiloband

@@ -1,9 +1,10 @@
+#include "scene/compile/texture/textures.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/compile/flattener.hpp"
 #include "spectral/colour/cie_tables.hpp"
 #include "spectral/colour/colour.hpp"
 #include "spectral/colour/rgb.hpp"
@@ -69,12 +70,23 @@ uint32_t first_texel_index(std::size_t before, std::size_t count, const SourcePo
   return static_cast<uint32_t>(before);
 }
 
-uint32_t Flattener::d65_row() {
-  if (d65_row_ == KB_NONE) d65_row_ = spectra_.row(illuminant_d65(), {"RGB emission (D65)", {}, true});
-  return d65_row_;
+TextureCompiler::TextureCompiler(const CompileContext& context)
+    : out_(context.out), spectra_(context.spectra), current_(context.mesh) {}
+
+uint32_t TextureCompiler::add_record(const KbTexture& record, double mean, double bound) {
+  means_.push_back(mean);
+  bounds_.push_back(bound);
+  out_.textures.push_back(record);
+  return static_cast<uint32_t>(out_.textures.size() - 1);
 }
 
-uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use) {
+uint32_t TextureCompiler::d65_row() {
+  if (peaks_.rgb_row == KB_NONE)
+    peaks_.rgb_row = spectra_.row(illuminant_d65(), {"RGB emission (D65)", {}, true});
+  return peaks_.rgb_row;
+}
+
+uint32_t TextureCompiler::reference(const Texture& texture, const SpectrumSource& use) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture))
     return KB_REF_SPECTRUM | spectra_.row(*spectrum, use);
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
@@ -89,7 +101,7 @@ uint32_t Flattener::reference(const Texture& texture, const SpectrumSource& use)
 }
 
 /// A texel that is not flat.
-KbFloat4 Flattener::texel_of(const float* rgb, BitmapUse use, float height) {
+KbFloat4 TextureCompiler::texel_of(const float* rgb, BitmapUse use, float height) {
   static const SigmoidTable kTable;
   if (use == BitmapUse::kRoughness) return flat_texel(luminance_of(rgb));
   if (use == BitmapUse::kHeight) return flat_texel(height * luminance_of(rgb));
@@ -98,7 +110,8 @@ KbFloat4 Flattener::texel_of(const float* rgb, BitmapUse use, float height) {
   return upsampled_texel(kTable, rgb, use == BitmapUse::kEmission);
 }
 
-uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use, float height) {
+uint32_t TextureCompiler::bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use,
+                                 float height) {
   const bool emission = use == BitmapUse::kEmission;
   const auto [place, is_new] =
       bitmaps_.try_emplace({texture.get(), use, height}, static_cast<uint32_t>(out_.textures.size()));
@@ -137,16 +150,13 @@ uint32_t Flattener::bitmap(const std::shared_ptr<const BitmapTexture>& texture, 
     peak = std::max(peak, double{out_.texels.back().w});
   }
   if (emission)
-    (texture->raw ? raw_emission_peak_ : rgb_emission_peak_) =
-        std::max(peak, texture->raw ? raw_emission_peak_ : rgb_emission_peak_);
-  texture_means_.push_back(sum / static_cast<double>(count));
-  texture_bounds_.push_back(largest);
-  out_.textures.push_back(record);
+    (texture->raw ? peaks_.raw : peaks_.rgb) = std::max(peak, texture->raw ? peaks_.raw : peaks_.rgb);
+  add_record(record, sum / static_cast<double>(count), largest);
   return place->second;
 }
 
 /// The sigmoid is monotonic in a parabola: its extremes are at the ends of the range or at the vertex.
-float Flattener::texel_bound(const KbFloat4& texel) const {
+float TextureCompiler::texel_bound(const KbFloat4& texel) const {
   if (texel.x == 0 && texel.y == 0) return texel.w;
   const Channel channels = hull(out_.channels), guide = hull(out_.guide);
   const auto from_centre = [](double nm) {
@@ -164,8 +174,8 @@ float Flattener::texel_bound(const KbFloat4& texel) const {
   return static_cast<float>(texel.w * largest);
 }
 
-uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture,
-                                 const SpectrumSource& use) {
+uint32_t TextureCompiler::checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture,
+                                       const SpectrumSource& use) {
   const auto [place, is_new] = checkerboards_.try_emplace({texture.get(), use.emission},
                                                           static_cast<uint32_t>(out_.checkerboards.size()));
   if (!is_new) return place->second;
@@ -178,28 +188,28 @@ uint32_t Flattener::checkerboard(const std::shared_ptr<const CheckerboardTexture
   return place->second;
 }
 
-double Flattener::texture_mean(const Texture& texture) {
+double TextureCompiler::mean(const Texture& texture) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.guide_mean(*spectrum);
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
-    return texture_means_[bitmap(*image, BitmapUse::kReflectance)];
+    return means_[bitmap(*image, BitmapUse::kReflectance)];
   }
   if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
-    return texture_means_[spectral_bitmap(*spectral, {})];
+    return means_[spectral_bitmap(*spectral, {})];
   if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture))
-    return texture_means_[mesh_attribute(*attribute, {})];
+    return means_[mesh_attribute(*attribute, {})];
   const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
   return 0.5 * (spectra_.guide_mean(board.color0) + spectra_.guide_mean(board.color1));
 }
 
-double Flattener::texture_bound(const Texture& texture) {
+double TextureCompiler::bound(const Texture& texture) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.bound(*spectrum);
   if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
-    return texture_bounds_[bitmap(*image, BitmapUse::kReflectance)];
+    return bounds_[bitmap(*image, BitmapUse::kReflectance)];
   }
   if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
-    return texture_bounds_[spectral_bitmap(*spectral, {})];
+    return bounds_[spectral_bitmap(*spectral, {})];
   if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture))
-    return texture_bounds_[mesh_attribute(*attribute, {})];
+    return bounds_[mesh_attribute(*attribute, {})];
   const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
   return std::max(spectra_.bound(board.color0), spectra_.bound(board.color1));
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/texture/textures.hpp"
 #include "spectral/channels.hpp"
 #include "src_cpu/lanes/one_lane.hpp"
 #include "src_cpu/light/area.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "scene/compile/flattener.hpp"
+#include "scene/compile/record_vectors.hpp"
 
 namespace kiloband::test {
 namespace {
