@@ -1,11 +1,7 @@
 // The scene as Embree's geometries.
 #pragma once
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
 #include <embree3/rtcore.h>
-#endif
 
 #include "scene/compile/flat_scene.hpp"
 

@@ -13,52 +13,14 @@
 namespace kiloband::cpu {
 namespace {
 
-#if RTC_VERSION_MAJOR >= 4
-struct Query {
-  RTCIntersectArguments intersect;
-  RTCOccludedArguments occlude;
-  explicit Query(RTCRayQueryFlags flags) {
-    rtcInitIntersectArguments(&intersect);
-    rtcInitOccludedArguments(&occlude);
-    intersect.flags = occlude.flags = flags;
-  }
-};
-constexpr auto kCoherent = RTC_RAY_QUERY_FLAG_COHERENT;
-constexpr auto kIncoherent = RTC_RAY_QUERY_FLAG_INCOHERENT;
-#else
-struct Query {
-  RTCIntersectContext context;
-  explicit Query(RTCIntersectContextFlags flags) {
-    rtcInitIntersectContext(&context);
-    context.flags = flags;
-  }
-};
 constexpr auto kCoherent = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 constexpr auto kIncoherent = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-#endif
 
-void intersect1(RTCScene scene, Query& query, RTCRayHit& ray) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(scene, &ray, &query.intersect);
-#else
-  rtcIntersect1(scene, &query.context, &ray);
-#endif
-}
-
-void occluded1(RTCScene scene, Query& query, RTCRay& ray) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded1(scene, &ray, &query.occlude);
-#else
-  rtcOccluded1(scene, &query.context, &ray);
-#endif
-}
-
-void intersect16(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect16(valid, scene, &rays, &query.intersect);
-#else
-  rtcIntersect16(valid, scene, &query.context, &rays);
-#endif
+RTCIntersectContext query_context(RTCIntersectContextFlags flags) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = flags;
+  return context;
 }
 
 }  // namespace
@@ -151,15 +113,15 @@ void store_packet(const RTCRayHit16& packet, std::span<TraceRay> rays) {
 
 void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
   if (!coherent || !impl_->coherent_packets()) {
-    Query query(kIncoherent);
+    RTCIntersectContext context = query_context(kIncoherent);
     for (TraceRay& ray : rays) {
-      intersect1(impl_->scene, query, reinterpret_cast<RTCRayHit&>(ray));
+      rtcIntersect1(impl_->scene, &context, reinterpret_cast<RTCRayHit*>(&ray));
       Impl::find_shape(ray);
       impl_->prefetch_triangle(ray);
     }
     return;
   }
-  Query query(kCoherent);
+  RTCIntersectContext context = query_context(kCoherent);
   alignas(64) RTCRayHit16 packet;
   alignas(64) int valid[kPacketSize];
   for (std::size_t first = 0; first < rays.size(); first += kPacketSize) {
@@ -167,7 +129,7 @@ void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
     load_packet(some, packet.ray, valid);
     std::fill_n(packet.hit.geomID, kPacketSize, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], kPacketSize, RTC_INVALID_GEOMETRY_ID);
-    intersect16(valid, impl_->scene, query, packet);
+    rtcIntersect16(valid, impl_->scene, &context, &packet);
     store_packet(packet, some);
     for (TraceRay& ray : some) {
       Impl::find_shape(ray);
@@ -177,8 +139,8 @@ void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
 }
 
 void EmbreeScene::occlusions(std::span<ShadowRay> rays) const {
-  Query query(kIncoherent);
-  for (ShadowRay& ray : rays) occluded1(impl_->scene, query, reinterpret_cast<RTCRay&>(ray));
+  RTCIntersectContext context = query_context(kIncoherent);
+  for (ShadowRay& ray : rays) rtcOccluded1(impl_->scene, &context, reinterpret_cast<RTCRay*>(&ray));
 }
 
 // ---- the rays of a wave ------------------------------------------------------------------------------
@@ -194,23 +156,11 @@ using RayPacket = std::conditional_t<N == 16, RTCRay16, RTCRay8>;
 template <int N>
 using HitPacket = std::conditional_t<N == 16, RTCRayHit16, RTCRayHit8>;
 
-void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {
-  intersect16(valid, scene, query, rays);
+void intersect(const int* valid, RTCScene scene, RTCIntersectContext& context, RTCRayHit16& rays) {
+  rtcIntersect16(valid, scene, &context, &rays);
 }
-void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit8& rays) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect8(valid, scene, &rays, &query.intersect);
-#else
-  rtcIntersect8(valid, scene, &query.context, &rays);
-#endif
-}
-
-void occluded16(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) {
-#if RTC_VERSION_MAJOR >= 4
-  rtcOccluded16(valid, scene, &rays, &query.occlude);
-#else
-  rtcOccluded16(valid, scene, &query.context, &rays);
-#endif
+void intersect(const int* valid, RTCScene scene, RTCIntersectContext& context, RTCRayHit8& rays) {
+  rtcIntersect8(valid, scene, &context, &rays);
 }
 
 constexpr uint32_t whole_packets(uint32_t count, uint32_t size) {
@@ -262,7 +212,8 @@ void store_hits(const HitPacket<N>& packet, bool instances, uint32_t first, RayQ
 }
 
 template <int N>
-void trace_packets(RTCScene scene, Query query, bool instances, RayQueue& rays) {
+void trace_packets(RTCScene scene, RTCIntersectContextFlags flags, bool instances, RayQueue& rays) {
+  RTCIntersectContext context = query_context(flags);
   alignas(64) HitPacket<N> packet;
   alignas(64) int valid[N];
   fill_last_packet(rays, N);
@@ -272,7 +223,7 @@ void trace_packets(RTCScene scene, Query query, bool instances, RayQueue& rays) 
     std::memcpy(packet.ray.tnear, rays.t_min + first, sizeof packet.ray.tnear);
     std::fill_n(packet.hit.geomID, N, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], N, RTC_INVALID_GEOMETRY_ID);
-    intersect(valid, scene, query, packet);
+    intersect(valid, scene, context, packet);
     store_hits<N>(packet, instances, first, rays);
   }
 }
@@ -290,20 +241,21 @@ const RayGrid& EmbreeScene::grid() const {
 void EmbreeScene::closest_hits(RayQueue& rays, RayPackets packets) const {
   const bool instances = impl_->flat->features.instances;
   if (packets == RayPackets::kCoherent && impl_->coherent_packets())
-    trace_packets<16>(impl_->scene, Query(kCoherent), instances, rays);
+    trace_packets<16>(impl_->scene, kCoherent, instances, rays);
   else
-    trace_packets<8>(impl_->scene, Query(kIncoherent), instances, rays);
+    trace_packets<8>(impl_->scene, kIncoherent, instances, rays);
 }
 
 void EmbreeScene::occlusions(ShadowQueue& rays, RayPackets packets) const {
-  Query query(packets == RayPackets::kCoherent && impl_->coherent_packets() ? kCoherent : kIncoherent);
+  const bool coherent = packets == RayPackets::kCoherent && impl_->coherent_packets();
+  RTCIntersectContext context = query_context(coherent ? kCoherent : kIncoherent);
   alignas(64) RTCRay16 packet;
   alignas(64) int valid[16];
   fill_last_packet(rays, 16);
   prepare<16>(packet);
   for (uint32_t first = 0; first < rays.count; first += 16) {
     load_rays(rays, first, packet, valid);
-    occluded16(valid, impl_->scene, query, packet);
+    rtcOccluded16(valid, impl_->scene, &context, &packet);
     std::memcpy(rays.t_max + first, packet.tfar, sizeof packet.tfar);
   }
 }

@@ -1,4 +1,4 @@
-// With embree_build.hpp the one place that knows Embree (3.13; 4 behind compile guards, untested).
+// With embree_build.hpp the one place that knows Embree (3.13).
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,6 @@
 #include "src_gpu/geometry/bvh_builder.hpp"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
 #include <embree3/rtcore.h>
-#endif
-
 #include <fmt/format.h>
 
 #include <algorithm>
