@@ -85,6 +85,7 @@ class CpuBackend final : public Backend {
  private:
   void note_invalid(const InvalidSample& sample);
   float pass_boundaries(TraceRay& ray, float far) const;
+  AuxiliaryPixel auxiliary_pixel(TraceRay ray, float far) const;
 
   std::shared_ptr<const FlatScene> kept_;
   const FlatScene& scene_;
@@ -146,35 +147,40 @@ float CpuBackend::pass_boundaries(TraceRay& ray, float far) const {
   while (is_boundary(scene_, ray.shape)) {
     passed += ray.t_max;
     ray = TraceRay(leave_surface(surface_of(scene_, ray), ray.direction()), ray.direction(), 0, far - passed);
-    embree_->closest_hits(std::span(&ray, 1), false);
+    embree_->closest_hits(std::span(&ray, 1));
   }
   return passed;
 }
 
+/// What a camera ray with that answer has met. far: where the ray ends
+AuxiliaryPixel CpuBackend::auxiliary_pixel(TraceRay ray, float far) const {
+  const float in_front = pass_boundaries(ray, far);
+  if (ray.shape == KB_NONE) return {};
+  const SurfaceHit hit = surface_of(scene_, ray);
+  const KbSurface& surface = scene_.surfaces[scene_.shapes[hit.shape].surface];
+  const bool behind = glm::dot(hit.shading_normal, ray.direction()) > 0 && surface.back != KB_NONE;
+  const glm::vec3 n = hit.shading_normal;
+  return {in_front + ray.t_max,
+          {n.x, n.y, n.z},
+          static_cast<float>(hit.shape),
+          static_cast<float>(behind ? surface.back : surface.front)};
+}
+
 std::vector<AuxiliaryPixel> CpuBackend::auxiliary(const PixelRect& rect) {
-  std::vector<AuxiliaryPixel> pixels(rect.pixels());
-  std::vector<TraceRay> rays;
-  std::vector<float> far;
-  rays.reserve(rect.pixels());
-  for (uint32_t i = 0; i < rect.pixels(); ++i) {
-    const CameraRay ray =
-        centre_camera_ray(scene_.camera, rect.x0 + i % rect.width, rect.y0 + i / rect.width);
-    rays.emplace_back(ray.origin, ray.direction, ray.t_min, ray.t_max);
-    far.push_back(ray.t_max);
-  }
-  embree_->closest_hits(rays, true);
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    TraceRay& ray = rays[i];
-    const float in_front = pass_boundaries(ray, far[i]);
-    if (ray.shape == KB_NONE) continue;
-    const SurfaceHit hit = surface_of(scene_, ray);
-    const KbSurface& surface = scene_.surfaces[scene_.shapes[hit.shape].surface];
-    const bool behind = glm::dot(hit.shading_normal, ray.direction()) > 0 && surface.back != KB_NONE;
-    const glm::vec3 n = hit.shading_normal;
-    pixels[i] = {in_front + ray.t_max,
-                 {n.x, n.y, n.z},
-                 static_cast<float>(hit.shape),
-                 static_cast<float>(behind ? surface.back : surface.front)};
+  std::vector<AuxiliaryPixel> pixels;
+  const auto rays = std::make_unique<RayQueue>();
+  std::vector<float> far(kWavePaths);
+  while (pixels.size() < rect.pixels()) {
+    const auto first = static_cast<uint32_t>(pixels.size());
+    rays->count = static_cast<uint32_t>(std::min<std::size_t>(kWavePaths, rect.pixels() - first));
+    for (uint32_t i = 0; i < rays->count; ++i) {
+      const uint32_t x = (first + i) % rect.width, y = (first + i) / rect.width;
+      const CameraRay ray = centre_camera_ray(scene_.camera, rect.x0 + x, rect.y0 + y);
+      put_ray({ray.origin, ray.direction, ray.t_min, ray.t_max}, *rays, i);
+      far[i] = ray.t_max;
+    }
+    embree_->closest_hits(*rays, RayPackets::kCoherent);
+    for (uint32_t i = 0; i < rays->count; ++i) pixels.push_back(auxiliary_pixel(ray_of(*rays, i), far[i]));
   }
   return pixels;
 }

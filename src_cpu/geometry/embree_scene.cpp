@@ -76,65 +76,12 @@ static_assert(offsetof(TraceRay, u) == offsetof(RTCRayHit, hit) + offsetof(RTCHi
 static_assert(offsetof(TraceRay, shape) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, geomID));
 static_assert(offsetof(TraceRay, instance) == offsetof(RTCRayHit, hit) + offsetof(RTCHit, instID));
 
-namespace {
-
-/// Copies up to 16 rays into a packet; lanes past the end are invalid.
-void load_packet(std::span<const TraceRay> rays, RTCRay16& packet, int (&valid)[kPacketSize]) {
-  for (std::size_t lane = 0; lane < kPacketSize; ++lane) {
-    const TraceRay& ray = rays[std::min(lane, rays.size() - 1)];
-    valid[lane] = lane < rays.size() ? -1 : 0;
-    packet.org_x[lane] = ray.ox;
-    packet.org_y[lane] = ray.oy;
-    packet.org_z[lane] = ray.oz;
-    packet.dir_x[lane] = ray.dx;
-    packet.dir_y[lane] = ray.dy;
-    packet.dir_z[lane] = ray.dz;
-    packet.tnear[lane] = ray.t_min;
-    packet.tfar[lane] = ray.t_max;
-    packet.time[lane] = 0;
-    packet.mask[lane] = ~0u;
-    packet.id[lane] = packet.flags[lane] = 0;
-  }
-}
-
-void store_packet(const RTCRayHit16& packet, std::span<TraceRay> rays) {
-  for (std::size_t lane = 0; lane < rays.size(); ++lane) {
-    TraceRay& ray = rays[lane];
-    ray.t_max = packet.ray.tfar[lane];
-    ray.u = packet.hit.u[lane];
-    ray.v = packet.hit.v[lane];
-    ray.primitive = packet.hit.primID[lane];
-    ray.shape = packet.hit.geomID[lane];
-    ray.instance = packet.hit.instID[0][lane];
-  }
-}
-
-}  // namespace
-
-void EmbreeScene::closest_hits(std::span<TraceRay> rays, bool coherent) const {
-  if (!coherent || !impl_->coherent_packets()) {
-    RTCIntersectContext context = query_context(kIncoherent);
-    for (TraceRay& ray : rays) {
-      rtcIntersect1(impl_->scene, &context, reinterpret_cast<RTCRayHit*>(&ray));
-      Impl::find_shape(ray);
-      impl_->prefetch_triangle(ray);
-    }
-    return;
-  }
-  RTCIntersectContext context = query_context(kCoherent);
-  alignas(64) RTCRayHit16 packet;
-  alignas(64) int valid[kPacketSize];
-  for (std::size_t first = 0; first < rays.size(); first += kPacketSize) {
-    const auto some = rays.subspan(first, std::min(kPacketSize, rays.size() - first));
-    load_packet(some, packet.ray, valid);
-    std::fill_n(packet.hit.geomID, kPacketSize, RTC_INVALID_GEOMETRY_ID);
-    std::fill_n(packet.hit.instID[0], kPacketSize, RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect16(valid, impl_->scene, &context, &packet);
-    store_packet(packet, some);
-    for (TraceRay& ray : some) {
-      Impl::find_shape(ray);
-      impl_->prefetch_triangle(ray);
-    }
+void EmbreeScene::closest_hits(std::span<TraceRay> rays) const {
+  RTCIntersectContext context = query_context(kIncoherent);
+  for (TraceRay& ray : rays) {
+    rtcIntersect1(impl_->scene, &context, reinterpret_cast<RTCRayHit*>(&ray));
+    Impl::find_shape(ray);
+    impl_->prefetch_triangle(ray);
   }
 }
 

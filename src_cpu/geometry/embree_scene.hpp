@@ -13,8 +13,6 @@
 
 namespace kiloband::cpu {
 
-inline constexpr std::size_t kPacketSize = 16;
-
 /// A closest-hit query and its answer, laid out as Embree's RTCRayHit so that nothing is copied. direction
 /// need not be a unit vector; hits lie in (t_min, t_max).
 struct alignas(16) TraceRay {
@@ -23,8 +21,8 @@ struct alignas(16) TraceRay {
   float t_max;  // in: far end; out: the hit's distance
   uint32_t mask = ~0u, id = 0, flags = 0;
   float ng_x, ng_y, ng_z;       // not used
-  float u, v;                   // barycentric coordinates of a mesh hit
-  uint32_t primitive;           // triangle within the shape
+  float u = 0, v = 0;           // barycentric coordinates of a mesh hit
+  uint32_t primitive = 0;       // triangle within the shape
   uint32_t shape = KB_NONE;     // KB_NONE: a miss
   uint32_t instance = KB_NONE;  // first shape of the instance that was hit, or KB_NONE
 
@@ -60,6 +58,36 @@ struct alignas(16) ShadowRay {
   bool occluded() const { return t_max < 0; }
 };
 
+/// What a queue asks for a ray, without an answer.
+inline TraceRay query_of(const RayQueue& rays, uint32_t i) {
+  return {{rays.ox[i], rays.oy[i], rays.oz[i]},
+          {rays.dx[i], rays.dy[i], rays.dz[i]},
+          rays.t_min[i],
+          rays.t_max[i]};
+}
+inline ShadowRay query_of(const ShadowQueue& rays, uint32_t i) {
+  return {{rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, rays.t_max[i]};
+}
+
+/// A ray of a queue with its answer.
+inline TraceRay ray_of(const RayQueue& rays, uint32_t i) {
+  TraceRay ray = query_of(rays, i);
+  ray.u = rays.u[i];
+  ray.v = rays.v[i];
+  ray.primitive = rays.primitive[i];
+  ray.shape = rays.shape[i];
+  return ray;
+}
+
+/// And back; whose ray it is stays.
+inline void put_ray(const TraceRay& ray, RayQueue& rays, uint32_t i) {
+  rays.ox[i] = ray.ox, rays.oy[i] = ray.oy, rays.oz[i] = ray.oz;
+  rays.dx[i] = ray.dx, rays.dy[i] = ray.dy, rays.dz[i] = ray.dz;
+  rays.t_min[i] = ray.t_min, rays.t_max[i] = ray.t_max;
+  rays.u[i] = ray.u, rays.v[i] = ray.v;
+  rays.primitive[i] = ray.primitive, rays.shape[i] = ray.shape;
+}
+
 class EmbreeScene {
  public:
   /// The scene must outlive this object.
@@ -68,12 +96,11 @@ class EmbreeScene {
   EmbreeScene(const FlatScene& scene, const std::string& isa, int threads);
   ~EmbreeScene();
 
-  /// Answers in place. coherent: neighbouring rays go together, in packets of 16 (camera rays; packets lose
-  /// for others, see validation/README.md).
-  void closest_hits(std::span<TraceRay> rays, bool coherent) const;
+  /// One ray after the other, answers in place.
+  void closest_hits(std::span<TraceRay> rays) const;
   void occlusions(std::span<ShadowRay> rays) const;
 
-  /// The same for the rays of a wave. What lies behind the last ray is overwritten, up to a whole packet.
+  /// In packets, the rays of a wave. What lies behind the last ray is overwritten, up to a whole packet.
   void closest_hits(RayQueue& rays, RayPackets packets) const;
   void occlusions(ShadowQueue& rays, RayPackets packets) const;
   /// Whether secondary and shadow rays of this scene are best sorted and then coherent: by the number of its

@@ -66,24 +66,6 @@ void append_medium(Wave& wave, uint32_t path, const Vertex& medium, std::span<co
     wave.entries.emplace_back(&cells[i], std::min<std::size_t>(4, cells.size() - i) * sizeof cells[i]);
 }
 
-TraceRay ray_of(const RayQueue& rays, uint32_t i) {
-  TraceRay ray({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, rays.t_min[i],
-               rays.t_max[i]);
-  ray.u = rays.u[i];
-  ray.v = rays.v[i];
-  ray.primitive = rays.primitive[i];
-  ray.shape = rays.shape[i];
-  return ray;
-}
-
-void put_ray(const TraceRay& ray, RayQueue& rays, uint32_t i) {
-  rays.ox[i] = ray.ox, rays.oy[i] = ray.oy, rays.oz[i] = ray.oz;
-  rays.dx[i] = ray.dx, rays.dy[i] = ray.dy, rays.dz[i] = ray.dz;
-  rays.t_min[i] = ray.t_min, rays.t_max[i] = ray.t_max;
-  rays.u[i] = ray.u, rays.v[i] = ray.v;
-  rays.primitive[i] = ray.primitive, rays.shape[i] = ray.shape;
-}
-
 /// The last ray of a queue, or the one behind it.
 template <class Queue>
 void origin_and_direction(const Queue& rays, uint32_t i, glm::vec3& origin, glm::vec3& direction) {
@@ -155,7 +137,7 @@ void GasPaths::pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay
     wave.recording->closest_path.push_back(path.pixel);
   }
   ++wave.traced_rays;
-  embree_.closest_hits(std::span(&ray, 1), false);
+  embree_.closest_hits(std::span(&ray, 1));
   if (wave.recording) wave.recording->answers.push_back(ray);
 }
 
@@ -247,7 +229,7 @@ bool GasPaths::walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, 
   TraceRay ray(origin, direction, 0, shadow.t_max);
   for (uint32_t crossings = 0;; ++crossings) {
     ++wave.traced_rays;
-    embree_.closest_hits(std::span(&ray, 1), false);
+    embree_.closest_hits(std::span(&ray, 1));
     const bool arrives = ray.shape == KB_NONE;
     if (!arrives && !is_boundary(scene_, ray.shape)) return false;
     const uint32_t medium = at.media.current(scene_.atmosphere);

@@ -9,42 +9,30 @@ namespace {
 /// 512 KiB: about as much as the second-level cache has for them.
 constexpr std::size_t kMostCachedRecords = 8192;
 
-/// Paths without a pixel are traced for their neighbours' sake alone.
-bool is_recorded(const Wave& wave, uint32_t path) {
-  return wave.paths[path].pixel != KB_NONE;
+/// use(i): for rays whose paths have a pixel; the others are traced for their neighbours' sake alone.
+template <class Queue, class Use>
+void for_recorded(const Wave& wave, const Queue& rays, const Use& use) {
+  for (uint32_t i = 0; i < rays.count; ++i)
+    if (wave.paths[rays.path[i]].pixel != KB_NONE) use(i);
 }
 
 void record_closest(const Wave& wave, const RayQueue& rays) {
-  for (uint32_t i = 0; i < rays.count; ++i) {
-    if (!is_recorded(wave, rays.path[i])) continue;
-    wave.recording->closest.emplace_back(glm::vec3(rays.ox[i], rays.oy[i], rays.oz[i]),
-                                         glm::vec3(rays.dx[i], rays.dy[i], rays.dz[i]), rays.t_min[i],
-                                         rays.t_max[i]);
+  for_recorded(wave, rays, [&](uint32_t i) {
+    wave.recording->closest.push_back(query_of(rays, i));
     wave.recording->closest_path.push_back(wave.paths[rays.path[i]].pixel);
-  }
+  });
   wave.recording->closest_ends.push_back(wave.recording->closest.size());
 }
 
 void record_answers(const Wave& wave, const RayQueue& rays) {
-  Recording& recording = *wave.recording;
-  for (uint32_t i = 0; i < rays.count; ++i) {
-    if (!is_recorded(wave, rays.path[i])) continue;
-    TraceRay& answer = recording.answers.emplace_back(recording.closest[recording.answers.size()]);
-    answer.t_max = rays.t_max[i];
-    answer.u = rays.u[i];
-    answer.v = rays.v[i];
-    answer.primitive = rays.primitive[i];
-    answer.shape = rays.shape[i];
-  }
+  for_recorded(wave, rays, [&](uint32_t i) { wave.recording->answers.push_back(ray_of(rays, i)); });
 }
 
 void record_shadows(const Wave& wave, const ShadowQueue& rays) {
-  for (uint32_t i = 0; i < rays.count; ++i) {
-    if (!is_recorded(wave, rays.path[i])) continue;
-    wave.recording->shadow.emplace_back(glm::vec3(rays.ox[i], rays.oy[i], rays.oz[i]),
-                                        glm::vec3(rays.dx[i], rays.dy[i], rays.dz[i]), rays.t_max[i]);
+  for_recorded(wave, rays, [&](uint32_t i) {
+    wave.recording->shadow.push_back(query_of(rays, i));
     wave.recording->shadow_path.push_back(wave.paths[rays.path[i]].pixel);
-  }
+  });
   wave.recording->shadow_ends.push_back(wave.recording->shadow.size());
 }
 

@@ -35,7 +35,7 @@ using namespace cpu;
 namespace {
 
 constexpr int kRounds = 7;
-constexpr std::size_t kBatch = 1024;  // rays that a thread takes at a time
+constexpr std::size_t kBatch = kWavePaths;  // rays that a thread takes at a time
 
 constexpr const char* kConferenceScene = R"(<scene version="3.0.0">
   <integrator type="path"/>
@@ -120,12 +120,23 @@ class Contest {
         threads_(threads) {}
 
   /// Embree's answers in place; seconds.
-  double embree(std::vector<TraceRay> rays, bool packets, std::vector<TraceRay>* answers = nullptr) const {
+  double embree(std::vector<TraceRay> rays, std::vector<TraceRay>* answers = nullptr) const {
     const double seconds = over_batches(rays.size(), [&](std::size_t first, std::size_t count) {
-      embree_.closest_hits({&rays[first], count}, packets);
+      embree_.closest_hits({&rays[first], count});
     });
     if (answers) *answers = std::move(rays);
     return seconds;
+  }
+  /// In coherent packets of 16, from queues that are filled before the clock runs.
+  double embree_by_16(const std::vector<TraceRay>& rays) const {
+    std::vector<RayQueue> queues((rays.size() + kBatch - 1) / kBatch);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      RayQueue& queue = queues[i / kBatch];
+      put_ray(rays[i], queue, queue.count++);
+    }
+    return over_batches(rays.size(), [&](std::size_t first, std::size_t) {
+      embree_.closest_hits(queues[first / kBatch], RayPackets::kCoherent);
+    });
   }
   double embree(std::vector<ShadowRay> rays) const {
     return over_batches(rays.size(), [&](std::size_t first, std::size_t count) {
@@ -221,7 +232,7 @@ void closest(Contest& contest, const std::string& scene, const char* what, const
                    output = contest.probe().upload(std::vector<KbHit>(rays.size()));
   double embree = 1e30, opencl = 1e30;
   for (int round = 0; round < kRounds; ++round) {
-    embree = std::min(embree, contest.embree(mine, packets));
+    embree = std::min(embree, packets ? contest.embree_by_16(mine) : contest.embree(mine));
     opencl = std::min(opencl, contest.opencl("closest", input, output, rays.size()));
   }
   const auto count = static_cast<double>(rays.size());
@@ -252,7 +263,7 @@ void bench(const std::string& name, int threads, uint32_t width) {
                            seconds);
   const std::vector<KbRay> camera = camera_rays(scene.camera, width);
   std::vector<TraceRay> hits;
-  contest.embree(trace_rays(camera), false, &hits);
+  contest.embree(trace_rays(camera), &hits);
   closest(contest, name, "camera", camera, false);
   closest(contest, name, "camera, Embree by 16", camera, true);
   const std::vector<KbRay> secondary = secondary_rays(scene, hits, INFINITY);

@@ -75,7 +75,7 @@ std::size_t BareSingles::query() const {
       hits += ray.occluded();
     } else {
       TraceRay ray = closest_[code >> 1];
-      scene_.embree->closest_hits({&ray, 1}, false);
+      scene_.embree->closest_hits({&ray, 1});
       hits += ray.shape != KB_NONE;
     }
   }

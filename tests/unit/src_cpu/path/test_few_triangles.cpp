@@ -201,7 +201,7 @@ TEST(TriangleList, AreMetWhereEmbreeMeetsThem) {
     closest.emplace_back(origin, direction, 0.0f, far_end);
     between.emplace_back(origin, direction, far_end);
   }
-  embree.closest_hits(closest, false);
+  embree.closest_hits(closest);
   embree.occlusions(between);
   const PathKernels& kernels = path_kernels(resolve_isa(Isa::kAuto));
   kernels.closest_of_few(*few, *rays);

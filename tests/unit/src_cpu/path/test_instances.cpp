@@ -81,8 +81,8 @@ TEST(Instances, HitsAreThoseOfTheSceneWrittenOut) {
   for (int i = 0; i < 20000; ++i) {
     const glm::vec3 from = glm::vec3(1, -2, 3) + 4.0f * direction();
     TraceRay a(from, glm::vec3(1, -2, 3) + direction() - from, 0, INFINITY), b = a;
-    traced.closest_hits({&a, 1}, false);
-    expected.closest_hits({&b, 1}, false);
+    traced.closest_hits({&a, 1});
+    expected.closest_hits({&b, 1});
     if ((a.shape == KB_NONE ? KB_NONE : in_plain[a.shape]) != b.shape || a.primitive != b.primitive) {
       ++others;
       continue;
@@ -122,7 +122,7 @@ TEST(Instances, RaysLeaveThem) {
                          m[8] * p.x + m[9] * p.y + m[10] * p.z);
       };
       TraceRay ray(middle + 4.0f * placed(d), placed(o) - 4.0f * placed(d), 0, INFINITY);
-      traced.closest_hits({&ray, 1}, false);
+      traced.closest_hits({&ray, 1});
       if (ray.shape == KB_NONE) continue;
       ++hits;
       const SurfaceHit hit = surface_of(scene, ray);

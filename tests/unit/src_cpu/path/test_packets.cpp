@@ -40,17 +40,10 @@ void fill(RayQueue& rays, const FlatScene& scene, std::mt19937& random) {
   }
 }
 
-TraceRay single(const RayQueue& rays, uint32_t i) {
-  return {{rays.ox[i], rays.oy[i], rays.oz[i]},
-          {rays.dx[i], rays.dy[i], rays.dz[i]},
-          rays.t_min[i],
-          rays.t_max[i]};
-}
-
 std::vector<TraceRay> traced_one_by_one(const EmbreeScene& embree, const RayQueue& rays) {
   std::vector<TraceRay> traced;
-  for (uint32_t i = 0; i < rays.count; ++i) traced.push_back(single(rays, i));
-  embree.closest_hits(traced, false);
+  for (uint32_t i = 0; i < rays.count; ++i) traced.push_back(query_of(rays, i));
+  embree.closest_hits(traced);
   return traced;
 }
 

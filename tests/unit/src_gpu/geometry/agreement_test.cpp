@@ -44,7 +44,7 @@ Differences compare(const FlatScene& scene, const std::vector<KbRay>& rays) {
     const KbRay& r = rays[i];
     TraceRay expected(vec3(r.origin), vec3(r.direction), r.t_min, r.t_max);
     ShadowRay shadow(vec3(r.origin), vec3(r.direction), r.t_max);
-    embree.closest_hits({&expected, 1}, false);
+    embree.closest_hits({&expected, 1});
     embree.occlusions({&shadow, 1});
     differences.occlusion += shadow.occluded() != (any[i] != 0);
     const bool hit = hits[i].primitive != KB_NONE;
