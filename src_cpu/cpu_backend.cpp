@@ -19,17 +19,6 @@ namespace {
 
 constexpr std::size_t kReportedInvalid = 16;
 
-const char* embree_isa(Isa isa) {
-  switch (isa) {
-    case Isa::kAvx512:
-      return "avx512";
-    case Isa::kAvx2:
-      return "avx2";
-    default:
-      return "sse4.2";
-  }
-}
-
 /// OpenMP starts all threads but the caller's, and so does TBB, which Embree builds with, and one per processor
 /// when Embree lets go of its limit. Both end the process where they cannot.
 void check_threads(int threads) {
@@ -48,7 +37,7 @@ class CpuBackend final : public Backend {
         isa_(resolve_isa(options.isa)),
         threads_(options.threads > 0 ? options.threads : omp_get_num_procs()) {
     check_threads(threads_);
-    embree_ = std::make_unique<EmbreeScene>(scene_, embree_isa(isa_), threads_);
+    embree_ = std::make_unique<EmbreeScene>(scene_, isa_, threads_);
     tables_.emplace(scene_);
     tracer_scene_ = tracer_scene(scene_, *embree_, *tables_);
     for (int i = 0; i < threads_; ++i) {

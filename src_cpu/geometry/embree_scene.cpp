@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <string>
 #include <type_traits>
 
 #include "base/error.hpp"
@@ -15,6 +16,17 @@ namespace {
 
 constexpr auto kCoherent = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 constexpr auto kIncoherent = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+
+const char* embree_name(Isa isa) {
+  switch (isa == Isa::kAuto ? resolve_isa(isa) : isa) {
+    case Isa::kAvx512:
+      return "avx512";
+    case Isa::kAvx2:
+      return "avx2";
+    default:
+      return "sse4.2";
+  }
+}
 
 RTCIntersectContext query_context(RTCIntersectContextFlags flags) {
   RTCIntersectContext context;
@@ -52,10 +64,9 @@ struct EmbreeScene::Impl {
   }
 };
 
-EmbreeScene::EmbreeScene(const FlatScene& scene, const std::string& isa, int threads)
-    : impl_(std::make_unique<Impl>()) {
+EmbreeScene::EmbreeScene(const FlatScene& scene, Isa isa, int threads) : impl_(std::make_unique<Impl>()) {
   impl_->flat = &scene;
-  const std::string config = fmt::format("isa={},threads={}", isa, threads);
+  const std::string config = fmt::format("isa={},threads={}", embree_name(isa), threads);
   impl_->device = rtcNewDevice(config.c_str());
   if (!impl_->device) throw DeviceError("Embree: cannot create a device with " + config);
   impl_->scene = build_embree_scene(impl_->device, scene);

@@ -5,11 +5,11 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "scene/compile/flat_scene.hpp"
 #include "src_cpu/geometry/ray_order.hpp"
+#include "src_cpu/lanes/isa.hpp"
 
 namespace kiloband::cpu {
 
@@ -91,9 +91,9 @@ inline void put_ray(const TraceRay& ray, RayQueue& rays, uint32_t i) {
 class EmbreeScene {
  public:
   /// The scene must outlive this object.
-  /// isa: "sse4.2", "avx2" or "avx512": Embree's own code path, whose hits differ in their last bits.
+  /// isa: Embree's own code path, whose hits differ in their last bits; kAuto: the best of this machine.
   /// throws DeviceError naming Embree's error
-  EmbreeScene(const FlatScene& scene, const std::string& isa, int threads);
+  EmbreeScene(const FlatScene& scene, Isa isa, int threads);
   ~EmbreeScene();
 
   /// One ray after the other, answers in place.

@@ -100,15 +100,11 @@ std::vector<KbRay> camera_rays(KbCamera camera, uint32_t width) {
   return rays;
 }
 
-const char* best_isa() {
-  return __builtin_cpu_supports("avx512f") ? "avx512" : __builtin_cpu_supports("avx2") ? "avx2" : "sse4.2";
-}
-
 /// The two sides, over any of the ray sets.
 class Contest {
  public:
   Contest(const FlatScene& scene, int threads)
-      : embree_(scene, best_isa(), threads),
+      : embree_(scene, Isa::kAuto, threads),
         bvh_(opencl::build_bvh(scene)),
         probe_(kKernels, fmt::format("-DKB_BVH_STACK={} -DKB_SPECIALISED=1{}{}", bvh_.stack_entries(),
                                      scene.features.analytic_shapes ? " -DKB_HAS_ANALYTIC_SHAPES=1" : "",

@@ -14,11 +14,6 @@ namespace kiloband::speed {
 using namespace cpu;
 namespace {
 
-const char* embree_isa() {
-  const Isa isa = resolve_isa(Isa::kAuto);
-  return isa == Isa::kAvx512 ? "avx512" : isa == Isa::kAvx2 ? "avx2" : "sse4.2";
-}
-
 /// The rays of one sample of every block.
 /// use(recording): called for each
 template <class Use>
@@ -42,7 +37,7 @@ void record_rays(const BareScene& scene, const Use& use) {
 
 BareScene::BareScene(std::shared_ptr<const FlatScene> scene) : compiled(std::move(scene)), tables(*compiled) {
   const FlatScene& flat = *compiled;
-  embree = std::make_unique<EmbreeScene>(flat, embree_isa(), 1);
+  embree = std::make_unique<EmbreeScene>(flat, Isa::kAuto, 1);
   tracer = tracer_scene(flat, *embree, tables);
   blocks = cut_into_blocks({0, 0, flat.film.crop_width, flat.film.crop_height});
 }

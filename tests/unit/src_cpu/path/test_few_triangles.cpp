@@ -186,7 +186,7 @@ TEST(TriangleList, AreMetWhereEmbreeMeetsThem) {
   const FlatScene scene = folder.flatten(zoo_scene("diffuse_room"));
   const auto few = find_few_triangles(scene);
   ASSERT_TRUE(few);
-  const EmbreeScene embree(scene, "sse4.2", 1);
+  const EmbreeScene embree(scene, Isa::kSse4, 1);
   std::mt19937 random(8);
   const auto rays = std::make_unique<RayQueue>();
   const auto shadows = std::make_unique<ShadowQueue>();

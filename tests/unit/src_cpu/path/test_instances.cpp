@@ -75,7 +75,7 @@ TEST(Instances, HitsAreThoseOfTheSceneWrittenOut) {
   const FlatScene plain = compiled(members(similar));
   ASSERT_EQ(one.shapes.size(), plain.shapes.size());
   const uint32_t in_plain[] = {0, 1, 3, 2};  // the sphere stands behind the meshes
-  const EmbreeScene traced(one, "sse4.2", 1), expected(plain, "sse4.2", 1);
+  const EmbreeScene traced(one, Isa::kSse4, 1), expected(plain, Isa::kSse4, 1);
   Directions direction;
   int hits = 0, others = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -110,7 +110,7 @@ TEST(Instances, RaysLeaveThem) {
   for (const Text& place : kPlaces) {
     const FlatScene scene =
         compiled(group("g", shape("cube", turn("z", "45"), diffuse("0.5"))) + instance("g", place));
-    const EmbreeScene traced(scene, "sse4.2", 1);
+    const EmbreeScene traced(scene, Isa::kSse4, 1);
     const float* m = scene.shapes[0].to_world;
     const glm::vec3 middle(m[3], m[7], m[11]);
     Directions direction;

@@ -70,7 +70,7 @@ class PathsOfLanes : public testing::TestWithParam<ZooScene> {};
 TEST_P(PathsOfLanes, AreThoseOfOneLane) {
   const ZooFolder folder;
   const FlatScene scene = folder.flatten(GetParam());
-  const EmbreeScene embree(scene, "sse4.2", 1);
+  const EmbreeScene embree(scene, Isa::kSse4, 1);
   const std::optional<FewTriangles> few = find_few_triangles(scene);
   for (const FewTriangles* list : {static_cast<const FewTriangles*>(nullptr), few ? &*few : nullptr}) {
     for (const SamplerType sampler : {SamplerType::kSobol, SamplerType::kIndependent}) {
@@ -90,7 +90,7 @@ TEST_P(PathsOfLanes, AreThoseWithRecordsOfTriangles) {
   const FlatScene scene = folder.flatten(GetParam());
   const std::vector<TriangleRecord> records = make_triangle_records(scene);
   ASSERT_EQ(records.size(), scene.triangles.size() / 3);
-  const EmbreeScene embree(scene, "sse4.2", 1);
+  const EmbreeScene embree(scene, Isa::kSse4, 1);
   const PathKernels& kernels = path_kernels(resolve_isa(Isa::kAuto));
   const SamplerType sampler = SamplerType::kIndependent;
   const std::vector<LightTriangle> lights = make_light_triangles(scene);
@@ -117,7 +117,7 @@ TEST(TriangleRecords, AreLeftOutOfScenesWithTooMany) {
 TEST(StartOfLanes, CameraRaysAreThoseOfTheirPixels) {
   FlatScene scene = ZooFolder().flatten(zoo_scene("constant_sky"));
   scene.camera.film_width = 45, scene.camera.film_height = 39;
-  const EmbreeScene embree(scene, "sse4.2", 1);
+  const EmbreeScene embree(scene, Isa::kSse4, 1);
   const TracerScene tracer_scene{&scene, &embree};
   SamplingSettings settings;
   settings.sampler = SamplerType::kSobol;

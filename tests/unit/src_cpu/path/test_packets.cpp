@@ -66,19 +66,14 @@ Differences compare(const RayQueue& rays, const std::vector<TraceRay>& expected)
   return d;
 }
 
-class Packets : public testing::TestWithParam<Isa> {
- protected:
-  static const char* embree_isa() {
-    return GetParam() == Isa::kAvx512 ? "avx512" : GetParam() == Isa::kAvx2 ? "avx2" : "sse4.2";
-  }
-};
+class Packets : public testing::TestWithParam<Isa> {};
 
 TEST_P(Packets, GiveTheAnswersOfSingleRays) {
   if (!is_available(GetParam())) GTEST_SKIP() << "this processor has no " << to_string(GetParam());
   const ZooFolder folder;
   for (const char* name : {"diffuse_room", "analytic_shapes"}) {
     const FlatScene scene = folder.flatten(zoo_scene(name));
-    const EmbreeScene embree(scene, embree_isa(), 1);
+    const EmbreeScene embree(scene, GetParam(), 1);
     std::mt19937 random(7);
     const auto rays = std::make_unique<RayQueue>(), sorted = std::make_unique<RayQueue>();
     fill(*rays, scene, random);
@@ -99,7 +94,7 @@ TEST_P(Packets, FindWhatIsInBetween) {
   if (!is_available(GetParam())) GTEST_SKIP() << "this processor has no " << to_string(GetParam());
   const ZooFolder folder;
   const FlatScene scene = folder.flatten(zoo_scene("analytic_shapes"));
-  const EmbreeScene embree(scene, embree_isa(), 1);
+  const EmbreeScene embree(scene, GetParam(), 1);
   std::mt19937 random(9);
   const auto rays = std::make_unique<RayQueue>();
   fill(*rays, scene, random);

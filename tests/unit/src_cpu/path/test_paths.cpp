@@ -32,7 +32,7 @@ std::vector<double> reference_means(const RenderSpec& spec, const RenderResult& 
     derived.names.push_back(name);
     derived.responses.push_back(resample(response, range.min_nm, range.max_nm));
   }
-  const EmbreeScene embree(scene, lowest_isa() == Isa::kSse4 ? "sse4.2" : to_string(lowest_isa()), 1);
+  const EmbreeScene embree(scene, lowest_isa(), 1);
   const TracerScene tracer_scene{&scene, &embree};
   SamplingSettings settings = spec.sampling;
   settings.replicates = result.replicates;

@@ -36,7 +36,7 @@ float off_the_ray(const KbPrimitive& primitive, const KbHit& hit, const KbRay& r
 
 Differences compare(const FlatScene& scene, const std::vector<KbRay>& rays) {
   RayTester tester(scene);
-  const EmbreeScene embree(scene, "sse4.2", 2);
+  const EmbreeScene embree(scene, Isa::kSse4, 2);
   const std::vector<KbHit> hits = tester.closest(rays);
   const std::vector<uint32_t> any = tester.any(rays);
   Differences differences;
