@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "src_cpu/evaluate/evaluator.hpp"
+#include "validation/oracle/evaluate_reference.hpp"
 
 namespace kiloband::test {
 

@@ -7,8 +7,8 @@
 
 #include "scene/read/reader.hpp"
 #include "shared/sampler.h"
-#include "src_cpu/evaluate/evaluator.hpp"
 #include "stats/distributions.hpp"
+#include "validation/oracle/evaluate_reference.hpp"
 #include "validation/suite/rendering.hpp"
 
 namespace kiloband::validation {
@@ -161,7 +161,7 @@ std::vector<TracedPath> trace_paths(const std::string& backend, const std::share
 std::vector<double> evaluated(const FlatScene& scene, const TracedPath& path, double mu) {
   if (path.entries.empty()) return std::vector<double>(scene.channels.size(), 0.0);
   const cpu::PathBuffer buffer{path.entries, {{0, static_cast<uint32_t>(path.entries.size()), 0}}};
-  return cpu::evaluate_path_reference(scene, {}, buffer, 0, mu);
+  return evaluate_path_reference(scene, {}, buffer, 0, mu);
 }
 
 }  // namespace

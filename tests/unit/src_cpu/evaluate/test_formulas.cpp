@@ -4,6 +4,7 @@
 
 #include "random_scene.hpp"
 #include "spectral/planck.hpp"
+#include "validation/oracle/evaluate_reference.hpp"
 
 namespace kiloband::test::test_formulas {
 namespace {

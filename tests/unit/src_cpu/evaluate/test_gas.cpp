@@ -10,6 +10,7 @@
 
 #include "random_gas.hpp"
 #include "spectral/planck.hpp"
+#include "validation/oracle/evaluate_reference.hpp"
 
 namespace kiloband::test::test_gas {
 namespace {

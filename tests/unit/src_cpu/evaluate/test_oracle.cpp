@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "random_scene.hpp"
+#include "validation/oracle/evaluate_reference.hpp"
 
 namespace kiloband::test::test_oracle {
 namespace {

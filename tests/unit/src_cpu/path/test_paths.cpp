@@ -7,6 +7,7 @@
 #include "src_cpu/evaluate/evaluator.hpp"
 #include "src_cpu/path/path_tracer.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "validation/oracle/evaluate_reference.hpp"
 
 namespace kiloband::test {
 

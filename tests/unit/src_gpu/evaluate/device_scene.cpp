@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validation/oracle/evaluate_reference.hpp"
+
 namespace kiloband::test {
 namespace {
 

@@ -1,5 +1,5 @@
-// The oracle of deferred evaluation: scalar, double, the formulas of shared/path_vertex.h written down one by
-// one. It shares records and spectral tables with the fast code and nothing else.
+#include "validation/oracle/evaluate_reference.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -7,9 +7,8 @@
 
 #include "shared/rough_transmission.h"
 #include "spectral/planck.hpp"
-#include "src_cpu/evaluate/evaluator.hpp"
 
-namespace kiloband::cpu {
+namespace kiloband {
 namespace {
 
 using Complex = std::complex<double>;
@@ -243,7 +242,7 @@ void apply_medium(const Point& at, const KbPathVertex& v, const KbPathVertex* ex
   }
 }
 
-double channel_value(const Point& at, const PathBuffer& paths, const SavedPath& path, uint32_t k) {
+double channel_value(const Point& at, const cpu::PathBuffer& paths, const cpu::SavedPath& path, uint32_t k) {
   State state;
   for (uint32_t i = path.first; i < path.first + path.count; ++i) {
     const KbPathVertex& vertex = paths.entries[i];
@@ -267,7 +266,7 @@ double channel_value(const Point& at, const PathBuffer& paths, const SavedPath& 
 }  // namespace
 
 std::vector<double> evaluate_path_reference(const FlatScene& scene, const DerivedChannels& derived,
-                                            const PathBuffer& paths, std::size_t path, double mu) {
+                                            const cpu::PathBuffer& paths, std::size_t path, double mu) {
   const std::size_t channels = scene.channels.size();
   std::vector<double> values(channels + derived.responses.size());
   for (std::size_t k = 0; k < channels; ++k) {
@@ -285,4 +284,4 @@ std::vector<double> evaluate_path_reference(const FlatScene& scene, const Derive
   return values;
 }
 
-}  // namespace kiloband::cpu
+}  // namespace kiloband
