@@ -28,9 +28,7 @@ typedef ushort kb_u16;
 #define kb_fmax(x, y) fmax(x, y)
 #define kb_sin(x) sin(x)
 #define kb_cos(x) cos(x)
-#define kb_exp(x) exp(x)
 #define kb_log(x) log(x)
-#define kb_erf(x) erf(x)
 #define kb_popcount(x) popcount(x)
 #define kb_as_u32(x) as_uint(x)
 #define kb_as_f32(x) as_float(x)
@@ -65,9 +63,7 @@ typedef uint16_t kb_u16;
 #define kb_fmax(x, y) std::fmax(x, y)
 #define kb_sin(x) std::sin(x)
 #define kb_cos(x) std::cos(x)
-#define kb_exp(x) std::exp(x)
 #define kb_log(x) std::log(x)
-#define kb_erf(x) std::erf(x)
 KB_FN kb_u32 kb_popcount(kb_u32 x) {
   return (kb_u32)__builtin_popcount(x);
 }

@@ -39,7 +39,6 @@ typedef struct {
   kb_u32 unit_row;     /* a reflectance of 1, or KB_NONE */
   kb_u32 envmap_width; /* cells of the environment map's distribution */
   kb_u32 envmap_height;
-  float filter_ratio;                   /* gaussian: radius / stddev of the table */
   kb_u32 atmosphere;                    /* medium outside all interiors, or KB_NONE */
   kb_u16 camera_media[KB_MEDIUM_DEPTH]; /* where rays begin: as KbGasState::inside */
   kb_u32 gas;                           /* 1: the scene has media or null boundaries */
@@ -48,7 +47,7 @@ typedef struct {
   kb_u32 light_tree;                    /* 1: the scene has one (light_tree.h) */
   kb_u32 envmap_row_shift;              /* cells of a region of the map: 2^shift */
   kb_u32 envmap_column_shift;
-  kb_u32 reserved;
+  kb_u32 reserved[2];
 } KB_ALIGNED(16) KbSceneConstants;
 KB_STATIC_ASSERT(sizeof(KbSceneConstants) == 208, scene_constants_size);
 

@@ -35,9 +35,6 @@
 #define KB_DOMAIN_PATH_MU 0x6b62706174686d75ul
 #define KB_DOMAIN_SHARED_MU 0x6b62736861726564ul
 
-/* Edge of the square blocks of the full film that share mu, in pixels. */
-#define KB_SHARED_MU_BLOCK 32u
-
 /* Block numbers. */
 #define KB_BLOCK_CAMERA 0u
 KB_FN kb_u32 kb_block_light(kb_u32 bounce) {
@@ -106,7 +103,7 @@ KB_FN float kb_path_mu(kb_u32 sampler, kb_u64 seed, kb_u32 pixel, kb_u32 sample,
 }
 
 /* Wavelength offset that all pixels of a 32 x 32 block share (shared wavelengths), with either sampler.
-   block_x, block_y    pixel / KB_SHARED_MU_BLOCK in the FULL film, whatever tiles and devices there are */
+   block_x, block_y    pixel / 32 in the FULL film, whatever tiles and devices there are */
 KB_FN float kb_shared_mu(kb_u64 seed, kb_u32 replicate, kb_u32 block_x, kb_u32 block_y,
                          kb_u32 index_in_replicate) {
   const kb_u64 parent = kb_mix64(kb_domain_key(seed, KB_DOMAIN_SHARED_MU) ^ (kb_u64)replicate);

@@ -32,7 +32,6 @@ ScaleTest::ScaleTest(uint32_t columns, uint32_t rows, uint64_t seed) : seed_(see
   result_.columns = columns;
   result_.rows = rows;
   result_.t_map.assign(std::size_t{columns} * rows, std::numeric_limits<float>::quiet_NaN());
-  result_.channel_map.assign(result_.t_map.size(), 0);
 }
 
 // The unit's p lies between that of its strongest channel and the Bonferroni bound: the rotations are needed
@@ -63,7 +62,6 @@ void ScaleTest::add(std::ptrdiff_t index, const UnitPlace& place, const Contrast
 void ScaleTest::map(std::ptrdiff_t index, const Strongest& strongest) {
   if (index < 0 || strongest.tested + strongest.constant == 0) return;
   result_.t_map[static_cast<std::size_t>(index)] = static_cast<float>(strongest.t);
-  result_.channel_map[static_cast<std::size_t>(index)] = static_cast<uint32_t>(strongest.channel);
 }
 
 void ScaleTest::add_errors(const Contrast& contrast, const std::vector<bool>& wanted) {

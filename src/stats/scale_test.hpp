@@ -51,8 +51,7 @@ struct ScaleResult {
   EntryCounts entries;
   double p = 1;  // family-wise over units and channels
   WorstUnit worst;
-  std::vector<float> t_map;           // [unit of the grid] t of the largest |t|; NaN where nothing was tested
-  std::vector<uint32_t> channel_map;  // its channel
+  std::vector<float> t_map;  // [unit of the grid] t of the largest |t|; NaN where nothing was tested
   DetectableBias errors;
 };
 

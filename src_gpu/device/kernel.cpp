@@ -18,7 +18,6 @@ Kernel::Kernel(DeviceContext& context, cl::Kernel kernel, std::string name)
     const cl::Device device = context_->cl_device();
     argument_count_ = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
     max_work_group_size_ = kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device);
-    preferred_multiple_ = kernel_.getWorkGroupInfo<CL_KERNEL_PREFERRED_WORK_GROUP_SIZE_MULTIPLE>(device);
   });
 }
 

@@ -55,8 +55,6 @@ class Kernel {
   void set_scale(LaunchScale scale) { scale_ = scale; }
 
   uint64_t max_work_group_size() const { return max_work_group_size_; }
-  /// Work-items that the device runs together (a warp), or the width of its vectors.
-  uint64_t preferred_multiple() const { return preferred_multiple_; }
   const std::string& name() const { return name_; }
 
  private:
@@ -83,7 +81,7 @@ class Kernel {
   std::string name_;
   LaunchScale scale_ = LaunchScale::kOther;
   uint32_t argument_count_ = 0;
-  uint64_t max_work_group_size_ = 0, preferred_multiple_ = 0;
+  uint64_t max_work_group_size_ = 0;
 };
 
 }  // namespace kiloband::opencl

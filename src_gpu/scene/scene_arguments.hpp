@@ -61,8 +61,6 @@ inline KbSceneConstants scene_constants(const FlatScene& scene) {
   c.gas = scene.features.gas ? 1 : 0;
   c.instances = scene.features.instances ? 1 : 0;
   c.light_tree = scene.features.light_tree ? 1 : 0;
-  if (scene.camera.filter == KB_FILTER_GAUSSIAN)
-    c.filter_ratio = scene.camera.filter_radius / scene.camera.filter_stddev;
   return c;
 }
 

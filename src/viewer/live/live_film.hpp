@@ -33,7 +33,6 @@ class LiveFilm final : public PixelSource {
 
   /// Forgets all samples; the memory stays.
   void restart();
-  bool is_full() const { return replicate_ >= kReplicates; }
   SpectralFilm& film() { return film_; }
   /// What the blocks of this pass get; to be given to Backend::render() with some of next_blocks().
   SampleRange range() const { return {replicate_, first_, 1}; }

@@ -56,7 +56,6 @@ TEST(Comparison, OneWrongPixelIsFound) {
   EXPECT_EQ(worst.place.y, 13u);
   EXPECT_EQ(worst.channel, 2u);
   EXPECT_LT(worst.difference, -1);
-  EXPECT_EQ(c.means[0].channel_map[13 * 32 + 7], 2u);
 }
 
 /// Deterministic pixels: equal ones count as constant, one that differs fails whatever the rest does.

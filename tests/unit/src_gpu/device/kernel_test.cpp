@@ -57,7 +57,6 @@ TEST_F(KernelTest, KnowsItself) {
   const Kernel kernel = program_.kernel("count");
   EXPECT_EQ(kernel.name(), "count");
   EXPECT_GE(kernel.max_work_group_size(), 1u);
-  EXPECT_GE(kernel.preferred_multiple(), 1u);
 }
 
 TEST_F(KernelTest, WrongArgumentsAreOurBug) {
