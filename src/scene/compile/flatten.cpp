@@ -75,6 +75,7 @@ std::vector<std::string> SceneFeatures::names() const {
 #define KB_ADD_NAME(macro, member, name) \
   if (member) present.emplace_back(name);
   KB_SCENE_FEATURES(KB_ADD_NAME)
+  KB_SCENE_NOTES(KB_ADD_NAME)
 #undef KB_ADD_NAME
   return present;
 }

@@ -16,7 +16,6 @@ namespace kiloband {
   X(ROUGH_DIELECTRIC, rough_dielectric, "roughdielectric")                                            \
   X(PLASTIC, plastic, "plastic")                                                                      \
   X(ROUGH_PLASTIC, rough_plastic, "roughplastic")                                                     \
-  X(TWO_SIDED, two_sided, "twosided")                                                                 \
   X(MASK, mask, "mask")                                                                               \
   X(BLEND, blend, "blend")                                                                            \
   X(BUMP, bump, "bump or normal map")                                                                 \
@@ -44,10 +43,14 @@ namespace kiloband {
   X(PLUME, plume, "plume")                                     /* media that vary in space */         \
   X(SIGNED_FILTER, signed_filter, "signed filter")             /* of reconstruction, with negative lobes */
 
+// What no code is specialised for, but is said, too.
+#define KB_SCENE_NOTES(X) X(TWO_SIDED, two_sided, "twosided")
+
 /// What is false costs nothing.
 struct SceneFeatures {
 #define KB_MEMBER(macro, member, name) bool member = false;
   KB_SCENE_FEATURES(KB_MEMBER)
+  KB_SCENE_NOTES(KB_MEMBER)
 #undef KB_MEMBER
 
   /// Names of the features that are present, for `info` and the statistics.
