@@ -1,6 +1,7 @@
 #include "film/spectral_film.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -72,6 +73,12 @@ SpectralFilm::SpectralFilm(const PixelRect& rect, const FilmOptions& options)
 
 SpectralFilm::~SpectralFilm() = default;
 SpectralFilm::SpectralFilm(SpectralFilm&&) noexcept = default;
+
+std::vector<uint32_t> SpectralFilm::all_blocks() const {
+  std::vector<uint32_t> blocks(blocks_.size());
+  std::iota(blocks.begin(), blocks.end(), 0u);
+  return blocks;
+}
 
 std::size_t SpectralFilm::bytes_per_pixel(const FilmOptions& options) {
   return options.channels * value_bytes(options) +

@@ -78,6 +78,8 @@ class SpectralFilm {
   const PixelRect& rect() const { return rect_; }
   const FilmOptions& options() const { return options_; }
   const std::vector<PixelRect>& blocks() const { return blocks_; }
+  /// The numbers of all of them, as Backend::render() wants them.
+  std::vector<uint32_t> all_blocks() const;
 
   /// Folded films that keep sums: becomes as it was when it was made, in the same memory.
   void restart();

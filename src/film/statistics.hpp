@@ -54,7 +54,10 @@ struct ReplicatePlan {
   uint64_t samples = 0;
   uint32_t replicates = 1;
 
+  /// wanted_replicates  0 is 1
   static ReplicatePlan deal(uint64_t samples, uint32_t wanted_replicates);
+  /// Samples of a replicate.
+  /// throws std::logic_error  there is no such replicate
   uint64_t size(uint32_t replicate) const;
 };
 

@@ -83,6 +83,14 @@ struct AuxiliaryPixel {
   float material = -1;       // material index of the side that is seen
 };
 
+/// The rectangle that is rendered of the full film: its crop window.
+inline PixelRect film_rect(const Film& film) {
+  return {film.crop_x, film.crop_y, film.crop_width, film.crop_height};
+}
+inline PixelRect film_rect(const FlatScene& scene) {
+  return film_rect(scene.film);
+}
+
 class Backend {
  public:
   virtual ~Backend() = default;

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace kiloband {
 namespace {
@@ -13,12 +12,6 @@ constexpr uint32_t kWholeSamples = 16;  // replicates of so many samples are ren
 constexpr double kPartSeconds = 1;      // parts of longer ones are longer where they take less than this,
 constexpr uint32_t kEvenness = 8;       // up to this part of what pixels have
 constexpr double kMostGrowth = 16;      // of a part over the one before
-
-std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
-  return blocks;
-}
 
 BandErrors film_errors(const SpectralFilm& film, const std::vector<std::size_t>& channels) {
   const std::size_t stride = film.options().channels;
@@ -115,7 +108,7 @@ void Passes::render_replicate(SpectralFilm& film, uint32_t replicate, uint32_t t
   for (uint32_t first = 0; first < target && !stop_;) {
     const uint32_t count = next_part(first, target);
     const auto begin = Clock::now();
-    backend_.render(film, {replicate, first, count}, all_blocks(film), stop_,
+    backend_.render(film, {replicate, first, count}, film.all_blocks(), stop_,
                     [this](uint64_t pixels) { advance(pixels); });
     first += count;
     adapt_step(count, seconds_since(begin));

@@ -28,8 +28,7 @@ class Session {
         passes_(backend, settings, replicates_, bands_.film_channels, stop, progress) {}
 
   RenderReport run() {
-    const PixelRect image{scene_.film.crop_x, scene_.film.crop_y, scene_.film.crop_width,
-                          scene_.film.crop_height};
+    const PixelRect image = film_rect(scene_);
     // Passes come back to replicates.
     const bool revisits = settings_.checkpoint || !settings_.stop.is_fixed();
     const FilmOptions options = film_options(revisits);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "src_gpu/device/memory.hpp"
@@ -35,11 +34,8 @@ std::unique_ptr<Backend> RenderTimer::make(const Tuning& tuning) const {
 }
 
 double RenderTimer::render(Backend& backend, uint32_t samples, const std::atomic<bool>& stop) const {
-  const FlatScene& scene = *scene_;
-  SpectralFilm film({scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height},
-                    {backend.film_scale().size(), 1, false, false});
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
+  SpectralFilm film(film_rect(*scene_), {backend.film_scale().size(), 1, false, false});
+  const std::vector<uint32_t> blocks = film.all_blocks();
   const auto start = std::chrono::steady_clock::now();
   backend.render(film, {0, 0, samples}, blocks, stop, {});
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -19,7 +19,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "film/spectral_film.hpp"
 #include "scene/read/reader.hpp"
@@ -65,8 +64,7 @@ double kernel_sum(const std::map<std::string, double>& seconds, std::initializer
 Timing render_once(Backend& backend, const FlatScene& scene, uint32_t spp) {
   SpectralFilm film({0, 0, scene.film.crop_width, scene.film.crop_height},
                     {scene.channels.size(), 1, false, false});
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
+  const std::vector<uint32_t> blocks = film.all_blocks();
   const BackendStatistics before = backend.statistics();
   const std::atomic<bool> stop{false};
   const double start = seconds_now();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "scene/read/reader.hpp"
@@ -27,17 +26,6 @@ double seconds_since(Clock::time_point start) {
 const std::atomic<bool>& stop_of(const Watch& watch) {
   static const std::atomic<bool> kNever{false};
   return watch.stop ? *watch.stop : kNever;
-}
-
-std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
-  return blocks;
-}
-
-/// Shares of samples: as equal as they can be (ReplicatePlan::deal).
-uint32_t share_of(uint64_t samples, uint32_t replicates, uint32_t replicate) {
-  return static_cast<uint32_t>(samples / replicates + (replicate < samples % replicates ? 1 : 0));
 }
 
 SamplingSettings sampling_of(const Setup& setup, uint32_t replicates, uint64_t seed) {
@@ -185,7 +173,7 @@ std::string bench_command(const Settings& settings, const std::string& name) {
 double time_samples(Subject& subject, uint32_t samples, const Watch& watch) {
   SpectralFilm film(validation::film_rect(*subject.scene),
                     {subject.backend->film_scale().size(), 1, false, false});
-  const std::vector<uint32_t> blocks = all_blocks(film);
+  const std::vector<uint32_t> blocks = film.all_blocks();
   const auto start = Clock::now();
   subject.backend->render(film, {0, 0, samples}, blocks, stop_of(watch), {});
   return seconds_since(start);
@@ -195,7 +183,7 @@ double time_frames(Subject& subject, uint32_t frames, const Watch& watch) {
   FilmOptions options{subject.backend->film_scale().size()};
   options.sums = subject.backend->sum_rule();
   SpectralFilm film(validation::film_rect(*subject.scene), options);
-  const std::vector<uint32_t> blocks = all_blocks(film);
+  const std::vector<uint32_t> blocks = film.all_blocks();
   subject.backend->render(film, {0, 0, 1}, blocks, stop_of(watch),
                           {});  // the first touches the film's memory
   const auto start = Clock::now();
@@ -220,12 +208,13 @@ Repetitions repeat(Subject& subject, const Setup& setup, uint32_t count, const W
   const std::vector<double> scale = subject.backend->film_scale();
   SpectralFilm film(validation::film_rect(*subject.scene),
                     {scale.size(), count * setup.replicates, true, true});
-  const std::vector<uint32_t> blocks = all_blocks(film);
+  const std::vector<uint32_t> blocks = film.all_blocks();
+  const ReplicatePlan shares{setup.samples, setup.replicates};
   Repetitions result{setup.width, setup.height, scale.size(), {}, {}};
   for (uint32_t i = 0; i < count; ++i) {
     const auto start = Clock::now();
     for (uint32_t r = 0; r < setup.replicates; ++r) {
-      const uint32_t share = share_of(setup.samples, setup.replicates, r);
+      const auto share = static_cast<uint32_t>(shares.size(r));
       subject.backend->render(film, {i * setup.replicates + r, 0, share}, blocks, stop_of(watch), {});
     }
     const double seconds = seconds_since(start);

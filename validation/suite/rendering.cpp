@@ -1,7 +1,6 @@
 #include "validation/suite/rendering.hpp"
 
 #include <chrono>
-#include <numeric>
 #include <stdexcept>
 
 #include "film/spectral_film.hpp"
@@ -70,14 +69,9 @@ stats::ReplicateImage image_of(const SpectralFilm& film, const PixelRect& rect, 
   return image;
 }
 
-PixelRect film_rect(const FlatScene& scene) {
-  return {scene.film.crop_x, scene.film.crop_y, scene.film.crop_width, scene.film.crop_height};
-}
-
 void render_replicates(Backend& backend, SpectralFilm& film, uint32_t replicates, uint32_t samples,
                        const Watch& watch) {
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
+  const std::vector<uint32_t> blocks = film.all_blocks();
   static const std::atomic<bool> never{false};
   for (uint32_t r = 0; r < replicates && !watch.stopped(); ++r) {
     backend.render(film, {r, 0, samples}, blocks, watch.stop ? *watch.stop : never, {});

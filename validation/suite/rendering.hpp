@@ -58,7 +58,7 @@ struct Watch {
   bool stopped() const { return stop && stop->load(); }
 };
 
-PixelRect film_rect(const FlatScene& scene);
+using kiloband::film_rect;
 
 /// The means of a film's replicates, each channel times its scale.
 stats::ReplicateImage image_of(const SpectralFilm& film, const PixelRect& rect, uint32_t replicates,

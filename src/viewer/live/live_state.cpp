@@ -22,10 +22,6 @@ constexpr uint32_t kErrorRows = 8;           // the error is estimated from ever
 constexpr std::size_t kMostChannels = 4096;  // that a page can draw
 constexpr std::size_t kFirstBlocks = 64;     // of a film of which nothing is known yet
 
-PixelRect rect_of(const Film& film) {
-  return {film.crop_x, film.crop_y, film.crop_width, film.crop_height};
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -82,7 +78,7 @@ void LiveState::set_state() {
 void LiveState::check_film(std::size_t channels) const {
   if (channels > kMostChannels)
     throw InputError(fmt::format("{} channels: at most {} can be looked at", channels, kMostChannels));
-  const std::size_t bytes = LiveFilm::bytes(rect_of(sensor_.film), channels, SumRule{}, false);
+  const std::size_t bytes = LiveFilm::bytes(film_rect(sensor_.film), channels, SumRule{}, false);
   if (bytes > options_.memory_bytes)
     throw InputError(
         fmt::format("the film needs {} MiB, at most {} MiB may be used: fewer channels or a smaller --size",
@@ -103,10 +99,10 @@ void LiveState::compile() {
   backend_ = options_.backends.make(settings_, scene_);
   units_ = backend_->film_scale();
   const std::size_t bytes =
-      LiveFilm::bytes(rect_of(sensor_.film), channels_.size(), backend_->sum_rule(), true);
+      LiveFilm::bytes(film_rect(sensor_.film), channels_.size(), backend_->sum_rule(), true);
   variance_ = bytes <= options_.memory_bytes;
   status_.memory_bytes =
-      LiveFilm::bytes(rect_of(sensor_.film), channels_.size(), backend_->sum_rule(), variance_);
+      LiveFilm::bytes(film_rect(sensor_.film), channels_.size(), backend_->sum_rule(), variance_);
   if (!variance_) status_.message = "no error bars: the film would be too large with them";
   full_ = make_film(sensor_);
   film_ = full_.get();
@@ -116,7 +112,7 @@ void LiveState::compile() {
 std::unique_ptr<LiveFilm> LiveState::make_film(const Sensor& sensor) const {
   std::vector<Band> bands;
   for (const Channel& channel : channels_) bands.push_back({channel});
-  return std::make_unique<LiveFilm>(rect_of(sensor.film), std::move(bands), units_, backend_->sum_rule(),
+  return std::make_unique<LiveFilm>(film_rect(sensor.film), std::move(bands), units_, backend_->sum_rule(),
                                     variance_);
 }
 
@@ -212,7 +208,7 @@ void LiveState::pause(bool paused) {
 void LiveState::render_some() {
   const std::size_t blocks = film_->blocks();
   const double share = static_cast<double>(film_->film().rect().pixels()) /
-                       static_cast<double>(rect_of(sensor_.film).pixels());
+                       static_cast<double>(film_rect(sensor_.film).pixels());
   const double expected = pass_seconds_ * share;
   std::size_t most = pass_seconds_ > 0 ? blocks : kFirstBlocks;
   if (expected > 2 * kPieceSeconds)

@@ -87,8 +87,7 @@ std::vector<float> in_parts(Backend& backend, const PixelRect& rect) {
   FilmOptions options{backend.film_scale().size(), kReplicates, true, true};
   options.sums = backend.sum_rule();
   SpectralFilm film(rect, options);
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
+  const std::vector<uint32_t> blocks = film.all_blocks();
   const std::atomic<bool> stop{false};
   for (uint32_t r = 0; r < kReplicates; ++r) {
     for (const auto& [first, count] : {std::pair{0u, 1u}, {1u, 2u}, {3u, 16u}, {19u, 4u}})

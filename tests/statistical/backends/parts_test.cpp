@@ -26,9 +26,7 @@ class GrowingFilm {
       : backend_(backend),
         samples_(samples),
         film_(rect, options(backend, samples)),
-        blocks_(film_.blocks().size()) {
-    std::iota(blocks_.begin(), blocks_.end(), 0u);
-  }
+        blocks_(film_.all_blocks()) {}
 
   /// The next samples of a replicate, of all blocks.
   void add(uint32_t replicate, uint32_t count) { add_to(blocks_, replicate, count); }
@@ -121,8 +119,7 @@ TEST_F(SumsInParts, OfAStoppedPartAreOpen) {
     const auto renderer = backend(name, SamplerType::kSobol, WavelengthMode::kShared);
     GrowingFilm growing(*renderer, large, 40);
     SpectralFilm& film = growing.film();
-    std::vector<uint32_t> blocks(film.blocks().size());
-    std::iota(blocks.begin(), blocks.end(), 0u);
+    const std::vector<uint32_t> blocks = film.all_blocks();
     std::atomic<bool> stop{false};
     renderer->render(film, {0, 0, 40}, blocks, stop, [&](uint64_t) { stop = true; });
     const uint32_t done = film.attempted(0, 0);

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <numeric>
 
 #include "backend_images.hpp"
 #include "src_gpu/film_delivery.hpp"
@@ -62,14 +61,8 @@ SpectralFilm make_film(const Backend& backend, const PixelRect& rect, const Repl
   return {rect, options};
 }
 
-std::vector<uint32_t> all_blocks(const SpectralFilm& film) {
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
-  return blocks;
-}
-
 void render_one_by_one(Backend& backend, SpectralFilm& film, const ReplicatePlan& plan) {
-  const std::vector<uint32_t> blocks = all_blocks(film);
+  const std::vector<uint32_t> blocks = film.all_blocks();
   const std::atomic<bool> stop{false};
   for (uint32_t r = 0; r < plan.replicates; ++r)
     backend.render(film, {r, 0, static_cast<uint32_t>(plan.size(r))}, blocks, stop, {});
@@ -148,7 +141,7 @@ TEST_F(GatheredReplicates, StopEvenly) {
       EXPECT_LT(samples, 64u);
       EXPECT_EQ(told, samples * rect.pixels());
       SpectralFilm expected = make_film(*renderer, rect, plan, true, sums);
-      const std::vector<uint32_t> blocks = all_blocks(expected);
+      const std::vector<uint32_t> blocks = expected.all_blocks();
       renderer->render(expected, {0, 0, 32}, blocks, go_on, {});
       renderer->render(expected, {1, 0, static_cast<uint32_t>(samples - 32)}, blocks, go_on, {});
       expected.finish_replicates();

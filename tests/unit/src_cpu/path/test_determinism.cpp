@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "room_scene.hpp"
@@ -78,8 +77,7 @@ std::vector<float> render_in_passes(const std::vector<uint32_t>& passes, Samplin
   FilmOptions options{4, 4, true, true};
   options.sums = backend->sum_rule();
   SpectralFilm film({0, 0, 40, 40}, options);
-  std::vector<uint32_t> blocks(film.blocks().size());
-  std::iota(blocks.begin(), blocks.end(), 0u);
+  const std::vector<uint32_t> blocks = film.all_blocks();
   uint32_t first = 0;
   for (const uint32_t count : passes) {
     for (uint32_t r = 0; r < 4; ++r) backend->render(film, {r, first, count}, blocks, false, {});
