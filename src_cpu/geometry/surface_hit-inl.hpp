@@ -87,10 +87,6 @@ KB_INLINE Placement gather_placement(const FlatScene& scene, U shape, M lanes) {
   }
   return placement;
 }
-KB_INLINE V3 transformed_point(const F (&m)[12], V3 p) {
-  return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-          m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
-}
 /// By the transposed linear part: normals, by the inverse of what maps points.
 KB_INLINE V3 transformed_normal(const F (&m)[12], V3 n) {
   return {m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z,
@@ -159,6 +155,24 @@ KB_INLINE void gather_indices(const FlatScene& scene, U first_triangle, U primit
   gather_triple(scene.triangles.data(), select(active, first_triangle + primitive, U(0u)), index);
 }
 
+/// A record of one cache line that begins with a triangle's corners.
+struct TriangleLine {
+  Triangle t;
+  U rest[7];
+};
+template <class Record>
+KB_INLINE TriangleLine gather_line(const Record* records, U index) {
+  static_assert(sizeof(Record) == 64 && sizeof(Record::corners) == 36 && offsetof(Record, corners) == 0);
+  const Addresses at(records, index);
+  U a[4], b[4], c[4], d[4];
+  at.load(0, a);
+  at.load(16, b);
+  at.load(32, c);
+  at.load(48, d);
+  return {triangle_of(as_vector(a[0], a[1], a[2]), as_vector(a[3], b[0], b[1]), as_vector(b[2], b[3], c[0])),
+          {c[1], c[2], c[3], d[0], d[1], d[2], d[3]}};
+}
+
 /// A triangle that was hit.
 struct HitTriangle {
   Triangle t;
@@ -168,17 +182,9 @@ struct HitTriangle {
 };
 KB_INLINE HitTriangle gather_record(const TriangleRecord* records, U index) {
   static_assert(offsetof(TriangleRecord, vertices) == 36 && offsetof(TriangleRecord, normal) == 48);
-  const Addresses at(records, index);
-  U a[4], b[4], c[4], d[4];
-  at.load(0, a);
-  at.load(16, b);
-  at.load(32, c);
-  at.load(48, d);
-  const auto vector = [](U x, U y, U z) KB_LAMBDA { return V3{as_floats(x), as_floats(y), as_floats(z)}; };
-  return {triangle_of(vector(a[0], a[1], a[2]), vector(a[3], b[0], b[1]), vector(b[2], b[3], c[0])),
-          {c[1], c[2], c[3]},
-          vector(d[0], d[1], d[2]),
-          as_floats(d[3])};
+  const TriangleLine line = gather_line(records, index);
+  const U(&rest)[7] = line.rest;
+  return {line.t, {rest[0], rest[1], rest[2]}, as_vector(rest[3], rest[4], rest[5]), as_floats(rest[6])};
 }
 /// The same without records.
 KB_INLINE HitTriangle gather_hit_triangle(const FlatScene& scene, U shape_flags, U index, M active) {
@@ -195,8 +201,7 @@ KB_INLINE HitTriangle gather_hit_triangle(const FlatScene& scene, U shape_flags,
 /// |to_world| |to_object| times the largest of them and of the instance's place.
 KB_INLINE void place_triangle(const Placement& placement, U shape_flags, HitTriangle& on) {
   const M lanes = placement.lanes;
-  const auto place = [&](V3 p)
-                         KB_LAMBDA { return select(lanes, transformed_point(placement.to_world, p), p); };
+  const auto place = [&](V3 p) KB_LAMBDA { return select(lanes, transform_point(placement.to_world, p), p); };
   on.t = triangle_of(place(on.t.p0), place(on.t.p1), place(on.t.p2));
   on.normal = select(lanes, triangle_normal(on.t, shape_flags, lanes), on.normal);
   const V3 corners = largest_coordinates(on.t);

@@ -9,10 +9,6 @@
 namespace kiloband::cpu {
 namespace {
 
-void put(one_lane::V3 v, float (&to)[3]) {
-  to[0] = v.x.v, to[1] = v.y.v, to[2] = v.z.v;
-}
-
 TriangleRecord make_record(const FlatScene& scene, const KbShape& shape, const uint32_t* vertices) {
   const one_lane::U index[3] = {vertices[0], vertices[1], vertices[2]};
   const one_lane::Triangle triangle = one_lane::gather_triangle(scene, index);

@@ -134,10 +134,13 @@ KB_INLINE void gather_triple(const void* triples, U index, U (&words)[3]) {
   for (uint32_t k = 0; k < 3; ++k) words[k] = four[k];
 #endif
 }
+KB_INLINE V3 as_vector(U x, U y, U z) {
+  return {as_floats(x), as_floats(y), as_floats(z)};
+}
 KB_INLINE V3 gather_vector(const KbFloat3* vectors, U index) {
   U words[3];
   gather_triple(vectors, index, words);
-  return {as_floats(words[0]), as_floats(words[1]), as_floats(words[2])};
+  return as_vector(words[0], words[1], words[2]);
 }
 
 }  // namespace kiloband::cpu::KB_LANES

@@ -1,4 +1,4 @@
-// Between glm's vectors and those of one lane.
+// Between glm's vectors, arrays and the vectors of one lane.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -20,6 +20,9 @@ inline glm::vec3 to_glm(one_lane::V3 v) {
 }
 inline glm::vec2 to_glm(one_lane::V2 v) {
   return {v.x.v, v.y.v};
+}
+inline void put(one_lane::V3 v, float (&to)[3]) {
+  to[0] = v.x.v, to[1] = v.y.v, to[2] = v.z.v;
 }
 
 }  // namespace kiloband::cpu

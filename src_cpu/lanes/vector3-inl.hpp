@@ -59,12 +59,15 @@ KB_INLINE F largest(V3 a) {
 KB_INLINE V3 abs(V3 a) {
   return {abs(a.x), abs(a.y), abs(a.z)};
 }
-/// By a row-major 3x4 matrix that all lanes share: its linear part, and with its translation.
-KB_INLINE V3 transform_vector(const float (&m)[12], V3 v) {
+/// By a row-major 3x4 matrix: its linear part, and with its translation.
+/// Number  float: all lanes share it; F
+template <class Number>
+KB_INLINE V3 transform_vector(const Number (&m)[12], V3 v) {
   return {F(m[0]) * v.x + F(m[1]) * v.y + F(m[2]) * v.z, F(m[4]) * v.x + F(m[5]) * v.y + F(m[6]) * v.z,
           F(m[8]) * v.x + F(m[9]) * v.y + F(m[10]) * v.z};
 }
-KB_INLINE V3 transform_point(const float (&m)[12], V3 p) {
+template <class Number>
+KB_INLINE V3 transform_point(const Number (&m)[12], V3 p) {
   return transform_vector(m, p) + V3{F(m[3]), F(m[7]), F(m[11])};
 }
 

@@ -94,15 +94,9 @@ struct LitTriangle {
 };
 KB_INLINE LitTriangle gather_lit_triangle(const LightTriangle* triangles, U index) {
   static_assert(offsetof(LightTriangle, normal) == 36 && offsetof(LightTriangle, factor) == 52);
-  const Addresses at(triangles, index);
-  U a[4], b[4], c[4], d[4];
-  at.load(0, a);
-  at.load(16, b);
-  at.load(32, c);
-  at.load(48, d);
-  const auto vector = [](U x, U y, U z) KB_LAMBDA { return V3{as_floats(x), as_floats(y), as_floats(z)}; };
-  return {triangle_of(vector(a[0], a[1], a[2]), vector(a[3], b[0], b[1]), vector(b[2], b[3], c[0])),
-          vector(c[1], c[2], c[3]), as_floats(d[0]), as_floats(d[1])};
+  const TriangleLine line = gather_line(triangles, index);
+  const U(&rest)[7] = line.rest;
+  return {line.t, as_vector(rest[0], rest[1], rest[2]), as_floats(rest[3]), as_floats(rest[4])};
 }
 /// The same from the arrays of the scene. area: of the shape
 KB_INLINE LitTriangle make_lit_triangle(const FlatScene& scene, U shape_flags, F area, U first_triangle,

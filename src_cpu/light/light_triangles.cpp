@@ -7,10 +7,6 @@
 namespace kiloband::cpu {
 namespace {
 
-void put(one_lane::V3 v, float (&to)[3]) {
-  to[0] = v.x.v, to[1] = v.y.v, to[2] = v.z.v;
-}
-
 LightTriangle make_record(const FlatScene& scene, const KbShape& shape, uint32_t triangle) {
   const one_lane::LitTriangle lit = one_lane::make_lit_triangle(
       scene, shape.flags, shape.area, shape.first_triangle, shape.first_cdf, triangle, {true});
