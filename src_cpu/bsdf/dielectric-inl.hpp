@@ -15,27 +15,30 @@
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
 
+/// A delta lobe. bound: of the spectral factor; passes: to the other side, where S_b is the factor
+KB_INLINE BsdfSample delta_sample(V3 wo, F weight, F pdf, F bound, M passes) {
+  BsdfSample sample = no_sample();
+  sample.wo = wo;
+  sample.w0 = weight;
+  sample.pdf = pdf;
+  sample.bound = weight * bound;
+  sample.delta = !no_lanes();
+  sample.transmission = sample.lobe_b = passes;
+  return sample;
+}
+
 /// Delta transmission with weight `weight` before the radiance scaling.
 KB_INLINE BsdfSample refracted(const Material& material, V3 wi, F eta, F cos_t, F weight, F pdf) {
-  BsdfSample sample = no_sample();
-  sample.wo = {-wi.x / eta, -wi.y / eta, -cos_t};
+  const V3 wo{-wi.x / eta, -wi.y / eta, -cos_t};
+  BsdfSample sample = delta_sample(wo, weight, pdf, material.bound_b, !no_lanes());
   sample.w0 = weight / (eta * eta);
-  sample.pdf = pdf;
   sample.eta = eta;
-  sample.bound = weight * material.bound_b;
-  sample.delta = sample.transmission = sample.lobe_b = !no_lanes();
   return sample;
 }
 
 /// Delta reflection; evaluation applies a reflectance that is left out, F <= 1.
 KB_INLINE BsdfSample reflected(const Material& material, V3 wi, F weight, F pdf) {
-  BsdfSample sample = no_sample();
-  sample.wo = mirror(wi);
-  sample.w0 = weight;
-  sample.pdf = pdf;
-  sample.bound = weight * material.bound_a;
-  sample.delta = !no_lanes();
-  return sample;
+  return delta_sample(mirror(wi), weight, pdf, material.bound_a, no_lanes());
 }
 
 /// Of a pane whose faces reflect F: F + (1 - F)^2 F (1 + F^2 + F^4 + ...) = 2 F / (1 + F). The rest passes.
@@ -45,13 +48,7 @@ KB_INLINE F pane_reflectance(F f) {
 
 /// Through a pane light goes straight on.
 KB_INLINE BsdfSample passed_pane(const Material& material, V3 wi, F weight, F pdf) {
-  BsdfSample sample = no_sample();
-  sample.wo = -wi;
-  sample.w0 = weight;
-  sample.pdf = pdf;
-  sample.bound = weight * material.bound_b;
-  sample.delta = sample.transmission = sample.lobe_b = !no_lanes();
-  return sample;
+  return delta_sample(-wi, weight, pdf, material.bound_b, !no_lanes());
 }
 
 /// Reflection with probability F: both weights are then 1 (times the radiance scaling).
