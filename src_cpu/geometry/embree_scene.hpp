@@ -55,6 +55,8 @@ struct alignas(16) ShadowRay {
         dy(direction.y),
         dz(direction.z),
         t_max(far_t) {}
+  glm::vec3 origin() const { return {ox, oy, oz}; }
+  glm::vec3 direction() const { return {dx, dy, dz}; }
   bool occluded() const { return t_max < 0; }
 };
 

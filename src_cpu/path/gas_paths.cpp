@@ -66,13 +66,6 @@ void append_medium(Wave& wave, uint32_t path, const Vertex& medium, std::span<co
     wave.entries.emplace_back(&cells[i], std::min<std::size_t>(4, cells.size() - i) * sizeof cells[i]);
 }
 
-/// The last ray of a queue, or the one behind it.
-template <class Queue>
-void origin_and_direction(const Queue& rays, uint32_t i, glm::vec3& origin, glm::vec3& direction) {
-  origin = {rays.ox[i], rays.oy[i], rays.oz[i]};
-  direction = {rays.dx[i], rays.dy[i], rays.dz[i]};
-}
-
 }  // namespace
 
 void GasPaths::start(Wave& wave) {
@@ -192,26 +185,23 @@ void GasPaths::append_segment(Wave& wave, uint32_t path, const KbMedium& medium,
 
 void GasPaths::follow_ray(const Shading& s) {
   const RayQueue& next = s.wave.next_rays();
-  glm::vec3 origin, direction;
-  origin_and_direction(next, next.count - 1, origin, direction);
+  const TraceRay ray = query_of(next, next.count - 1);
   GasPath& gas = paths_[s.path.v];
-  gas.media = media_towards(s, direction);
-  gas.begin = begin_at(to_glm(s.hit.point), origin, direction);
+  gas.media = media_towards(s, ray.direction());
+  gas.begin = begin_at(to_glm(s.hit.point), ray.origin(), ray.direction());
 }
 
 void GasPaths::note_shadow_ray(const Shading& s) {
-  glm::vec3 origin, direction;
-  origin_and_direction(s.wave.shadow_rays, s.wave.shadow_rays.count, origin, direction);
-  shadow_owners_.push_back(
-      {s.path.v, begin_at(to_glm(s.hit.point), origin, direction), media_towards(s, direction)});
+  const ShadowRay ray = query_of(s.wave.shadow_rays, s.wave.shadow_rays.count);  // not counted yet
+  shadow_owners_.push_back({s.path.v, begin_at(to_glm(s.hit.point), ray.origin(), ray.direction()),
+                            media_towards(s, ray.direction())});
 }
 
 void GasPaths::trace_shadows(Wave& wave) {
   const ShadowQueue& rays = wave.shadow_rays;
   for (uint32_t i = 0; i < rays.count; ++i) {
     const uint32_t path = shadow_owners_[i].path;
-    const ShadowRay ray({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]},
-                        rays.t_max[i]);
+    const ShadowRay ray = query_of(rays, i);
     Columns columns;
     if (walk_shadow(wave, shadow_owners_[i], ray, columns))
       append_columns(wave, path, rays.entry[i], columns);
@@ -224,7 +214,7 @@ void GasPaths::trace_shadows(Wave& wave) {
 /// Returns whether the light is visible; `columns` are then what lies in between.
 bool GasPaths::walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, Columns& columns) const {
   PathState& path = wave.paths[at.path];
-  const glm::vec3 origin{shadow.ox, shadow.oy, shadow.oz}, direction{shadow.dx, shadow.dy, shadow.dz};
+  const glm::vec3 origin = shadow.origin(), direction = shadow.direction();
   const bool infinite = shadow.t_max == kInfinity;
   TraceRay ray(origin, direction, 0, shadow.t_max);
   for (uint32_t crossings = 0;; ++crossings) {

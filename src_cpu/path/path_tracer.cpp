@@ -110,11 +110,8 @@ void PathTracer::drop_paths_outside() {
   uint32_t kept = 0;
   for (uint32_t i = 0; i < rays.count; ++i) {
     if (wave_.paths[rays.path[i]].pixel == KB_NONE) continue;
-    for (float* array :
-         {rays.ox, rays.oy, rays.oz, rays.t_min, rays.dx, rays.dy, rays.dz, rays.t_max, rays.u, rays.v})
-      array[kept] = array[i];
-    for (uint32_t* array : {rays.primitive, rays.shape, rays.path}) array[kept] = array[i];
-    ++kept;
+    put_ray(ray_of(rays, i), rays, kept);
+    rays.path[kept++] = rays.path[i];
   }
   rays.count = kept;
 }
