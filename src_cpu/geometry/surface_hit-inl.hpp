@@ -59,10 +59,7 @@ KB_INLINE V3 triangle_normal(const Triangle& t, U shape_flags, M active) {
     // Tiny triangles: the squared length may underflow where the cross product does not.
     V3Array result(normal), e1(t.e1), e2(t.e2);
     const FloatArray turns(turn);
-    each_lane(tiny, [&](uint32_t i) KB_LAMBDA {
-      const glm::vec3 n = tiny_normal({e1.x[i], e1.y[i], e1.z[i]}, {e2.x[i], e2.y[i], e2.z[i]}) * turns[i];
-      result.x[i] = n.x, result.y[i] = n.y, result.z[i] = n.z;
-    });
+    each_lane(tiny, [&](uint32_t i) KB_LAMBDA { result.put(i, tiny_normal(e1[i], e2[i]) * turns[i]); });
     normal = result;
   }
   return normal;
@@ -251,16 +248,13 @@ inline void make_analytic_hits(const FlatScene& scene, V3 origin, V3 direction, 
   const V3Array from(origin), along(direction);
   const FloatArray t(distance);
   const WordArray shape(hit.shape);
-  const auto put = [](V3Array& to, uint32_t i, glm::vec3 value)
-                       KB_LAMBDA { to.x[i] = value.x, to.y[i] = value.y, to.z[i] = value.z; };
   each_lane(active, [&](uint32_t i) KB_LAMBDA {
-    const AnalyticHit one = analytic_hit(scene.shapes[shape[i]], {from.x[i], from.y[i], from.z[i]},
-                                         {along.x[i], along.y[i], along.z[i]}, t[i]);
-    put(point, i, one.surface.position);
-    put(normal, i, one.surface.normal);
-    put(shading, i, one.surface.normal);
-    put(tangent, i, one.surface.tangent);
-    put(departure, i, one.departure);
+    const AnalyticHit one = analytic_hit(scene.shapes[shape[i]], from[i], along[i], t[i]);
+    point.put(i, one.surface.position);
+    normal.put(i, one.surface.normal);
+    shading.put(i, one.surface.normal);
+    tangent.put(i, one.surface.tangent);
+    departure.put(i, one.departure);
     offset[i] = one.offset;
     u[i] = one.surface.uv.x, v[i] = one.surface.uv.y;
   });

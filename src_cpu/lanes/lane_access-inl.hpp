@@ -10,6 +10,7 @@
 
 #include <bit>
 #include <cstddef>
+#include <glm/vec3.hpp>
 
 #include "shared/lang.h"
 #include "src_cpu/lanes/vector3-inl.hpp"
@@ -99,6 +100,8 @@ struct V3Array {
   V3Array() = default;
   KB_INLINE V3Array(V3 v) : x(v.x), y(v.y), z(v.z) {}
   KB_INLINE operator V3() const { return {x, y, z}; }
+  KB_INLINE glm::vec3 operator[](uint32_t lane) const { return {x[lane], y[lane], z[lane]}; }
+  KB_INLINE void put(uint32_t lane, glm::vec3 v) { x[lane] = v.x, y[lane] = v.y, z[lane] = v.z; }
 };
 
 // ---- records ----------------------------------------------------------------------------------------

@@ -193,11 +193,11 @@ inline Light sample_shape_lights(const FlatScene& scene, const ChosenLight& chos
   const FloatArray u1(u.y), u2(u.z), u3(u.w), probability(chosen.head.select_pdf), area(chosen.area);
   const WordArray emitters(chosen.emitter), triangle(chosen.triangle);
   each_lane(active, [&](uint32_t i) KB_LAMBDA {
-    LightSample one = sample_shape_light(scene, {emitters[i], probability[i], triangle[i], area[i]},
-                                         {at.x[i], at.y[i], at.z[i]}, u1[i], {u2[i], u3[i]});
+    LightSample one = sample_shape_light(scene, {emitters[i], probability[i], triangle[i], area[i]}, at[i],
+                                         u1[i], {u2[i], u3[i]});
     finish(i, one);
-    direction.x[i] = one.direction.x, direction.y[i] = one.direction.y, direction.z[i] = one.direction.z;
-    target.x[i] = one.target.x, target.y[i] = one.target.y, target.z[i] = one.target.z;
+    direction.put(i, one.direction);
+    target.put(i, one.target);
     pdf[i] = one.pdf;
     factor[i] = one.factor;
     radiance.put(i, one.radiance);
@@ -282,9 +282,7 @@ KB_INLINE F area_light_pdf(const FlatScene& scene, const Hit& hit, U emitter, U 
   const V3Array point(hit.point), from(origin);
   const WordArray shape(hit.shape);
   each_lane(sphere, [&](uint32_t i) KB_LAMBDA {
-    result[i] =
-        probability[i] * sphere_light_density(scene.shapes[shape[i]], {from.x[i], from.y[i], from.z[i]},
-                                              {point.x[i], point.y[i], point.z[i]});
+    result[i] = probability[i] * sphere_light_density(scene.shapes[shape[i]], from[i], point[i]);
   });
   return result;
 }

@@ -113,14 +113,10 @@ inline V3 bump_normals(Shading& s, M seen, M turned) {
   const uint32_t behind = bits_of(turned);
   each_lane(seen, [&](uint32_t i) KB_LAMBDA {
     if (scene.bumps[side[i]].texture == KB_NONE) return;
-    const BumpPoint at{shape[i],
-                       rays.primitive[s.first + i],
-                       {u[i], v[i]},
-                       {unbumped.x[i], unbumped.y[i], unbumped.z[i]},
-                       {-along.x[i], -along.y[i], -along.z[i]},
-                       (behind >> i & 1) != 0};
+    const BumpPoint at{shape[i],  rays.primitive[s.first + i], {u[i], v[i]}, unbumped[i],
+                       -along[i], (behind >> i & 1) != 0};
     const BumpedNormal bumped = bumped_normal(scene, scene.bumps[side[i]], at);
-    normal.x[i] = bumped.normal.x, normal.y[i] = bumped.normal.y, normal.z[i] = bumped.normal.z;
+    normal.put(i, bumped.normal);
     alpha2[i] = bumped.alpha2;
   });
   s.alpha2 = alpha2;

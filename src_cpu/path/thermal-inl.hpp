@@ -42,13 +42,13 @@ struct ThermalHits {
 
   ThermalRadiance radiance(const FlatScene& scene, uint32_t i, const KbFloat4& numbers) const {
     SurfaceHit hit{};
-    hit.shading_normal = {normal.x[i], normal.y[i], normal.z[i]};
-    hit.tangent = {tangent.x[i], tangent.y[i], tangent.z[i]};
+    hit.shading_normal = normal[i];
+    hit.tangent = tangent[i];
     hit.uv = {u[i], v[i]};
     hit.shape = shape[i];
     hit.triangle = rays.primitive[first + i];
     hit.barycentric = {rays.u[first + i], rays.v[first + i]};
-    return thermal_radiance(scene, hit, {towards.x[i], towards.y[i], towards.z[i]}, {numbers.x, numbers.y});
+    return thermal_radiance(scene, hit, towards[i], {numbers.x, numbers.y});
   }
 };
 
