@@ -118,11 +118,11 @@ HWY_INLINE void fit_colour(const ColourTerms& terms, const ColourCells& cells, C
   const bool few = cells.count <= kFew;
   if (few) {
     const std::size_t count = ColourCells::kNodes * cells.count;
-    for (std::size_t i = 0; i < count; i += kLanes)
+    for (std::size_t i = 0; i < count; i += kVectorChannels)
       hn::Store(colour_at(terms, load(cells.nodes, i)), kTag, values + i);
     std::fill_n(values + count, kMaxLanes, 0.0f);  // read in lanes that have no cell
   }
-  for (std::size_t c = 0; c < cells.count; c += kLanes) {
+  for (std::size_t c = 0; c < cells.count; c += kVectorChannels) {
     hn::StoreU(smooth_cells(terms, load(cells.centres, c)), hn::RebindToSigned<Tag>(), fit.smooth + c);
     Floats f[ColourCells::kNodes];
     for (std::size_t n = 0; n < ColourCells::kNodes; ++n) {
@@ -178,10 +178,10 @@ HWY_INLINE void fill_row(const ColourTerms& terms, const ColourOffsets& offsets,
     hn::StoreU(terms.factor ? hn::Mul(value, load(terms.factor, k)) : value, kTag, out + k);
   };
   std::size_t k = 0;
-  for (; k < offsets.distinct; k += kLanes) store(at(k), k);
+  for (; k < offsets.distinct; k += kVectorChannels) store(at(k), k);
   if (k >= count) return;
   const Floats last = at(k);
-  for (; k < count; k += kLanes) store(last, k);
+  for (; k < count; k += kVectorChannels) store(last, k);
 }
 
 inline void colour_row(const ColourTerms& terms, const ColourOffsets& offsets, std::size_t count,
@@ -198,7 +198,7 @@ inline void colour_row(const ColourTerms& terms, const ColourOffsets& offsets, s
   fill_row(
       terms, offsets, count, out, [&](std::size_t k) HWY_ATTR __attribute__((always_inline)) {
         // In increasing order, channels of a vector are mostly in one cell or two.
-        const int32_t first = cell[k], last = cell[k + kLanes - 1];
+        const int32_t first = cell[k], last = cell[k + kVectorChannels - 1];
         const auto cells = hn::LoadU(tag, cell + k);
         const auto in_first = hn::Eq(cells, hn::Set(tag, first)), in_last = hn::Eq(cells, hn::Set(tag, last));
         if (HWY_UNLIKELY(!hn::AllTrue(tag, hn::Or(in_first, in_last)) || !fit.smooth[first] ||

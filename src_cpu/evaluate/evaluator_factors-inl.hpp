@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 /// at: (S_a, k) to the factor.
 template <class At>
 HWY_INLINE void fill_factor(const float* a, std::size_t begin, std::size_t end, float* out, const At& at) {
-  for (std::size_t k = begin; k < end; k += kLanes) hn::StoreU(at(load(a, k), k), kTag, out + k);
+  for (std::size_t k = begin; k < end; k += kVectorChannels) hn::StoreU(at(load(a, k), k), kTag, out + k);
 }
 
 inline void fresnel_row(const FresnelTerms& terms, const float* a, std::size_t begin, std::size_t end,

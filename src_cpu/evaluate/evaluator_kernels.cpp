@@ -31,7 +31,7 @@ namespace HWY_NAMESPACE {
 
 /// Vectors of a full block: P, S and L take 12 of the 16 (SSE4, AVX2) or 32 registers.
 inline constexpr std::size_t kBlockVectors = 4;
-static_assert(kBlockVectors * kLanes <= kRowPadding && kLanes <= kMaxLanes);
+static_assert(kBlockVectors * kVectorChannels <= kRowPadding && kVectorChannels <= kMaxLanes);
 
 /// State of a block of V vectors of channels: P, S and L of StepKind.
 template <std::size_t V>
@@ -44,7 +44,7 @@ struct Block {
   }
 
   HWY_INLINE void reflect(const PathStep& step, std::size_t k) {
-    each([&](auto i) HWY_ATTR { product[i] = hn::Mul(product[i], load(step.row, k + i * kLanes)); });
+    each([&](auto i) HWY_ATTR { product[i] = hn::Mul(product[i], load(step.row, k + i * kVectorChannels)); });
     add(step);
   }
 
@@ -55,7 +55,7 @@ struct Block {
 
   HWY_INLINE void close(const float* row, std::size_t k) {
     each([&](auto i) HWY_ATTR {
-      radiance[i] = hn::MulAdd(light[i], load(row, k + i * kLanes), radiance[i]);
+      radiance[i] = hn::MulAdd(light[i], load(row, k + i * kVectorChannels), radiance[i]);
       light[i] = hn::Zero(kTag);
     });
   }
@@ -63,7 +63,8 @@ struct Block {
   HWY_INLINE void sample(const PathStep& step, std::size_t k) {
     const Floats weight = constant(step.weight);
     each([&](auto i) HWY_ATTR {
-      const Floats factor = hn::Mul(load(step.row, k + i * kLanes), load(step.light, k + i * kLanes));
+      const Floats factor =
+          hn::Mul(load(step.row, k + i * kVectorChannels), load(step.light, k + i * kVectorChannels));
       radiance[i] = hn::MulAdd(hn::Mul(product[i], weight), factor, radiance[i]);
     });
   }
@@ -73,25 +74,25 @@ struct Block {
   }
 
   HWY_INLINE void gas(const PathStep& step, std::size_t k, float* aside) {
-    alignas(64) float t[V * kLanes], l[V * kLanes];
+    alignas(64) float t[V * kVectorChannels], l[V * kVectorChannels];
     each([&](auto i) HWY_ATTR {
-      hn::Store(hn::Mul(product[i], constant(step.weight)), kTag, t + i * kLanes);
-      hn::Store(radiance[i], kTag, l + i * kLanes);
+      hn::Store(hn::Mul(product[i], constant(step.weight)), kTag, t + i * kVectorChannels);
+      hn::Store(radiance[i], kTag, l + i * kVectorChannels);
     });
-    gas_step(*step.gas, k, V * kLanes, t, l, aside);
+    gas_step(*step.gas, k, V * kVectorChannels, t, l, aside);
     each([&](auto i) HWY_ATTR {
-      product[i] = hn::Load(kTag, t + i * kLanes);
-      radiance[i] = hn::Load(kTag, l + i * kLanes);
+      product[i] = hn::Load(kTag, t + i * kVectorChannels);
+      radiance[i] = hn::Load(kTag, l + i * kVectorChannels);
     });
   }
 
   /// Returns false if the block has no channel that goes on.
   HWY_INLINE bool keep_one(const PathStep& step, std::size_t k) {
-    if (step.survivor < k || step.survivor >= k + V * kLanes) return false;
+    if (step.survivor < k || step.survivor >= k + V * kVectorChannels) return false;
     const hn::RebindToSigned<Tag> tag;
     const auto lane = hn::Set(tag, static_cast<int32_t>(step.survivor - k));
     each([&](auto i) HWY_ATTR {
-      const auto kept = hn::Eq(hn::Iota(tag, static_cast<int32_t>(i * kLanes)), lane);
+      const auto kept = hn::Eq(hn::Iota(tag, static_cast<int32_t>(i * kVectorChannels)), lane);
       product[i] = hn::IfThenElseZero(hn::RebindMask(kTag, kept), product[i]);
     });
     return true;
@@ -105,7 +106,7 @@ struct Block {
       float* accumulator = plan.accumulators + plan.entries[e].derived * kMaxLanes;
       Floats sum = hn::Mul(radiance[0], load(weights, 0));
       each([&](auto i) HWY_ATTR {
-        if constexpr (i > 0) sum = hn::MulAdd(radiance[i], load(weights, i * kLanes), sum);
+        if constexpr (i > 0) sum = hn::MulAdd(radiance[i], load(weights, i * kVectorChannels), sum);
       });
       hn::Store(hn::Add(hn::Load(kTag, accumulator), sum), kTag, accumulator);
     }
@@ -137,27 +138,27 @@ HWY_INLINE bool run_steps(Block<V>& block, const PathProgram& path, std::size_t 
 
 /// What is behind belongs to another pixel, which another thread may add to.
 HWY_INLINE void add_part(Floats radiance, std::size_t count, float* film) {
-  alignas(64) float values[kLanes];
+  alignas(64) float values[kVectorChannels];
   hn::Store(radiance, kTag, values);
   for (std::size_t i = 0; i < count; ++i) film[i] += values[i];
 }
 
-/// Channels [k, k + V * kLanes) of the path.
+/// Channels [k, k + V * kVectorChannels) of the path.
 template <std::size_t V>
 HWY_INLINE void evaluate_block(const PathProgram& path, std::size_t k, float* film) {
   Block<V> block;
-  alignas(64) float aside[V * kLanes];
-  if (path.gas) std::fill_n(aside, V * kLanes, 1.0f);
+  alignas(64) float aside[V * kVectorChannels];
+  if (path.gas) std::fill_n(aside, V * kVectorChannels, 1.0f);
   block.each([&](auto i) HWY_ATTR {
     block.product[i] = constant(1);
     block.light[i] = block.radiance[i] = hn::Zero(kTag);
-    if (path.next_film) hwy::Prefetch(path.next_film + k + i * kLanes);
+    if (path.next_film) hwy::Prefetch(path.next_film + k + i * kVectorChannels);
   });
   if (run_steps(block, path, k, aside) && path.light) block.close(path.light, k);
   if (path.derived) block.derive(*path.derived, k);
   block.each([&](auto i) HWY_ATTR {
-    const std::size_t first = k + i * kLanes;
-    if (first + kLanes <= path.derived_offset)
+    const std::size_t first = k + i * kVectorChannels;
+    if (first + kVectorChannels <= path.derived_offset)
       hn::StoreU(hn::Add(hn::LoadU(kTag, film + first), block.radiance[i]), kTag, film + first);
     else if (first < path.derived_offset)
       add_part(block.radiance[i], path.derived_offset - first, film + first);
@@ -174,16 +175,16 @@ void finish_derived(const DerivedPlan& plan, float* derived) {
 
 void evaluate_path(const PathProgram& path, float* film) {
   std::size_t k = 0;
-  for (; k + kBlockVectors * kLanes <= path.channels; k += kBlockVectors * kLanes) {
+  for (; k + kBlockVectors * kVectorChannels <= path.channels; k += kBlockVectors * kVectorChannels) {
     evaluate_block<kBlockVectors>(path, k, film);
   }
   // The rest with as few vectors as do; rows are padded.
   const std::size_t rest = path.channels - k;
-  if (rest > 3 * kLanes) {
+  if (rest > 3 * kVectorChannels) {
     evaluate_block<kBlockVectors>(path, k, film);
-  } else if (rest > 2 * kLanes) {
+  } else if (rest > 2 * kVectorChannels) {
     evaluate_block<3>(path, k, film);
-  } else if (rest > kLanes) {
+  } else if (rest > kVectorChannels) {
     evaluate_block<2>(path, k, film);
   } else if (rest > 0) {
     evaluate_block<1>(path, k, film);

@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
-inline constexpr std::size_t kLanes = hn::MaxLanes(Tag());
+inline constexpr std::size_t kVectorChannels = hn::MaxLanes(Tag());
 
 HWY_INLINE Floats load(const float* row, std::size_t k) {
   return hn::LoadU(kTag, row + k);
@@ -47,9 +47,9 @@ HWY_INLINE Position locate(const FloatTable& table, const double* lambda_nm) {
 
 inline void sample_table(const FloatTable& table, const double* lambda_nm, std::size_t count, float* out) {
   const hn::RebindToSigned<Tag> index_tag;
-  for (std::size_t k = 0; k < count; k += kLanes) {
+  for (std::size_t k = 0; k < count; k += kVectorChannels) {
     const Position low = locate(table, lambda_nm + k);
-    const Position high = locate(table, lambda_nm + k + kLanes / 2);
+    const Position high = locate(table, lambda_nm + k + kVectorChannels / 2);
     const auto index = hn::Combine(index_tag, high.index, low.index);
     const Floats a = hn::GatherIndex(kTag, table.values, index);
     const Floats b = hn::GatherIndex(kTag, table.values + 1, index);
@@ -106,17 +106,18 @@ HWY_INLINE void sum_rows(const float* const* row, const float* weights, std::siz
   for (std::size_t r = 0; r < rows; ++r) {
     const Floats weight = constant(weights[r]);
     const float* const from = row[r] + i;
-    unrolled([&](auto v) HWY_ATTR { sum[v] = hn::MulAdd(weight, load(from, v * kLanes), sum[v]); }, kEach);
+    unrolled([&](auto v) HWY_ATTR { sum[v] = hn::MulAdd(weight, load(from, v * kVectorChannels), sum[v]); },
+             kEach);
   }
-  unrolled([&](auto v) HWY_ATTR { hn::StoreU(sum[v], kTag, out + i + v * kLanes); }, kEach);
+  unrolled([&](auto v) HWY_ATTR { hn::StoreU(sum[v], kTag, out + i + v * kVectorChannels); }, kEach);
 }
 
 /// Four vectors at a time: of one, the loop over its rows takes longer than they do.
 inline void weighted_sum(const float* const* row, const float* weights, std::size_t rows, std::size_t count,
                          float* out) {
   std::size_t i = 0;
-  for (; i + 4 * kLanes <= count; i += 4 * kLanes) sum_rows<4>(row, weights, rows, i, out);
-  for (; i + kLanes <= count; i += kLanes) sum_rows<1>(row, weights, rows, i, out);
+  for (; i + 4 * kVectorChannels <= count; i += 4 * kVectorChannels) sum_rows<4>(row, weights, rows, i, out);
+  for (; i + kVectorChannels <= count; i += kVectorChannels) sum_rows<1>(row, weights, rows, i, out);
   for (; i < count; ++i) {
     float sum = 0;
     for (std::size_t r = 0; r < rows; ++r) sum += weights[r] * row[r][i];
@@ -127,7 +128,7 @@ inline void weighted_sum(const float* const* row, const float* weights, std::siz
 inline void mix_bands(const float* values, const int32_t* index, const float* first, const float* second,
                       std::size_t count, float* out) {
   const hn::RebindToSigned<Tag> index_tag;
-  for (std::size_t i = 0; i < count; i += kLanes) {
+  for (std::size_t i = 0; i < count; i += kVectorChannels) {
     const auto at = hn::LoadU(index_tag, index + i);
     const Floats a = hn::GatherIndex(kTag, values, at), b = hn::GatherIndex(kTag, values + 1, at);
     hn::StoreU(hn::MulAdd(load(second, i), b, hn::Mul(load(first, i), a)), kTag, out + i);

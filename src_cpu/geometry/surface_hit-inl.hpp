@@ -66,14 +66,14 @@ KB_INLINE V3 triangle_normal(const Triangle& t, U shape_flags, M active) {
 }
 
 /// Both matrices of the instances that some lanes have hit.
-struct Placement {
+struct InstancePlacement {
   M lanes;
   F to_world[12], to_object[12];
 };
-KB_INLINE Placement gather_placement(const FlatScene& scene, U shape, M lanes) {
+KB_INLINE InstancePlacement gather_placement(const FlatScene& scene, U shape, M lanes) {
   static_assert(offsetof(KbShape, to_world) == 32 && offsetof(KbShape, to_object) == 80);
   const Addresses records(scene.shapes.data(), select(lanes, shape, U(0u)));
-  Placement placement;
+  InstancePlacement placement;
   placement.lanes = lanes;
   for (std::size_t row = 0; row < 3; ++row) {
     U words[4];
@@ -99,7 +99,8 @@ KB_INLINE V3 transformed_size(const F (&m)[12], V3 v) {
 /// Hit::shading_normal at a point of a triangle: weights of its corners; lanes without vertex normals get the
 /// geometric one. placement: of instances, or null
 KB_INLINE V3 triangle_shading_normal(const FlatScene& scene, U shape_flags, const U (&index)[3], V3 weights,
-                                     V3 geometric_normal, M active, const Placement* placement = nullptr) {
+                                     V3 geometric_normal, M active,
+                                     const InstancePlacement* placement = nullptr) {
   const M has_normals = active & has_bits(shape_flags, KB_SHAPE_HAS_NORMALS);
   if (!any(has_normals)) return geometric_normal;
   const auto normal = [&](int k) KB_LAMBDA {
@@ -196,7 +197,7 @@ KB_INLINE HitTriangle gather_hit_triangle(const FlatScene& scene, U shape_flags,
 /// Instances: from their own coordinates into the world. Rays were brought to them by to_object: what that and back
 /// again may be wrong by counts for offsets as the coordinates themselves do (ray_offset-inl.hpp), which is
 /// |to_world| |to_object| times the largest of them and of the instance's place.
-KB_INLINE void place_triangle(const Placement& placement, U shape_flags, HitTriangle& on) {
+KB_INLINE void place_triangle(const InstancePlacement& placement, U shape_flags, HitTriangle& on) {
   const M lanes = placement.lanes;
   const auto place = [&](V3 p) KB_LAMBDA { return select(lanes, transform_point(placement.to_world, p), p); };
   on.t = triangle_of(place(on.t.p0), place(on.t.p1), place(on.t.p2));
@@ -215,8 +216,8 @@ KB_INLINE void make_mesh_hit(const Surfaces& surfaces, U triangle, F u, F v, M a
   const U safe = select(active, triangle, U(0u));
   HitTriangle on = surfaces.records ? gather_record(surfaces.records, safe)
                                     : gather_hit_triangle(scene, hit.shape_flags, safe, active);
-  Placement placement;
-  const Placement* placed = nullptr;
+  InstancePlacement placement;
+  const InstancePlacement* placed = nullptr;
   if (scene.features.instances) {
     const M lanes = active & has_bits(hit.shape_flags, KB_SHAPE_INSTANCED);
     if (any(lanes)) {

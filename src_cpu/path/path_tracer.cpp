@@ -63,8 +63,8 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
       rare_(flat_.features.gas || flat_.features.dispersion
                 ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree, kernels.eval_heroes)
                 : nullptr),
-      parts_(rare_ && !rare_->gas()),
-      kernels_(rare_ && !parts_ ? one_lane_path_kernels() : kernels),
+      separates_rare_(rare_ && !rare_->gas()),
+      kernels_(rare_ && !separates_rare_ ? one_lane_path_kernels() : kernels),
       sorts_(!scene.few && !rare_ && !flat_.features.thermal && scene.embree->sorting_pays()) {}
 
 PathTracer::~PathTracer() = default;
@@ -83,7 +83,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
                 records.empty() ? nullptr : records.data(),
                 scene_.lights.empty() ? nullptr : scene_.lights.data(),
                 records.size() > kMostCachedRecords,
-                parts_ ? rare_->dispersive_shapes() : nullptr};
+                separates_rare_ ? rare_->dispersive_shapes() : nullptr};
   wave_.paths.resize(kWavePaths + 1);
   wave_.entries.clear();
   kernels_.start(bounce, block, wave_);
@@ -97,7 +97,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
     }
     trace_closest(bounce.number, in_part);
     kernels_.shade(bounce, wave_);
-    if (parts_) shade_rare_rays(bounce, wave_);
+    if (separates_rare_) shade_rare_rays(bounce, wave_);
     trace_shadows();
     wave_.current = 1 - wave_.current;
   }

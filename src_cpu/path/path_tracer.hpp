@@ -86,7 +86,7 @@ class PathTracer {
   const FlatScene& flat_;
   SamplingSettings settings_;
   std::unique_ptr<one_lane::RareFeatures> rare_;  // null: the scene has none
-  bool parts_;                                    // rare paths from the others, bounce by bounce
+  bool separates_rare_;                           // paths from the others, bounce by bounce
   const PathKernels& kernels_;
   bool sorts_;  // secondary and shadow rays
   Wave wave_;
