@@ -39,13 +39,6 @@ struct Evaluator::Impl {
     return rows.pixels[path.pixel];
   }
 
-  SumRows rows_in(std::span<float> sums) {
-    following_rows.clear();
-    for (std::size_t first = 0; first + stride <= sums.size(); first += stride)
-      following_rows.push_back(&sums[first]);
-    return {following_rows, false};
-  }
-
   std::span<const KbPathVertex> entries_of(const PathBuffer& paths, std::size_t p) const {
     const SavedPath& path = paths.paths[p];
     if (std::size_t{path.first} + path.count > paths.entries.size())
@@ -77,7 +70,6 @@ struct Evaluator::Impl {
   DenseSpectra spectra;
   DerivedRows derived_rows;
   ProgramBuilder builder;
-  std::vector<float*> following_rows;
 };
 
 Evaluator::Evaluator(const FlatScene& scene, const DerivedChannels& derived, Isa isa)
@@ -107,14 +99,6 @@ void Evaluator::add_per_path(const PathBuffer& paths, std::span<const float> mu,
     impl_->spectra.begin(mu[p], true);
     impl_->add(paths, p, rows);
   }
-}
-
-void Evaluator::add_shared(const PathBuffer& paths, double mu, std::span<float> sums) {
-  add_shared(paths, mu, impl_->rows_in(sums));
-}
-
-void Evaluator::add_per_path(const PathBuffer& paths, std::span<const float> mu, std::span<float> sums) {
-  add_per_path(paths, mu, impl_->rows_in(sums));
 }
 
 }  // namespace kiloband::cpu

@@ -52,9 +52,6 @@ class Evaluator {
   void add_shared(const PathBuffer& paths, double mu, const SumRows& rows);
   /// The same with an offset of its own for each path (`per-path`); mu has one entry per path.
   void add_per_path(const PathBuffer& paths, std::span<const float> mu, const SumRows& rows);
-  /// Rows that follow each other: sums[path.pixel * stride() + k]. Fastest if `sums` is aligned to 64 bytes.
-  void add_shared(const PathBuffer& paths, double mu, std::span<float> sums);
-  void add_per_path(const PathBuffer& paths, std::span<const float> mu, std::span<float> sums);
 
  private:
   struct Impl;

@@ -1,4 +1,4 @@
-// Camera rays: camera.hpp in lanes. Conventions of Mitsuba 3: local +Z views, +X is the image's left, film position s in
+// Camera rays. Conventions of Mitsuba 3: local +Z views, +X is the image's left, film position s in
 // [0,1]^2, s_y down.
 //
 // For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
@@ -125,7 +125,9 @@ KB_INLINE CameraRays rays_through(const KbCamera& camera, U x, U y, V2 offset, V
   return orthographic ? orthographic_rays(camera, plane) : perspective_rays(camera, plane, lens);
 }
 
-/// sample_camera_ray(). u: film position, lens
+/// Through pixels (x, y) of the full film. Filter importance sampling: film positions are drawn from the reconstruction
+/// filter's modulus around the pixel's centre, so every sample has weight 1 or -1 (FlatScene::filter_scale is the film's).
+/// u  film position, lens; filter_cells: FlatScene's
 KB_INLINE CameraRays sample_camera_rays(const KbCamera& camera, const float* filter_cells, U x, U y,
                                         const F4& u) {
   const FilterSample across = sample_filter(camera, filter_cells, u.x),

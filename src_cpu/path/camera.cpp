@@ -13,10 +13,6 @@ namespace {
 
 constexpr float kUsualRatio = 4;  // Mitsuba's radius / stddev
 
-CameraRay ray_of(const one_lane::CameraRays& ray) {
-  return {to_glm(ray.origin), to_glm(ray.direction), ray.t_min.v, ray.t_max.v, ray.sign.v};
-}
-
 }  // namespace
 
 const KbFloat2* gaussian_table(float ratio) {
@@ -24,14 +20,10 @@ const KbFloat2* gaussian_table(float ratio) {
   return std::fabs(ratio - kUsualRatio) < 1e-6f ? table.data() : nullptr;
 }
 
-CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u,
-                            const float* filter_cells) {
-  return ray_of(one_lane::sample_camera_rays(camera, filter_cells, x, y, {u.x, u.y, u.z, u.w}));
-}
-
 CameraRay centre_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y) {
   const one_lane::V2 centre{0.0f, 0.0f};
-  return ray_of(one_lane::rays_through(camera, x, y, centre, centre));
+  const one_lane::CameraRays ray = one_lane::rays_through(camera, x, y, centre, centre);
+  return {to_glm(ray.origin), to_glm(ray.direction), ray.t_min.v, ray.t_max.v, ray.sign.v};
 }
 
 }  // namespace kiloband::cpu

@@ -3,6 +3,7 @@
 #include "src_cpu/lanes/one_lane_glm.hpp"
 // After the lanes that it is to be compiled for.
 #include "src_cpu/light/light-inl.hpp"
+#include "src_cpu/path/camera-inl.hpp"
 
 namespace kiloband::test {
 
@@ -91,6 +92,13 @@ KbTextureSample sample_envmap_texture(const KbTexture& texture, uint32_t index, 
 float spectrum_bound(const FlatScene& scene, const cpu::ResolvedSpectrum& spectrum) {
   if (!spectrum.textured) return scene.spectra[spectrum.row].bound;
   return one_lane::texel_bounds(scene, spectrum.texture.texture, spectrum.texture.xy).v;
+}
+
+cpu::CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u,
+                                 const float* filter_cells) {
+  const one_lane::CameraRays ray =
+      one_lane::sample_camera_rays(camera, filter_cells, x, y, {u.x, u.y, u.z, u.w});
+  return {to_glm(ray.origin), to_glm(ray.direction), ray.t_min.v, ray.t_max.v, ray.sign.v};
 }
 
 glm::vec3 off_the_edges(glm::vec3 p, glm::vec3 weights, const glm::vec3 (&corners)[3], glm::vec3 area_normal,

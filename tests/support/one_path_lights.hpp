@@ -1,4 +1,4 @@
-// Lights and what belongs to them for one path at a time, in glm's types: the lanes' sources for one lane, which renders
+// Lights, what belongs to them and cameras for one path at a time, in glm's types: the lanes' sources for one lane, which renders
 // have no use for but tests ask one question at a time.
 #pragma once
 
@@ -10,6 +10,7 @@
 #include "src_cpu/geometry/surface_hit.hpp"
 #include "src_cpu/geometry/texture/texture_lookup.hpp"
 #include "src_cpu/light/emitter.hpp"
+#include "src_cpu/path/camera.hpp"
 
 namespace kiloband::test {
 
@@ -48,6 +49,12 @@ KbTextureSample sample_envmap_texture(const KbTexture& texture, uint32_t index, 
 
 /// Upper bound of a resolved spectrum over guide bands and rendered channels (of a lookup: of its four texels).
 float spectrum_bound(const FlatScene& scene, const cpu::ResolvedSpectrum& spectrum);
+
+/// sample_camera_rays() of camera-inl.hpp.
+/// u  x, y: film position; z, w: lens; uniform in [0,1)
+/// filter_cells  FlatScene's; other filters than KB_FILTER_TABULATED need none
+cpu::CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u,
+                                 const float* filter_cells = nullptr);
 
 /// ray_offset-inl.hpp. area_normal: of the corners, cross product of the edges from the first one
 glm::vec3 off_the_edges(glm::vec3 p, glm::vec3 weights, const glm::vec3 (&corners)[3], glm::vec3 area_normal,

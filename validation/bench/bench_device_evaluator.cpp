@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "src_cpu/evaluate/evaluator.hpp"
+#include "tests/unit/src_cpu/evaluate/following_rows.hpp"
 #include "tests/unit/src_gpu/evaluate/device_evaluator.hpp"
 #include "validation/bench/synthetic_paths.hpp"
 
@@ -77,9 +78,11 @@ double cpu_seconds(const FlatScene& scene, const PathBuffer& paths, const RoundO
     std::vector<std::thread> workers;
     for (uint32_t t = 0; t < threads; ++t) {
       workers.emplace_back([&, t] {
-        for (uint32_t b = t; b < kBlocks; b += threads)
+        for (uint32_t b = t; b < kBlocks; b += threads) {
+          const FollowingRows rows(parts[b].evaluator, parts[b].sums);
           for (uint32_t s = 0; s < kSamples; ++s)
-            parts[b].evaluator.add_shared(parts[b].samples[s], round.mu[b * kSamples + s], parts[b].sums);
+            parts[b].evaluator.add_shared(parts[b].samples[s], round.mu[b * kSamples + s], rows);
+        }
       });
     }
     for (std::thread& worker : workers) worker.join();

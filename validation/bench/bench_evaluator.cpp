@@ -13,6 +13,7 @@
 #include <string>
 
 #include "src_cpu/evaluate/evaluator.hpp"
+#include "tests/unit/src_cpu/evaluate/following_rows.hpp"
 #include "validation/bench/synthetic_paths.hpp"
 
 namespace kiloband {
@@ -80,15 +81,16 @@ void evaluate(benchmark::State& state, Isa isa, std::size_t channels, bool share
   Evaluator evaluator(scene, responses, isa);
   auto sums = hwy::AllocateAligned<float>(kPixels * evaluator.stride());
   const std::span<float> film(sums.get(), kPixels * evaluator.stride());
+  const test::FollowingRows rows(evaluator, film);
   std::fill(film.begin(), film.end(), 0.0f);
   std::vector<float> offsets(kPixels);
   std::mt19937 random(3);
   for (auto _ : state) {
     for (float& mu : offsets) mu = std::uniform_real_distribution<float>(0, 1)(random);
     if (shared)
-      evaluator.add_shared(paths, offsets[0], film);
+      evaluator.add_shared(paths, offsets[0], rows);
     else
-      evaluator.add_per_path(paths, offsets, film);
+      evaluator.add_per_path(paths, offsets, rows);
     benchmark::ClobberMemory();
   }
   const double work = static_cast<double>(plain.entries.size() * channels);

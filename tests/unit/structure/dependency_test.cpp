@@ -69,7 +69,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> kRooms{
     {"validation", {"src/", "src_cpu", "src_cpu/", "src_gpu", "src_gpu/", "validation/oracle"}},
     {"validation/bench",
      {"src/", "kernels/geometry", "src_cpu", "src_cpu/", "src_gpu", "src_gpu/", "validation", "tests/support",
-      "tests/unit/src_gpu/evaluate"}},
+      "tests/unit/src_cpu/evaluate", "tests/unit/src_gpu/evaluate"}},
     {"validation/stats", {"src/", "tests/support"}},
     {"app", {"src/", "src_cpu", "src_gpu", "src_gpu/", "scenes/generator", "validation"}},
 };

@@ -76,9 +76,12 @@ struct StoredPaths {
   double vertices = 0;
   cpu::Evaluator evaluator;
   std::vector<float> sums;  // of a block
+  std::vector<float*> rows;
 
   StoredPaths(const BareScene& scene, cpu::PathTracer& tracer, cpu::Isa isa)
       : evaluator(*scene.compiled, {}, isa), sums(kBlockSize * kBlockSize * evaluator.stride()) {
+    for (std::size_t first = 0; first < sums.size(); first += evaluator.stride())
+      rows.push_back(&sums[first]);
     std::vector<uint32_t> invalid;
     const float mu[1] = {0.5f};
     for (const PixelRect& block : scene.blocks) {
@@ -90,7 +93,7 @@ struct StoredPaths {
   }
 
   void evaluate() {
-    for (const cpu::PathBuffer& paths : blocks) evaluator.add_shared(paths, 0.5, sums);
+    for (const cpu::PathBuffer& paths : blocks) evaluator.add_shared(paths, 0.5, {rows, false});
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include "film/signed_filter.hpp"
 #include "support.hpp"
+#include "tests/support/one_path_lights.hpp"
 #include "tests/unit/src_cpu/light/test_scene.hpp"
 
 namespace kiloband::test::camera_test {

@@ -287,9 +287,10 @@ std::vector<float> evaluate(const FlatScene& scene, const DerivedChannels& deriv
   Evaluator evaluator(scene, derived, isa);
   std::vector<float> sums(paths.paths.size() * evaluator.stride(), 0.0f);
   if (shared)
-    evaluator.add_shared(paths, mu, sums);
+    evaluator.add_shared(paths, mu, FollowingRows(evaluator, sums));
   else
-    evaluator.add_per_path(paths, std::vector<float>(paths.paths.size(), static_cast<float>(mu)), sums);
+    evaluator.add_per_path(paths, std::vector<float>(paths.paths.size(), static_cast<float>(mu)),
+                           FollowingRows(evaluator, sums));
   return sums;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "following_rows.hpp"
 #include "src_cpu/evaluate/evaluator.hpp"
 
 namespace kiloband::test {

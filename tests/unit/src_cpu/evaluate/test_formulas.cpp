@@ -180,7 +180,7 @@ TEST_P(Formulas, DerivedChannelsByHand) {
   Evaluator evaluator(scene, derived, GetParam());
   EXPECT_EQ(evaluator.derived_scale(0), 16);
   std::vector<float> sums(evaluator.stride(), 0.0f);
-  evaluator.add_shared(paths, 0.5, sums);
+  evaluator.add_shared(paths, 0.5, FollowingRows(evaluator, sums));
   // At 505 nm two channels overlap, at 550 nm channel 1 is alone.
   EXPECT_NEAR(sums[evaluator.derived_offset()] * 16.0, 0.5 * 30 + 300, 1e-4);
   EXPECT_NEAR(sums[evaluator.derived_offset() + 1] * 16.0, 0.05 * 0.5 * 30 + 0.5 * 300, 1e-4);

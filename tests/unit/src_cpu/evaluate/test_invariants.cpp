@@ -68,7 +68,7 @@ TEST_P(Invariants, OffsetsOfPathsAreTheirOwn) {
   Evaluator evaluator(scene, {}, GetParam());
   std::vector<float> sums(50 * evaluator.stride(), 0.0f), mu(50);
   for (float& m : mu) m = std::uniform_real_distribution<float>(0, 1)(random);
-  evaluator.add_per_path(paths, mu, sums);
+  evaluator.add_per_path(paths, mu, FollowingRows(evaluator, sums));
   for (std::size_t p = 0; p < 50; ++p) {
     const std::vector<float> own = evaluate(scene, {}, paths, GetParam(), mu[p], false);
     for (std::size_t k = 0; k < 70; ++k)
@@ -85,9 +85,9 @@ TEST_P(Invariants, SumsAccumulateAndPaddingStaysZero) {
   EXPECT_EQ(evaluator.derived_offset(), 128u);
   EXPECT_EQ(evaluator.stride(), 192u);
   std::vector<float> sums(40 * evaluator.stride(), 0.0f);
-  evaluator.add_shared(paths, 0.25, sums);
+  evaluator.add_shared(paths, 0.25, FollowingRows(evaluator, sums));
   const std::vector<float> once = sums;
-  evaluator.add_shared(paths, 0.25, sums);
+  evaluator.add_shared(paths, 0.25, FollowingRows(evaluator, sums));
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const std::size_t column = i % evaluator.stride();
     const bool used = column < 65 || (column >= 128 && column < 132);
@@ -116,7 +116,7 @@ TEST_P(Invariants, PackedRowsGetTheBitsOfPaddedOnes) {
       std::fill_n(rows.back(), used, 0.0f);
     }
     evaluator.add_shared(paths, 0.25, {rows, true});
-    evaluator.add_shared(paths, 0.25, padded);
+    evaluator.add_shared(paths, 0.25, FollowingRows(evaluator, padded));
     for (std::size_t i = 0; i < packed.size(); ++i) {
       const std::size_t pixel = i / stride, column = i % stride;
       const std::size_t there = column < channels ? column : evaluator.derived_offset() + column - channels;
@@ -184,7 +184,7 @@ TEST(EvaluatorErrors, BrokenPathsAreOurBugs) {
     paths.paths = {{0, count, pixel}};
     Evaluator evaluator(scene, {}, Isa::kAuto);
     std::vector<float> sums(evaluator.stride(), 0.0f);
-    evaluator.add_shared(paths, 0.5, sums);
+    evaluator.add_shared(paths, 0.5, FollowingRows(evaluator, sums));
   };
   KbPathVertex vertex{};
   vertex.head = KB_KIND_SCALED | KB_VERTEX_SCATTER;
@@ -202,7 +202,7 @@ TEST(EvaluatorErrors, BrokenPathsAreOurBugs) {
   std::vector<float> sums(evaluator.stride());
   PathBuffer paths;
   paths.paths.resize(1);
-  EXPECT_THROW(evaluator.add_per_path(paths, {}, sums), std::logic_error);
+  EXPECT_THROW(evaluator.add_per_path(paths, {}, FollowingRows(evaluator, sums)), std::logic_error);
 }
 
 TEST(InstructionSets, NamesAndResolution) {

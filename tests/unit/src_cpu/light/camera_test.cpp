@@ -8,6 +8,7 @@
 #include "film/signed_filter.hpp"
 #include "test_scene.hpp"
 #include "tests/support/chi_square.hpp"
+#include "tests/support/one_path_lights.hpp"
 
 namespace kiloband::test::camera_test {
 

@@ -5,8 +5,8 @@
 #include <bit>
 
 #include "shared/sobol_table.h"
-#include "src_cpu/path/camera.hpp"
 #include "src_cpu/path/path_tracer.hpp"
+#include "tests/support/one_path_lights.hpp"
 #include "tests/support/zoo/scene_zoo.hpp"
 
 namespace kiloband::test {
