@@ -8,10 +8,11 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "scene/mesh/finish.hpp"
+
 namespace kiloband {
 namespace {
 
-using Vec3d = std::array<double, 3>;
 using Key = std::array<uint32_t, 5>;
 
 struct KeyHash {
@@ -42,18 +43,13 @@ std::vector<uint32_t> first_equals(const Mesh& mesh) {
 }
 
 /// Not of unit length; 0 for a triangle without area.
-Vec3d facet(const Mesh& mesh, const std::array<uint32_t, 3>& triangle) {
-  Vec3d e{}, f{};
-  for (int axis = 0; axis < 3; ++axis) {
-    e[axis] = double(mesh.positions[triangle[1]][axis]) - mesh.positions[triangle[0]][axis];
-    f[axis] = double(mesh.positions[triangle[2]][axis]) - mesh.positions[triangle[0]][axis];
-  }
-  return {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]};
+glm::dvec3 facet(const Mesh& mesh, const std::array<uint32_t, 3>& triangle) {
+  return double_area_of(mesh.positions[triangle[0]], mesh.positions[triangle[1]],
+                        mesh.positions[triangle[2]]);
 }
 
 /// The angle between two directions, rad; pi if one is 0.
-double angle_between(const Vec3d& a, const Vec3d& b) {
-  const auto dot = [](const Vec3d& u, const Vec3d& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; };
+double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
   const double lengths = std::sqrt(dot(a, a) * dot(b, b));
   return lengths > 0 ? std::acos(std::clamp(dot(a, b) / lengths, -1.0, 1.0)) : std::acos(-1.0);
 }
@@ -106,7 +102,7 @@ CornerSets smooth_corners(const Mesh& mesh, double most_rad) {
   CornerSets sets(3 * mesh.triangles.size());
   const std::vector<Edge> edges = sorted_edges(mesh);
   for (size_t i = 0; i < edges.size(); ++i) {
-    const Vec3d normal = facet(mesh, mesh.triangles[edges[i].low_corner / 3]);
+    const glm::dvec3 normal = facet(mesh, mesh.triangles[edges[i].low_corner / 3]);
     for (size_t j = i + 1; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high;
          ++j) {
       if (angle_between(normal, facet(mesh, mesh.triangles[edges[j].low_corner / 3])) > most_rad) continue;

@@ -10,13 +10,8 @@ namespace {
 // Exact enough: the difference of two floats is nearly always exact in double,
 // and nothing under- or overflows.
 bool has_zero_area(const Mesh& mesh, const std::array<uint32_t, 3>& triangle) {
-  std::array<double, 3> e{}, f{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double origin = mesh.positions[triangle[0]][axis];
-    e[axis] = mesh.positions[triangle[1]][axis] - origin;
-    f[axis] = mesh.positions[triangle[2]][axis] - origin;
-  }
-  return e[1] * f[2] == e[2] * f[1] && e[2] * f[0] == e[0] * f[2] && e[0] * f[1] == e[1] * f[0];
+  const auto& [a, b, c] = triangle;
+  return double_area_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]) == glm::dvec3(0);
 }
 
 void check_areas(const Mesh& mesh, const MeshFile& file, const DiagnosticSink& sink) {

@@ -3,52 +3,37 @@
 #include <cmath>
 #include <numeric>
 
+#include "scene/mesh/finish.hpp"
+
 namespace kiloband {
 namespace {
 
-using Vec3d = std::array<double, 3>;
 using Flat = std::array<double, 2>;
 
 constexpr uint64_t kMaxEarTests = 200'000'000;  // of all faces of a file: a second
 
-Vec3d cross_of(const Vec3f& o, const Vec3f& a, const Vec3f& b) {
-  Vec3d e{}, f{};
-  for (size_t i = 0; i < 3; ++i) {
-    e[i] = double{a[i]} - o[i];
-    f[i] = double{b[i]} - o[i];
-  }
-  return {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]};
-}
-
-double dot_of(const Vec3d& a, const Vec3d& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// Twice the area that the face encloses, times its mean normal (Newell): the sum over the fan, whatever its corners.
-Vec3d double_area(std::span<const Vec3f> points) {
-  Vec3d sum{};
-  for (size_t i = 2; i < points.size(); ++i) {
-    const Vec3d area = cross_of(points[0], points[i - 1], points[i]);
-    for (size_t axis = 0; axis < 3; ++axis) sum[axis] += area[axis];
-  }
+glm::dvec3 double_area(std::span<const Vec3f> points) {
+  glm::dvec3 sum(0);
+  for (size_t i = 2; i < points.size(); ++i) sum += double_area_of(points[0], points[i - 1], points[i]);
   return sum;
 }
 
 /// Whether a triangle of the fan lies the other way round, by more than rounding makes of corners in a line.
-bool fan_folds(std::span<const Vec3f> points, const Vec3d& normal) {
+bool fan_folds(std::span<const Vec3f> points, const glm::dvec3& normal) {
   constexpr double kShare = 1e-6;  // of the face's area
-  const double least = -kShare * dot_of(normal, normal);
+  const double least = -kShare * dot(normal, normal);
   for (size_t i = 2; i < points.size(); ++i)
-    if (dot_of(cross_of(points[0], points[i - 1], points[i]), normal) < least) return true;
+    if (dot(double_area_of(points[0], points[i - 1], points[i]), normal) < least) return true;
   return false;
 }
 
 /// The face in the plane of coordinates that shows most of it, counter-clockwise.
-void flatten(std::span<const Vec3f> points, const Vec3d& normal, std::vector<Flat>& flat) {
-  size_t drop = 0;
-  for (const size_t axis : {1, 2})
+void flatten(std::span<const Vec3f> points, const glm::dvec3& normal, std::vector<Flat>& flat) {
+  int drop = 0;
+  for (const int axis : {1, 2})
     if (std::abs(normal[axis]) > std::abs(normal[drop])) drop = axis;
-  const size_t u = (drop + 1) % 3, v = (drop + 2) % 3;
+  const auto u = static_cast<size_t>((drop + 1) % 3), v = static_cast<size_t>((drop + 2) % 3);
   flat.clear();
   for (const Vec3f& p : points) flat.push_back(normal[drop] > 0 ? Flat{p[u], p[v]} : Flat{p[v], p[u]});
 }
@@ -101,7 +86,7 @@ bool PolygonCutter::cut_ears() {
 }
 
 const std::vector<std::array<uint32_t, 3>>& PolygonCutter::cut(std::span<const Vec3f> points) {
-  const Vec3d normal = points.size() > 3 ? double_area(points) : Vec3d{};
+  const glm::dvec3 normal = points.size() > 3 ? double_area(points) : glm::dvec3(0);
   if (points.size() > 3 && fan_folds(points, normal)) {
     flatten(points, normal, flat_);
     if (cut_ears()) return triangles_;
