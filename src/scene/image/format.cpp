@@ -4,9 +4,9 @@
 #include <array>
 #include <fstream>
 #include <string_view>
-#include <system_error>
 
 #include "base/error.hpp"
+#include "base/regular_file.hpp"
 #include "base/text.hpp"
 
 namespace kiloband {
@@ -105,14 +105,9 @@ void ImageFile::fail(const std::string& message) const {
 
 ImageFile examine_image(const std::filesystem::path& path) {
   ImageFile file{path.string()};
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) file.fail("no such file");
-  if (!std::filesystem::is_regular_file(status)) file.fail("not a regular file");
-  file.bytes = std::filesystem::file_size(path, error);
-  std::ifstream stream(path, std::ios::binary);
-  if (error || !stream) file.fail("cannot be opened");
-  if (file.bytes == 0) file.fail("the file is empty");
+  RegularFile input = open_regular_file(path);
+  std::ifstream& stream = input.stream;
+  file.bytes = input.bytes;
   file.format = recognise(file, path, stream);
   if (file.format == ImageFormat::kJpeg && !has_jpeg_end(stream))
     file.fail("the JPEG data is truncated: no end marker");

@@ -1,10 +1,9 @@
 #include "scene/mesh/input.hpp"
 
-#include <fstream>
 #include <string_view>
-#include <system_error>
 
 #include "base/error.hpp"
+#include "base/regular_file.hpp"
 #include "base/text.hpp"
 
 namespace kiloband {
@@ -36,18 +35,10 @@ void drop_byte_order_mark(const std::filesystem::path& path, std::string& bytes)
 
 MeshFile load_mesh_file(const std::filesystem::path& path) {
   MeshFile file{path.string(), {}};
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) file.fail("no such file");
-  // A pipe or a device could block or never end.
-  if (!std::filesystem::is_regular_file(status)) file.fail("not a regular file");
-  const auto size = std::filesystem::file_size(path, error);
-  std::ifstream stream(path, std::ios::binary);
-  if (error || !stream) file.fail("cannot be opened");
-  if (size == 0) file.fail("the file is empty");
-  file.bytes.resize(size);
-  stream.read(file.bytes.data(), static_cast<std::streamsize>(size));
-  if (static_cast<uintmax_t>(stream.gcount()) != size) file.fail("cannot be read to its end");
+  RegularFile input = open_regular_file(path);
+  file.bytes.resize(input.bytes);
+  input.stream.read(file.bytes.data(), static_cast<std::streamsize>(input.bytes));
+  if (static_cast<uintmax_t>(input.stream.gcount()) != input.bytes) file.fail("cannot be read to its end");
   drop_byte_order_mark(path, file.bytes);
   return file;
 }
