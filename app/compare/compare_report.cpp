@@ -115,15 +115,7 @@ nlohmann::ordered_json test_json(const TestVerdict& test, const std::vector<std:
 }
 
 nlohmann::ordered_json tail_json(const std::vector<stats::TailWeight>& tails) {
-  if (tails.empty()) return nullptr;
-  const std::size_t c = stats::heaviest_channel(tails);
-  const stats::TailWeight& t = tails[c];
-  return {{"channel", c},
-          {"replicate_means", t.count},
-          {"effective", number(t.effective)},
-          {"top_share_of_variance", number(t.top_variance)},
-          {"top_share_of_sum", number(t.top_sum)},
-          {"hill_index", number(t.hill_index)}};
+  return stats::heaviest_json(tails, {"replicate_means", "top_share_of_variance", "top_share_of_sum"});
 }
 
 nlohmann::ordered_json channels_json(const CompareReport& report, const std::vector<std::string>& names) {

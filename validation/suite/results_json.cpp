@@ -58,15 +58,7 @@ json to_json(const stats::ScaleResult& s) {
 }
 
 json tails_to_json(const std::vector<stats::TailWeight>& tails) {
-  if (tails.empty()) return nullptr;
-  const std::size_t channel = stats::heaviest_channel(tails);
-  const stats::TailWeight& t = tails[channel];
-  return {{"channel", channel},
-          {"count", t.count},
-          {"effective", number(t.effective)},
-          {"top_variance", number(t.top_variance)},
-          {"top_sum", number(t.top_sum)},
-          {"hill_index", number(t.hill_index)}};
+  return stats::heaviest_json(tails, {"count", "top_variance", "top_sum"});
 }
 
 const char* name_of(Pairing::Kind kind) {

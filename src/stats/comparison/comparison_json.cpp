@@ -24,4 +24,16 @@ nlohmann::ordered_json to_json(const WorstUnit& worst) {
           {"p", number_json(worst.p)}};
 }
 
+nlohmann::ordered_json heaviest_json(const std::vector<TailWeight>& tails, const TailNames& names) {
+  if (tails.empty()) return nullptr;
+  const std::size_t channel = heaviest_channel(tails);
+  const TailWeight& t = tails[channel];
+  return {{"channel", channel},
+          {names.count, t.count},
+          {"effective", number_json(t.effective)},
+          {names.top_variance, number_json(t.top_variance)},
+          {names.top_sum, number_json(t.top_sum)},
+          {"hill_index", number_json(t.hill_index)}};
+}
+
 }  // namespace kiloband::stats

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "stats/scale_test.hpp"
+#include "stats/tails.hpp"
 
 namespace kiloband::stats {
 
@@ -12,5 +14,12 @@ namespace kiloband::stats {
 nlohmann::ordered_json number_json(double value);
 
 nlohmann::ordered_json to_json(const WorstUnit& worst);
+
+/// What files call the members of a TailWeight.
+struct TailNames {
+  const char *count, *top_variance, *top_sum;
+};
+/// The channel with the smallest effective share; null where there is none.
+nlohmann::ordered_json heaviest_json(const std::vector<TailWeight>& tails, const TailNames& names);
 
 }  // namespace kiloband::stats

@@ -188,30 +188,26 @@ uint32_t TextureCompiler::checkerboard(const std::shared_ptr<const CheckerboardT
   return place->second;
 }
 
+uint32_t TextureCompiler::texels_of(const Texture& texture) {
+  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture))
+    return bitmap(*image, BitmapUse::kReflectance);
+  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
+    return spectral_bitmap(*spectral, {});
+  return mesh_attribute(std::get<std::shared_ptr<const MeshAttributeTexture>>(texture), {});
+}
+
 double TextureCompiler::mean(const Texture& texture) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.guide_mean(*spectrum);
-  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
-    return means_[bitmap(*image, BitmapUse::kReflectance)];
-  }
-  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
-    return means_[spectral_bitmap(*spectral, {})];
-  if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture))
-    return means_[mesh_attribute(*attribute, {})];
-  const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
-  return 0.5 * (spectra_.guide_mean(board.color0) + spectra_.guide_mean(board.color1));
+  if (const auto* board = std::get_if<std::shared_ptr<const CheckerboardTexture>>(&texture))
+    return 0.5 * (spectra_.guide_mean((*board)->color0) + spectra_.guide_mean((*board)->color1));
+  return means_[texels_of(texture)];
 }
 
 double TextureCompiler::bound(const Texture& texture) {
   if (const auto* spectrum = std::get_if<Spectrum>(&texture)) return spectra_.bound(*spectrum);
-  if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
-    return bounds_[bitmap(*image, BitmapUse::kReflectance)];
-  }
-  if (const auto* spectral = std::get_if<std::shared_ptr<const SpectralBitmapTexture>>(&texture))
-    return bounds_[spectral_bitmap(*spectral, {})];
-  if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture))
-    return bounds_[mesh_attribute(*attribute, {})];
-  const auto& board = *std::get<std::shared_ptr<const CheckerboardTexture>>(texture);
-  return std::max(spectra_.bound(board.color0), spectra_.bound(board.color1));
+  if (const auto* board = std::get_if<std::shared_ptr<const CheckerboardTexture>>(&texture))
+    return std::max(spectra_.bound((*board)->color0), spectra_.bound((*board)->color1));
+  return bounds_[texels_of(texture)];
 }
 
 }  // namespace kiloband

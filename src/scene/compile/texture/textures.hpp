@@ -58,6 +58,7 @@ class TextureCompiler {
 
  private:
   uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use);
+  uint32_t texels_of(const Texture& texture);  // the record of one that has texels, as a reflectance
   uint32_t d65_row();
   static KbFloat4 texel_of(const float* rgb, BitmapUse use, float height);
   float texel_bound(const KbFloat4& texel) const;
