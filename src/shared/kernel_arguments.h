@@ -1,5 +1,5 @@
 // The arguments of kernels: one list per group, from which kernels/base/arguments.clh makes the kernels' parameters and
-// structs, and src_gpu/device/kernel_arguments.hpp the host's structs and their binding.
+// structs, and src_gpu/device/kernel_groups.hpp the host's structs and their binding.
 //
 // To add a buffer: a line here, and where the host fills the group (src_gpu/scene/device_scene.cpp for the scene), which
 // does not compile without it. Nothing is counted or numbered by hand.
