@@ -247,6 +247,10 @@ RenderOptions with_requests(RenderOptions options, const RequestedImages& reques
   return options;
 }
 
+void say_chosen(const BackendInfo& backend) {
+  tell("backend {} ({}, {})\n", backend.name, backend.device, backend.isa);
+}
+
 int render(const RenderOptions& given) {
   std::signal(SIGPIPE, SIG_IGN);  // who reads our messages may go away before the render ends
   const auto start = std::chrono::steady_clock::now();
@@ -270,10 +274,7 @@ int render(const RenderOptions& given) {
   const SessionSettings settings =
       stating(wanted, metadata_of(options, scene, sampling, *backend), fingerprint);
   catch_stop_signals();
-  if (options.backend.backend == "auto" && !options.quiet) {
-    const BackendInfo info = backend->info();
-    tell("backend {} ({}, {})\n", info.name, info.device, info.isa);
-  }
+  if (options.backend.backend == "auto" && !options.quiet) say_chosen(backend->info());
   const double setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   ProgressBar bar(!options.quiet);

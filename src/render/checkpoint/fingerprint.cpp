@@ -57,20 +57,8 @@ void add_gas(WordHash& hash, const FlatScene& scene) {
   hash.add_value(scene.camera_media);
 }
 
-}  // namespace
-
-std::string arithmetic_of(const Backend& backend) {
-  const BackendInfo info = backend.info();
-  if (info.name == "cpu") return info.isa;
-  return info.isa + ", " + info.device + ", " + info.method;
-}
-
-uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& sampling,
-                            const std::string& arithmetic, const DerivedChannels& derived) {
-  WordHash hash;
-  add_channels(hash, scene.channels);
-  add_channels(hash, scene.guide);
-  add_spectra(hash, scene.spectra);
+/// Materials, and the shapes that have them.
+void add_surfaces(WordHash& hash, const FlatScene& scene) {
   hash.add_all(scene.textures);
   hash.add_all(scene.texels);
   hash.add_all(scene.texel_bounds);
@@ -88,6 +76,10 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   hash.add_all(scene.normals);
   hash.add_all(scene.uvs);
   hash.add_all(scene.triangles);
+}
+
+/// Lights, gas, the camera, and how far paths go.
+void add_rays(WordHash& hash, const FlatScene& scene) {
   hash.add_all(scene.emitters);
   hash.add_all(scene.emitter_cdf);
   hash.add_all(scene.light_nodes);
@@ -103,12 +95,17 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
   hash.add_value(scene.integrator.max_depth);
   hash.add_value(scene.integrator.rr_depth);
   hash.add_value(scene.integrator.hide_emitters);
+}
+
+void add_sampling(WordHash& hash, const SamplingSettings& sampling) {
   hash.add_value(sampling.seed);
   hash.add_value(sampling.replicates);
   hash.add_value(static_cast<int>(sampling.sampler));
   hash.add_value(static_cast<int>(sampling.rough_dispersion));
   hash.add_value(static_cast<int>(sampling.wavelengths));
-  add_text(hash, arithmetic);
+}
+
+void add_derived(WordHash& hash, const DerivedChannels& derived) {
   for (const std::string& name : derived.names) add_text(hash, name);
   for (const RegularTable& response : derived.responses) {
     hash.add_all(response.values);
@@ -116,6 +113,27 @@ uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& samp
     hash.add_value(response.step_nm);
     hash.add_value(response.extrapolate);
   }
+}
+
+}  // namespace
+
+std::string arithmetic_of(const Backend& backend) {
+  const BackendInfo info = backend.info();
+  if (info.name == "cpu") return info.isa;
+  return info.isa + ", " + info.device + ", " + info.method;
+}
+
+uint64_t render_fingerprint(const FlatScene& scene, const SamplingSettings& sampling,
+                            const std::string& arithmetic, const DerivedChannels& derived) {
+  WordHash hash;
+  add_channels(hash, scene.channels);
+  add_channels(hash, scene.guide);
+  add_spectra(hash, scene.spectra);
+  add_surfaces(hash, scene);
+  add_rays(hash, scene);
+  add_sampling(hash, sampling);
+  add_text(hash, arithmetic);
+  add_derived(hash, derived);
   return hash.value();
 }
 
