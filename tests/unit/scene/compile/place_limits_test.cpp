@@ -10,18 +10,6 @@ namespace {
 const std::string kCamera = "<sensor type='perspective'/>";
 const std::string kSky = "<emitter type='constant'/>";
 
-/// What flattening says: its warnings, or its error behind the position.
-std::string flattened(const std::string& body) {
-  const ChannelList channels = parse_channels("500-510");
-  Messages warnings;
-  const std::string error = error_of([&] {
-    compile_scene(read_scene_text("<scene version='3.0.0'>" + body + "</scene>", "scene.xml", "."),
-                  {channels, channels, warnings.sink()});
-  });
-  if (error != "accepted") return error.substr(error.find("error: "));
-  return warnings.texts.empty() ? "" : warnings.texts.front();
-}
-
 std::string moved(const std::string& shape, const std::string& steps) {
   return "<shape type='" + shape + "'><transform name='to_world'>" + steps + "</transform></shape>";
 }

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <random>
 
+#include "pixel_mean.hpp"
 #include "scene/read/reader.hpp"
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
@@ -178,13 +179,9 @@ TEST(Instances, ConvexBodiesUnderAUniformSky) {
     spec.sampling.replicates = 16;
     const RenderResult result = render(spec);
     const double width = result.scene.channels[0].max_nm - result.scene.channels[0].min_nm;
-    double mean = 0, variance = 0;
-    for (std::size_t pixel = 0; pixel < 16; ++pixel) {
-      mean += result.mean[pixel * result.channels] / 16;
-      variance += result.variance[pixel * result.channels] / 256;
-    }
-    EXPECT_LT(std::sqrt(variance), 2e-3 * mean);
-    EXPECT_LT(z_score(mean, 0.5 * width, variance), critical_t(1e-6, 1, 16));
+    const PixelMean found = mean_of_pixels(result);
+    EXPECT_LT(std::sqrt(found.variance), 2e-3 * found.mean);
+    EXPECT_LT(z_score(found.mean, 0.5 * width, found.variance), critical_t(1e-6, 1, 16));
   }
 }
 
