@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/number.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
 #include "cube/envi/envi_header.hpp"
@@ -15,11 +16,19 @@ namespace {
 
 constexpr uint64_t kMaxHeaderBytes = 1u << 28;  // a million bands need about 100 MB
 
+/// The largest float in too few digits is a little more than it; what is nearer to the next power of two is infinite.
+float nearest_float(double value) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  constexpr double kInfiniteFrom = 0x1.ffffffp127;
+  if (!(std::abs(value) > kLargest)) return static_cast<float>(value);
+  return std::copysign(std::abs(value) < kInfiniteFrom ? kLargest : INFINITY, value < 0 ? -1.0f : 1.0f);
+}
+
 /// As the type has it: no float is the double that its decimal number would be.
 template <class Number>
 bool is_ignored(Number value, double ignore) {
   if constexpr (std::is_same_v<Number, float>)
-    return std::abs(ignore) <= std::numeric_limits<float>::max() && value == static_cast<float>(ignore);
+    return value == nearest_float(ignore) && (std::isinf(ignore) || !std::isinf(value));
   return static_cast<double>(value) == ignore;
 }
 
@@ -182,9 +191,15 @@ std::filesystem::path find_data(const std::filesystem::path& header) {
 std::optional<double> ignore_value(const EnviHeader& header) {
   const auto* entry = header.find("data ignore value");
   if (!entry) return std::nullopt;
-  const auto value = parse_number(entry->value);
-  if (!value) throw InputError(header.where(*entry) + " '" + printable(entry->value) + "': must be a number");
-  return value;
+  double value = 0;
+  switch (read_number(trimmed(entry->value), value)) {
+    case NumberText::kNone:
+      throw InputError(header.where(*entry) + " '" + printable(entry->value) + "': must be a number");
+    case NumberText::kTooLarge:
+      return std::copysign(std::numeric_limits<double>::max(), value);
+    default:
+      return value;
+  }
 }
 
 class EnviReader : public CubeReader {

@@ -164,6 +164,36 @@ TEST(EnviForeign, IgnoredFloatsAreRounded) {
   }
 }
 
+/// The largest numbers stand for no data, in as many digits as who wrote them likes: more than that is rounded to them, or reads as infinite.
+TEST(EnviForeign, TheLargestNumbersAreIgnoredInAnySpelling) {
+  const TemporaryFolder folder;
+  const float floats[] = {-std::numeric_limits<float>::max(), 1};
+  const double doubles[] = {-std::numeric_limits<double>::max(), 1};
+  const auto first = [&](int type, const std::string& bytes, const std::string& ignored) {
+    folder.write("a.img", bytes);
+    folder.write("a.hdr", "ENVI\nsamples = 2\nlines = 1\nbands = 1\ndata type = " + std::to_string(type) +
+                              "\ninterleave = bsq\nbyte order = 0\nwavelength = {500}\nfwhm = {10}\n" +
+                              "data ignore value = " + ignored + "\n");
+    float read[2];
+    open_cube(folder / "a.hdr")->read_rows(0, 1, read, {});
+    EXPECT_EQ(read[1], 1);
+    return read[0];
+  };
+  const std::string as_floats(reinterpret_cast<const char*>(floats), sizeof floats),
+      as_doubles(reinterpret_cast<const char*>(doubles), sizeof doubles);
+  for (const char* ignored : {"-3.4028234663852886e+38", "-3.40282346638529e+38", "-3.4028235e+38"})
+    EXPECT_TRUE(std::isnan(first(4, as_floats, ignored))) << ignored;
+  for (const char* ignored : {"-3.4028236e+38", "-1e39", "3.4028235e+38", "-1.79769313486232e+308"})
+    EXPECT_EQ(first(4, as_floats, ignored), floats[0]) << ignored;
+  for (const char* ignored :
+       {"-1.7976931348623157e+308", "-1.79769313486232e+308", "-1.797693134862316e+308"})
+    EXPECT_TRUE(std::isnan(first(5, as_doubles, ignored))) << ignored;
+  EXPECT_TRUE(std::isinf(first(5, as_doubles, "1.79769313486232e+308")));
+  const float infinite[] = {-std::numeric_limits<float>::infinity(), 1};
+  EXPECT_TRUE(
+      std::isnan(first(4, std::string(reinterpret_cast<const char*>(infinite), sizeof infinite), "-inf")));
+}
+
 TEST_F(EnviHeaderText, BadBandsAreToldOf) {
   open(3, "wavelength = {500, 600, 700}\nbbl = {1, 1, 1}\n");
   EXPECT_FALSE(messages.contain("bbl"));
