@@ -51,6 +51,12 @@ std::optional<CameraGeometry> parse_perspective(const Words& words) {
   return CameraGeometry{false, 0, *width, *height, *crop_x, *crop_y, *tangent, *px, *py};
 }
 
+std::optional<CameraGeometry> parse_camera(std::string_view text) {
+  const Words words(text);
+  if (words.first() == kOrthographic) return parse_orthographic(words);
+  return words.first() == kPerspective ? parse_perspective(words) : std::nullopt;
+}
+
 }  // namespace
 
 double CameraGeometry::pixel_weight(uint32_t x, uint32_t y) const {
@@ -72,16 +78,14 @@ std::string CameraGeometry::to_text() const {
 std::optional<CameraGeometry> camera_of_cube(const CubeInfo& info, const std::string& where) {
   const auto found = info.metadata.find(kCameraKey);
   if (found == info.metadata.end()) return std::nullopt;
-  const Words words(found->second);
-  std::optional<CameraGeometry> camera;
-  if (words.first() == kOrthographic) camera = parse_orthographic(words);
-  if (words.first() == kPerspective) camera = parse_perspective(words);
+  const auto camera = parse_camera(found->second);
   if (!camera) throw InputError(where + ": camera '" + printable(found->second) + "': not understood");
   return camera;
 }
 
 void crop_camera(CubeInfo& info, uint32_t x0, uint32_t y0) {
-  auto camera = camera_of_cube(info, "cube");
+  const auto found = info.metadata.find(kCameraKey);
+  auto camera = found == info.metadata.end() ? std::nullopt : parse_camera(found->second);
   if (!camera || camera->orthographic) return;
   camera->crop_x += x0;
   camera->crop_y += y0;

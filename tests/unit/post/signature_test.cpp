@@ -65,6 +65,22 @@ TEST(CameraGeometry, CroppedCubesKeepTheirPixels) {
   }
 }
 
+/// Others' cubes may call something else a camera: what it says is not ours to understand.
+TEST(CameraGeometry, ForeignCamerasStayAsTheyAre) {
+  const TemporaryFolder folder;
+  Cube cube = make_cube(4, 3, equal_bands(400, 500, 1));
+  cube.info.metadata[kCameraKey] = "Specim FX10";
+  for (const char* name : {"a.exr", "a.hdr"}) {
+    write_cube_file(cube, folder / name);
+    CubeSelection selection;
+    convert_cube(folder / name, folder / "b.hdr", selection);
+    selection.crop = PixelRect{1, 1, 2, 2};
+    convert_cube(folder / name, folder / "c.hdr", selection);
+    for (const char* converted : {"b.hdr", "c.hdr"})
+      EXPECT_EQ(read_cube(folder / converted).info.metadata.at(kCameraKey), "Specim FX10");
+  }
+}
+
 TEST(PixelMask, GrowsBySquares) {
   PixelMask mask(6, 5);
   mask.insert(1, 1);
