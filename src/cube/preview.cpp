@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cube/channel_cover.hpp"
 #include "cube/cube_layout.hpp"
 #include "spectral/colour/colour.hpp"
 
@@ -12,19 +13,30 @@ constexpr double kVisibleMinNm = 380, kVisibleMaxNm = 780;
 
 /// Linear sRGB per unit of band radiance. With a constant density inside the band,
 /// X = integral of xbar * value / width, so the weight is the mean of xbar over the band.
-std::array<float, 3> colour_weight(const Channel& c) {
-  const auto mean = [&](const Spectrum& s) { return s.mean(c.min_nm, c.max_nm) / kCieYIntegral; };
+/// What several channels cover counts once: xbar over the number of channels there.
+std::array<float, 3> colour_weight(const Channel& c, const ChannelCover& cover) {
+  const auto mean = [&](const Spectrum& s) {
+    double integral = 0;
+    cover.for_pieces(c.min_nm, c.max_nm,
+                     [&](double a, double b, int count) { integral += s.integral(a, b) / count; });
+    return integral / (c.max_nm - c.min_nm) / kCieYIntegral;
+  };
   const auto rgb = xyz_to_linear_srgb({mean(cie_x()), mean(cie_y()), mean(cie_z())});
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 
-/// Share of the band that lies in each third of [low, low + 3 third]: long waves red, short waves blue.
-std::array<float, 3> false_colour_weight(const Channel& c, double low, double third) {
+/// Share of the band that lies in each third of [low, low + 3 third], what several cover shared among them: long waves red,
+/// short waves blue.
+std::array<float, 3> false_colour_weight(const Channel& c, const ChannelCover& cover, double low,
+                                         double third) {
   std::array<float, 3> weight;
   for (int part = 0; part < 3; ++part) {
     const double begin = low + part * third, end = begin + third;
-    const double overlap = std::min(c.max_nm, end) - std::max(c.min_nm, begin);
-    weight[static_cast<std::size_t>(2 - part)] = static_cast<float>(std::max(overlap, 0.0) / c.width_nm());
+    double share = 0;
+    cover.for_pieces(c.min_nm, c.max_nm, [&](double from, double to, int count) {
+      share += std::max(std::min(to, end) - std::max(from, begin), 0.0) / count;
+    });
+    weight[static_cast<std::size_t>(2 - part)] = static_cast<float>(share / c.width_nm());
   }
   return weight;
 }
@@ -42,9 +54,10 @@ std::vector<std::array<float, 3>> false_colour_weights(const std::vector<Band>& 
   const ChannelList channels = channels_of(bands);
   if (channels.empty()) throw InputError("picture: the cube has no channels, only derived bands");
   const Channel range = hull(channels);
+  const ChannelCover cover(channels);
   for (std::size_t k = 0; k < bands.size(); ++k)
     if (!bands[k].derived)
-      weights[k] = false_colour_weight(bands[k].channel, range.min_nm, range.width_nm() / 3);
+      weights[k] = false_colour_weight(bands[k].channel, cover, range.min_nm, range.width_nm() / 3);
   return weights;
 }
 
@@ -56,8 +69,9 @@ std::vector<std::array<float, 3>> preview_weights(const std::vector<Band>& bands
     return weights;
   }
   if (!shows_visible_light(bands)) return false_colour_weights(bands);
+  const ChannelCover cover(channels_of(bands));
   for (std::size_t k = 0; k < bands.size(); ++k)
-    if (!bands[k].derived) weights[k] = colour_weight(bands[k].channel);
+    if (!bands[k].derived) weights[k] = colour_weight(bands[k].channel, cover);
   return weights;
 }
 

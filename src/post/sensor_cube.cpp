@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "cube/channel_cover.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
 #include "post/effective_band.hpp"
@@ -15,46 +16,8 @@ namespace kiloband {
 namespace {
 
 constexpr double kWorthAWarning = 1e-3;
-
-/// Where the number of channels that cover a wavelength changes, and that number in the interval
-/// that begins there.
-class Cover {
- public:
-  explicit Cover(const ChannelList& channels) {
-    std::vector<std::pair<double, int>> steps;
-    for (const Channel& c : channels) {
-      steps.emplace_back(c.min_nm, 1);
-      steps.emplace_back(c.max_nm, -1);
-    }
-    std::sort(steps.begin(), steps.end());
-    int count = 0;
-    for (const auto& [nm, step] : steps) {
-      count += step;
-      if (!edges_.empty() && edges_.back() == nm) {
-        counts_.back() = count;
-      } else {
-        edges_.push_back(nm);
-        counts_.push_back(count);
-      }
-    }
-  }
-
-  /// action(from_nm, to_nm, count) for the pieces of [min_nm, max_nm], which lies inside the cover.
-  template <class Action>
-  void for_pieces(double min_nm, double max_nm, Action action) const {
-    auto i =
-        static_cast<std::size_t>(std::upper_bound(edges_.begin(), edges_.end(), min_nm) - edges_.begin());
-    for (double from = min_nm; from < max_nm; ++i) {
-      const double to = i < edges_.size() ? std::min(edges_[i], max_nm) : max_nm;
-      if (from < to) action(from, to, i > 0 ? counts_[i - 1] : 0);
-      from = to;
-    }
-  }
-
- private:
-  std::vector<double> edges_;
-  std::vector<int> counts_;
-};
+/// Of a wavelength: what a response does at the very edge of a channel is its neighbour's.
+constexpr double kEdge = 1e-13;
 
 /// Index of the render's own band of that name.
 std::optional<std::size_t> own_band(const std::vector<Band>& bands, const std::string& name) {
@@ -176,14 +139,14 @@ double uncovered_part(const Spectrum& response, const ChannelList& channels) {
   const double total = absolute_integral(response, from, to);
   if (!(total > 0)) return 0;
   double covered = 0;
-  Cover(channels).for_pieces(from, to, [&](double a, double b, int count) {
+  ChannelCover(channels).for_pieces(from, to, [&](double a, double b, int count) {
     if (count > 0) covered += absolute_integral(response, a, b);
   });
   return 1 - covered / total;
 }
 
 SensorWeights sensor_weights(const Spectrum& response, const std::vector<Band>& bands) {
-  const Cover cover(channels_of(bands));
+  const ChannelCover cover(channels_of(bands));
   SensorWeights result{std::vector<double>(bands.size(), 0), std::vector<double>(bands.size(), 0)};
   for (std::size_t k = 0; k < bands.size(); ++k) {
     if (bands[k].derived) continue;
@@ -191,8 +154,10 @@ SensorWeights sensor_weights(const Spectrum& response, const std::vector<Band>& 
     double integral = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
     cover.for_pieces(c.min_nm, c.max_nm, [&](double a, double b, int count) {
       integral += response.integral(a, b) / count;
-      lowest = std::min(lowest, response.min_over(a, b) / count);
-      highest = std::max(highest, response.max_over(a, b) / count);
+      const double from = a * (1 + kEdge), to = b * (1 - kEdge);
+      if (!(from < to)) return;
+      lowest = std::min(lowest, response.min_over(from, to) / count);
+      highest = std::max(highest, response.max_over(from, to) / count);
     });
     const double weight = integral / c.width_nm();
     result.weight[k] = weight;

@@ -39,6 +39,19 @@ TEST(Preview, WavelengthsHaveTheirColours) {
   EXPECT_EQ(weights[4], (std::array<float, 3>{0, 0, 0}));
 }
 
+/// What two channels cover counts once: an image in the same channels twice has the same colours.
+TEST(Preview, OverlappingChannelsCountOnce) {
+  for (const char* text : {"400:700:6", "1000:1600:6"}) {
+    std::vector<Band> once;
+    for (const Channel& channel : parse_channels(text)) once.push_back({channel, false});
+    std::vector<Band> twice = once;
+    twice.insert(twice.end(), once.begin(), once.end());
+    const auto a = preview_weights(once), b = preview_weights(twice);
+    for (std::size_t k = 0; k < once.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(b[k][c] + b[k + once.size()][c], a[k][c]) << text;
+  }
+}
+
 TEST(Preview, InfraredIsShownInThirds) {
   const auto weights = preview_weights(equal_bands(8000, 14000, 4));
   EXPECT_EQ(weights[0], (std::array<float, 3>{0, 0, 1}));

@@ -120,6 +120,19 @@ TEST_F(Sensor, WarningsGiveTheLargestPossibleError) {
             std::vector<std::string>{"response 'own': the band that the render accumulated is taken"});
 }
 
+/// A response that is constant inside every channel is exact, whatever it does at their edges.
+TEST_F(Sensor, JumpsAtTheEdgesOfChannelsAreExact) {
+  const Spectrum box = Spectrum::tabulated({440, 460}, {3, 3});
+  const SensorWeights weights =
+      sensor_weights(box, {{{400, 440, ""}, false}, {{440, 460, ""}, false}, {{460, 500, ""}, false}});
+  EXPECT_EQ(weights.weight, (std::vector<double>{0, 3, 0}));
+  EXPECT_EQ(weights.deviation, (std::vector<double>{0, 0, 0}));
+  Cube cube = make_cube(1, 1, equal_bands(400, 700, 6));
+  cube.mean = {50, 40, 30, 20, 10, 5};
+  for (const auto& [from, to] : {std::pair{450.0, 550.0}, {450, 500}, {400, 450}, {650, 700}, {300, 450}})
+    EXPECT_EQ(reports(cube, {{"box", Spectrum::tabulated({from, to}, {1, 1})}}).size(), from < 400 ? 1u : 0u);
+}
+
 TEST_F(Sensor, TheRendersOwnBandKeepsItsVariance) {
   Cube cube = cube_of({40, 30, 40, 7});
   cube.variance = {1, 1, 1, 0.25f};
