@@ -150,9 +150,24 @@ void CompareSide::open_single(const SideOptions& options, const DiagnosticSink& 
     throw InputError(fmt::format("{}: has replicates, which have their own degrees of freedom", files_));
   source_ = ErrorSource::kReplicates;
   cubes_ = std::move(cube.replicates);
-  samples_known_ = info().samples_per_pixel > 0;
   for (const double n : cube.samples) samples_.push_back(static_cast<uint64_t>(n));
+  const auto [least, most] = std::ranges::minmax(samples_);
+  samples_known_ =
+      info().samples_per_pixel > 0 && most - least <= 1;  // pixels of interrupted renders have some more
 }
+
+namespace {
+
+/// What the cube states. Renders that ended early used to state the replicates that were wanted: no more than there are samples can have
+/// any.
+double degrees_of_freedom(const CubeInfo& info) {
+  uint64_t replicates = info.replicates;
+  if (replicates >= 2 && info.samples_per_pixel > 0)
+    replicates = std::min(replicates, std::max<uint64_t>(info.samples_per_pixel, 2));
+  return replicates >= 2 ? static_cast<double>(replicates - 1) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
 
 void CompareSide::open_variance(const SideOptions& options, const DiagnosticSink& sink) {
   if (options.variance) {
@@ -164,9 +179,7 @@ void CompareSide::open_variance(const SideOptions& options, const DiagnosticSink
         "renders as FILE,FILE,...{}",
         files_, name_ == "B" ? ", or --b-exact if B is the truth" : ""));
   }
-  const double own =
-      info().replicates >= 2 ? info().replicates - 1.0 : std::numeric_limits<double>::infinity();
-  dof_ = options.dof.value_or(own);
+  dof_ = options.dof.value_or(degrees_of_freedom(info()));
 }
 
 std::string CompareSide::describe() const {

@@ -40,14 +40,24 @@ std::vector<PixelRect> places_of(const PlaceOptions& options) {
 }
 
 /// Says where error bars are missing, and why.
-void report_errors(const ReplicatedCube& cube, const ReplicatedCube* background, const DiagnosticSink& sink) {
+void report_errors(const ReplicatedCube& cube, const ReplicatedCube* background,
+                   const std::vector<Signature>& signatures, const DiagnosticSink& sink) {
   if (!cube.has_errors()) {
     note(sink, {},
          "no error bars: the errors of pixels are correlated and must not be pooled; render with "
          "--keep-replicates to get them");
     return;
   }
-  note(sink, {}, fmt::format("standard errors have {} degrees of freedom", cube.replicates.size() - 1));
+  std::size_t fewest = cube.replicates.size();
+  for (const Signature& signature : signatures) fewest = std::min(fewest, signature.replicates);
+  if (fewest < 2)
+    note(
+        sink, {},
+        fmt::format(
+            "no error bars, of some masks at least: {} of {} replicates have all their pixels, two are needed",
+            fewest, cube.replicates.size()));
+  else
+    note(sink, {}, fmt::format("standard errors have {} degrees of freedom", fewest - 1));
   if (background && background->replicates.size() != cube.replicates.size())
     note(sink, {},
          fmt::format("no error bars of contrasts: the background has {} replicates, the cube {}",
@@ -70,7 +80,7 @@ void write_signature_table(const PlaceOptions& options, ReplicatedCube cube, con
   }
   ReplicatedCube* behind = background ? &*background : nullptr;
   const std::vector<Signature> signatures = measure_signatures(cube, behind, masks, *camera);
-  report_errors(cube, behind, sink);
+  report_errors(cube, behind, signatures, sink);
   write_signatures(cube.mean->info(), signatures, cube.has_errors(), out);
 }
 

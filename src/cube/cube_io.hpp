@@ -33,8 +33,10 @@ struct CubeInfo {
   bool variance = false;         // the variance of the mean accompanies every band
   bool holds_variances = false;  // the values themselves are variances of another cube's means (X.var.hdr)
   Quantity quantity = Quantity::kIntegral;  // of the values on disk
-  uint64_t samples_per_pixel = 0;
-  uint32_t replicates = 0;
+  uint64_t samples_per_pixel = 0;           // of every pixel at least; 0: not known, or some pixel has none
+  uint32_t replicates = 0;  // that stand behind each variance at least: one more than its degrees of freedom
+  /// Of each replicate whose cube stands beside this one (--keep-replicates), in every pixel that it has reached at least; empty: not stated.
+  std::vector<uint64_t> replicate_samples;
   std::vector<std::string> aux;                 // names of auxiliary float planes ("depth", "normal.X" ...)
   std::map<std::string, std::string> metadata;  // written as they are (seed, method, program version ...)
 };
@@ -46,14 +48,22 @@ struct CubeRows {
   std::span<const float> mean, variance, aux;
 };
 
+/// What a cube states of its samples: CubeInfo has the meanings.
+struct SampleCounts {
+  uint64_t samples_per_pixel = 0;
+  uint32_t replicates = 0;
+  std::vector<uint64_t> replicate_samples;
+};
+
 /// Writes a cube strip by strip in ascending order. Nothing stands under the final names before finish():
 /// files are written beside, flushed and renamed, the ENVI data before its header, all of them as one
 /// (FileSet). A destroyed writer that was not finished leaves nothing behind.
 class CubeWriter {
  public:
   virtual ~CubeWriter() = default;
-  /// Instead of CubeInfo::samples_per_pixel, for who opens a file before knowing; before the first write_rows().
-  virtual void set_samples_per_pixel(uint64_t samples) = 0;
+  /// Instead of CubeInfo's, for who opens a file before knowing: before the first write_rows(), and once more before close() where it
+  /// comes to less than was expected (no number larger than before).
+  virtual void set_counts(const SampleCounts& counts) = 0;
   virtual void write_rows(const CubeRows& rows) = 0;
   /// All rows have come: completes the data and adds the cube's files to the set, which several cubes may
   /// share. The writer must outlive the set's commit().

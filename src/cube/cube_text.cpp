@@ -45,6 +45,16 @@ std::optional<uint64_t> parse_unsigned(std::string_view text) {
   return whole_number<uint64_t>(trimmed(text));
 }
 
+std::optional<std::vector<uint64_t>> parse_counts(std::string_view text) {
+  std::vector<uint64_t> counts;
+  for (const std::string_view part : split(text, ',')) {
+    const auto count = parse_unsigned(part);
+    if (!count) return std::nullopt;
+    counts.push_back(*count);
+  }
+  return counts;
+}
+
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0;;) {

@@ -18,6 +18,9 @@ std::string format_short(double value);
 std::optional<double> parse_number(std::string_view text);
 std::optional<uint64_t> parse_unsigned(std::string_view text);
 
+/// "512, 31": whole numbers, blanks around them allowed; nothing if the text is not such a list.
+std::optional<std::vector<uint64_t>> parse_counts(std::string_view text);
+
 /// The parts look into `text`, which must outlive them: not a temporary string.
 std::vector<std::string_view> split(std::string_view text, char separator);
 template <std::same_as<std::string> Temporary>

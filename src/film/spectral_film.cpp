@@ -223,6 +223,14 @@ uint64_t SpectralFilm::samples(uint32_t x, uint32_t y) const {
   return sum;
 }
 
+uint32_t SpectralFilm::replicates(uint32_t x, uint32_t y) const {
+  const std::size_t pixel = std::size_t{y} * rect_.width + x;
+  if (pixels_) return pixels_->replicates(pixel);
+  uint32_t count = 0;
+  for (uint32_t r = 0; r < options_.replicates; ++r) count += replicate_samples(r, pixel) > 0;
+  return count;
+}
+
 void SpectralFilm::require_held() const {
   if (!options_.held) throw std::logic_error("SpectralFilm: replicates are not held");
 }

@@ -128,6 +128,8 @@ class SpectralFilm {
   void row(uint32_t y, std::span<float> mean, std::span<float> variance) const;
   /// Samples of a pixel (x, y relative to the rectangle).
   uint64_t samples(uint32_t x, uint32_t y) const;
+  /// Its replicates that have any.
+  uint32_t replicates(uint32_t x, uint32_t y) const;
   /// held films: mean of one replicate at a pixel, one entry per channel, and its number of samples.
   void replicate_mean(uint32_t replicate, std::size_t pixel, std::span<float> mean) const;
   uint64_t replicate_samples(uint32_t replicate, std::size_t pixel) const;

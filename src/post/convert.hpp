@@ -68,12 +68,13 @@ void convert_cube(const std::filesystem::path& in, const std::filesystem::path& 
 
 /// CSV with the columns channel,min_nm,max_nm,value[,standard_error], one row per band, in the cube's
 /// quantity. A place of one pixel has a standard error if the cube has variances. A larger one is the mean of
-/// its pixels without NaN and has none: the errors of pixels are correlated and must not be pooled. With
+/// its pixels without NaN (a note says how many have one) and has none: the errors of pixels are correlated and must not be pooled. With
 /// several places each row begins with x,y,width,height. Infinite values and errors are a warning.
 /// throws InputError  no place, an empty place or one outside the image
 void write_csv(CubeReader& source, const std::filesystem::path& out, const std::vector<PixelRect>& places,
                const DiagnosticSink& sink = {});
-/// The same with a standard error for every place, from the replicates if there are any.
+/// The same with a standard error for every place, from the replicates if there are any: of a region from those that have values in all
+/// its pixels; a note says if these are not all.
 void write_csv(ReplicatedCube& source, const std::filesystem::path& out, const std::vector<PixelRect>& places,
                const DiagnosticSink& sink = {});
 

@@ -1,6 +1,7 @@
 // Tables of pixels and regions (convert.hpp).
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cube/csv_fields.hpp"
 #include "cube/cube_layout.hpp"
@@ -18,6 +19,8 @@ constexpr uint32_t kTileRows = 32;  // of our EXR files, which are read by whole
 struct Place {
   std::vector<std::string> value, error;
   uint64_t infinite = 0;
+  uint64_t missing = 0;                   // pixels of a region that some band has no value of
+  std::optional<std::size_t> replicates;  // that the errors come from, in the band with the fewest
 
   template <class Number>
   void add_value(Number number) {
@@ -43,11 +46,16 @@ Place read_pixel(CubeReader& source, uint32_t x, uint32_t y) {
   return place;
 }
 
-/// Means over the pixels of a region, by band.
-std::vector<double> region_means(CubeReader& source, const PixelRect& region) {
+/// Means over the pixels of a region that have values, and their number, by band.
+struct RegionMeans {
+  std::vector<double> mean;
+  std::vector<uint64_t> count;
+};
+
+RegionMeans region_means(CubeReader& source, const PixelRect& region) {
   const std::size_t bands = source.info().bands.size(), width = source.info().width;
-  std::vector<double> sum(bands, 0);
-  std::vector<uint64_t> count(bands, 0);
+  RegionMeans result{std::vector<double>(bands, 0), std::vector<uint64_t>(bands, 0)};
+  auto& [sum, count] = result;
   std::vector<float> strip;
   const uint32_t end = region.y0 + region.height;
   for (uint32_t y = region.y0, next; y < end; y = next) {
@@ -61,26 +69,56 @@ std::vector<double> region_means(CubeReader& source, const PixelRect& region) {
   }
   for (std::size_t k = 0; k < bands; ++k)
     sum[k] = count[k] > 0 ? sum[k] / static_cast<double>(count[k]) : std::nan("");
-  return sum;
+  return result;
+}
+
+Place place_of(const RegionMeans& region, std::size_t pixels) {
+  Place place;
+  for (const double mean : region.mean) place.add_value(mean);
+  for (const uint64_t count : region.count) place.missing = std::max(place.missing, pixels - count);
+  return place;
 }
 
 Place read_region(CubeReader& source, const PixelRect& region) {
-  Place place;
-  for (const double mean : region_means(source, region)) place.add_value(mean);
+  return place_of(region_means(source, region), region.pixels());
+}
+
+/// A place with the errors that the replicates give. A replicate that lacks pixels of the mean (of an interrupted render) would compare
+/// one part of the image with another: it has no value here.
+Place read_replicated(ReplicatedCube& source, const PixelRect& region) {
+  const RegionMeans whole = region_means(*source.mean, region);
+  Place place = place_of(whole, region.pixels());
+  std::vector<RegionMeans> parts;
+  for (const auto& replicate : source.replicates) parts.push_back(region_means(*replicate, region));
+  std::vector<double> values(parts.size());
+  std::size_t fewest = parts.size();
+  for (std::size_t k = 0; k < place.value.size(); ++k) {
+    for (std::size_t r = 0; r < parts.size(); ++r)
+      values[r] = parts[r].count[k] == whole.count[k] ? parts[r].mean[k] : std::nan("");
+    place.add_error(replicate_error(values, source.samples));
+    if (whole.count[k] > 0) fewest = std::min(fewest, count_values(values));
+  }
+  if (fewest < parts.size()) place.replicates = fewest;
   return place;
 }
 
-/// A place with the errors that the replicates give.
-Place read_replicated(ReplicatedCube& source, const PixelRect& region) {
-  Place place = read_region(*source.mean, region);
-  std::vector<std::vector<double>> means;
-  for (const auto& replicate : source.replicates) means.push_back(region_means(*replicate, region));
-  std::vector<double> values(means.size());
-  for (std::size_t k = 0; k < place.value.size(); ++k) {
-    for (std::size_t r = 0; r < means.size(); ++r) values[r] = means[r][k];
-    place.add_error(replicate_error(values, source.samples));
-  }
-  return place;
+/// What a number of the table is not of.
+void note_gaps(const PixelRect& p, const Place& place, std::size_t replicates, const DiagnosticSink& sink) {
+  std::string where = "region";
+  for (const uint32_t number : {p.x0, p.y0, p.width, p.height})
+    where += (where == "region" ? " " : ",") + std::to_string(number);
+  if (p.pixels() == 1) where = "pixel " + std::to_string(p.x0) + "," + std::to_string(p.y0);
+  if (place.missing > 0 && p.pixels() > 1)
+    note(sink, {},
+         where + ": " + std::to_string(place.missing) + " of " + std::to_string(p.pixels()) +
+             " pixels have no value and are left out");
+  if (!place.replicates) return;
+  const std::string some =
+      std::to_string(*place.replicates) + " of " + std::to_string(replicates) + " replicates";
+  note(sink, {},
+       *place.replicates < 2
+           ? where + ": no standard errors: " + some + " have all its pixels, two are needed"
+           : where + ": standard errors come from " + some + ": the others do not have all its pixels");
 }
 
 void check_places(const CubeInfo& info, const std::vector<PixelRect>& places) {
@@ -88,10 +126,11 @@ void check_places(const CubeInfo& info, const std::vector<PixelRect>& places) {
   for (const PixelRect& place : places) check_region(info, place);
 }
 
+/// replicates: those of the cube
 template <class ReadPlace>
 void write_places(const CubeInfo& info, const std::filesystem::path& out,
-                  const std::vector<PixelRect>& places, bool errors, const DiagnosticSink& sink,
-                  const ReadPlace& read_place) {
+                  const std::vector<PixelRect>& places, bool errors, std::size_t replicates,
+                  const DiagnosticSink& sink, const ReadPlace& read_place) {
   uint64_t infinite = 0;
   const bool several = places.size() > 1;
   std::string text = several ? "x,y,width,height," : "";
@@ -100,6 +139,7 @@ void write_places(const CubeInfo& info, const std::filesystem::path& out,
   for (const PixelRect& p : places) {
     const Place place = read_place(p);
     infinite += place.infinite;
+    note_gaps(p, place, replicates, sink);
     std::string prefix;
     if (several)
       for (const uint32_t number : {p.x0, p.y0, p.width, p.height}) prefix += std::to_string(number) + ",";
@@ -124,7 +164,7 @@ void write_csv(CubeReader& source, const std::filesystem::path& out, const std::
   check_places(info, places);
   const auto is_pixel = [](const PixelRect& p) { return p.pixels() == 1; };
   const bool errors = info.variance && std::any_of(places.begin(), places.end(), is_pixel);
-  write_places(info, out, places, errors, sink, [&](const PixelRect& p) {
+  write_places(info, out, places, errors, 0, sink, [&](const PixelRect& p) {
     return is_pixel(p) ? read_pixel(source, p.x0, p.y0) : read_region(source, p);
   });
 }
@@ -133,7 +173,7 @@ void write_csv(ReplicatedCube& source, const std::filesystem::path& out, const s
                const DiagnosticSink& sink) {
   if (!source.has_errors()) return write_csv(*source.mean, out, places, sink);
   check_places(source.mean->info(), places);
-  write_places(source.mean->info(), out, places, true, sink,
+  write_places(source.mean->info(), out, places, true, source.replicates.size(), sink,
                [&](const PixelRect& p) { return read_replicated(source, p); });
 }
 

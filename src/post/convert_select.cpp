@@ -83,6 +83,7 @@ class SelectedCube : public CubeReader {
     const bool singles =
         std::any_of(recipes_.begin(), recipes_.end(), [](const Recipe& r) { return r.sources.size() == 1; });
     info_.variance = info_.variance && singles;
+    info_.replicate_samples.clear();  // no replicates stand beside what is written
     crop_camera(info_, crop.x0, crop.y0);
   }
 
@@ -230,8 +231,10 @@ std::unique_ptr<CubeReader> select_from_cube(std::unique_ptr<CubeReader> source,
 
 ReplicatedCube select_from_cube(ReplicatedCube source, const CubeSelection& selection,
                                 const DiagnosticSink& sink) {
-  ReplicatedCube result{
-      select(std::move(source.mean), selection, source.has_errors(), sink), {}, std::move(source.samples)};
+  ReplicatedCube result{select(std::move(source.mean), selection, source.has_errors(), sink),
+                        {},
+                        std::move(source.samples),
+                        source.least_replicates};
   for (auto& replicate : source.replicates)
     result.replicates.push_back(select(std::move(replicate), selection, true, {}));
   return result;

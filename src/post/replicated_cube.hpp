@@ -18,7 +18,8 @@ namespace kiloband {
 struct ReplicatedCube {
   std::unique_ptr<CubeReader> mean;
   std::vector<std::unique_ptr<CubeReader>> replicates;  // empty: no error bars; at least 2 otherwise
-  std::vector<double> samples;                          // of each replicate
+  std::vector<double> samples;                          // of each replicate; 0: it was never begun
+  uint32_t least_replicates = 0;                        // that a pixel with two or more has
 
   bool has_errors() const { return !replicates.empty(); }
   /// The same with `change` applied to each cube.
@@ -26,13 +27,18 @@ struct ReplicatedCube {
       const std::function<std::unique_ptr<CubeReader>(std::unique_ptr<CubeReader>)>& change) &&;
 };
 
-/// Standard error of a mean from its values in the replicates; NaN with fewer than two.
+/// Standard error of a mean from its values in the replicates. Those that have no value (NaN: an interrupted render has not reached all
+/// that it is of) are left out; NaN with fewer than two.
 double replicate_error(std::span<const double> values, std::span<const double> samples);
+
+/// How many of these are numbers: one more than the degrees of freedom of their error.
+std::size_t count_values(std::span<const double> values);
 
 /// "X.r03.hdr" of "X.hdr": what the render calls a replicate's cube.
 std::filesystem::path replicate_path(const std::filesystem::path& file, uint32_t replicate);
 
-/// X.hdr with X.r00.hdr, X.r01.hdr ..., which --keep-replicates writes; without them if there are none.
+/// X.hdr with X.r00.hdr, X.r01.hdr ..., which --keep-replicates writes; without them if there are none. The header of X says how many
+/// there are, and how many samples each has; of files before this was stated all are taken to have equally many.
 /// throws InputError  some of them are missing, or belong to another render
 ReplicatedCube open_replicated_cube(const std::filesystem::path& file, const DiagnosticSink& sink = {});
 

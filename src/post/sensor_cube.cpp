@@ -45,6 +45,7 @@ class SensorCube : public CubeReader {
     }
     info_.quantity = Quantity::kIntegral;
     info_.variance = info_.variance && own;
+    info_.replicate_samples.clear();
   }
 
   const CubeInfo& info() const override { return info_; }

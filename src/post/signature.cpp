@@ -1,5 +1,6 @@
 #include "post/signature.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -90,7 +91,7 @@ class Measurement {
   std::vector<double> weights_, surroundings_;
 };
 
-/// The error of function(replicate) over replicates; NaN without any.
+/// The error of function(replicate) over the replicates that have all pixels; NaN without any.
 template <class Function>
 double error_of(std::size_t replicates, const std::vector<double>& samples, const Function& function) {
   if (replicates < 2) return std::numeric_limits<double>::quiet_NaN();
@@ -136,6 +137,14 @@ class BandFigures {
   std::size_t mask_, band_;
 };
 
+/// Those that have all pixels of a mask and its background in a band.
+std::size_t complete_replicates(const std::vector<Radiances>& parts, std::size_t mask, std::size_t band) {
+  return static_cast<std::size_t>(std::ranges::count_if(parts, [&](const Radiances& part) {
+    const bool behind = part.background.empty() || !std::isnan(part.background[mask][band]);
+    return behind && !std::isnan(part.object[mask][band]);
+  }));
+}
+
 void check_background(const CubeInfo& info, const CubeInfo& background) {
   bool same = info.width == background.width && info.height == background.height &&
               info.bands.size() == background.bands.size();
@@ -167,12 +176,18 @@ std::vector<Signature> measure_signatures(ReplicatedCube& cube, ReplicatedCube* 
   std::vector<Signature> result;
   for (std::size_t m = 0; m < masks.size(); ++m) {
     const bool has_background = background || masks[m].surroundings;
-    Signature signature{
-        masks[m].label,      masks[m].pixels.count(), camera.orthographic ? 0 : masks[m].distance_m,
-        measurement.area(m), has_background,          {}};
-    for (std::size_t k = 0; k < whole.object[m].size(); ++k)
+    Signature signature{masks[m].label,
+                        masks[m].pixels.count(),
+                        camera.orthographic ? 0 : masks[m].distance_m,
+                        measurement.area(m),
+                        has_background,
+                        parts.size(),
+                        {}};
+    for (std::size_t k = 0; k < whole.object[m].size(); ++k) {
+      signature.replicates = std::min(signature.replicates, complete_replicates(parts, m, k));
       signature.bands.push_back(
           BandFigures(whole, parts, cube.samples, m, k).figures(signature.area_m2, has_background, paired));
+    }
     result.push_back(std::move(signature));
   }
   return result;

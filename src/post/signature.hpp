@@ -39,6 +39,8 @@ struct Signature {
   double distance_m = 0;  // 0 if the camera is orthographic
   double area_m2 = 0;     // projected area of the pixels at the object
   bool has_background = false;
+  std::size_t replicates =
+      0;  // that the errors come from, in the band with the fewest: those that have all pixels
   std::vector<BandSignature> bands;
 };
 

@@ -125,10 +125,11 @@ void CubeOutput::add_row(const SpectralFilm& film, uint32_t y) {
   ++rows_;
 }
 
-void CubeOutput::set_samples_per_pixel(uint64_t samples) {
-  for (auto& writer : writers_) writer->set_samples_per_pixel(samples);
-  for (auto& replicate : replicate_writers_)
-    for (auto& writer : replicate) writer->set_samples_per_pixel(samples);
+void CubeOutput::set_counts(const SampleCounts& counts) {
+  wait_for_writing();
+  for (auto& writer : writers_) writer->set_counts(counts);
+  for (std::size_t r = 0; r < replicate_writers_.size(); ++r)
+    for (auto& writer : replicate_writers_[r]) writer->set_counts({counts.replicate_samples.at(r), 1, {}});
 }
 
 void CubeOutput::add_aux(std::span<const AuxiliaryPixel> pixels) {

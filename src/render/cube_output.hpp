@@ -19,8 +19,8 @@ class CubeOutput {
   CubeOutput(const FlatScene& scene, const BandSelection& bands, const std::vector<double>& film_scale,
              const SessionSettings& settings, uint32_t replicates, uint32_t rows_per_strip);
 
-  /// What the files state; before the first rows.
-  void set_samples_per_pixel(uint64_t samples);
+  /// What the files state: before the first rows, and again before finish() where it has come to less.
+  void set_counts(const SampleCounts& counts);
   /// Rows that are best written at once (the last may be fewer).
   uint32_t rows_at_once() const { return strip_; }
   /// Appends rows y .. y + rows - 1 of a film that covers the next rows of the image, at most rows_at_once().

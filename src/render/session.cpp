@@ -6,6 +6,7 @@
 #include "render/checkpoint/checkpoint.hpp"
 #include "render/cube_output.hpp"
 #include "render/passes.hpp"
+#include "render/sample_counter.hpp"
 
 namespace kiloband {
 namespace {
@@ -98,21 +99,15 @@ class Session {
     passes_.render(film);
     if (settings_.checkpoint) passes_.keeper()->save_last(film);
     film.add_image_sums(image_sums_, image_counts_);
-    output.set_samples_per_pixel(least_samples(film));
+    SampleCounter counter(replicates_, settings_.keep_replicates);
+    counter.add(film);
+    output.set_counts(counter.counts());
     write(film, output);
     finish(output);
   }
 
   CubeOutput make_output() const {
     return {scene_, bands_, backend_.film_scale(), settings_, replicates_, strip_};
-  }
-
-  static uint64_t least_samples(const SpectralFilm& film) {
-    uint64_t least = ~0ull;
-    for (uint32_t y = 0; y < film.rect().height; ++y) {
-      for (uint32_t x = 0; x < film.rect().width; ++x) least = std::min(least, film.samples(x, y));
-    }
-    return least;
   }
 
   void finish(CubeOutput& output) {
@@ -126,18 +121,22 @@ class Session {
     report_.streamed = true;
     passes_.expect(image.pixels() * *settings_.stop.samples_per_pixel, 0);
     CubeOutput output = make_output();
-    output.set_samples_per_pixel(*settings_.stop.samples_per_pixel);
+    SampleCounter counter(replicates_, settings_.keep_replicates);
+    output.set_counts(counter.expected(*settings_.stop.samples_per_pixel));
     for (uint32_t y = 0; y < image.height; y += strip_) {
       const PixelRect rect{image.x0, image.y0 + y, image.width, std::min(strip_, image.height - y)};
       if (stop_) {
         output.write_missing(rect);
+        counter.add_missing();
         continue;
       }
       SpectralFilm film(rect, options);
       passes_.render(film);
       film.add_image_sums(image_sums_, image_counts_);
+      counter.add(film);
       write(film, output);
     }
+    output.set_counts(counter.counts());
     finish(output);
   }
 

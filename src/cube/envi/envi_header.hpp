@@ -81,6 +81,7 @@ inline constexpr std::string_view kEnviQuantityKey = "kiloband quantity";
 inline constexpr std::string_view kEnviContentKey = "kiloband content";
 inline constexpr std::string_view kEnviSamplesKey = "kiloband samples per pixel";
 inline constexpr std::string_view kEnviReplicatesKey = "kiloband replicates";
+inline constexpr std::string_view kEnviReplicateSamplesKey = "kiloband replicate samples";
 inline constexpr std::string_view kEnviMinKey = "kiloband band minimum";
 inline constexpr std::string_view kEnviMaxKey = "kiloband band maximum";
 inline constexpr std::string_view kEnviDerivedKey = "kiloband derived bands";

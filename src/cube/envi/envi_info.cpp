@@ -95,6 +95,15 @@ Quantity read_quantity(const EnviHeader& header, const DiagnosticSink& sink) {
   throw InputError(header.where(*entry) + " '" + printable(entry->value) + "': must be integral or density");
 }
 
+std::vector<uint64_t> read_replicate_samples(const EnviHeader& header) {
+  const EnviHeader::Entry* entry = header.find(kEnviReplicateSamplesKey);
+  if (!entry) return {};
+  auto samples = parse_counts(entry->value);
+  if (!samples)
+    throw InputError(header.where(*entry) + " '" + printable(entry->value) + "': must be whole numbers");
+  return *std::move(samples);
+}
+
 /// Everything that has no other meaning. Only our own files encode special characters.
 void read_metadata(const EnviHeader& header, bool own, CubeInfo& info) {
   for (const EnviHeader::Entry& entry : header.entries()) {
@@ -143,6 +152,7 @@ CubeInfo read_envi_info(const EnviHeader& header, const EnviStorage& storage, co
   info.holds_variances = content && content->value == "variance";
   info.samples_per_pixel = header.count(kEnviSamplesKey, UINT64_MAX, 0);
   info.replicates = static_cast<uint32_t>(header.count(kEnviReplicatesKey, UINT32_MAX, 0));
+  info.replicate_samples = read_replicate_samples(header);
   if (!own) {
     check_calibration(header, sink);
     note_bad_bands(header, storage.bands, sink);

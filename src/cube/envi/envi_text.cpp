@@ -115,6 +115,9 @@ std::string envi_header_text(const CubeInfo& info, EnviContent content) {
   if (content != EnviContent::kValues) return text;
   if (info.samples_per_pixel > 0) add(text, kEnviSamplesKey, std::to_string(info.samples_per_pixel));
   if (info.replicates > 0) add(text, kEnviReplicatesKey, std::to_string(info.replicates));
+  if (!info.replicate_samples.empty())
+    add_list(text, kEnviReplicateSamplesKey, info.replicate_samples.size(),
+             [&](std::size_t r) { return std::to_string(info.replicate_samples[r]); });
   if (info.variance) add(text, kEnviVarianceKey, "1");
   if (!info.aux.empty()) add(text, kEnviAuxKey, "1");
   add_metadata(text, info);

@@ -31,8 +31,12 @@ class EnviPart {
     data_.preallocate(uint64_t{width_} * height_ * bands_ * sizeof(float));
   }
 
+  /// Again where the cube states less than before: empty lines take the place of what is gone.
   void write_header(const CubeInfo& info, EnviContent content) {
-    header_.write_at(0, envi_header_text(info, content));
+    std::string text = envi_header_text(info, content);
+    if (text.size() < header_bytes_) text.resize(header_bytes_, '\n');
+    header_bytes_ = text.size();
+    header_.write_at(0, text);
   }
 
   /// values are [row][x][band]; change makes of them what is written, as to_planes() has it.
@@ -70,6 +74,7 @@ class EnviPart {
   uint32_t width_, height_;
   std::size_t bands_;
   std::vector<float> buffer_;
+  std::size_t header_bytes_ = 0;
   AtomicFile data_, header_;
 };
 
@@ -99,7 +104,11 @@ class EnviWriter : public CubeWriter {
     if (!info.aux.empty()) aux_ = std::make_unique<EnviPart>(stem_, info, EnviContent::kAux);
   }
 
-  void set_samples_per_pixel(uint64_t samples) override { info_.samples_per_pixel = samples; }
+  void set_counts(const SampleCounts& counts) override {
+    info_.samples_per_pixel = counts.samples_per_pixel;
+    info_.replicates = counts.replicates;
+    info_.replicate_samples = counts.replicate_samples;
+  }
 
   void write_rows(const CubeRows& strip) override {
     order_.accept(strip);
@@ -125,6 +134,7 @@ class EnviWriter : public CubeWriter {
   /// follow, the main header comes last.
   void close(FileSet& files) override {
     order_.finish();
+    values_->write_header(info_, EnviContent::kValues);
     files.before([this] {
       remove_output(values_->header().name());
       if (!variance_) remove_stale(stem_, EnviContent::kVariance);

@@ -53,7 +53,7 @@ void insert_metadata(Imf::Header& header, const CubeInfo& info) {
 
 bool is_reserved_exr_attribute(const std::string& name, const Imf::ChannelList& channels) {
   // Names of the EXR standard and of the spectral layout, and ours.
-  constexpr std::array<std::string_view, 26> kReserved = {"channels",
+  constexpr std::array<std::string_view, 27> kReserved = {"channels",
                                                           "compression",
                                                           "dataWindow",
                                                           "displayWindow",
@@ -78,7 +78,8 @@ bool is_reserved_exr_attribute(const std::string& name, const Imf::ChannelList& 
                                                           kExrBandsAttribute,
                                                           kExrAuxAttribute,
                                                           kExrSamplesAttribute,
-                                                          kExrReplicatesAttribute};
+                                                          kExrReplicatesAttribute,
+                                                          kExrReplicateSamplesAttribute};
   for (const std::string_view reserved : kReserved)
     if (name == reserved) return true;
   return parse_spectral_name(name).has_value() || channels.findChannel(name) != nullptr;
@@ -108,6 +109,17 @@ ExrLayout plan_exr(const CubeInfo& info, const std::string& where) {
   return layout;
 }
 
+std::map<std::string, std::string> exr_count_texts(const CubeInfo& info) {
+  std::map<std::string, std::string> texts;
+  if (info.samples_per_pixel > 0) texts[kExrSamplesAttribute] = std::to_string(info.samples_per_pixel);
+  if (info.replicates > 0) texts[kExrReplicatesAttribute] = std::to_string(info.replicates);
+  for (const uint64_t samples : info.replicate_samples) {
+    std::string& list = texts[kExrReplicateSamplesAttribute];
+    list += (list.empty() ? "" : ",") + std::to_string(samples);
+  }
+  return texts;
+}
+
 void write_exr_attributes(Imf::Header& header, const ExrLayout& layout) {
   const CubeInfo& info = layout.info;
   const Imf::Channel channel(Imf::FLOAT);
@@ -126,9 +138,7 @@ void write_exr_attributes(Imf::Header& header, const ExrLayout& layout) {
               info.quantity == Quantity::kDensity ? kExrDensityText : kExrIntegralText);
   insert_text(header, kExrBandsAttribute, bands_text(layout));
   if (!info.aux.empty()) insert_text(header, kExrAuxAttribute, aux_text(info));
-  if (info.samples_per_pixel > 0)
-    insert_text(header, kExrSamplesAttribute, std::to_string(info.samples_per_pixel));
-  if (info.replicates > 0) insert_text(header, kExrReplicatesAttribute, std::to_string(info.replicates));
+  for (const auto& [name, text] : exr_count_texts(info)) insert_text(header, name, text);
   insert_metadata(header, info);
 }
 

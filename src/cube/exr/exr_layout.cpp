@@ -219,6 +219,8 @@ ExrLayout read_exr_layout(const Imf::Header& header, const std::string& where, c
   read_metadata(header, layout.info);
   layout.info.samples_per_pixel = count_attribute(header, kExrSamplesAttribute);
   layout.info.replicates = static_cast<uint32_t>(count_attribute(header, kExrReplicatesAttribute));
+  if (const auto samples = text_attribute(header, kExrReplicateSamplesAttribute))
+    layout.info.replicate_samples = parse_counts(*samples).value_or(std::vector<uint64_t>{});
   check_cube_info(layout.info, where);
   return layout;
 }

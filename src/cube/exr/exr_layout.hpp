@@ -21,6 +21,9 @@ struct ExrLayout {
 /// throws InputError  an auxiliary plane has the name of another channel
 ExrLayout plan_exr(const CubeInfo& info, const std::string& where);
 
+/// Of the attributes that state samples and replicates: name and text of those that are known.
+std::map<std::string, std::string> exr_count_texts(const CubeInfo& info);
+
 /// Adds channels and attributes. Only width and height of the header must be set before.
 void write_exr_attributes(Imf::Header& header, const ExrLayout& layout);
 
@@ -34,6 +37,7 @@ inline constexpr char kExrBandsAttribute[] = "kilobandBands";
 inline constexpr char kExrAuxAttribute[] = "kilobandAux";
 inline constexpr char kExrSamplesAttribute[] = "kilobandSamplesPerPixel";
 inline constexpr char kExrReplicatesAttribute[] = "kilobandReplicates";
+inline constexpr char kExrReplicateSamplesAttribute[] = "kilobandReplicateSamples";
 inline constexpr char kExrQuantityAttribute[] = "bandQuantity";
 inline constexpr char kExrUnits[] = "W.m^-2.sr^-1";
 inline constexpr char kExrDensityText[] = "mean spectral radiance of the band, W.m^-2.sr^-1.nm^-1";

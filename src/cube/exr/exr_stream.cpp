@@ -19,6 +19,7 @@ ExrOutputStream::ExrOutputStream(AtomicFile& file) : OStream(file.name().c_str()
 void ExrOutputStream::write(const char bytes[], int count) {
   // Header fields are collected; tiles are larger than the buffer and go straight to the file.
   const std::span<const char> data(bytes, static_cast<std::size_t>(count));
+  if (in_head_) head_.append(bytes, data.size());
   if (buffer_.size() + data.size() > kBufferBytes) flush();
   if (data.size() <= kBufferBytes) {
     buffer_.insert(buffer_.end(), data.begin(), data.end());
@@ -34,6 +35,7 @@ void ExrOutputStream::write(const char bytes[], int count) {
 }
 
 void ExrOutputStream::seekp(uint64_t position) {
+  in_head_ = in_head_ && position == tellp();
   flush();
   position_ = position;
 }

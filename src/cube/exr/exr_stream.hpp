@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfIO.h>
 
 #include <exception>
+#include <string>
 #include <vector>
 
 #include "files/atomic_file.hpp"
@@ -19,6 +20,9 @@ class ExrOutputStream : public Imf::OStream {
   void write(const char bytes[], int count) override;
   uint64_t tellp() override { return position_ + buffer_.size(); }
   void seekp(uint64_t position) override;
+  /// The first bytes of the file, as they came: up to where something was written elsewhere or head_ends() was called.
+  void head_ends() { in_head_ = false; }
+  const std::string& head() const { return head_; }
   /// Empties the buffer into the file.
   void flush();
   /// Throws the first failure again, if there was one.
@@ -27,6 +31,8 @@ class ExrOutputStream : public Imf::OStream {
  private:
   AtomicFile& file_;
   std::vector<char> buffer_;  // bytes from position_ on that are not in the file yet
+  std::string head_;
+  bool in_head_ = true;
   uint64_t position_ = 0;
   std::exception_ptr failure_;
 };

@@ -6,6 +6,8 @@
 #include <OpenEXR/ImfTiledOutputFile.h>
 
 #include <algorithm>
+#include <map>
+#include <stdexcept>
 
 #include "cube/band_planes.hpp"
 #include "cube/cube_layout.hpp"
@@ -63,7 +65,11 @@ class ExrWriter : public CubeWriter {
     file_.preallocate(uint64_t{info.width} * info.height * slots_ * sizeof(float) + tiles * kChunkOverhead);
   }
 
-  void set_samples_per_pixel(uint64_t samples) override { layout_.info.samples_per_pixel = samples; }
+  void set_counts(const SampleCounts& counts) override {
+    layout_.info.samples_per_pixel = counts.samples_per_pixel;
+    layout_.info.replicates = counts.replicates;
+    layout_.info.replicate_samples = counts.replicate_samples;
+  }
 
   void write_rows(const CubeRows& strip) override {
     order_.accept(strip);
@@ -83,7 +89,10 @@ class ExrWriter : public CubeWriter {
   void close(FileSet& files) override {
     order_.finish();
     output_.reset();  // writes the table of tile offsets
-    guarded([&] { stream_.flush(); });
+    guarded([&] {
+      rewrite_counts();
+      stream_.flush();
+    });
     files.add(file_);
   }
 
@@ -110,6 +119,24 @@ class ExrWriter : public CubeWriter {
     write_exr_attributes(header, layout_);
     output_ = std::make_unique<Imf::TiledOutputFile>(stream_, header, 0);
     output_->setFrameBuffer(frame_buffer());
+    stream_.head_ends();
+    counts_ = exr_count_texts(layout_.info);
+  }
+
+  /// The header came before the rows. Where there turned out to be fewer samples its texts are replaced by shorter ones, and blanks.
+  void rewrite_counts() {
+    std::map<std::string, std::string> now = exr_count_texts(layout_.info);
+    for (const auto& [name, text] : counts_) {
+      std::string replacement = now.contains(name) ? now[name] : "0";
+      if (replacement == text) continue;
+      if (replacement.size() > text.size()) throw std::logic_error(name + " has become longer");
+      replacement.resize(text.size(), ' ');
+      const std::string before = name + '\0' + "string" + '\0';
+      const std::size_t found = stream_.head().find(before);
+      if (found == std::string::npos) throw std::logic_error(name + " is not in the header");
+      stream_.seekp(found + before.size() + sizeof(uint32_t));  // behind the text's length
+      stream_.write(replacement.data(), static_cast<int>(replacement.size()));
+    }
   }
 
   /// The staging buffer is [y][slot][x] of one tile, the order of an uncompressed chunk up
@@ -169,6 +196,7 @@ class ExrWriter : public CubeWriter {
   AtomicFile file_;
   ExrOutputStream stream_;
   std::unique_ptr<Imf::TiledOutputFile> output_;
+  std::map<std::string, std::string> counts_;  // as the header has them
 };
 
 }  // namespace

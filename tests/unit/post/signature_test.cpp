@@ -107,6 +107,10 @@ TEST(Replicates, ErrorByHand) {
   const std::vector<double> values{1, 2, 6}, samples{1, 2, 1};
   EXPECT_NEAR(replicate_error(values, samples), std::sqrt(14.75 / 8), 1e-15);
   EXPECT_TRUE(std::isnan(replicate_error(std::vector<double>{1}, std::vector<double>{1})));
+  // What has no value is left out, with its samples.
+  const std::vector<double> gaps{1, std::nan(""), 2, 6}, all{1, 9, 2, 1};
+  EXPECT_EQ(replicate_error(gaps, all), replicate_error(values, samples));
+  EXPECT_EQ(count_values(gaps), 3u);
 }
 
 /// A cube of 4 x 2 pixels in two channels, its object in the two pixels of the left column, and two
@@ -243,8 +247,9 @@ TEST_F(Signatures, ReplicatesMustBeThoseOfTheCube) {
   for (const char* end : {".hdr", ".img"})
     std::filesystem::copy_file(folder / (std::string("b") + end), folder / (std::string("a") + end),
                                std::filesystem::copy_options::overwrite_existing);
-  EXPECT_EQ(error(),
-            "a.r00.hdr ...: the replicates' mean is not this cube's (of another render?): remove them");
+  EXPECT_EQ(
+      error(),
+      "a.r00.hdr ...: the replicates' mean is not this cube's (of another render, or of an interrupted one?): move them elsewhere");
   write("a.hdr", 8, 2, 0.5f);
   std::filesystem::copy_file(folder / "a.r00.hdr", folder / "a.r01.hdr",
                              std::filesystem::copy_options::overwrite_existing);
@@ -266,6 +271,44 @@ TEST_F(Signatures, MemoryIsThatOfAllFilesRead) {
   EXPECT_EQ(one->floats_held(), 1u + 2u);
   const auto all = with_replicate_variance(select_from_cube(open_replicated_cube(file), selection));
   EXPECT_EQ(all->floats_held(), 2u + (1 + 4) * (1u + 2u));
+}
+
+/// An interrupted render: the last replicate has the left half alone, where the image is four times brighter. Errors of
+/// regions are those of the replicates that have all of it.
+TEST_F(Signatures, ErrorsComeFromReplicatesThatHaveTheWholeRegion) {
+  const auto file = write("a.hdr", 8, 2, 0.5f, 3);
+  Cube last = read_cube(folder / "a.r02.hdr");
+  for (std::size_t p = 0; p < 8; ++p)
+    for (std::size_t k = 0; k < 2; ++k)
+      if (p % 4 >= 2) last.mean[2 * p + k] = std::nanf("");
+  write_cube_file(last, folder / "a.r02.hdr", 2);
+  ReplicatedCube cube = open_replicated_cube(file);
+  const auto table = [&](const PixelRect& region) {
+    Messages messages;
+    write_csv(cube, folder / "t.csv", {region}, messages.sink());
+    return std::pair{read_file(folder / "t.csv"), messages.texts};
+  };
+  // Sums over the row are 14 and 28, the first two replicates' off by 0.5 + 3 * 0.25 and its double.
+  const auto [whole, said] = table({0, 0, 4, 1});
+  EXPECT_EQ(whole,
+            "channel,min_nm,max_nm,value,standard_error\n425nm,400,450,3.5,0.3125\n475nm,450,500,7,0.625\n");
+  EXPECT_EQ(
+      said,
+      std::vector<std::string>{
+          "region 0,0,4,1: standard errors come from 2 of 3 replicates: the others do not have all its pixels"});
+  EXPECT_EQ(table({0, 0, 2, 2}).second, std::vector<std::string>{});
+}
+
+/// A mean over the pixels that have values is not that of the region: it is said how many lack them.
+TEST_F(Signatures, PixelsWithoutValuesAreCounted) {
+  Cube cube = make_cube(4, 2, equal_bands(400, 500, 2));
+  fill(cube, 8, 2, 0);
+  for (std::size_t k = 0; k < 2; ++k) cube.mean[2 * 3 + k] = std::nanf("");
+  write_cube_file(cube, folder / "a.hdr", 2);
+  Messages messages;
+  write_csv(*open_cube(folder / "a.hdr"), folder / "t.csv", {{0, 0, 4, 1}}, messages.sink());
+  EXPECT_EQ(messages.texts,
+            std::vector<std::string>{"region 0,0,4,1: 1 of 4 pixels have no value and are left out"});
 }
 
 TEST_F(Signatures, ReplicatesGiveErrorsToSumsAndRegions) {

@@ -1,6 +1,7 @@
 // The render session: whole, streamed and held renders are the same render; when it stops.
 #include <algorithm>
 
+#include "post/replicated_cube.hpp"
 #include "tests/unit/render/session_fixture.hpp"
 
 namespace kiloband::session_test {
@@ -70,6 +71,80 @@ TEST_F(SessionTest, HeldReplicatesInAScratchFileChangeNothing) {
   const test::Cube a = read("memory.hdr"), b = read("scratch.hdr");
   expect_same(a.mean, b.mean, 0);
   expect_same(a.variance, b.variance, 0);
+}
+
+/// What the header says of replicates is what stands behind each of its variances: here two, of 32 that were wanted.
+TEST_F(SessionTest, InterruptedRendersStateTheReplicatesThatTheyHave) {
+  settings_.stop.samples_per_pixel = 2048;
+  settings_.replicates = 32;
+  for (const bool held : {false, true}) {
+    settings_.keep_replicates = held;
+    std::atomic<bool> stop{false};
+    const RenderReport report =
+        run(*backend(), "part.hdr", stop, [&](const Progress& p) { stop = p.fraction > 1.5 / 32; });
+    ASSERT_GT(report.samples_per_pixel, 64u);
+    ASSERT_LT(report.largest_samples_per_pixel, 128u);
+    const CubeInfo info = open_cube(folder_ / "part.hdr")->info();
+    EXPECT_EQ(info.samples_per_pixel, report.samples_per_pixel);
+    EXPECT_EQ(info.replicates, 2u) << held;
+  }
+}
+
+/// A replicate that has a tenth of the samples has a tenth of the weight.
+TEST_F(SessionTest, InterruptedReplicatesAreWeightedByTheirSamples) {
+  settings_.stop.samples_per_pixel = 1024;
+  settings_.replicates = 3;
+  settings_.keep_replicates = true;
+  for (const char* name : {"part.hdr", "part.exr"}) {
+    std::atomic<bool> stop{false};
+    const RenderReport report =
+        run(*backend(), name, stop, [&](const Progress& p) { stop = p.fraction > 0.35; });
+    ASSERT_GT(report.samples_per_pixel, 342u);
+    const ReplicatedCube cube = open_replicated_cube(folder_ / name);
+    EXPECT_EQ(cube.samples,
+              (std::vector<double>{342, static_cast<double>(report.samples_per_pixel - 342), 0}));
+    const test::Cube mean = test::read_cube(*cube.mean);
+    const std::vector<double> variances_samples(cube.samples.begin(), cube.samples.begin() + 2);
+    const test::Cube a = test::read_cube(*cube.replicates[0]), b = test::read_cube(*cube.replicates[1]);
+    EXPECT_EQ(a.info.samples_per_pixel, 342u);
+    std::size_t exact = 0;  // pixels of blocks that the last part did not reach: all numbers are as stated
+    for (std::size_t i = 0; i < mean.mean.size(); ++i) {
+      const double n = cube.samples[1], pooled = (342 * a.mean[i] + n * b.mean[i]) / (342 + n);
+      exact += std::abs(pooled - mean.mean[i]) <= 1e-5 * mean.mean[i];
+      const double error =
+          replicate_error(std::vector<double>{a.mean[i], b.mean[i], std::nan("")}, cube.samples);
+      const double alone = replicate_error(std::vector<double>{a.mean[i], b.mean[i]}, variances_samples);
+      ASSERT_EQ(error, alone);
+    }
+    EXPECT_GT(exact, mean.mean.size() / 10);
+  }
+}
+
+/// Strips are written before it is known that others will not be rendered.
+TEST_F(SessionTest, InterruptedStripsStateWhatTheyHave) {
+  settings_.stop.samples_per_pixel = 200;
+  settings_.replicates = 2;
+  settings_.memory_budget_bytes = 100000;
+  settings_.keep_replicates = true;
+  for (const char* name : {"part.hdr", "part.exr"}) {
+    std::atomic<bool> stop{false};
+    const RenderReport report =
+        run(*backend(), name, stop, [&](const Progress& p) { stop = p.fraction > 0.4; });
+    EXPECT_TRUE(report.streamed);
+    EXPECT_EQ(report.samples_per_pixel, 0u);
+    const CubeInfo info = open_cube(folder_ / name)->info();
+    EXPECT_EQ(info.samples_per_pixel, 0u);
+    EXPECT_EQ(info.replicates, 2u);
+    EXPECT_EQ(info.replicate_samples.size(), 2u);
+    EXPECT_GT(info.replicate_samples[0], 0u);
+    EXPECT_TRUE(open_replicated_cube(folder_ / name).has_errors());
+    EXPECT_EQ(read(name).mean.size(), kSize * kSize * 5u);
+  }
+  const RenderReport all = run(*backend(), "all.exr");
+  EXPECT_TRUE(all.streamed);
+  const CubeInfo info = open_cube(folder_ / "all.exr")->info();
+  EXPECT_EQ(info.samples_per_pixel, 200u);
+  EXPECT_EQ(info.replicate_samples, (std::vector<uint64_t>{100, 100}));
 }
 
 TEST_F(SessionTest, InterruptedStripsBecomeNan) {
