@@ -170,7 +170,8 @@ stats::Comparison compare_independent(const CompareSide& a, const CompareSide& b
 OutputFiles output_files(const CompareOptions& o) {
   OutputFiles files;
   for (const SideOptions* side : {&o.a, &o.b}) {
-    for (const std::string& file : split_files(side->files)) files.inputs.push_back({side->name, file});
+    for (const std::string& file : split_files(side->files)) add_cube_input(files, side->name, file);
+    if (side->variance) add_cube_input(files, side->name + "'s variances", *side->variance);
   }
   if (o.json) files.others.push_back({"--json", *o.json});
   return files;

@@ -46,8 +46,8 @@ bool is_table(const ConvertOptions& options) {
 
 OutputFiles output_files(const ConvertOptions& options) {
   OutputFiles files;
-  files.inputs = options.places.inputs();
-  files.inputs.push_back({"the cube", options.in});
+  options.places.add_inputs(files);
+  add_cube_input(files, "the cube", options.in);
   if (options.wavelengths && is_file(*options.wavelengths))
     add_inputs(files, "--wavelengths", {*options.wavelengths});
   if (is_table(options))

@@ -240,6 +240,14 @@ OutputFiles checked_files(const RenderOptions& options) {
   return files;
 }
 
+/// Of what the scene reads nothing may be replaced, by a name that nobody gave least of all.
+LoadedScene load_checked_scene(const RenderOptions& options, OutputFiles files, const DiagnosticSink& sink) {
+  LoadedScene loaded = load_scene(options.scene, sink);
+  for (const auto& file : loaded.files) add_cube_input(files, "a file of the scene", file);
+  check_output_files(files);
+  return loaded;
+}
+
 /// The options, and what the scene asks for besides: auxiliary images unless --aov names some, variances where there can be any.
 RenderOptions with_requests(RenderOptions options, const RequestedImages& requested) {
   if (options.aux.empty()) options.aux = requested.auxiliary;
@@ -258,7 +266,7 @@ int render(const RenderOptions& given) {
   check_scene_file(given.scene.scene);
   const OutputFiles files = checked_files(given);
   check_replicates(given);
-  LoadedScene loaded = load_scene(given.scene, sink);
+  LoadedScene loaded = load_checked_scene(given, files, sink);
   const RenderOptions options = with_requests(given, loaded.description.requested);
   const SessionSettings wanted = session_settings(options, files, loaded.description, sink);
   report_replicates(options, wanted, sink);

@@ -81,8 +81,8 @@ void write_picture(const SensorOptions& o, const std::vector<NamedResponse>& res
 
 OutputFiles output_files(const SensorOptions& o) {
   OutputFiles files;
-  files.inputs = o.places.inputs();
-  files.inputs.push_back({"the cube", o.cube});
+  o.places.add_inputs(files);
+  add_cube_input(files, "the cube", o.cube);
   add_inputs(files, "--response", o.responses);
   for (const std::string& out : o.outputs) {
     if (is_table(out))

@@ -47,16 +47,23 @@ class Claims {
 
 /// All files of a cube: a writer of ENVI cubes also removes the parts that an earlier cube has left.
 void claim_cube(Claims& claims, const std::filesystem::path& cube) {
-  claims.claim("-o", cube);
-  if (lowered_extension(cube) != ".hdr") return;
-  for (const char* end : {".img", ".var.hdr", ".var.img", ".aux.hdr", ".aux.img"})
-    claims.claim("-o", std::filesystem::path(cube).replace_extension(end));
+  for (const auto& file : cube_output_files(cube)) claims.claim("-o", file);
 }
 
 }  // namespace
 
 void add_inputs(OutputFiles& files, const std::string& option, const std::vector<std::string>& names) {
   for (const std::string& name : names) files.inputs.push_back({"the file of " + option, name});
+}
+
+void add_cube_input(OutputFiles& files, const std::string& name, const std::filesystem::path& cube) {
+  const auto add = [&](const std::filesystem::path& one) {
+    for (const auto& file : cube_files(one)) files.inputs.push_back({name, file});
+  };
+  add(cube);
+  std::error_code unknown;  // a name that is too long for a replicate has none
+  for (uint32_t r = 0; std::filesystem::exists(replicate_path(cube, r), unknown); ++r)
+    add(replicate_path(cube, r));
 }
 
 void check_output_files(const OutputFiles& files) {

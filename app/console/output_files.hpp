@@ -26,6 +26,9 @@ struct OutputFiles {
 /// Adds the files that a repeated option names to the inputs, as "the file of --response".
 void add_inputs(OutputFiles& files, const std::string& option, const std::vector<std::string>& names);
 
+/// Adds all files that a cube is read from, and its replicates'.
+void add_cube_input(OutputFiles& files, const std::string& name, const std::filesystem::path& cube);
+
 /// Hours of rendering must not end at a file name: to be called before the scene is read. Cubes are opened by
 /// their writers before the render; what is written after it is tried here. Names that a cube takes are those
 /// of all its files: X.img, X.var.*, X.aux.* of an ENVI cube X.hdr, and its replicates'. Two names are one

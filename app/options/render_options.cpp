@@ -101,6 +101,7 @@ LoadedScene load_scene(const SceneOptions& options, const DiagnosticSink& sink) 
   read.sink = sink;
   if (options.size) read.film_size = parse_size_option(*options.size);
   LoadedScene loaded;
+  read.reads = [&](const std::filesystem::path& file) { loaded.files.push_back(file); };
   loaded.description = read_scene(options.scene, read);
   if (options.max_depth) loaded.description.integrator.max_depth = *options.max_depth;
   loaded.description.integrator.light_selection = light_selection_of(options.light_selection);

@@ -28,6 +28,7 @@ struct SceneOptions {
 struct LoadedScene {
   SceneDescription description;
   ChannelList channels, guide;
+  std::vector<std::filesystem::path> files;  // that the scene names
 };
 
 /// To be called first: a cube in place of a scene would be refused for its first strange byte.

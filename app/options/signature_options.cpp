@@ -118,11 +118,9 @@ void PlaceOptions::add_to(CLI::App& command) {
       "distance of the object in metres (default: from the auxiliary image 'depth')");
 }
 
-std::vector<NamedFile> PlaceOptions::inputs() const {
-  std::vector<NamedFile> files;
-  for (const std::string& mask : masks) files.push_back({"the file of --mask", mask});
-  if (background) files.push_back({"the file of --background", *background});
-  return files;
+void PlaceOptions::add_inputs(OutputFiles& files) const {
+  for (const std::string& mask : masks) add_cube_input(files, "the file of --mask", mask);
+  if (background) add_cube_input(files, "the file of --background", *background);
 }
 
 void write_places(const PlaceOptions& options, const std::filesystem::path& file, const CubeChange& change,

@@ -28,8 +28,8 @@ struct PlaceOptions {
 
   void add_to(CLI::App& command);
   bool any() const { return signature || !pixels.empty() || !regions.empty(); }
-  /// The files that the options read.
-  std::vector<NamedFile> inputs() const;
+  /// Adds the files that the options read.
+  void add_inputs(OutputFiles& files) const;
 };
 
 /// Changes a cube as the command does before anything is measured.

@@ -13,6 +13,13 @@ namespace {
                    "': cannot tell the format of a cube: must end in .exr or .hdr (ENVI)");
 }
 
+/// X.HDR would stand beside the same data as X.hdr.
+void check_envi_name(const std::filesystem::path& file) {
+  if (file.extension() != ".hdr")
+    throw InputError("'" + file.string() +
+                     "': an ENVI header that is written must end in .hdr, in small letters");
+}
+
 }  // namespace
 
 void CubeWriter::finish() {
@@ -35,6 +42,18 @@ void check_holds_radiances(const std::filesystem::path& file, const CubeInfo& in
 void check_cube_name(const std::filesystem::path& file) {
   const std::string extension = lowered_extension(file);
   if (extension != ".exr" && extension != ".hdr") refuse_name(file);
+  if (extension == ".hdr") check_envi_name(file);
+}
+
+std::vector<std::filesystem::path> cube_files(const std::filesystem::path& file) {
+  const std::string extension = lowered_extension(file);
+  if (extension == ".hdr" || extension == ".img") return envi_files(file);
+  return {file};
+}
+
+std::vector<std::filesystem::path> cube_output_files(const std::filesystem::path& file) {
+  if (lowered_extension(file) == ".hdr") return envi_output_files(file);
+  return {file};
 }
 
 std::unique_ptr<CubeWriter> create_cube_writer_from(const std::filesystem::path& file, const CubeInfo& info,
@@ -42,7 +61,10 @@ std::unique_ptr<CubeWriter> create_cube_writer_from(const std::filesystem::path&
   check_cube_info(info, file.string());
   const std::string extension = lowered_extension(file);
   if (extension == ".exr") return create_exr_writer(file, info, rows_per_strip, given);
-  if (extension == ".hdr") return create_envi_writer(file, info, rows_per_strip, given);
+  if (extension == ".hdr") {
+    check_envi_name(file);
+    return create_envi_writer(file, info, rows_per_strip, given);
+  }
   refuse_name(file);
 }
 

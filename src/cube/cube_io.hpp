@@ -78,6 +78,12 @@ class CubeWriter {
 /// throws InputError if create_cube_writer() does not know the extension
 void check_cube_name(const std::filesystem::path& file);
 
+/// What open_cube() of this name reads, as far as it is there: header, data and parts of an ENVI cube, links as given and the files behind
+/// them. Other files are themselves alone.
+std::vector<std::filesystem::path> cube_files(const std::filesystem::path& file);
+/// What a writer of this name writes, or removes if an earlier cube has left it.
+std::vector<std::filesystem::path> cube_output_files(const std::filesystem::path& file);
+
 /// For what converts, sums or weighs values: variances follow other rules.
 /// throws InputError  the cube's values are variances; names the cube that they belong to
 void check_holds_radiances(const std::filesystem::path& file, const CubeInfo& info);

@@ -97,6 +97,9 @@ std::unique_ptr<CubeWriter> create_exr_writer(const std::filesystem::path& file,
                                               uint32_t rows_per_strip, Quantity given);
 std::unique_ptr<CubeWriter> create_envi_writer(const std::filesystem::path& file, const CubeInfo& info,
                                                uint32_t rows_per_strip, Quantity given);
+/// cube_files() and cube_output_files() of ENVI cubes.
+std::vector<std::filesystem::path> envi_files(const std::filesystem::path& file);
+std::vector<std::filesystem::path> envi_output_files(const std::filesystem::path& header);
 std::unique_ptr<CubeReader> open_exr_cube(const std::filesystem::path& file, const DiagnosticSink& sink);
 std::unique_ptr<CubeReader> open_envi_cube(const std::filesystem::path& file, const DiagnosticSink& sink);
 

@@ -128,6 +128,32 @@ TEST(Outputs, QuantityOverridesTheFormatsDefault) {
   EXPECT_EQ(read_cube(folder / "upper.EXR").mean, exr.mean);
 }
 
+/// X.HDR would stand beside the data of X.hdr.
+TEST(Outputs, EnviHeadersHaveSmallLetters) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, small_box({"-o", "x.HDR"}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            "kiloband: 'x.HDR': an ENVI header that is written must end in .hdr, in small letters\n");
+  EXPECT_EQ(folder.list(), std::vector<std::string>{});
+}
+
+/// The data and the parts of a header that a link leads to stand beside it, and are found by both names.
+TEST(Outputs, LinkedHeadersHaveTheirDataBesideThem) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "sub");
+  std::filesystem::create_symlink("sub/x.hdr", folder / "l.hdr");
+  for (int again = 0; again < 2; ++again)
+    ASSERT_EQ(run_program(folder, small_box({"-o", "l.hdr", "--variance", "--aov", "depth"})).code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "l.hdr"));
+  for (const char* name : {"x.hdr", "x.img", "x.var.hdr", "x.var.img", "x.aux.hdr", "x.aux.img"})
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder / "sub" / name)) << name;
+  const Cube a = read_cube(folder / "l.hdr"), b = read_cube(folder / "sub/x.hdr");
+  EXPECT_EQ(a.mean, b.mean);
+  EXPECT_EQ(a.variance, b.variance);
+  EXPECT_EQ(a.aux, b.aux);
+}
+
 TEST(Outputs, ExtensionsInCapitalsMeanTheSame) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_program(folder, small_box({"-o", "a.EXR", "-o", "b.exr"})).code, 0);

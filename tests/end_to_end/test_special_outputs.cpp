@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <map>
+
 #include "tests/end_to_end/support/program.hpp"
 #include "tests/support/special_files.hpp"
 
@@ -188,6 +190,81 @@ TEST(SpecialOutputs, WhatIsReadStays) {
   refused({"sky", "a.exr", "--sun", "field.xml"}, {},
           "--sun field.xml: would replace a file that kiloband sky has not written: remove it, or choose "
           "another name");
+}
+
+std::map<std::string, std::string> contents(const TemporaryFolder& folder) {
+  std::map<std::string, std::string> files;
+  for (const std::string& name : folder.list()) files[name] = folder.read(name);
+  return files;
+}
+
+/// Nothing is rendered over what the scene reads, by the name that nobody has given least of all.
+TEST(SpecialOutputs, WhatTheSceneReadsStays) {
+  const TemporaryFolder folder;
+  for (const char* map : {"dawn.exr", "dusk.hdr", "wood.exr"})
+    ASSERT_EQ(
+        run_program(folder, {"sky", map, "--size", "8x5", "--bands", "400:700:3", "--preview", "wood.png"})
+            .code,
+        0);
+  folder.write("grey.spd", "400 0.5\n700 0.5\n");
+  const auto sky = [](const char* file) {
+    return std::string("<emitter type=\"spectral_envmap\"><string name=\"filename\" value=\"") + file +
+           "\"/></emitter>";
+  };
+  const auto ball = [](const std::string& reflectance) {
+    return "<shape type=\"sphere\"><bsdf type=\"diffuse\">" + reflectance + "</bsdf></shape>";
+  };
+  folder.write("dawn.xml", scene_text(kSensor + kSphere + sky("dawn.exr")));
+  folder.write("dusk.xml", scene_text(kSensor + kSphere + sky("dusk.hdr")));
+  folder.write("part.xml", scene_text(ball(R"(<spectrum name="reflectance" filename="grey.spd"/>)")));
+  folder.write(
+      "ball.xml",
+      scene_text(
+          kSensor + sky("dawn.exr") + R"(<include filename="part.xml"/>)" +
+          ball(
+              R"(<texture type="bitmap" name="reflectance"><string name="filename" value="wood.png"/></texture>)")));
+  const auto before = contents(folder);
+  const auto refused = [&](const char* scene, const Names& outputs, const std::string& message) {
+    const Outcome outcome = run_program(folder, quiet_render(scene, outputs));
+    EXPECT_EQ(outcome.code, 2) << message;
+    EXPECT_EQ(outcome.err, "kiloband: " + message + ": would replace a file of the scene\n");
+    EXPECT_EQ(contents(folder), before);
+  };
+  refused("dawn.xml", {}, "-o dawn.exr");
+  refused("dusk.xml", {"-o", "./dusk.hdr"}, "-o ./dusk.hdr");
+  refused("dusk.xml", {"-o", "a.exr", "--stats", "dusk.img"}, "--stats dusk.img");
+  refused("ball.xml", {"--preview", "wood.png"}, "--preview wood.png");
+  refused("ball.xml", {"--stats", "grey.spd"}, "--stats grey.spd");
+  refused("ball.xml", {"--stats", "part.xml"}, "--stats part.xml");
+}
+
+/// A cube is more than the file that names it.
+TEST(SpecialOutputs, AllFilesOfACubeThatIsReadStay) {
+  const TemporaryFolder folder;
+  render_box(folder);
+  folder.write("x.img", std::string(8, '\1'));
+  folder.write("x.img.hdr",
+               "ENVI\nsamples = 2\nlines = 1\nbands = 2\ndata type = 2\ninterleave = bsq\nbyte order = 0\n"
+               "wavelength units = nm\nwavelength = {500, 600}\nfwhm = {10, 10}\n");
+  const auto before = contents(folder);
+  const auto refused = [&](const Names& arguments, const std::string& message) {
+    const Outcome outcome = run_program(folder, arguments);
+    EXPECT_EQ(outcome.code, 2) << message;
+    expect_text(outcome.err, "kiloband: " + message + "\n");
+    EXPECT_EQ(contents(folder), before);
+  };
+  refused({"convert", "x.img.hdr", "x.hdr", "--select", "0-1"}, "-o x.img: would replace the cube");
+  refused({"sensor", "x.img.hdr", "--response", "xyz", "-o", "x.hdr"}, "-o x.img: would replace the cube");
+  refused({"convert", "box.hdr", "box.HDR", "--select", "0-1"}, "-o box.img: would replace the cube");
+  refused({"convert", "box.img", "box.hdr", "--select", "0-1"}, "-o box.hdr: would replace the cube");
+  refused({"sensor", "box.hdr", "--response", "xyz", "-o", "box.r00.hdr"},
+          "-o box.r00.hdr: would replace the cube");
+  refused({"compare", "box.hdr", "box.hdr", "--paired", "--json", "box.img"},
+          "--json box.img: would replace A");
+  refused({"compare", "box.hdr", "x.img.hdr", "--json", "box.var.img"},
+          "--json box.var.img: would replace A");
+  refused({"compare", "box.r00.hdr", "x.img.hdr", "--variance-a", "box.var.hdr", "--json", "box.var.img"},
+          "--json box.var.img: would replace A's variances");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
+#include "files/output_target.hpp"
 
 namespace kiloband {
 namespace {
@@ -151,6 +152,11 @@ EnviStorage read_envi_storage(const EnviHeader& header) {
 std::filesystem::path envi_stem(const std::filesystem::path& header) {
   std::filesystem::path stem = header;
   return stem.replace_extension();
+}
+
+std::filesystem::path envi_output_stem(const std::filesystem::path& header) {
+  const OutputTarget target = find_output_target(header);
+  return envi_stem(target.special ? header : target.file);
 }
 
 std::filesystem::path envi_file(const std::filesystem::path& stem, EnviContent content,

@@ -72,6 +72,8 @@ std::string envi_header_text(const CubeInfo& info, EnviContent content);
 
 /// X.hdr -> X, the common stem of a cube's files.
 std::filesystem::path envi_stem(const std::filesystem::path& header);
+/// Of a header that is to be written: data and parts stand beside the file that a link leads to.
+std::filesystem::path envi_output_stem(const std::filesystem::path& header);
 std::filesystem::path envi_file(const std::filesystem::path& stem, EnviContent content,
                                 const char* extension);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "cube/cube_text.hpp"
 #include "cube/envi/envi_header.hpp"
 #include "files/input_file.hpp"
+#include "files/output_target.hpp"
 
 namespace kiloband {
 namespace {
@@ -175,8 +177,8 @@ std::filesystem::path find_header(const std::filesystem::path& file) {
                    appended.filename().string() + "' beside it");
 }
 
-/// X.hdr -> X.img or what other programs write; X.img.hdr -> X.img.
-std::filesystem::path find_data(const std::filesystem::path& header) {
+/// X.hdr -> X.img or what other programs write; X.img.hdr -> X.img. Nothing if there is none.
+std::optional<std::filesystem::path> data_beside(const std::filesystem::path& header) {
   const auto stem = envi_stem(header);
   std::error_code unknown;
   for (const char* extension : {".img", "", ".dat", ".raw", ".bsq", ".bil", ".bip"}) {
@@ -184,10 +186,23 @@ std::filesystem::path find_data(const std::filesystem::path& header) {
     candidate += extension;
     if (std::filesystem::is_regular_file(candidate, unknown)) return candidate;
   }
+  return std::nullopt;
+}
+
+/// The header itself, or what it is a link to, if that is what has data beside it.
+std::filesystem::path header_with_data(const std::filesystem::path& header) {
+  const std::filesystem::path target = find_output_target(header).file;
+  return !data_beside(header) && data_beside(target) ? target : header;
+}
+
+std::filesystem::path find_data(const std::filesystem::path& header) {
+  const auto stem = envi_stem(header);
+  if (const auto data = data_beside(header)) return *data;
   throw InputError("'" + header.string() + "': no data file '" + stem.filename().string() +
                    ".img' beside it");
 }
 
+/// The largest double in too few digits is more than any, and meant all the same.
 std::optional<double> ignore_value(const EnviHeader& header) {
   const auto* entry = header.find("data ignore value");
   if (!entry) return std::nullopt;
@@ -205,7 +220,7 @@ std::optional<double> ignore_value(const EnviHeader& header) {
 class EnviReader : public CubeReader {
  public:
   EnviReader(const std::filesystem::path& file, const DiagnosticSink& sink) {
-    const auto path = find_header(file);
+    const auto path = header_with_data(find_header(file));
     const EnviHeader header(path, read_small_file(path, kMaxHeaderBytes));
     const EnviStorage storage = read_envi_storage(header);
     info_ = read_envi_info(header, storage, sink);
@@ -265,7 +280,45 @@ class EnviReader : public CubeReader {
   std::optional<EnviPixels> values_, variance_, aux_;
 };
 
+bool is_file(const std::filesystem::path& file) {
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(file, unknown);
+}
+
+/// Begins as headers do: what is not ENVI (Radiance pictures end in .hdr, too) has one file.
+bool is_envi_header(const std::filesystem::path& file) {
+  std::string line;
+  std::getline(std::ifstream(file), line);
+  return line.find("ENVI") != std::string::npos;
+}
+
 }  // namespace
+
+std::vector<std::filesystem::path> envi_files(const std::filesystem::path& file) {
+  std::filesystem::path header = file;
+  if (lowered_extension(file) == ".img") {
+    const std::filesystem::path replaced = envi_stem(file) += ".hdr";
+    header = is_file(replaced) ? replaced : std::filesystem::path(file) += ".hdr";
+  }
+  std::vector<std::filesystem::path> files{file};
+  if (!is_file(header) || !is_envi_header(header)) return files;
+  header = header_with_data(header);
+  files.push_back(header);
+  if (const auto data = data_beside(header)) files.push_back(*data);
+  for (const EnviContent content : {EnviContent::kVariance, EnviContent::kAux})
+    for (const char* extension : {".hdr", ".img"})
+      if (const auto part = envi_file(envi_stem(header), content, extension); is_file(part))
+        files.push_back(part);
+  return files;
+}
+
+std::vector<std::filesystem::path> envi_output_files(const std::filesystem::path& header) {
+  const auto stem = envi_output_stem(header);
+  std::vector<std::filesystem::path> files{header, envi_file(stem, EnviContent::kValues, ".img")};
+  for (const EnviContent content : {EnviContent::kVariance, EnviContent::kAux})
+    for (const char* extension : {".hdr", ".img"}) files.push_back(envi_file(stem, content, extension));
+  return files;
+}
 
 std::unique_ptr<CubeReader> open_envi_cube(const std::filesystem::path& file, const DiagnosticSink& sink) {
   return std::make_unique<EnviReader>(file, sink);

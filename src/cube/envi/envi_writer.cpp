@@ -22,12 +22,13 @@ constexpr std::size_t kWriteBytes = 8u << 20;     // at most, unless a single ro
 /// One data file with its header: values, variances or auxiliary planes.
 class EnviPart {
  public:
-  EnviPart(const std::filesystem::path& stem, const CubeInfo& info, EnviContent content)
+  EnviPart(const std::filesystem::path& stem, const std::filesystem::path& header, const CubeInfo& info,
+           EnviContent content)
       : width_(info.width),
         height_(info.height),
         bands_(content == EnviContent::kAux ? info.aux.size() : info.bands.size()),
         data_(envi_file(stem, content, ".img")),
-        header_(envi_file(stem, content, ".hdr")) {
+        header_(header) {
     data_.preallocate(uint64_t{width_} * height_ * bands_ * sizeof(float));
   }
 
@@ -95,13 +96,16 @@ void remove_stale(const std::filesystem::path& stem, EnviContent content) {
 class EnviWriter : public CubeWriter {
  public:
   EnviWriter(const std::filesystem::path& file, const CubeInfo& info, uint32_t rows_per_strip, Quantity given)
-      : stem_(envi_stem(file)),
+      : stem_(envi_output_stem(file)),
         info_(info),
         order_(info, rows_per_strip),
         conversion_(info.bands, given, info.quantity),
-        values_(std::make_unique<EnviPart>(stem_, info, EnviContent::kValues)) {
-    if (info.variance) variance_ = std::make_unique<EnviPart>(stem_, info, EnviContent::kVariance);
-    if (!info.aux.empty()) aux_ = std::make_unique<EnviPart>(stem_, info, EnviContent::kAux);
+        values_(std::make_unique<EnviPart>(stem_, file, info, EnviContent::kValues)) {
+    const auto part = [&](EnviContent content) {
+      return std::make_unique<EnviPart>(stem_, envi_file(stem_, content, ".hdr"), info, content);
+    };
+    if (info.variance) variance_ = part(EnviContent::kVariance);
+    if (!info.aux.empty()) aux_ = part(EnviContent::kAux);
   }
 
   void set_counts(const SampleCounts& counts) override {

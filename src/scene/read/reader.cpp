@@ -232,6 +232,8 @@ SceneDescription read_scene_text(std::string text, const std::string& name,
                                  const std::filesystem::path& directory, const ReadOptions& options) {
   SceneTree tree = build_tree(std::move(text), name, directory, options.defines);
   SceneDescription scene = SceneReader(tree, options).run();
+  if (options.reads)
+    for (const auto& file : tree.found) options.reads(file);
   scene.file = name;
   return scene;
 }

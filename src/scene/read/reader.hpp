@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@ namespace kiloband {
 struct ReadOptions {
   std::vector<std::pair<std::string, std::string>> defines;  // -D name=value
   DiagnosticSink sink;
+  std::function<void(const std::filesystem::path&)> reads;  // is told of every file that the scene names
   /// Width and height in pixels that replace the film's (--size); InputError if the film has a crop window.
   std::optional<std::pair<uint32_t, uint32_t>> film_size;
 };

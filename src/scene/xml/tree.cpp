@@ -251,13 +251,13 @@ SceneTree build_tree(std::string text, const std::string& name, const fs::path& 
   return tree;
 }
 
-fs::path find_file(const SceneTree& tree, const std::string& name, const Place& place) {
+fs::path find_file(SceneTree& tree, const std::string& name, const Place& place) {
   if (name.empty()) fail(place, "the file name is empty");
   std::error_code error;
   for (const fs::path& folder : tree.search) {
     const fs::path candidate = folder / name;  // an absolute name replaces the folder
     const fs::file_status status = fs::status(candidate, error);
-    if (fs::is_regular_file(status)) return candidate;
+    if (fs::is_regular_file(status)) return *tree.found.insert(candidate).first;
     if (fs::exists(status)) fail(place, "'" + name + "' is not a regular file");
   }
   fail(place, "file '" + name + "' not found");

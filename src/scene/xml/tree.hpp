@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,9 +46,10 @@ struct Node {
 };
 
 struct SceneTree {
-  std::deque<std::string> files;              // names as Place shows them; addresses are stable
-  std::vector<std::filesystem::path> search;  // where relative file names are looked for, in order
-  std::unique_ptr<Node> root;                 // <scene>
+  std::deque<std::string> files;               // names as Place shows them; addresses are stable
+  std::vector<std::filesystem::path> search;   // where relative file names are looked for, in order
+  std::unique_ptr<Node> root;                  // <scene>
+  std::set<std::filesystem::path> found = {};  // by find_file()
 };
 
 /// Expands a scene's text. `defines` are the -D options.
@@ -55,9 +57,9 @@ struct SceneTree {
 SceneTree build_tree(std::string text, const std::string& name, const std::filesystem::path& directory,
                      const std::vector<std::pair<std::string, std::string>>& defines);
 
-/// The first existing regular file: `name` itself if absolute, else in the search folders.
+/// The first existing regular file: `name` itself if absolute, else in the search folders. The tree remembers it.
 /// throws InputError  "file 'x' not found"
-std::filesystem::path find_file(const SceneTree& tree, const std::string& name, const Place& place);
+std::filesystem::path find_file(SceneTree& tree, const std::string& name, const Place& place);
 
 /// Whole contents of a file.
 /// throws InputError at `place` (unreadable, too large)
