@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "cube/band_lists.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
 #include "post/camera_geometry.hpp"
@@ -83,6 +84,7 @@ class SelectedCube : public CubeReader {
     const bool singles =
         std::any_of(recipes_.begin(), recipes_.end(), [](const Recipe& r) { return r.sources.size() == 1; });
     info_.variance = info_.variance && singles;
+    pick_band_lists(info_.metadata, bands_.size(), singles_only());
     info_.replicate_samples.clear();  // no replicates stand beside what is written
     crop_camera(info_, crop.x0, crop.y0);
   }
@@ -122,6 +124,16 @@ class SelectedCube : public CubeReader {
   }
 
  private:
+  /// The source's bands where each of ours is one of them, or nothing.
+  std::vector<std::size_t> singles_only() const {
+    std::vector<std::size_t> sources;
+    for (const Recipe& recipe : recipes_) {
+      if (recipe.sources.size() != 1) return {};
+      sources.push_back(recipe.sources[0]);
+    }
+    return sources;
+  }
+
   std::size_t source_floats(uint32_t rows, std::size_t planes) const {
     return std::size_t{rows} * source_->info().width * planes;
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "cube/band_lists.hpp"
 #include "cube/channel_cover.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
@@ -46,6 +47,7 @@ class SensorCube : public CubeReader {
     info_.quantity = Quantity::kIntegral;
     info_.variance = info_.variance && own;
     info_.replicate_samples.clear();
+    pick_band_lists(info_.metadata, bands.size(), {});
   }
 
   const CubeInfo& info() const override { return info_; }

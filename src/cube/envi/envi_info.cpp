@@ -104,6 +104,20 @@ std::vector<uint64_t> read_replicate_samples(const EnviHeader& header) {
   return *std::move(samples);
 }
 
+/// Lists keep their braces, on one line.
+std::string metadata_value(const EnviHeader::Entry& entry, bool own) {
+  if (!entry.list) return own ? decode_text(entry.value) : entry.value;
+  std::string line;
+  for (const char c : entry.value) {
+    const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+    if (!blank)
+      line += c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
+  }
+  return "{" + (own ? decode_text(line) : line) + "}";
+}
+
 /// Everything that has no other meaning. Only our own files encode special characters.
 void read_metadata(const EnviHeader& header, bool own, CubeInfo& info) {
   for (const EnviHeader::Entry& entry : header.entries()) {
@@ -111,14 +125,14 @@ void read_metadata(const EnviHeader& header, bool own, CubeInfo& info) {
     std::string key = own ? decode_text(entry.key) : entry.key;
     if (own && entry.key.starts_with(kEnviMetaPrefix))
       key = decode_text(entry.key.substr(kEnviMetaPrefix.size()));
-    if (!key.empty()) info.metadata[key] = own ? decode_text(entry.value) : entry.value;
+    if (!key.empty()) info.metadata[key] = metadata_value(entry, own);
   }
 }
 
-/// Bands that an instrument has marked as bad are data like others here.
-void note_bad_bands(const EnviHeader& header, std::size_t count, const DiagnosticSink& sink) {
+/// Bands that an instrument has marked as bad are data like others here. Copies of ours used to keep the marks of bands that they have not.
+void note_bad_bands(const EnviHeader& header, bool own, std::size_t count, const DiagnosticSink& sink) {
   const EnviHeader::Entry* entry = header.find("bbl");
-  if (!entry) return;
+  if (!entry || (own && !entry->list)) return;
   const std::vector<double> good = header.numbers("bbl", count);
   const auto bad = std::ranges::count(good, 0.0);
   if (bad > 0)
@@ -153,10 +167,8 @@ CubeInfo read_envi_info(const EnviHeader& header, const EnviStorage& storage, co
   info.samples_per_pixel = header.count(kEnviSamplesKey, UINT64_MAX, 0);
   info.replicates = static_cast<uint32_t>(header.count(kEnviReplicatesKey, UINT32_MAX, 0));
   info.replicate_samples = read_replicate_samples(header);
-  if (!own) {
-    check_calibration(header, sink);
-    note_bad_bands(header, storage.bands, sink);
-  }
+  check_calibration(header, sink);
+  note_bad_bands(header, own, storage.bands, sink);
   read_metadata(header, own, info);
   check_cube_info(info, header.file().string());
   return info;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "cube/band_lists.hpp"
 #include "cube/cube_text.hpp"
 #include "cube/envi/envi_header.hpp"
 
@@ -84,8 +85,10 @@ void add_bands(std::string& text, const CubeInfo& info) {
 void add_metadata(std::string& text, const CubeInfo& info) {
   for (const auto& [key, value] : info.metadata) {
     const bool taken = key.starts_with(kEnviMetaPrefix) || is_reserved_envi_key(lowered(key));
-    add(text, (taken ? std::string(kEnviMetaPrefix) : "") + encode_text(key, "={};"),
-        encode_text(value, "{}"));
+    const bool list = is_list(value);  // other programs know it by its braces
+    const std::string encoded =
+        list ? "{" + encode_text(value.substr(1, value.size() - 2), "{}") + "}" : encode_text(value, "{}");
+    add(text, (taken ? std::string(kEnviMetaPrefix) : "") + encode_text(key, "={};"), encoded);
   }
 }
 

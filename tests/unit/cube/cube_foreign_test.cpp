@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "cube_support.hpp"
+#include "post/convert.hpp"
 
 namespace kiloband {
 namespace {
@@ -199,7 +200,35 @@ TEST_F(EnviHeaderText, BadBandsAreToldOf) {
   EXPECT_FALSE(messages.contain("bbl"));
   open(3, "wavelength = {500, 600, 700}\nbbl = {1, 0, 0}\n");
   EXPECT_TRUE(messages.contain("f.hdr:9: bbl: marks 2 of 3 bands as bad: they are read like the others"));
-  EXPECT_EQ(open(1, "bbl = {0}\n")->info().metadata.at("bbl"), "0");
+  EXPECT_EQ(open(1, "bbl = {0}\n")->info().metadata.at("bbl"), "{0}");
+}
+
+/// Lists stay lists, so that other programs read them as before; what a list says of the bands goes with them, and it is
+/// said again of a copy that its values are as they were.
+TEST_F(EnviHeaderText, ListsOfOthersAreCopiedAsLists) {
+  const std::string map = "map info = {UTM, 1.000, 1.000, 5, 6}", bad = "bbl = {1, 0, 1}",
+                    gains = "data gain values = {1, 2, 3}";
+  open(3, "wavelength = {500, 600, 700}\nwavelength units = nm\n" + map + "\n" + bad + "\n" + gains +
+              "\nreflectance scale factor = 10000\nplain = a b\n");
+  CubeSelection selection;
+  convert_cube(folder / "f.hdr", folder / "all.hdr", selection);
+  selection.bands = {2, 1};
+  convert_cube(folder / "f.hdr", folder / "two.hdr", selection);
+  const std::string all = folder.read("all.hdr"), two = folder.read("two.hdr");
+  for (const std::string& line : {map, bad, gains, std::string("plain = a b")})
+    EXPECT_NE(all.find(line + "\n"), std::string::npos) << line << all;
+  for (const std::string& line : {map, std::string("bbl = {1, 0}"), std::string("data gain values = {3, 2}")})
+    EXPECT_NE(two.find(line + "\n"), std::string::npos) << line << two;
+  Messages copied;
+  open_cube(folder / "two.hdr", copied.sink());
+  EXPECT_TRUE(copied.contain("bbl: marks 1 of 2 bands as bad"));
+  EXPECT_TRUE(copied.contain("data gain values: not applied"));
+  EXPECT_TRUE(copied.contain("reflectance scale factor: not applied"));
+  selection.bands = {};
+  selection.rebin = ChannelList{{450, 650, ""}};
+  convert_cube(folder / "f.hdr", folder / "sum.hdr", selection);
+  for (const char* key : {"bbl", "data gain values"})
+    EXPECT_EQ(folder.read("sum.hdr").find(key), std::string::npos);
 }
 
 TEST_F(EnviHeaderText, CalibrationsAreNotAppliedAloud) {
