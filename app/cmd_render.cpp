@@ -218,6 +218,10 @@ void print_problems(const RenderReport& report, const Backend& backend) {
   if (report.underflowed_values > 0) {
     tell("warning: {} values are too small for float32 and became 0\n", report.underflowed_values);
   }
+  if (report.underflowed_variances > 0) {
+    tell("warning: {} variances are too small for float32 and became 0: their errors are not 0\n",
+         report.underflowed_variances);
+  }
   if (report.overflowed_values > 0) {
     tell("warning: {} values are too large for float32 and became infinite or NaN\n",
          report.overflowed_values);

@@ -144,6 +144,7 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["resumed_samples"] = report.resumed_samples;
   add_errors(json, report);
   json["underflowed_values"] = report.underflowed_values;
+  json["underflowed_variances"] = report.underflowed_variances;
   json["overflowed_values"] = report.overflowed_values;
   json["overflowed_variances"] = report.overflowed_variances;
   json["streamed"] = report.streamed;

@@ -1,6 +1,7 @@
 // Tables of pixels and regions (convert.hpp).
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "cube/csv_fields.hpp"
@@ -34,6 +35,15 @@ struct Place {
   }
 };
 
+/// Of a pixel. A variance that is below what floats hold was stored as 0: where the error that may hide there is above the mean's
+/// rounding it is not known.
+float standard_error(float mean, float variance) {
+  using Limits = std::numeric_limits<float>;
+  const double rounding = double{Limits::epsilon()} * mean;
+  if (variance == 0 && mean != 0 && Limits::min() > rounding * rounding) return Limits::quiet_NaN();
+  return std::sqrt(variance);
+}
+
 Place read_pixel(CubeReader& source, uint32_t x, uint32_t y) {
   const std::size_t bands = source.info().bands.size();
   std::vector<float> mean(source.info().width * bands), variance(source.info().variance ? mean.size() : 0);
@@ -41,7 +51,7 @@ Place read_pixel(CubeReader& source, uint32_t x, uint32_t y) {
   Place place;
   for (std::size_t k = x * bands; k < (x + std::size_t{1}) * bands; ++k) {
     place.add_value(mean[k]);
-    if (!variance.empty()) place.add_error(std::sqrt(variance[k]));
+    if (!variance.empty()) place.add_error(standard_error(mean[k], variance[k]));
   }
   return place;
 }

@@ -25,16 +25,17 @@ Counts scale_means(std::size_t bands, const float* __restrict film, const double
   return counts;
 }
 
-uint32_t scale_variances(std::size_t bands, const float* __restrict film, const double* __restrict scale,
-                         double* __restrict exact, float* __restrict stored) {
-  uint32_t infinite = 0;
+Counts scale_variances(std::size_t bands, const float* __restrict film, const double* __restrict scale,
+                       double* __restrict exact, float* __restrict stored) {
+  Counts counts;
   for (std::size_t b = 0; b < bands; ++b) {
     exact[b] = double{film[b]} * scale[b] * scale[b];
     const auto value = static_cast<float>(exact[b]);
     stored[b] = value;
-    infinite += value > kLargest;
+    counts.zero += static_cast<uint32_t>(film[b] > 0) & static_cast<uint32_t>(value == 0);
+    counts.not_finite += value > kLargest;
   }
-  return infinite;
+  return counts;
 }
 
 }  // namespace
@@ -60,8 +61,9 @@ void BandScale::means(const float* film, std::span<double> exact, float* stored,
 }
 
 void BandScale::variances(const float* film, std::span<double> exact, float* stored, RangeLosses& losses) {
-  losses.overflowed_variances +=
-      scale_variances(scale_.size(), bands_of(film), scale_.data(), exact.data(), stored);
+  const Counts counts = scale_variances(scale_.size(), bands_of(film), scale_.data(), exact.data(), stored);
+  losses.underflowed_variances += counts.zero;
+  losses.overflowed_variances += counts.not_finite;
 }
 
 }  // namespace kiloband

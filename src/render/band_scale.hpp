@@ -10,7 +10,8 @@ namespace kiloband {
 
 /// What became 0 or infinite when it was stored as float.
 struct RangeLosses {
-  uint64_t underflowed = 0;           // means above 0 that became 0
+  uint64_t underflowed = 0;  // means above 0 that became 0
+  uint64_t underflowed_variances = 0;
   uint64_t overflowed = 0;            // means that are not finite
   uint64_t overflowed_variances = 0;  // infinite; NaN is none: fewer than two replicates have no variance
 };

@@ -233,6 +233,7 @@ void CubeOutput::finish(RenderReport& report) {
   report.largest_samples_per_pixel = most_;
   report.pixels_without_sample = missing_;
   report.underflowed_values = losses_.underflowed;
+  report.underflowed_variances = losses_.underflowed_variances;
   report.overflowed_values = losses_.overflowed;
   report.overflowed_variances = losses_.overflowed_variances;
   if (settings_.variance) report.errors = errors_.errors();

@@ -77,6 +77,7 @@ struct RenderReport {
   StopReason ended_by = StopReason::kSamples;
   uint64_t pixels_without_sample = 0;
   uint64_t underflowed_values = 0;  // positive in the film, 0 as the file's float
+  uint64_t underflowed_variances = 0;
   /// Means (of replicates too) that are infinite or NaN, their pixel having samples.
   uint64_t overflowed_values = 0;
   uint64_t overflowed_variances = 0;

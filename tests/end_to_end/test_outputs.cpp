@@ -220,10 +220,10 @@ TEST(Outputs, StatisticsHaveTheNamesOfTheContract) {
                        "resumed_samples",
                        "mean_relative_error"};
   Names expected = contract;
-  expected.insert(expected.end(),
-                  {"kernel_launches", "pool_slots", "underflowed_values", "overflowed_values",
-                   "overflowed_variances", "streamed", "interrupted", "features", "ended_by",
-                   "worst_relative_error", "worst_channel", "median_relative_error", "dark_channels"});
+  expected.insert(expected.end(), {"kernel_launches", "pool_slots", "underflowed_values",
+                                   "underflowed_variances", "overflowed_values", "overflowed_variances",
+                                   "streamed", "interrupted", "features", "ended_by", "worst_relative_error",
+                                   "worst_channel", "median_relative_error", "dark_channels"});
   std::sort(expected.begin(), expected.end());
   Names found;
   for (const auto& [name, value] : stats.items()) found.push_back(name);

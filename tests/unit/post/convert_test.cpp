@@ -90,6 +90,19 @@ TEST_F(Convert, InfiniteValuesInTablesAreWarnedOf) {
   EXPECT_EQ(notes, std::vector<std::string>{"3 values or standard errors are infinite"});
 }
 
+/// An error of 0 is exact; of values whose errors have squares below floats it only looks so.
+TEST_F(Convert, ErrorsBelowFloatsAreNotZero) {
+  Cube cube = make_cube(1, 1, equal_bands(400, 500, 4), true);
+  cube.mean = {5e-24f, 1, 0, 5e-24f};
+  cube.variance = {0, 0, 0, 0x1p-120f};
+  write_csv(*open_cube(write(cube, "a.hdr")), folder / "t.csv", {{0, 0, 1, 1}});
+  const std::string text = read_file(folder / "t.csv");
+  EXPECT_NE(text.find(",5e-24,nan\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(",1,0\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(",0,0\n"), std::string::npos) << text;
+  EXPECT_NE(text.find(",5e-24,8.67"), std::string::npos) << text;
+}
+
 TEST_F(Convert, DensitiesAreCopiedWithoutRounding) {
   Cube cube = make_cube(5, 5, equal_bands(400, 500, 7));
   cube.info.quantity = Quantity::kDensity;

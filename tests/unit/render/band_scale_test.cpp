@@ -23,7 +23,8 @@ TEST(BandScale, BandsTakeTheirChannelAndItsScale) {
                                         static_cast<float>(double{0.1f} * 3)}));
   scale.variances(film.data(), exact, stored.data(), losses);
   EXPECT_EQ(exact, (std::vector<double>{double{0.2f} * 1e-30 * 1e-30, double{0.1f} * 3 * 3}));
-  EXPECT_EQ(stored[0], 0);  // that a variance underflows is no loss that anybody sees
+  EXPECT_EQ(stored[0], 0);  // an error bar of 0 where there is one
+  EXPECT_EQ(losses.underflowed_variances, 1u);
   EXPECT_EQ(losses.underflowed + losses.overflowed + losses.overflowed_variances, 0u);
 }
 

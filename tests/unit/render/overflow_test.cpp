@@ -54,5 +54,30 @@ TEST(Overflow, IsCounted) {
   EXPECT_EQ(report.underflowed_values, 0u);
 }
 
+/// Radiances are floats, the squares of their errors are not: an error bar of 0 would say that they are exact.
+TEST(Overflow, VariancesThatVanishAreCounted) {
+  const test::TemporaryFolder folder;
+  using namespace scene_text;
+  const std::string xml = scene(-1, perspective(lookat("0, 0, 3", "0, 0, 0"), 50, film(kSide)) +
+                                        shape("sphere", "") + emitter("constant", ""));
+  SceneDescription description = read_scene_text(xml, "test.xml", ".");
+  std::get<ConstantEmitter>(description.emitters.at(0).model).radiance = Spectrum::constant(1e-26);
+  const FlatScene scene = *compile_scene(description, {parse_channels("400:700:5"), {}, {}});
+  SessionSettings settings;
+  settings.stop.samples_per_pixel = 8;
+  settings.variance = true;
+  settings.outputs = {folder.path() / "dark.hdr"};
+  SamplingSettings sampling;
+  sampling.replicates = session_replicates(settings);
+  const auto backend = cpu::make_backend(std::make_shared<const FlatScene>(scene), {}, sampling, {});
+  const RenderReport report = run_session(scene, {}, *backend, settings, false, {});
+  std::vector<float> mean(kSide * kSide * kBands), variance(mean.size());
+  open_cube(settings.outputs[0])->read_rows(0, kSide, mean, variance);
+  EXPECT_EQ(std::ranges::count(mean, 0.0f), 0);
+  EXPECT_EQ(std::ranges::count(variance, 0.0f), static_cast<std::ptrdiff_t>(variance.size()));
+  EXPECT_GT(report.underflowed_variances, 0u);
+  EXPECT_EQ(report.underflowed_values, 0u);
+}
+
 }  // namespace
 }  // namespace kiloband::overflow_test
