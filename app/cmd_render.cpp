@@ -64,8 +64,9 @@ OutputFiles output_files(const RenderOptions& options) {
 /// Error bars need two replicates: options that contradict this.
 void check_replicates(const RenderOptions& options) {
   if (options.replicates.value_or(kReplicates) >= 2) return;
-  for (const auto& [name, given] : {std::pair{"--target-error", options.target_error.has_value()},
-                                    std::pair{"--variance", options.variance}}) {
+  for (const auto& [name, given] :
+       {std::pair{"--target-error", options.target_error.has_value()},
+        std::pair{"--variance", options.variance}, std::pair{"--keep-replicates", options.keep_replicates}}) {
     if (given)
       throw InputError(
           fmt::format("{} needs error bars, --replicates 1 gives none: must be at least 2", name));

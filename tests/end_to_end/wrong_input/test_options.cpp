@@ -104,6 +104,8 @@ TEST(WrongOption, ChannelsSizeAndStopping) {
            "--target-error needs error bars, --replicates 1 gives none: must be at least 2"},
           {{"--variance", "--replicates", "1"},
            "--variance needs error bars, --replicates 1 gives none: must be at least 2"},
+          {{"--keep-replicates", "--replicates", "1"},
+           "--keep-replicates needs error bars, --replicates 1 gives none: must be at least 2"},
           {{"-D", "res"}, "-D res: must be name=value"},
           {{"-D", "=3"}, "-D =3: must be name=value"},
           {{"-D", "size=3"}, "scene.xml: error: -D size=3: the scene has no parameter '$size'"},
