@@ -141,8 +141,10 @@ class LiveRender final : public ViewedImage, public RenderControls {
 
   bool step() {
     const bool was_ready = state_.is_ready();
+    const uint64_t before = state_.status().newest.revision;
     const bool works = state_.work();
-    if (!was_ready && state_.is_ready()) board_.set_scene(state_.scene_json());
+    if ((!was_ready && state_.is_ready()) || state_.status().newest.revision != before)
+      board_.set_scene(state_.scene_json());
     publish();
     return works;
   }

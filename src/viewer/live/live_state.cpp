@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 #include <utility>
 
 #include "render/error_sums.hpp"
@@ -14,13 +15,15 @@
 namespace kiloband::viewer {
 namespace {
 
-constexpr double kPieceSeconds = 0.15;       // of rendering between two looks at what pages ask for
-constexpr double kMovingSeconds = 0.03;      // of a pass while the camera is moved
-constexpr uint32_t kMostReduction = 8;       // of width and height
-constexpr double kErrorInterval = 2;         // s
-constexpr uint32_t kErrorRows = 8;           // the error is estimated from every 8th row
-constexpr std::size_t kMostChannels = 4096;  // that a page can draw
-constexpr std::size_t kFirstBlocks = 64;     // of a film of which nothing is known yet
+constexpr double kPieceSeconds = 0.15;   // of rendering between two looks at what pages ask for
+constexpr double kMovingSeconds = 0.03;  // of a pass while the camera is moved
+constexpr uint32_t kMostReduction = 8;   // of width and height
+constexpr double kMovingPause = 1;  // s without a step, after which a movement has ended whatever pages say
+constexpr std::chrono::milliseconds kRest{10};  // between two looks at whether it has
+constexpr double kErrorInterval = 2;            // s
+constexpr uint32_t kErrorRows = 8;              // the error is estimated from every 8th row
+constexpr std::size_t kMostChannels = 4096;     // that a page can draw
+constexpr std::size_t kFirstBlocks = 64;        // of a film of which nothing is known yet
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -57,7 +60,11 @@ bool LiveState::work() {
       return true;
     }
     if (failed_ || paused_ || is_done()) return false;
-    render_some();
+    if (is_reduced() && seconds_since(last_moving_) > kMovingPause) move_to(sensor_, false);
+    if (is_reduced() && film_->samples() >= *status_.target_samples)
+      std::this_thread::sleep_for(kRest);
+    else
+      render_some();
   } catch (const std::exception& error) {
     failed_ = true;
     status_.message = error.what();
@@ -118,6 +125,7 @@ std::unique_ptr<LiveFilm> LiveState::make_film(const Sensor& sensor) const {
 
 /// What the camera turns about: what is seen in the middle, or else something as far away as the scene is large.
 void LiveState::look_along_the_axis() {
+  if (!scene_) return;  // compile() does it
   scene_size_ = std::max(1e-6, 2.0 * static_cast<double>(scene_->scene_radius));
   const Film& film = sensor_.film;
   const PixelRect middle{film.crop_x + film.crop_width / 2, film.crop_y + film.crop_height / 2, 1, 1};
@@ -179,6 +187,7 @@ void LiveState::begin_revision() {
 void LiveState::set_camera(const nlohmann::json& wanted) {
   check_members(wanted, {"origin", "target", "up", "fov_deg", "moving", "reset"});
   const bool moving = get_flag(wanted, "moving").value_or(false);
+  if (moving) last_moving_ = Clock::now();
   if (get_flag(wanted, "reset").value_or(false)) {
     move_to(options_.scene.sensor, moving);
     return look_along_the_axis();

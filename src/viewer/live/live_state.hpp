@@ -18,8 +18,8 @@ class LiveState {
   /// interrupt: ends a piece of work early
   LiveState(LiveOptions options, const std::atomic<bool>& interrupt);
 
-  /// A piece of work: compiling, or a pass over the film (over a part of it where passes are long). False: nothing is left
-  /// to do. What goes wrong is told by status(); throws nothing.
+  /// A piece of work: compiling, or a pass over the film (over a part of it where passes are long). A camera that nobody
+  /// has moved for a second is seen at full size from then on, in a new revision. False: nothing is left to do. What goes wrong is told by status(); throws nothing.
   bool work();
 
   /// Null: nothing was compiled.
@@ -56,6 +56,7 @@ class LiveState {
   void set_state();
   uint32_t reduction() const;
   bool is_done() const;
+  bool is_reduced() const { return film_ && film_ == small_.get(); }
 
   LiveOptions options_;
   const std::atomic<bool>& interrupt_;
@@ -71,6 +72,7 @@ class LiveState {
   std::unique_ptr<LiveFilm> full_, small_;
   LiveFilm* film_ = nullptr;
   uint32_t small_factor_ = 0;
+  Clock::time_point last_moving_{};  // when a page has last said that it moves the camera
   bool variance_ = true, paused_ = false, failed_ = false;
 
   ViewStatus status_;

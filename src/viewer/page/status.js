@@ -37,9 +37,13 @@ function samples_text({samples, target_samples}) {
 /** What renders; a CPU has one method. */
 const backend_text = ({backend, method}) => (backend === 'opencl' ? `OpenCL, ${method}` : 'CPU');
 
+/** While the camera moves. */
+const is_reduced = () => Boolean(state.frame && state.frame.width < state.frame.full_width);
+
 function parts_of(status) {
   const live = status.state === 'rendering';
   const parts = [];
+  if (is_reduced()) parts.push(['reduced', `reduced to ${state.frame.width} × ${state.frame.height}`]);
   if (state.scene?.kind === 'scene') {
     parts.push(['samples', samples_text(status)], ['time', duration(status.seconds)]);
     if (live)
@@ -79,7 +83,7 @@ function show_tools() {
   zoom_text.textContent = state.frame && state.zoom ? `${number(100 * state.zoom, 3)} %` : '';
 }
 
-on('status scene', show_status);
+on('status scene frame', show_status);
 on('hover scene', show_pixel);
 on('tool scene zoom frame', show_tools);
 on('connected', () => (id('offline').hidden = state.connected));

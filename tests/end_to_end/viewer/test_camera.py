@@ -54,6 +54,15 @@ class Camera(RenderedPage):
         ActionChains(self.browser.driver).scroll_from_origin(middle, 0, -200).perform()
         self.assert_moved([0, 0, self.distance * (1 - math.exp(-0.3))])
 
+    def test_a_movement_that_nobody_ends(self):
+        """A page that is closed while it moves the camera: who looks next is told of the reduced size, and gets the full one."""
+        self.browser.value("const {post} = await import('/api.js'); await post('/api/camera', {origin: given, moving: true});",
+                           [0.3, 0.273, -0.8])
+        self.browser.wait("return state.frame.width < state.frame.full_width", "a reduced frame")
+        self.assertRegex(self.browser.texts("#status .reduced")[0], r"^reduced to \d+ × \d+$")
+        self.browser.wait("return state.frame.width === state.frame.full_width", "the full size")
+        self.assertEqual(self.browser.texts("#status .reduced"), [])
+
     def test_arrows_orbit(self):
         """0.06 radians about the pivot; a key to the right turns the scene to the right."""
         self.browser.press(Keys.ARROW_RIGHT)

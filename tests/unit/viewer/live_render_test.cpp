@@ -8,8 +8,8 @@
 
 #include "base/temporary_folder.hpp"
 #include "scene/read/reader.hpp"
-#include "src_cpu/cpu_backend.hpp"
 #include "tests/support/messages.hpp"
+#include "tests/unit/viewer/live_wall.hpp"
 #include "viewer/api/selections.hpp"
 #include "viewer/live/camera_view.hpp"
 #include "viewer/live/scene_spectra.hpp"
@@ -20,37 +20,9 @@ namespace {
 using namespace viewer;
 using nlohmann::json;
 
-/// A white wall under a lamp of 1 W m^-2 sr^-1 nm^-1 everywhere, whose radiance is its reflectance.
-const char* const kScene = R"(<scene version='3.0.0'>
-<integrator type='path'><integer name='max_depth' value='3'/></integrator>
-<sensor type='perspective'><float name='fov' value='40'/>
- <transform name='to_world'><lookat origin='0,0,4' target='0,0,0' up='0,1,0'/></transform>
- <film type='hdrfilm'><integer name='width' value='40'/><integer name='height' value='36'/><rfilter type='box'/></film>
-</sensor>
-<shape type='rectangle' id='wall'><transform name='to_world'><scale value='9'/></transform>
- <bsdf type='diffuse' id='paint'><spectrum name='reflectance' value='0.5'/></bsdf></shape>
-<emitter type='constant' id='sky'><spectrum name='radiance' value='1'/></emitter></scene>)";
-
-LiveOptions options(uint64_t samples) {
-  LiveOptions live;
-  live.scene = read_scene_text(kScene, "wall.xml", ".");
-  live.channels = parse_channels("500:600:4");
-  live.scene_name = "wall.xml";
-  live.settings.backend = "cpu";
-  live.settings.method = "dpept-batch";
-  live.settings.max_depth = 3;
-  live.backends.choices = {{"cpu", "this one", {}, {"dpept-batch"}}};
-  live.backends.make = [](const LiveSettings& settings, std::shared_ptr<const FlatScene> scene) {
-    return cpu::make_backend(std::move(scene), {}, settings.sampling, {});
-  };
-  live.samples = samples;
-  live.threads = 2;
-  return live;
-}
-
 class LiveWall : public testing::Test {
  protected:
-  explicit LiveWall(uint64_t samples = 40) : image_(start_live_render(options(samples))) {}
+  explicit LiveWall(uint64_t samples = 40) : image_(start_live_render(wall_options(samples))) {}
 
   void wait_for(const std::string& state) {
     for (int i = 0; i < 3000 && image_->status().state != state; ++i)
@@ -117,7 +89,7 @@ TEST_F(LiveWall, SpectraAreReplacedAndReset) {
 
 /// Member "name" of the wall's metal or glass.
 json material_name(const std::string& bsdf) {
-  std::string text = kScene;
+  std::string text = kWallScene;
   const std::string paint =
       "<bsdf type='diffuse' id='paint'><spectrum name='reflectance' value='0.5'/></bsdf>";
   text.replace(text.find(paint), paint.size(), "<bsdf " + bsdf + "</bsdf>");
