@@ -232,7 +232,8 @@ void LiveState::render_some() {
   if (!interrupt_) measure(some.size(), seconds);
   const bool was_first = film_->passes() == 0;
   const bool is_whole = film_->finish_pass();
-  if (interrupt_ || !(is_whole || was_first)) return;  // parts are shown while there is nothing else
+  // Parts are shown while there is nothing else. A whole pass always: what interrupts the next may be refused.
+  if (!is_whole && (interrupt_ || !was_first)) return;
   ++status_.newest.frame;
   status_.blank = false;
   status_.newest.samples = film_->samples();

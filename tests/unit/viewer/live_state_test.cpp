@@ -71,5 +71,51 @@ TEST_F(LiveStateTest, ACameraThatIsLeftMovingIsSeenAtFullSize) {
   EXPECT_EQ(state_->scene_json()["camera"]["origin"], json({1.0, 0.0, 4.0}));
 }
 
+/// A backend that is interrupted as soon as it has rendered all that it was given, from some call on.
+class LateInterrupt final : public Backend {
+ public:
+  LateInterrupt(std::unique_ptr<Backend> backend, std::atomic<bool>& interrupt)
+      : backend_(std::move(backend)), interrupt_(interrupt) {}
+
+  void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
+              const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override {
+    backend_->render(film, range, blocks, stop, progress);
+    interrupt_ = true;
+  }
+  std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override { return backend_->auxiliary(rect); }
+  std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
+    return backend_->trace(rect, range);
+  }
+  void camera_moved() override { backend_->camera_moved(); }
+  BackendInfo info() const override { return backend_->info(); }
+  BackendStatistics statistics() const override { return backend_->statistics(); }
+  std::vector<double> film_scale() const override { return backend_->film_scale(); }
+  SumRule sum_rule() const override { return backend_->sum_rule(); }
+  uint32_t blocks_at_once(uint32_t samples) const override { return backend_->blocks_at_once(samples); }
+
+ private:
+  std::unique_ptr<Backend> backend_;
+  std::atomic<bool>& interrupt_;
+};
+
+/// A change that is refused may be on its way whenever a pass ends.
+TEST_F(LiveStateTest, EveryWholePassIsAFrame) {
+  LiveOptions options = wall_options(6);
+  options.backends.make = [this, make = options.backends.make](const LiveSettings& settings,
+                                                               std::shared_ptr<const FlatScene> scene) {
+    return std::make_unique<LateInterrupt>(make(settings, std::move(scene)), interrupt_);
+  };
+  start(std::move(options));
+  for (bool works = true; works;) {
+    works = state_->work();
+    interrupt_ = false;  // as the change does that is refused
+  }
+  EXPECT_EQ(state_->status().state, "done");
+  EXPECT_EQ(state_->film()->passes(), 6u);
+  EXPECT_EQ(state_->status().newest.samples, 6u);
+  EXPECT_EQ(state_->status().newest.frame, 6u);
+  EXPECT_TRUE(state_->status().error) << "of the last sample";
+}
+
 }  // namespace
 }  // namespace kiloband::test::live_state_test
