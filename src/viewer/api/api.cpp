@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "viewer/api/json_text.hpp"
@@ -50,6 +53,10 @@ uint64_t parse_count(const Request& request, const std::string& name) {
 
 json stamp_json(const FrameStamp& stamp) {
   return {{"frame", stamp.frame}, {"revision", stamp.revision}, {"samples", stamp.samples}};
+}
+
+bool has_errors(const Curve& curve) {
+  return std::ranges::any_of(curve.standard_error, [](float error) { return !std::isnan(error); });
 }
 
 /// The values of a part of a plane, where the part is given in pixels of the full image.
@@ -206,7 +213,7 @@ Response Api::spectra(const Request& request) {
            {"pixels", curves[i].pixels},
            {"mean", numbers_json(curves[i].mean)},
            {"standard_error",
-            seen.pixels.has_variances() ? numbers_json(curves[i].standard_error) : json(nullptr)}});
+            has_errors(curves[i]) ? numbers_json(curves[i].standard_error) : json(nullptr)}});
     }
   });
   return answer_json(answer);

@@ -12,6 +12,8 @@
 namespace kiloband::viewer {
 namespace {
 
+constexpr float kNoCurve = std::numeric_limits<float>::quiet_NaN();
+
 /// The parts of a text between separators.
 std::vector<std::string_view> parts_of(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -46,11 +48,13 @@ struct CurveSums {
 Curve curve_of(const CurveSums& sums, const PixelSource& source) {
   Curve curve{sums.pixels, {}, {}};
   const double n = static_cast<double>(sums.pixels);
+  const bool is_known = sums.pixels == 1 || source.has_independent_errors();
   for (std::size_t k = 0; k < sums.mean.size(); ++k) {
     const Band& band = source.bands()[k];
     const double scale = source.units()[k] / (band.derived ? 1 : band.channel.width_nm());
     curve.mean.push_back(static_cast<float>(sums.mean[k] / n * scale));  // NaN without pixels
-    curve.standard_error.push_back(static_cast<float>(std::sqrt(sums.variance[k]) / n * scale));
+    curve.standard_error.push_back(is_known ? static_cast<float>(std::sqrt(sums.variance[k]) / n * scale)
+                                            : kNoCurve);
   }
   return curve;
 }

@@ -25,7 +25,8 @@ std::vector<Selection> parse_selections(std::string_view text, uint32_t width, u
 struct Curve {
   uint64_t pixels = 0;  // with a sample
   std::vector<float> mean;
-  /// As if the errors of pixels had nothing to do with each other; NaN where variances are not known.
+  /// NaN where variances are not known, and of several pixels unless their errors are independent: where they share
+  /// wavelengths, the error of their mean may be anything up to that of one.
   std::vector<float> standard_error;
 };
 

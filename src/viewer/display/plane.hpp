@@ -43,6 +43,8 @@ class PixelSource {
   virtual bool has_variances() const = 0;
   /// Variances of the means, [x][band]; NaN where they are not known. Thread-safe.
   virtual void variances(uint32_t y, std::span<float> out) const = 0;
+  /// Whether pixels' errors are known to have nothing to do with each other, so that those of means of pixels follow.
+  virtual bool has_independent_errors() const { return false; }
   /// The sums of all pixels of row y, [x][3]. Thread-safe for different rows, once prepare() was called with the same.
   virtual void sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const;
   /// For sources that keep something for the next time.

@@ -52,6 +52,9 @@ class LiveFilm final : public PixelSource {
   void means(uint32_t y, std::span<float> out) const override;
   bool has_variances() const override { return film_.options().variance; }
   void variances(uint32_t y, std::span<float> out) const override;
+  bool has_independent_errors() const override { return independent_errors_; }
+  /// Of paths that have wavelengths of their own: pixels of a block share nothing.
+  void set_independent_errors() { independent_errors_ = true; }
   void sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const override;
   void prepare(const ThreeSums& sums) const override;
 
@@ -73,6 +76,7 @@ class LiveFilm final : public PixelSource {
   SpectralFilm film_;
   std::vector<Band> bands_;
   std::vector<double> units_;
+  bool independent_errors_ = false;
   std::vector<uint64_t> additions_;  // [block]: how often its sums have been added to
   uint32_t replicate_ = 0, first_ = 0;
   mutable std::deque<KeptSums> kept_;  // of the sums that were asked for last; rows belong to who reads them

@@ -119,8 +119,10 @@ void LiveState::compile() {
 std::unique_ptr<LiveFilm> LiveState::make_film(const Sensor& sensor) const {
   std::vector<Band> bands;
   for (const Channel& channel : channels_) bands.push_back({channel});
-  return std::make_unique<LiveFilm>(film_rect(sensor.film), std::move(bands), units_, backend_->sum_rule(),
-                                    variance_);
+  auto film = std::make_unique<LiveFilm>(film_rect(sensor.film), std::move(bands), units_,
+                                         backend_->sum_rule(), variance_);
+  if (settings_.sampling.wavelengths == WavelengthMode::kPerPath) film->set_independent_errors();
+  return film;
 }
 
 /// What the camera turns about: what is seen in the middle, or else something as far away as the scene is large.

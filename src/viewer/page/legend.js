@@ -80,8 +80,12 @@ function show() {
   put_rows(rows);
   rows.forEach((shown, i) => fill_row(body.rows[i], shown, channel, 10 ** exponent));
   id('legend-actions').hidden = state.pins.length === 0;
-  id('plot-band').textContent =
-      curves_shown().some(({curve}) => curve.standard_error) ? 'Bands: ± 1 standard error' : '';
+  const curves = curves_shown().map((shown) => shown.curve);
+  const has_bands = curves.some((curve) => curve.standard_error);
+  const without = has_bands && curves.some((curve) => curve.pixels > 1 && !curve.standard_error);
+  id('plot-band').textContent = has_bands ? `Bands: ± 1 standard error${without ? ' (of pixels)' : ''}` : '';
+  id('plot-band').title =
+      without ? 'The errors of a rectangle’s pixels are not independent, so that of their mean is not known' : '';
 }
 
 async function export_csv() {

@@ -108,6 +108,12 @@ class StoredCube(unittest.TestCase):
         self.assertEqual(shown["pixels"], 45)
         self.assert_spectrum(shown["mean"], self.cube.mean(12, 30, 20, 34))
         self.assertIn("(45 px)", " ".join(self.browser.texts("#legend .place")))
+        self.assertIsNone(shown["standard_error"], "what the pixels' errors have in common is not known")
+        self.browser.click(5, 5)
+        self.curve("5,5")
+        self.browser.wait("return document.getElementById('plot-band').textContent === given", "the legend's words",
+                          "Bands: ± 1 standard error (of pixels)")
+        self.browser.screenshot("rectangle")
 
     def test_the_keyboard_pins_and_unpins(self):
         self.browser.press(Keys.ARROW_LEFT, Keys.ARROW_LEFT, Keys.ENTER)

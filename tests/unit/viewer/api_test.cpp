@@ -53,7 +53,7 @@ TEST_F(ApiOfACube, SpectraAreDensitiesWithErrors) {
   EXPECT_EQ(answer["curves"][0]["standard_error"], json({0.2, 0.1}));
   EXPECT_EQ(answer["curves"][1]["pixels"], 2);
   EXPECT_EQ(answer["curves"][1]["mean"], json({0.6, 0.35}));
-  EXPECT_NEAR(answer["curves"][1]["standard_error"][0].get<double>(), 0.2 / std::sqrt(2), 1e-6);
+  EXPECT_EQ(answer["curves"][1]["standard_error"], nullptr) << "nobody knows what the pixels share";
 }
 
 TEST_F(ApiOfACube, SpectraAsCsv) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "scene/read/reader.hpp"
@@ -21,14 +22,16 @@ inline const char* const kWallScene = R"(<scene version='3.0.0'>
  <bsdf type='diffuse' id='paint'><spectrum name='reflectance' value='0.5'/></bsdf></shape>
 <emitter type='constant' id='sky'><spectrum name='radiance' value='1'/></emitter></scene>)";
 
-inline viewer::LiveOptions wall_options(uint64_t samples) {
+/// Wavelengths of their own for all paths, so that errors of rectangles are known.
+inline viewer::LiveOptions wall_options(uint64_t samples, const std::string& text = kWallScene) {
   viewer::LiveOptions live;
-  live.scene = read_scene_text(kWallScene, "wall.xml", ".");
+  live.scene = read_scene_text(text, "wall.xml", ".");
   live.channels = parse_channels("500:600:4");
   live.scene_name = "wall.xml";
   live.settings.backend = "cpu";
   live.settings.method = "dpept-batch";
   live.settings.max_depth = 3;
+  live.settings.sampling.wavelengths = WavelengthMode::kPerPath;
   live.backends.choices = {{"cpu", "this one", {}, {"dpept-batch"}}};
   live.backends.make = [](const viewer::LiveSettings& settings, std::shared_ptr<const FlatScene> scene) {
     return cpu::make_backend(std::move(scene), {}, settings.sampling, {});
