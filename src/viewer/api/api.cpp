@@ -146,8 +146,6 @@ Response Api::scene() {
   for (const json& c : scene["channels"])
     bands.push_back({{c["min_nm"], c["max_nm"], c["name"]}, c["derived"].get<bool>()});
   scene["modes"] = modes_for(bands, scene["errors"].get<bool>(), responses_);
-  scene["quantity"] = "density";
-  scene["unit"] = "W m-2 sr-1 nm-1";
   scene["choices"]["output"] = settings_.output_dir.has_value();
   return answer_json(scene);
 }

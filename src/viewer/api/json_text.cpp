@@ -86,6 +86,7 @@ json channels_json(const std::vector<Band>& bands) {
     channels.push_back({{"name", band.channel.name.empty() ? band_text(band) : band.channel.name},
                         {"min_nm", band.channel.min_nm},
                         {"max_nm", band.channel.max_nm},
+                        {"unit", band.derived ? "" : "W m-2 sr-1 nm-1"},
                         {"derived", band.derived}});
   }
   return channels;

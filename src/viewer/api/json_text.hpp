@@ -26,7 +26,7 @@ std::optional<std::string> get_text(const nlohmann::json& object, const char* na
 std::optional<bool> get_flag(const nlohmann::json& object, const char* name);
 std::optional<std::array<double, 3>> get_triple(const nlohmann::json& object, const char* name);
 
-/// [{"name", "min_nm", "max_nm", "derived"}]
+/// [{"name", "min_nm", "max_nm", "unit", "derived"}]
 nlohmann::json channels_json(const std::vector<Band>& bands);
 /// Numbers with the digits of single precision; null for what is not finite.
 nlohmann::json numbers_json(std::span<const float> values);

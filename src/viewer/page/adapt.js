@@ -1,5 +1,5 @@
 // How the view follows the scene: what it starts with, and what becomes of it when there are other channels or modes.
-import {state} from './state.js';
+import {span_of, state} from './state.js';
 
 const kMicrometresFrom_nm = 2500;
 let named = '';
@@ -22,16 +22,16 @@ export function recall(scene) {
  */
 export function adapted(scene) {
   const {modes, channels} = scene;
-  const last = channels[channels.length - 1];
+  const span = span_of(channels);
   const first = !named;
   const kept = first ? recall(scene) : {};
   const view = {...state.view, ...kept.view};
-  const text = `${channels.length} ${channels[0].min_nm} ${last.max_nm}`;
+  const text = `${channels.length} ${span.join(' ')}`;
   const changes = {scene, view};
   if (text !== named) {
     if (!first) view.ranges = null;
     if (!first || !kept.view) view.channel = Math.floor(channels.length / 2);
-    if (first) changes.plot = {...state.plot, micrometres: last.max_nm > kMicrometresFrom_nm, ...kept.plot};
+    if (first) changes.plot = {...state.plot, micrometres: span[1] > kMicrometresFrom_nm, ...kept.plot};
     changes.channels_changed = !first;
     named = text;
   }

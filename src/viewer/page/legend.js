@@ -74,7 +74,9 @@ function show() {
   const rows = rows_shown();
   const largest = Math.max(0, ...rows.map(({curve}) => Math.abs(curve?.mean[channel] ?? 0)));
   const exponent = shared_exponent(largest);
-  const unit = [exponent ? `10${superscript(exponent)}` : '', unit_text(state.scene.unit)].filter(Boolean).join(' ');
+  const unit = [
+    exponent ? `10${superscript(exponent)}` : '', unit_text(state.scene.channels[channel]?.unit)
+  ].filter(Boolean).join(' ');
   id('legend-channel').textContent =
       channel === null ? '' : [`at ${channel_text(channel)}`, unit].filter(Boolean).join(', ');
   put_rows(rows);

@@ -2,7 +2,7 @@
 // by dygraphs.
 import {linear_ticks, log_text, log_ticks, shared_exponent, superscript, tick_text, unit_text, wavelength} from './format.js';
 import {selections} from './pins.js';
-import {channel_centre, channel_count, default_ranges, has_channel, on, set, set_view, state} from './state.js';
+import {channel_centre, channel_count, channels_in_order, default_ranges, has_channel, on, set, set_view, state} from './state.js';
 
 const box = document.getElementById('plot');
 const note = document.getElementById('plot-note');
@@ -13,7 +13,9 @@ const kUnseen = {
   dash: 0
 };
 const kInvitation = 'Point at the image for a spectrum; click to pin it.';
-let drawn = [];  // [{selection, curve}] in the order of the series
+let drawn = [];    // [{selection, curve}] in the order of the series
+let plotted = [];  // what the graph has: the same, or one that is not seen
+let order = [];    // channels by rows of the graph
 let asked = false;
 
 export const in_axis_unit = (nm) => (state.plot.micrometres ? nm / 1000 : nm);
@@ -36,20 +38,61 @@ function log_floor(curves) {
 
 function bars(curve, index, floor) {
   const mean = curve.mean[index];
-  if (mean === null) return [null, null, null];
+  const nothing = [NaN, NaN, NaN];  // the line ends; at null it would go on
+  if (mean === null) return nothing;
   const error = curve.standard_error?.[index] ?? 0;
   if (!state.plot.log_y) return [mean - error, mean, mean + error];
-  return mean > 0 ? [Math.max(floor, mean - error), Math.max(floor, mean), Math.max(floor, mean + error)] :
-                    [null, null, null];
+  return mean > 0 ? [Math.max(floor, mean - error), Math.max(floor, mean), Math.max(floor, mean + error)] : nothing;
 }
 
+const is_response = (index) => state.scene.channels[index].derived;
+const has_responses = () => state.scene.channels.some(({derived}) => derived);
+
+/** A column per curve for its channels; if there are responses, another one for those. */
 function table() {
-  const floor = state.plot.log_y ? log_floor(drawn) : 0;
-  return state.scene.channels.map(
-      (channel, index) =>
+  const floor = state.plot.log_y ? log_floor(plotted) : 0;
+  order = channels_in_order();
+  const columns = (index, responses) =>
+      plotted.map(({curve}) => (is_response(index) === responses ? bars(curve, index, floor) : null));
+  return order.map(
+      (index) =>
           [in_axis_unit(channel_centre(index)),
-           ...drawn.map(({curve}) => bars(curve, index, floor)),
+           ...columns(index, false),
+           ...(has_responses() ? columns(index, true) : []),
   ]);
+}
+
+/** The band of one standard error where that is known; of a response, which no line goes through, a stroke. */
+function draw_errors({drawingContext: context, seriesIndex, points, plotArea, color}) {
+  const errors = plotted[seriesIndex % plotted.length].curve.standard_error;
+  if (!errors) return;
+  const at = (part) => plotArea.y + plotArea.h * part;
+  const strokes = seriesIndex >= plotted.length;
+  let last = null;
+  context.save();
+  context.globalAlpha = strokes ? 0.6 : 0.22;
+  context.fillStyle = context.strokeStyle = color;
+  context.beginPath();
+  for (const point of points.filter(({yval}) => yval !== null)) {
+    const known = Number.isFinite(point.y) && typeof errors[order[point.idx]] === 'number';
+    const [high, low] = [at(point.y_top), at(point.y_bottom)];
+    if (known && strokes) {
+      context.moveTo(point.canvasx, high);
+      context.lineTo(point.canvasx, low);
+    } else if (known && last) {
+      context.moveTo(last.x, last.high);
+      context.lineTo(point.canvasx, high);
+      context.lineTo(point.canvasx, low);
+      context.lineTo(last.x, last.low);
+      context.closePath();
+    }
+    last = known ? {x: point.canvasx, high, low} : null;
+  }
+  if (strokes)
+    context.stroke();
+  else
+    context.fill();
+  context.restore();
 }
 
 function x_ticks(low, high, pixels) {
@@ -77,10 +120,13 @@ function set_exponent(value) {
 }
 
 export function y_title() {
-  const name = state.scene?.quantity === 'integral' ? 'Radiance of the channel' : 'Spectral radiance';
-  const unit = unit_text(state.scene?.unit);
+  const channels = state.scene?.channels ?? [];
+  const spectral = channels.find(({derived}) => !derived);
+  const name = spectral ? 'Spectral radiance' : 'Response';
   const factor = exponent ? `10${superscript(exponent)} ` : '';
-  return factor || unit ? `${name} (${factor}${unit})` : name;
+  const measure = `${factor}${unit_text(spectral?.unit)}`.trim();
+  const points = spectral && has_responses() ? '; points: responses' : '';
+  return (measure ? `${name} (${measure})` : name) + points;
 }
 export const x_title = () => `Wavelength (${state.plot.micrometres ? 'µm' : 'nm'})`;
 
@@ -130,7 +176,7 @@ const kDashes = [null, [7, 3], [2, 3]];
 
 function options() {
   const series = {};
-  drawn.forEach(({selection}, i) => {
+  plotted.forEach(({selection}, i) => {
     const strong = selection.key === state.marked;
     series[`c${i}`] = {
       color: selection.colour ?? style('--text'),
@@ -139,11 +185,12 @@ function options() {
                              1.1,
       strokePattern: kDashes[selection.dash % kDashes.length],
     };
+    series[`r${i}`] = {color: series[`c${i}`].color, strokeWidth: 0, drawPoints: true, pointSize: strong ? 5 : 3.5};
   });
   const few = state.scene.channels.length <= 40;
   const size_px = text_size();
   return {
-    labels: ['x', ...drawn.map((_, i) => `c${i}`)],
+    labels: ['x', ...plotted.map((_, i) => `c${i}`), ...(has_responses() ? plotted.map((_, i) => `r${i}`) : [])],
     series,
     drawPoints: few && !box.classList.contains('empty'),
     pointSize: 2.5,
@@ -162,17 +209,17 @@ function make(file) {
   graph = new Dygraph(box, file, {
     ...options(),
     customBars: true,
-    fillAlpha: 0.22,
+    plotter: [draw_errors, Dygraph.Plotters.linePlotter],
     legend: 'never',
     showLabelsOnHighlight: false,
     highlightCircleSize: 3.5,
-    connectSeparatedPoints: false,
+    connectSeparatedPoints: true,  // those of another column stand between
     rightGap: 10,
     xRangePad: 4,
     yRangePad: 8,
     underlayCallback: draw_marker,
     clickCallback: click,
-    highlightCallback: (event, x, points, row) => set({pointed: row}),
+    highlightCallback: (event, x, points, row) => set({pointed: order[row]}),
     unhighlightCallback: () => set({pointed: null}),
     zoomCallback: () => set({plot_zoomed: graph.isZoomed()}),
   });
@@ -191,15 +238,14 @@ function draw() {
       state.plot.log_y             ? 'There is nothing above zero here.' :
                                      'There are no samples here.';
   box.classList.toggle('empty', empty);
-  const seen = drawn;
   // An empty plot keeps its horizontal axis: one series that is not seen.
-  if (empty) drawn = [{selection: kUnseen, curve: {mean: state.scene.channels.map(() => 1)}}];
+  plotted = drawn;
+  if (empty) plotted = [{selection: kUnseen, curve: {mean: state.scene.channels.map(() => 1)}}];
   const file = table();
   if (graph)
     graph.updateOptions({...options(), file});
   else
     make(file);
-  drawn = seen;
   document.getElementById('plot-y').textContent = y_title();
   document.getElementById('plot-x').textContent = x_title();
   set({drawn: true});

@@ -65,13 +65,24 @@ export const channel_centre = (index) => {
   return (channel.min_nm + channel.max_nm) / 2;
 };
 
-/** The thirds of the wavelengths, long ones red: what false colour starts with. */
+/** Indices of the channels and responses, by rising wavelengths: files have them in any order. */
+export const channels_in_order = () =>
+    state.scene.channels.map((_, index) => index).sort((a, b) => channel_centre(a) - channel_centre(b));
+
+/** From the least to the greatest wavelength of these channels, nm. */
+export const span_of =
+    (channels) => [Math.min(...channels.map(({min_nm}) => min_nm)), Math.max(...channels.map(({max_nm}) => max_nm))];
+
+/** The thirds of the channels, long ones red: what false colour starts with. Of fewer than three: all. */
 export function default_ranges() {
-  const channels = state.scene.channels;
-  const low = channels[0].min_nm;
-  const high = channels[channels.length - 1].max_nm;
-  const at = (part) => Number((low + (high - low) * part).toPrecision(6));
-  return {r: [at(2 / 3), at(1)], g: [at(1 / 3), at(2 / 3)], b: [at(0), at(1 / 3)]};
+  const channels = channels_in_order().map((index) => state.scene.channels[index]).filter(({derived}) => !derived);
+  const count = channels.length;
+  const end = (part) => Math.floor(count / 3) * part + Math.min(part, count % 3);
+  const third = (part) => {
+    const some = count < 3 ? channels : channels.slice(end(part), end(part + 1));
+    return span_of(some).map((nm) => Number(nm.toPrecision(6)));
+  };
+  return {r: third(2), g: third(1), b: third(0)};
 }
 
 /** Parameters of the frame that the view asks for: /api/frame, /api/values, /api/save. */

@@ -107,7 +107,7 @@ class StoredCube(unittest.TestCase):
         shown = self.curve("12,30,20,34")
         self.assertEqual(shown["pixels"], 45)
         self.assert_spectrum(shown["mean"], self.cube.mean(12, 30, 20, 34))
-        self.assertIn("(45 px)", " ".join(self.browser.texts("#legend .place")))
+        wait_until(lambda: "(45 px)" in " ".join(self.browser.texts("#legend .place")), "the legend's row")
         self.assertIsNone(shown["standard_error"], "what the pixels' errors have in common is not known")
         self.browser.click(5, 5)
         self.curve("5,5")

@@ -1,0 +1,104 @@
+"""Cubes that no render has written: bands in any order, with gaps, without values, and responses of sensors."""
+import array
+import pathlib
+import tempfile
+import unittest
+
+from browser import Browser
+from program import BOX, Viewer, kiloband
+
+WIDTH, HEIGHT = 8, 6
+# (x, y) of all drawn values of the first curve, by its rows.
+DRAWN = """
+const {the_graph} = await import('/plot.js');
+const graph = the_graph();
+if (!graph || document.getElementById('plot').classList.contains('empty') || !Array.isArray(graph.getValue(0, 1) ?? graph.getValue(0, 2)))
+  return null;
+return Array.from({length: graph.numRows()}, (_, row) => {
+  const columns = [1, 2].map((column) => column < graph.numColumns() && graph.getValue(row, column));
+  return [graph.getValue(row, 0), ...columns.map((bars) => Array.isArray(bars) ? bars[1] : null)];
+});"""
+
+
+def write_cube(header, bands, value_of, extra=""):
+    """bands: [(lowest, highest)] in nm; value_of(x, y, band): densities."""
+    def numbers(values):
+        return "{" + ", ".join(map(str, values)) + "}"
+    header.write_text(
+        f"ENVI\nsamples = {WIDTH}\nlines = {HEIGHT}\nbands = {len(bands)}\nheader offset = 0\nfile type = ENVI Standard\n"
+        "data type = 4\ninterleave = bsq\nbyte order = 0\nwavelength units = Nanometers\n"
+        f"wavelength = {numbers((low + high) / 2 for low, high in bands)}\nfwhm = {numbers(high - low for low, high in bands)}\n{extra}")
+    values = array.array("f", (value_of(x, y, k) for k in range(len(bands)) for y in range(HEIGHT) for x in range(WIDTH)))
+    header.with_suffix(".img").write_bytes(values.tobytes())
+
+
+class OtherCubes(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="kiloband-viewer-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.path = pathlib.Path(folder.name)
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def open(self, file):
+        viewer = Viewer(file)
+        self.addCleanup(lambda: self.assertEqual(viewer.stop(), 0))
+        self.addCleanup(self.browser.driver.get, "about:blank")
+        self.browser.open(viewer.address)
+
+    def pin_and_draw(self):
+        self.browser.value("const {pin} = await import('/pins.js'); pin([3, 2]);")
+        return self.browser.wait(DRAWN, "the drawn curve")
+
+    def show(self, mode):
+        self.browser.choose(mode)
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_bands_in_any_order(self):
+        """The plot has all of them, along rising wavelengths; what it points at is the band of the file."""
+        orders = {"descending": [(k, k + 20) for k in range(880, 380, -20)],
+                  "mixed": [(845, 875), (475, 505), (545, 575), (645, 675), (1560, 1640), (2150, 2250)]}
+        for name, bands in orders.items():
+            with self.subTest(name):
+                write_cube(self.path / f"{name}.hdr", bands, lambda x, y, k: bands[k][0] + x)
+                self.open(self.path / f"{name}.hdr")
+                drawn = self.pin_and_draw()
+                self.browser.screenshot(f"order_{name}")
+                self.assertEqual([row[0] for row in drawn], sorted((low + high) / 2 for low, high in bands))
+                self.assertEqual([row[1] for row in drawn], sorted(low + 3 for low, high in bands))
+                low, high = self.browser.value("return (await import('/plot.js')).the_graph().xAxisRange()")
+                self.assertLessEqual(low, drawn[0][0])
+                self.assertGreaterEqual(high, drawn[-1][0])
+                pointed = self.browser.value("""
+                    const {the_graph} = await import('/plot.js');
+                    the_graph().getFunctionOption('highlightCallback')({}, 0, [], 0);
+                    return state.pointed;""")
+                self.assertEqual(pointed, min(range(len(bands)), key=lambda k: bands[k]))
+                self.show("false")
+
+    def test_false_colour_of_bands_with_a_gap(self):
+        """Its ranges are thirds of the bands, so that each has some."""
+        bands = [(450, 520), (520, 600), (630, 690), (10000, 10400), (10500, 10900), (11000, 11400)]
+        write_cube(self.path / "gap.hdr", bands, lambda x, y, k: 1 + x)
+        self.open(self.path / "gap.hdr")
+        self.show("false")
+        self.assertEqual(self.browser.value("return (await import('/state.js')).default_ranges()"),
+                         {"r": [10500, 11400], "g": [630, 10400], "b": [450, 600]})
+
+    def test_responses_are_points_in_units_of_their_own(self):
+        (self.path / "red.csv").write_text("wavelength_nm,red,blue\n400,0,1\n500,0,0.5\n600,1,0\n700,0.5,0\n")
+        kiloband("render", BOX, "-D", "res=16", "-D", "bands=400:700:6", "--spp", 4, "-o", self.path / "box.exr", "--quiet")
+        kiloband("sensor", self.path / "box.exr", "--response", self.path / "red.csv", "-o", self.path / "seen.exr")
+        self.open(self.path / "seen.exr")
+        drawn = self.pin_and_draw()
+        self.browser.screenshot("responses")
+        self.assertEqual([row[1] for row in drawn], [None] * 2, "no line of channels")
+        self.assertNotIn(None, [row[2] for row in drawn])
+        self.show("channel")
+        self.browser.wait("return document.getElementById('legend-channel').textContent.includes('at ')", "the legend")
+        self.assertNotIn("nm⁻¹", self.browser.find("#legend-channel").text + self.browser.find("#plot-y").text)
+
+
+if __name__ == "__main__":
+    unittest.main()
