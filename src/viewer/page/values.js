@@ -40,10 +40,16 @@ async function fetch_values(text) {
   }, kSpacing_ms);
 }
 
+/** Errors in per cent, as at the colour bar. */
+function value_text(value, mode) {
+  if (mode !== 'error' || value === null) return number(value, 3);
+  return `${number(100 * value, 3)} %`;
+}
+
 function lines_at(x, y) {
   if (!held || x < held.x0 || y < held.y0 || x > held.x1 || y > held.y1 || held.mode !== state.view.mode) return [];
   const first = ((y - held.y0) * held.width + (x - held.x0)) * held.components;
-  return held.values.slice(first, first + held.components).map((value) => number(value, 3));
+  return held.values.slice(first, first + held.components).map((value) => value_text(value, held.mode));
 }
 
 /** Writes the numbers of the pixels in sight, dark on light ones and light on dark ones. */

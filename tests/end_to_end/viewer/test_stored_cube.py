@@ -167,6 +167,30 @@ class StoredCube(unittest.TestCase):
         self.browser.value("const {zoom} = await import('/image.js'); zoom(12);")
         self.browser.wait("return state.values", "values of pixels")
 
+    def test_errors_in_pixels_are_per_cent(self):
+        """As those of the colour bar and of the range are."""
+        self.browser.choose("error")
+        self.browser.value("const {zoom} = await import('/image.js'); zoom(12);")
+        self.browser.wait("return state.values", "values of pixels")
+        texts, expected = self.browser.value("""
+            const drawn = [];
+            const draw = CanvasRenderingContext2D.prototype.fillText;
+            CanvasRenderingContext2D.prototype.fillText = function(text, ...rest) {
+              if (this.canvas.id === 'image') drawn.push(text);
+              return draw.call(this, text, ...rest);
+            };
+            const {redraw} = await import('/image.js');
+            redraw();
+            await new Promise((done) => setTimeout(done, 500));
+            CanvasRenderingContext2D.prototype.fillText = draw;
+            const {x, y} = {x: 24, y: 24};
+            const answer = await fetch(`/api/values?mode=error&x0=${x}&y0=${y}&x1=${x}&y1=${y}`);
+            return [drawn, (await answer.json()).values[0]];""")
+        self.browser.screenshot("error_values")
+        numbers = [float(text.removesuffix(" %")) for text in texts if text.endswith(" %")]
+        self.assertGreater(len(numbers), 10, texts)
+        self.assertLess(min(abs(number - 100 * expected) for number in numbers), 0.006 * 100 * expected)
+
     def test_csv_has_the_curves(self):
         self.browser.click(10, 40)
         self.curve("10,40")
