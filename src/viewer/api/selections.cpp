@@ -42,17 +42,18 @@ Selection parse_selection(std::string_view text, uint32_t width, uint32_t height
 
 struct CurveSums {
   std::vector<double> mean, variance;
-  uint64_t pixels = 0;
+  std::vector<uint64_t> values;  // per band, without NaN
+  uint64_t pixels = 0;           // with any
 };
 
 Curve curve_of(const CurveSums& sums, const PixelSource& source) {
   Curve curve{sums.pixels, {}, {}};
-  const double n = static_cast<double>(sums.pixels);
-  const bool is_known = sums.pixels == 1 || source.has_independent_errors();
   for (std::size_t k = 0; k < sums.mean.size(); ++k) {
     const Band& band = source.bands()[k];
+    const double n = static_cast<double>(sums.values[k]);
+    const bool is_known = sums.values[k] == 1 || source.has_independent_errors();
     const double scale = source.units()[k] / (band.derived ? 1 : band.channel.width_nm());
-    curve.mean.push_back(static_cast<float>(sums.mean[k] / n * scale));  // NaN without pixels
+    curve.mean.push_back(static_cast<float>(sums.mean[k] / n * scale));  // NaN without values
     curve.standard_error.push_back(is_known ? static_cast<float>(std::sqrt(sums.variance[k]) / n * scale)
                                             : kNoCurve);
   }
@@ -63,12 +64,15 @@ void add_row(const std::vector<float>& means, const std::vector<float>& variance
              CurveSums& sums) {
   const std::size_t bands = sums.mean.size();
   for (std::size_t x = x0; x <= x1; ++x) {
-    if (std::isnan(means[x * bands])) continue;  // no sample
-    ++sums.pixels;
+    bool has_values = false;
     for (std::size_t k = 0; k < bands; ++k) {
+      if (std::isnan(means[x * bands + k])) continue;
+      has_values = true;
+      ++sums.values[k];
       sums.mean[k] += means[x * bands + k];
       sums.variance[k] += variances[x * bands + k];
     }
+    sums.pixels += has_values;
   }
 }
 
@@ -91,7 +95,8 @@ std::vector<Selection> parse_selections(std::string_view text, uint32_t width, u
 std::vector<Curve> read_curves(const PixelSource& pixels, const std::vector<Selection>& selections,
                                uint32_t full_width, uint32_t full_height) {
   const std::size_t bands = pixels.bands().size();
-  std::vector<CurveSums> sums(selections.size(), {std::vector<double>(bands), std::vector<double>(bands), 0});
+  std::vector<CurveSums> sums(selections.size(), {std::vector<double>(bands), std::vector<double>(bands),
+                                                  std::vector<uint64_t>(bands), 0});
   std::vector<float> means(pixels.width() * bands), variances(pixels.width() * bands);
   for (uint32_t y = 0; y < pixels.height(); ++y) {
     bool is_read = false;

@@ -23,8 +23,8 @@ std::vector<Selection> parse_selections(std::string_view text, uint32_t width, u
 
 /// Densities (W m^-2 sr^-1 nm^-1; derived bands as they are), per band.
 struct Curve {
-  uint64_t pixels = 0;  // with a sample
-  std::vector<float> mean;
+  uint64_t pixels = 0;      // with a value
+  std::vector<float> mean;  // of the pixels that have one in this band; NaN without
   /// NaN where variances are not known, and of several pixels unless their errors are independent: where they share
   /// wavelengths, the error of their mean may be anything up to that of one.
   std::vector<float> standard_error;

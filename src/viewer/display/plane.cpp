@@ -41,6 +41,13 @@ ThreeSums::ThreeSums(const PixelSource& source, const RgbWeights& of_integrals) 
 
 void ThreeSums::operator()(const float* values, float* out) const {
   three_sums({weights_[0].data(), weights_[1].data(), weights_[2].data()}, values, weights_[0].size(), out);
+  if (std::isfinite(out[0]) && std::isfinite(out[1]) && std::isfinite(out[2])) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double sum = 0;
+    for (std::size_t k = 0; k < weights_[c].size(); ++k)
+      if (weights_[c][k] != 0) sum += double{weights_[c][k]} * values[k];
+    out[c] = static_cast<float>(sum);
+  }
 }
 
 void PixelSource::sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const {
@@ -88,9 +95,10 @@ Plane error_plane(const PixelSource& source, unsigned threads) {
       for (uint32_t x = 0; x < plane.width; ++x) {
         double sum = 0, error = 0;
         for (std::size_t k = 0; k < bands; ++k) {
-          if (source.bands()[k].derived) continue;
-          sum += means[x * bands + k] * source.units()[k];
-          error += std::sqrt(variances[x * bands + k]) * source.units()[k];
+          const float mean = means[x * bands + k], variance = variances[x * bands + k];
+          if (source.bands()[k].derived || std::isnan(mean) || std::isnan(variance)) continue;
+          sum += mean * source.units()[k];
+          error += std::sqrt(variance) * source.units()[k];
         }
         plane.values[std::size_t{y} * plane.width + x] = sum > 0 ? static_cast<float>(error / sum) : kNothing;
       }

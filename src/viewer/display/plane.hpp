@@ -20,7 +20,7 @@ using RgbWeights = std::vector<std::array<float, 3>>;
 class ThreeSums {
  public:
   ThreeSums(const PixelSource& source, const RgbWeights& of_integrals);
-  /// values: of a pixel, in the source's units
+  /// values: of a pixel, in the source's units; those of bands without weight may be NaN or infinite
   void operator()(const float* values, float* out) const;
   bool operator==(const ThreeSums&) const = default;
 
@@ -66,7 +66,7 @@ struct TemperatureOf {
   std::size_t band = 0;
 };
 /// The standard error of the sum over the channels (every channel's own, added: an upper bound, reached where the
-/// channels' errors go together, as they do along a path), divided by that sum.
+/// channels' errors go together, as they do along a path), divided by that sum; of the channels whose variance is known.
 struct RelativeError {};
 
 /// threads: among how many rows are dealt, at least 1

@@ -86,6 +86,26 @@ class OtherCubes(unittest.TestCase):
         self.assertEqual(self.browser.value("return (await import('/state.js')).default_ranges()"),
                          {"r": [10500, 11400], "g": [630, 10400], "b": [450, 600]})
 
+    def test_bands_without_values(self):
+        """A dead band, as the header's `data ignore value` makes one, is missing; all others are there."""
+        bands = [(k, k + 20) for k in range(400, 1000, 20)]
+        nothing = float("nan")
+        for dead, modes in {0: ["channel"], 27: ["color", "false", "channel"]}.items():
+            with self.subTest(dead=dead):
+                write_cube(self.path / "dead.hdr", bands, lambda x, y, k: nothing if k == dead else 1 + k + x + y)
+                self.open(self.path / "dead.hdr")
+                drawn = self.pin_and_draw()
+                self.assertEqual([row[1] for row in drawn], [None if k == dead else 1 + k + 5 for k in range(30)])
+                for mode in modes:
+                    self.browser.value("const {set_view} = await import('/state.js'); set_view({ranges: {r: [600, 700], g: [500, 600], b: [420, 500]}})")
+                    self.show(mode)
+                    values = self.browser.value("""
+                        const {frame_parameters} = await import('/state.js');
+                        const query = new URLSearchParams({...frame_parameters(), x0: 0, y0: 0, x1: 7, y1: 5});
+                        return (await (await fetch(`/api/values?${query}`)).json()).values;""")
+                    self.assertNotIn(None, values, mode)
+                self.browser.screenshot(f"dead_{dead}")
+
     def test_responses_are_points_in_units_of_their_own(self):
         (self.path / "red.csv").write_text("wavelength_nm,red,blue\n400,0,1\n500,0,0.5\n600,1,0\n700,0.5,0\n")
         kiloband("render", BOX, "-D", "res=16", "-D", "bands=400:700:6", "--spp", 4, "-o", self.path / "box.exr", "--quiet")

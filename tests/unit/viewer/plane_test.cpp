@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -65,6 +66,31 @@ TEST(Plane, RelativeErrorAddsStandardErrors) {
   const Plane plane = error_plane(source, 1);
   EXPECT_FLOAT_EQ(plane.values[0], 0.1f);  // (0.1 + 0.3) / 4
   EXPECT_TRUE(std::isnan(plane.values[1]));
+}
+
+TEST(Plane, BandsWithoutWeightMayBeNothing) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  const std::vector<Band> bands{{{400, 410, ""}}, {{410, 420, ""}}, {{420, 430, ""}}};
+  const ArraySource source(3, 1, bands, {1, NAN, 2, 1, kInfinite, 2, NAN, 3, 2});
+  const RgbWeights weights{{1, 0, 0}, {0, 0, 0}, {0, 1, 2}};
+  const Plane plane = weighted_plane(source, weights, 1);
+  for (const std::size_t pixel : {0u, 1u}) {
+    EXPECT_EQ(plane.values[3 * pixel], 1);
+    EXPECT_EQ(plane.values[3 * pixel + 1], 2);
+    EXPECT_EQ(plane.values[3 * pixel + 2], 4);
+  }
+  EXPECT_TRUE(std::isnan(plane.values[6])) << "its weight is not 0";
+  EXPECT_EQ(plane.values[7], 2);
+}
+
+TEST(Plane, RelativeErrorIsOfTheBandsThatHaveOne) {
+  ArraySource source(3, 1, {{{400, 410, ""}}, {{410, 420, ""}}, {{420, 430, ""}}},
+                     {1, 3, 5, 1, 3, 5, NAN, 3, NAN});
+  source.set_variances({0.01f, 0.09f, NAN, NAN, NAN, NAN, 1, 0.09f, NAN});
+  const Plane plane = error_plane(source, 1);
+  EXPECT_FLOAT_EQ(plane.values[0], 0.1f);
+  EXPECT_TRUE(std::isnan(plane.values[1]));
+  EXPECT_FLOAT_EQ(plane.values[2], 0.1f);
 }
 
 /// A flat density is itself, whatever the ranges.
