@@ -128,6 +128,7 @@ void LiveState::set_settings(const json& wanted) {
   if (const auto bands = get_text(wanted, "bands"); bands && *bands != settings.bands) {
     channels = parse_channels(*bands);
     check_film(channels.size());
+    edits_.check_all(options_.scene, hull(channels));
     settings.bands = *bands;
   }
   settings_ = settings;

@@ -18,6 +18,7 @@ using nlohmann::json;
 using Type = SpectrumSlot::Type;
 
 constexpr int kPoints = 200;  // of a spectrum that is drawn
+const Channel kEverything{1, 1e9, ""};
 
 std::string id_of(std::size_t index) {
   return fmt::format("s{}", index);
@@ -139,9 +140,11 @@ void SpectrumEdits::apply_to(SpectrumSlot& slot, const Edit& edit) {
   }
 }
 
-/// The rules of scene files.
-void SpectrumEdits::check(const SpectrumSlot& slot, const Channel& range) {
+/// The rules of scene files: all of the data counts. An index is needed where it is rendered.
+void SpectrumEdits::check(const SpectrumSlot& slot, const Channel& rendered) {
   if (!slot.spectrum) return;
+  const bool is_index = slot.type == Type::kGlass || slot.type == Type::kMetal;
+  const Channel range = is_index ? rendered : kEverything;
   const double least = slot.spectrum->min_over(range.min_nm, range.max_nm);
   const double most = slot.spectrum->max_over(range.min_nm, range.max_nm);
   const std::string what = slot.role + " of " + slot.owner;
@@ -150,7 +153,6 @@ void SpectrumEdits::check(const SpectrumSlot& slot, const Channel& range) {
   if (slot.type == Type::kEmission && !(least >= 0 && most <= kMaxEmission))
     throw InputError(
         fmt::format("{}: {:g} to {:g}: must be from 0 to {:g}", what, least, most, kMaxEmission));
-  const bool is_index = slot.type == Type::kGlass || slot.type == Type::kMetal;
   if (is_index && !(least > 0 && most < 100))
     throw InputError(
         fmt::format("{}: {:g} to {:g} over the channels: must be above 0 and below 100 (outside its data an "
@@ -178,6 +180,17 @@ void SpectrumEdits::set(const SceneDescription& original, const Channel& range, 
   });
   if (!edit) throw InputError("the scene has no spectrum " + quote_text(id));
   edits_[id] = *edit;
+}
+
+void SpectrumEdits::check_all(const SceneDescription& original, const Channel& range) const {
+  SceneDescription copy = original;
+  std::size_t index = 0;
+  visit_spectra(copy, [&](SpectrumSlot& slot) {
+    const auto edit = edits_.find(id_of(index++));
+    if (edit == edits_.end()) return;
+    apply_to(slot, edit->second);
+    check(slot, range);
+  });
 }
 
 SceneDescription SpectrumEdits::apply(const SceneDescription& original) const {

@@ -32,6 +32,9 @@ class SpectrumEdits {
   /// range   of the wavelengths that are rendered
   /// throws InputError  no such slot, values that it cannot have
   void set(const SceneDescription& original, const Channel& range, const nlohmann::json& wanted);
+  /// Whether all that was set suits other channels, too.
+  /// throws InputError  it does not
+  void check_all(const SceneDescription& original, const Channel& range) const;
   /// The scene with all that was set.
   SceneDescription apply(const SceneDescription& original) const;
   /// Member "spectra" of /api/scene.
@@ -55,7 +58,7 @@ class SpectrumEdits {
   static Edit parse(const SpectrumSlot& slot, const nlohmann::json& wanted);
   static Edit parse_material(const SpectrumSlot& slot, const std::string& kind, const std::string& name);
   static void apply_to(SpectrumSlot& slot, const Edit& edit);
-  static void check(const SpectrumSlot& slot, const Channel& range);
+  static void check(const SpectrumSlot& slot, const Channel& rendered);
 
   std::map<std::string, Edit> edits_;  // by the slot's id
 };

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/messages.hpp"
 #include "tests/unit/viewer/live_wall.hpp"
 #include "viewer/api/selections.hpp"
 
@@ -90,6 +91,44 @@ TEST_F(LiveStateTest, ErrorsOfRectanglesAreNotTooSmall) {
   const auto shared = [](const char* place) { return block_of_slopes(WavelengthMode::kShared, 1, place); };
   EXPECT_TRUE(std::isnan(shared("0,0,31,31").standard_error[0])) << "none rather than a wrong one";
   EXPECT_GT(shared("5,5").standard_error[0], 0) << "of one pixel";
+}
+
+/// As scene files are looked at: all of the data, whatever the channels are.
+TEST_F(LiveStateTest, EditsAreRightForAllChannels) {
+  LiveOptions options = wall_options(4);
+  std::string text = kWallScene;
+  const std::string paint = "<bsdf type='diffuse' id='paint'>";
+  text.replace(
+      text.find(paint), paint.size(),
+      "<bsdf type='plastic' id='paint'/></shape><shape type='sphere'><bsdf type='dielectric' id='ball'/>"
+      "</shape><shape type='sphere'><bsdf type='diffuse' id='grey'>");
+  options.scene = read_scene_text(text, "wall.xml", ".");
+  start(std::move(options));
+  work();
+  ASSERT_EQ(state_->status().state, "done") << state_->status().message;
+  const auto refused = [&](const std::string& owner, const json& value) {
+    std::string id;
+    const json scene = state_->scene_json();
+    for (const json& spectrum : scene["spectra"])
+      if (spectrum["owner"] == owner) id = spectrum["id"];
+    return error_of([&] { state_->set_spectrum({{"id", id}, {"set", value}}); });
+  };
+  EXPECT_EQ(refused("bsdf 'grey'", {{"file_text", "400 0.5\n700 0.5\n900 3.0\n"}}),
+            "reflectance of bsdf 'grey': 0 to 3: must be from 0 to 1");
+  EXPECT_EQ(refused("emitter 'sky'", {{"file_text", "400 0.5\n700 0.5\n900 -1\n"}}).substr(0, 32),
+            "radiance of emitter 'sky': -1 to");
+  EXPECT_EQ(refused("bsdf 'ball'", {{"file_text", "400 1.5\n700 1.5\n"}}), "accepted");
+  work();
+  const uint64_t revision = state_->status().newest.revision;
+  EXPECT_EQ(
+      error_of([&] {
+        state_->set_settings({{"bands", "400:900:5"}});
+      }),
+      "index of refraction inside of bsdf 'ball': 0 to 1.5 over the channels: must be above 0 and below 100 "
+      "(outside its data an index is 0)");
+  EXPECT_EQ(state_->status().newest.revision, revision);
+  EXPECT_EQ(state_->status().state, "done") << "nothing has changed";
+  EXPECT_TRUE(state_->is_ready());
 }
 
 /// A page that was closed while it moved the camera tells nobody that the movement has ended.
