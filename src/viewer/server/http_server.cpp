@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <thread>
@@ -27,6 +28,13 @@ Request to_request(const httplib::Request& from) {
   for (const auto& [name, value] : from.params) request.query.emplace(name, value);
   for (const auto& [name, value] : from.headers) request.headers.emplace(lowered(name), value);
   return request;
+}
+
+/// cpp-httplib unpacks bodies, and bounds them by their packed size alone: 4 MiB hold gigabytes.
+bool is_packed(const httplib::Request& request) {
+  return std::ranges::any_of(request.headers, [](const auto& header) {
+    return lowered(header.first) == "content-encoding" && lowered(header.second) != "identity";
+  });
 }
 
 void fill_response(const Response& from, httplib::Response& to) {
@@ -70,6 +78,10 @@ struct HttpServer::Impl final : httplib::Server {
     }
     if (asked.method == "POST" && !api.refuse(asked) && asked.path.size() < 40 &&
         asked.path.starts_with("/api/")) {
+      if (is_packed(request)) {
+        fill_response(refusal(415, "the body must be sent as it is, without a Content-Encoding"), response);
+        return HandlerResponse::Handled;
+      }
       const std::string type = asked.header("content-type");
       if (type.starts_with("application/json") || type.starts_with("text/plain"))
         return HandlerResponse::Unhandled;

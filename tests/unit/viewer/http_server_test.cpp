@@ -115,6 +115,9 @@ TEST_F(RunningServer, RefusesOthers) {
   EXPECT_EQ(status(request("POST /api/save",
                            "X-Kiloband: 1\r\nContent-Type: application/x-www-form-urlencoded\r\n", "a=b")),
             "415");
+  EXPECT_EQ(status(request("POST /api/save", kPost + "Content-Encoding: gzip\r\n", "{}")), "415")
+      << "what is packed might be without end";
+  EXPECT_EQ(status(request("POST /api/save", kPost + "content-encoding: Identity\r\n", "{")), "400");
   EXPECT_EQ(status(request("POST /api/save", kPost, "{")), "400");
   EXPECT_EQ(status(request("GET /..%2f..%2fetc/passwd")), "404");
   EXPECT_EQ(status(request("DELETE /")), "405");
