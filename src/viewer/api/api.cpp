@@ -233,6 +233,7 @@ Response Api::save(const json& wanted) {
                          "scale", "low", "high", "quality"});
   if (!settings_.output_dir)
     throw InputError("saving is not allowed: kiloband view was started without --output-dir");
+  const std::lock_guard alone(saving_);
   const std::string format = get_text(wanted, "format").value_or("");
   const std::filesystem::path file =
       new_file(*settings_.output_dir, get_text(wanted, "name").value_or(""), format);
@@ -246,8 +247,7 @@ Response Api::save(const json& wanted) {
         [&](const ImageView& seen) { plane = make_plane(seen.pixels, view, responses_, image_.threads()); });
     save_picture(file, encode_png(show(plane, view).picture));
   } else {
-    const auto metadata = image_.metadata();
-    image_.read([&](const ImageView& seen) { save_cube(file, seen, metadata); });
+    image_.read([&](const ImageView& seen) { save_cube(file, seen); });
   }
   return answer_json({{"files", files_of(file)}});
 }

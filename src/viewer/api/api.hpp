@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <optional>
 
 #include "viewer/api/access.hpp"
@@ -52,6 +53,7 @@ class Api {
   ViewedImage& image_;
   ApiSettings settings_;
   Responses responses_;
+  std::mutex saving_;  // one file at a time: a name that is free stays so until it is taken
 };
 
 }  // namespace kiloband::viewer

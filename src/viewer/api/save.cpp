@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "base/text.hpp"
 #include "files/atomic_file.hpp"
@@ -31,8 +32,7 @@ void scale_row(const PixelSource& pixels, bool squared, std::span<float> row) {
   }
 }
 
-CubeInfo info_of(const ImageView& seen, const std::map<std::string, std::string>& metadata,
-                 const std::filesystem::path& file) {
+CubeInfo info_of(const ImageView& seen, const std::filesystem::path& file) {
   CubeInfo info;
   info.width = seen.full_width;
   info.height = seen.full_height;
@@ -40,7 +40,7 @@ CubeInfo info_of(const ImageView& seen, const std::map<std::string, std::string>
   info.variance = seen.pixels.has_variances();
   info.quantity = file.extension() == ".exr" ? Quantity::kDensity : Quantity::kIntegral;
   info.samples_per_pixel = seen.stamp.samples;
-  info.metadata = metadata;
+  info.metadata = seen.metadata();
   return info;
 }
 
@@ -72,12 +72,11 @@ std::vector<std::string> files_of(const std::filesystem::path& file) {
   return names;
 }
 
-void save_cube(const std::filesystem::path& file, const ImageView& seen,
-               const std::map<std::string, std::string>& metadata) {
+void save_cube(const std::filesystem::path& file, const ImageView& seen) {
   const PixelSource& pixels = seen.pixels;
   if (pixels.width() != seen.full_width || pixels.height() != seen.full_height)
     throw InputError("the image is shown at a reduced size: save it when it is whole");
-  const CubeInfo info = info_of(seen, metadata, file);
+  const CubeInfo info = info_of(seen, file);
   const std::size_t row = pixels.width() * pixels.bands().size();
   constexpr uint32_t kRows = 32;
   const auto writer = create_cube_writer(file, info, kRows);

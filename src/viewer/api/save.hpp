@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -21,8 +20,7 @@ std::vector<std::string> files_of(const std::filesystem::path& file);
 
 /// The whole image with its variances.
 /// throws InputError  the image is reduced; DeviceError  cannot be written
-void save_cube(const std::filesystem::path& file, const ImageView& seen,
-               const std::map<std::string, std::string>& metadata);
+void save_cube(const std::filesystem::path& file, const ImageView& seen);
 void save_picture(const std::filesystem::path& file, const std::string& png);
 
 /// A line per band: its interval, then mean and standard error of every curve.

@@ -95,9 +95,8 @@ class StoredImage final : public ViewedImage {
     return true;
   }
   void read(const std::function<void(const ImageView&)>& look) override {
-    look({pixels_, stamp(), info().width, info().height});
+    look({pixels_, stamp(), info().width, info().height, [this] { return info().metadata; }});
   }
-  std::map<std::string, std::string> metadata() override { return info().metadata; }
   unsigned threads() const override { return threads_; }
   RenderControls* controls() override { return nullptr; }
 

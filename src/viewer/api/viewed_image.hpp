@@ -38,6 +38,8 @@ struct ImageView {
   const PixelSource& pixels;
   FrameStamp stamp;
   uint32_t full_width, full_height;  // where pixels are those of a reduced image
+  /// What a saved cube is to state. To be called while the image is looked at.
+  std::function<std::map<std::string, std::string>()> metadata;
 };
 
 /// What a page may ask of a render; a stored cube has none of it. All throw InputError with what is wrong.
@@ -76,8 +78,6 @@ class ViewedImage {
   /// throws InputError  there is none yet; what look() throws
   virtual void read(const std::function<void(const ImageView&)>& look) = 0;
 
-  /// What a saved cube is to state.
-  virtual std::map<std::string, std::string> metadata() = 0;
   /// Threads that may compute what is shown.
   virtual unsigned threads() const = 0;
   /// Null: the image cannot be rendered anew.

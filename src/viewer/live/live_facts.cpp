@@ -98,11 +98,16 @@ json LiveState::scene_json() const {
 
 std::map<std::string, std::string> LiveState::metadata() const {
   std::map<std::string, std::string> metadata{
+      {"software", "kiloband " KILOBAND_VERSION},
       {"scene", options_.scene_name},
       {"backend", settings_.backend},
+      {"method", settings_.method},
+      {"max_depth", std::to_string(settings_.max_depth)},
       {"seed", std::to_string(settings_.sampling.seed)},
       {"sampler", sampler_name(settings_.sampling.sampler)},
       {"wavelengths", wavelengths_name(settings_.sampling.wavelengths)}};
+  if (std::string edited = edits_.summary(options_.scene); !edited.empty())
+    metadata["edited"] = std::move(edited);
   if (scene_ && film_ == full_.get()) metadata[kCameraKey] = camera_geometry(*scene_).to_text();
   return metadata;
 }

@@ -86,11 +86,6 @@ class LiveRender final : public ViewedImage, public RenderControls {
   void read(const std::function<void(const ImageView&)>& look) override {
     thread_->perform([&] { show(look); });
   }
-  std::map<std::string, std::string> metadata() override {
-    std::map<std::string, std::string> metadata;
-    thread_->perform([&] { metadata = state_.metadata(); });
-    return metadata;
-  }
   unsigned threads() const override { return threads_; }
   RenderControls* controls() override { return this; }
 
@@ -124,7 +119,7 @@ class LiveRender final : public ViewedImage, public RenderControls {
     const LiveFilm* const film = state_.film();
     if (!film) throw InputError("there is no image yet");
     const auto [width, height] = state_.full_size();
-    look({*film, state_.status().newest, width, height});
+    look({*film, state_.status().newest, width, height, [this] { return state_.metadata(); }});
   }
 
   /// interrupts: what is being rendered will not be needed

@@ -193,6 +193,30 @@ void SpectrumEdits::check_all(const SceneDescription& original, const Channel& r
   });
 }
 
+std::string SpectrumEdits::summary(const SceneDescription& original) const {
+  std::string summary;
+  SceneDescription copy = original;
+  std::size_t index = 0;
+  visit_spectra(copy, [&](SpectrumSlot& slot) {
+    const auto found = edits_.find(id_of(index++));
+    if (found == edits_.end()) return;
+    const Edit& edit = found->second;
+    summary += fmt::format("{}{} of {}", summary.empty() ? "" : "; ", slot.role, slot.owner);
+    if (const auto* temperature = std::get_if<Temperature>(&edit.value))
+      summary += slot.number ? fmt::format(" = {:g} K", temperature->kelvin)
+                             : fmt::format(": Planck's law of {:g} K", temperature->kelvin);
+    else if (const auto* scale = std::get_if<Scale>(&edit.value))
+      summary += fmt::format("{}{:g}", slot.number ? " = " : " x ", scale->factor);
+    else if (!edit.name.empty())
+      summary += ": " + edit.name;
+    else if (const auto& spectrum = std::get<Spectrum>(edit.value); spectrum.is_constant())
+      summary += fmt::format(" = {:g}", spectrum(500));
+    else
+      summary += ": a table";
+  });
+  return summary;
+}
+
 SceneDescription SpectrumEdits::apply(const SceneDescription& original) const {
   SceneDescription changed = original;
   std::size_t index = 0;

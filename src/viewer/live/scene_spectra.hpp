@@ -37,6 +37,8 @@ class SpectrumEdits {
   void check_all(const SceneDescription& original, const Channel& range) const;
   /// The scene with all that was set.
   SceneDescription apply(const SceneDescription& original) const;
+  /// "reflectance of bsdf 'paint' = 0.25; radiance of emitter 'sky' x 3": what is not as in the scene file; empty: nothing.
+  std::string summary(const SceneDescription& original) const;
   /// Member "spectra" of /api/scene.
   nlohmann::json list(const SceneDescription& original, const Channel& range) const;
 

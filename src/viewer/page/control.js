@@ -170,6 +170,7 @@ export function save_tab(tab) {
   const list = element('ul', {class: 'files', 'aria-label': 'Files saved'});
   const go = button('Save', save, {class: 'wide primary', title: 'Ctrl+S opens this tab, Enter saves'});
   async function save() {
+    if (go.disabled) return;  // Enter comes again while a file is written
     go.disabled = true;
     const kind = state.save_format ?? 'exr';
     const answer =

@@ -217,6 +217,18 @@ class StoredCube(unittest.TestCase):
         wait_until(lambda: any("copy.hdr" in text for text in self.browser.texts(".files li")), "the saved file")
         self.assertEqual(list(Cube(self.saved / "copy.hdr").values), list(self.cube.values))
 
+    def test_enter_again_while_a_file_is_saved(self):
+        self.browser.press("s", holding=Keys.CONTROL)
+        self.browser.find("#tab [data-value=exr]").click()
+        self.browser.value("""
+            const {set} = await import('/state.js');
+            set({saved: []});
+            const field = document.querySelector('#tab input[type=text]');
+            field.value = 'twice';
+            for (let i = 0; i < 3; ++i) field.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true}));""")
+        self.browser.wait("return state.saved.length > 0 && !document.querySelector('#tab .primary').disabled", "the saved file")
+        self.assertEqual(self.browser.value("return state.saved"), ["twice.exr"])
+
     def test_the_server_s_errors_are_shown(self):
         self.browser.value("const {post} = await import('/api.js'); await post('/api/save', {format: 'exr', name: '../x'});")
         shown = self.browser.texts(".notice.error")

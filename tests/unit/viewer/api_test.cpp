@@ -1,7 +1,10 @@
 // The answers to requests, for a small stored cube.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <fstream>
+#include <thread>
+#include <vector>
 
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/viewer/test_requests.hpp"
@@ -145,6 +148,23 @@ TEST_F(ApiOfACube, SavesOnlyUnderPlainNewNames) {
   }
   EXPECT_EQ(error(post("/api/save", R"({"format": "gif", "name": "x"})")),
             "format: must be exr, envi or png");
+}
+
+/// Whoever asks first has the name; nothing that was written is replaced.
+TEST_F(ApiOfACube, ANameIsSavedOnce) {
+  for (const std::string format : {"envi", "exr", "png"}) {
+    std::atomic<int> saved{0}, refused{0};
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 8; ++i)
+      threads.emplace_back([&] {
+        const Response answer =
+            post("/api/save", R"({"name": "race", "mode": "channel", "format": ")" + format + "\"}");
+        (answer.status == 200 ? saved : refused) += 1;
+      });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(saved, 1) << format;
+    EXPECT_EQ(refused, 7) << format;
+  }
 }
 
 TEST_F(ApiOfACube, BadJsonIsRefused) {

@@ -131,6 +131,26 @@ TEST_F(LiveStateTest, EditsAreRightForAllChannels) {
   EXPECT_TRUE(state_->is_ready());
 }
 
+/// So that an image that was changed does not pass as the scene file's.
+TEST_F(LiveStateTest, ASavedCubeSaysWhatItIsOf) {
+  start(wall_options(4));
+  work();
+  EXPECT_FALSE(state_->metadata().contains("edited"));
+  EXPECT_EQ(state_->metadata()["max_depth"], "3");
+  EXPECT_EQ(state_->metadata()["method"], "dpept-batch");
+  EXPECT_EQ(state_->metadata()["software"].substr(0, 9), "kiloband ");
+  state_->set_spectrum({{"id", "s0"}, {"set", {{"constant", 0.25}}}});
+  state_->set_spectrum({{"id", "s1"}, {"set", {{"scale", 3}}}});
+  state_->set_settings({{"max_depth", 2}});
+  work();
+  EXPECT_EQ(state_->metadata()["edited"],
+            "reflectance of bsdf 'paint' = 0.25; radiance of emitter 'sky' x 3");
+  EXPECT_EQ(state_->metadata()["max_depth"], "2");
+  state_->set_spectrum({{"id", "s1"}, {"set", {{"file_text", "400 1\n700 1\n"}}}});
+  state_->set_spectrum({{"id", "s0"}, {"set", {{"reset", true}}}});
+  EXPECT_EQ(state_->metadata()["edited"], "radiance of emitter 'sky': a table");
+}
+
 /// A page that was closed while it moved the camera tells nobody that the movement has ended.
 TEST_F(LiveStateTest, ACameraThatIsLeftMovingIsSeenAtFullSize) {
   start(wall_options(5));
