@@ -8,7 +8,7 @@
 namespace kiloband::viewer {
 namespace {
 
-constexpr std::string_view kCookie = "kiloband_token=";
+constexpr std::string_view kCookie = "kiloband_token";
 
 std::string find_or_empty(const std::map<std::string, std::string>& map, const std::string& name) {
   const auto found = map.find(name);
@@ -27,26 +27,41 @@ bool is_loopback(const std::string& host) {
   return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
 }
 
-/// The value of our cookie among "a=b; c=d".
-std::string cookie_token(std::string_view cookies) {
+/// "kiloband_token_8747=" of "localhost:8747": browsers send a host's cookies to all of its ports, so that a second viewer
+/// would take the first one's.
+std::string cookie_name(std::string_view host) {
+  const std::size_t bracket = host.starts_with('[') ? host.find(']') : 0;
+  const std::size_t colon = bracket == std::string_view::npos ? bracket : host.find(':', bracket);
+  std::string name(kCookie);
+  if (colon != std::string_view::npos) {
+    name += '_';
+    for (const char c : host.substr(colon + 1))
+      if (c >= '0' && c <= '9') name += c;
+  }
+  return name + "=";
+}
+
+/// The value of the cookie `name` among "a=b; c=d".
+std::string cookie_token(std::string_view cookies, const std::string& name) {
   while (!cookies.empty()) {
     const std::size_t end = cookies.find(';');
     const std::string_view cookie = trimmed(cookies.substr(0, end));
-    if (cookie.starts_with(kCookie)) return std::string(cookie.substr(kCookie.size()));
+    if (cookie.starts_with(name)) return std::string(cookie.substr(name.size()));
     cookies = end == std::string_view::npos ? std::string_view() : cookies.substr(end + 1);
   }
   return {};
 }
 
 std::optional<Response> check_token(const Request& request, const std::string& token) {
+  const std::string cookie = cookie_name(request.header("host"));
   const bool at_door = request.method == "GET" && request.path == "/" && request.query.contains("token");
   if (at_door && equal_secrets(request.parameter("token"), token)) {
     Response leads{303, "text/plain", "", {}};
     leads.headers = {{"Location", "/"},
-                     {"Set-Cookie", std::string(kCookie) + token + "; HttpOnly; SameSite=Strict; Path=/"}};
+                     {"Set-Cookie", cookie + token + "; HttpOnly; SameSite=Strict; Path=/"}};
     return leads;
   }
-  if (equal_secrets(cookie_token(request.header("cookie")), token)) return std::nullopt;
+  if (equal_secrets(cookie_token(request.header("cookie"), cookie), token)) return std::nullopt;
   return refusal(401, "this viewer needs its token: open the address that kiloband view has printed");
 }
 

@@ -111,6 +111,20 @@ void check_channel(const ViewParameters& view, const std::vector<Band>& bands) {
         fmt::format("channel={}: a sensor response has no brightness temperature", view.channel));
 }
 
+/// What is given stays: where an automatic end is beyond it, that end moves.
+void make_room(const ViewParameters& view, MapRange& range) {
+  if (range.high > range.low) return;
+  const bool logarithmic = view.scale == MapScale::kLogarithmic;
+  const auto beside = [](float value, float sign) {  // 0 or twice as far from it
+    if (value == 0) return sign;
+    return value * sign > 0 ? 2 * value : 0;
+  };
+  if (view.high && !view.low)
+    range.low = logarithmic ? range.high / 10 : beside(range.high, -1);
+  else if (view.low && !view.high)
+    range.high = logarithmic ? range.low * 10 : beside(range.low, 1);
+}
+
 }  // namespace
 
 void Responses::add(const std::string& name, const std::string& csv) {
@@ -213,6 +227,7 @@ Shown show(const Plane& plane, const ViewParameters& view) {
   MapRange range = automatic_range(plane, view.scale);
   if (view.low) range.low = *view.low;
   if (view.high) range.high = *view.high;
+  make_room(view, range);
   if (!(range.high > range.low)) range.high = std::nextafter(range.low, INFINITY);
   return {map_colours(plane, view.map, view.scale, range), {{"low", range.low}, {"high", range.high}}};
 }

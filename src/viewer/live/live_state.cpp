@@ -204,7 +204,10 @@ void LiveState::set_camera(const nlohmann::json& wanted) {
 
 /// After a failure with a backend of its own: the old one may have no device any more.
 void LiveState::restart() {
-  if (std::exchange(failed_, false)) scene_.reset();
+  if (std::exchange(failed_, false)) {
+    scene_.reset();
+    status_.message.clear();
+  }
   if (scene_ && film_ && film_ == full_.get()) return begin_revision();
   if (scene_ && film_) return move_to(sensor_, false);
   scene_.reset();

@@ -59,7 +59,7 @@ struct HttpServer::Impl final : httplib::Server {
     set_pre_routing_handler(
         [this](const auto& request, auto& response) { return before_body(request, response); });
     Post("/api/[a-z]*", [this](const httplib::Request& request, httplib::Response& response) {
-      fill_response(api.answer(to_request(request), [] { return connection->is_gone(); }), response);
+      fill_response(api.answer(to_request(request), [this] { return is_over(); }), response);
     });
     set_error_handler([](const httplib::Request&, httplib::Response& response) {
       if (!response.body.empty()) return;
@@ -88,9 +88,12 @@ struct HttpServer::Impl final : httplib::Server {
       fill_response(refusal(415, "the body must be application/json or text/plain"), response);
       return HandlerResponse::Handled;
     }
-    fill_response(api.answer(asked, [] { return connection->is_gone(); }), response);
+    fill_response(api.answer(asked, [this] { return is_over(); }), response);
     return HandlerResponse::Handled;
   }
+
+  /// Of the connection of this thread: nobody waits for its answer.
+  bool is_over() const { return stopping || connection->is_gone(); }
 
   void stream_events(httplib::Response& response) {
     response.set_header("Cache-Control", "no-store");
@@ -101,7 +104,7 @@ struct HttpServer::Impl final : httplib::Server {
     response.set_chunked_content_provider(
         "text/event-stream",
         [this, stream](std::size_t, httplib::DataSink& sink) {
-          if (stopping || connection->is_gone()) return false;
+          if (is_over()) return false;
           const std::string text = stream->next(pages);
           return text.empty() || sink.write(text.data(), text.size());
         },

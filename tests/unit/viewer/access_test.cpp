@@ -61,18 +61,20 @@ TEST(Access, TheTokenIsAskedForEverywhere) {
   const auto leads = check_access(get_request("/", {{"token", "0123456789abcdef"}}), rules);
   ASSERT_TRUE(leads);
   EXPECT_EQ(leads->status, 303);
-  EXPECT_EQ(leads->headers[1].second, "kiloband_token=0123456789abcdef; HttpOnly; SameSite=Strict; Path=/");
-  for (const char* cookie : {"kiloband_token=0123456789abcdef", "a=b; kiloband_token=0123456789abcdef ;c=d"})
-    EXPECT_EQ(status_of(with(get_request("/api/scene"), "cookie", cookie), rules), 200) << cookie;
+  EXPECT_EQ(leads->headers[1].second,
+            "kiloband_token_8747=0123456789abcdef; HttpOnly; SameSite=Strict; Path=/");
   for (const char* cookie :
-       {"kiloband_token=0123456789abcde", "kiloband_token=", "xkiloband_token=0123456789abcdef", ";;="})
+       {"kiloband_token_8747=0123456789abcdef", "a=b; kiloband_token_8747=0123456789abcdef ;c=d"})
+    EXPECT_EQ(status_of(with(get_request("/api/scene"), "cookie", cookie), rules), 200) << cookie;
+  for (const char* cookie : {"kiloband_token_8748=0123456789abcdef", "kiloband_token_8747=0123456789abcde",
+                             "kiloband_token_8747=", "xkiloband_token_8747=0123456789abcdef", ";;="})
     EXPECT_EQ(status_of(with(get_request("/api/scene"), "cookie", cookie), rules), 401) << cookie;
 }
 
 TEST(Access, WithATokenAnyHostMayBeOurs) {
   const AccessRules rules{"0123456789abcdef", false};
   const Request request =
-      with(with(get_request("/"), "host", "node7:8747"), "cookie", "kiloband_token=0123456789abcdef");
+      with(with(get_request("/"), "host", "node7:8747"), "cookie", "kiloband_token_8747=0123456789abcdef");
   EXPECT_EQ(status_of(request, rules), 200);
   EXPECT_EQ(status_of(with(request, "origin", "http://evil.com"), rules), 403);
 }

@@ -110,6 +110,22 @@ TEST_F(ApiOfACube, FramesOfEveryMode) {
             "mode='rainbow': must be color, false, channel, error, temperature");
 }
 
+/// A bound that is given stays, on whichever side of the automatic other one. Values: 0.1 to 5.1.
+TEST_F(ApiOfACube, GivenBoundsAreUsed) {
+  const auto facts = [&](std::map<std::string, std::string> query) {
+    query["mode"] = "channel";
+    return json::parse(get("/api/frame", std::move(query)).headers[0].second);
+  };
+  EXPECT_EQ(facts({{"high", "0.0625"}})["high"], 0.0625);
+  EXPECT_EQ(facts({{"high", "0.0625"}})["low"], 0);
+  EXPECT_EQ(facts({{"high", "-2"}})["low"], -4);
+  EXPECT_EQ(facts({{"low", "8"}})["low"], 8);
+  EXPECT_EQ(facts({{"low", "8"}})["high"], 16);
+  EXPECT_EQ(facts({{"low", "8"}, {"scale", "log"}})["high"], 80);
+  EXPECT_EQ(facts({{"high", "0.0625"}, {"scale", "log"}})["low"], 0.00625f);
+  EXPECT_EQ(facts({{"low", "3"}, {"high", "2"}})["low"], 3);
+}
+
 TEST_F(ApiOfACube, ResponsesBecomeModes) {
   Request upload = post_request("/api/response", "wavelength_nm,red,green\n400,1,0\n700,1,2\n");
   upload.query["name"] = "camera";

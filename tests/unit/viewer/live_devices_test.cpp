@@ -101,6 +101,7 @@ TEST(LiveDevices, AFailedRenderIsRestarted) {
   EXPECT_EQ(image->status().state, "failed");
   image->controls()->restart();
   expect_same(curves(*image), curves(*start(1)));
+  EXPECT_EQ(image->status().message, "") << "what failed is over";
   EXPECT_EQ(made, 2);
 }
 
