@@ -20,6 +20,7 @@ async (given) => {
   const {state} = await import('/state.js');
   return await (async (given) => { %s })(given);
 }"""
+KEEP_NOTHING = "Storage.prototype.setItem = () => {};"
 ANSWER = "(arguments[0]).then(arguments[1]).catch((error) => arguments[1]({failed: String(error)}));"
 PICTURE = """
 await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));  // frames are painted in the next one
@@ -66,11 +67,15 @@ class Browser:
 
     def open(self, address, forget=True):
         """With `forget` as on a first visit."""
+        if forget:
+            self._forget(address)
         self.driver.get(address)
-        if forget:  # for good: what the page is about to keep, too
-            self.driver.execute_script("localStorage.clear(); Storage.prototype.setItem = () => {};")
-            self.driver.get(address)
         self.wait("return state.frame && state.status && state.scene", "the first frame")
+
+    def _forget(self, address):
+        """For good: what an open page is about to keep, too."""
+        self.driver.execute_script(KEEP_NOTHING)
+        self.driver.execute_cdp_cmd("Storage.clearDataForOrigin", {"origin": address.rstrip("/"), "storageTypes": "local_storage"})
 
     def value(self, code, given=None):
         """What the statements return; `state` is the page's."""

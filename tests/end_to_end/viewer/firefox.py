@@ -4,7 +4,7 @@ import json
 from selenium import webdriver
 from selenium.webdriver.firefox.options import Options
 
-from browser import Browser
+from browser import KEEP_NOTHING, Browser
 from marionette import Marionette
 
 # Errors of scripts and of the page's own requests that Firefox has noted.
@@ -50,6 +50,11 @@ class Firefox(Browser):
     def colour_scheme(self, dark):
         self.marionette.in_chrome("Services.prefs.setIntPref('layout.css.prefers-color-scheme.content-override', arguments[0])",
                                   0 if dark else 1)
+
+    def _forget(self, address):
+        """By a page of the same origin."""
+        self.driver.get(address)
+        self.driver.execute_script("localStorage.clear();" + KEEP_NOTHING)
 
     def noted_errors(self):
         return self.marionette.in_chrome(NOTED)
