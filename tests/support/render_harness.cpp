@@ -92,35 +92,41 @@ std::string test_backend_name() {
   return name && *name ? name : "cpu";
 }
 
-RenderResult render(const RenderSpec& spec) {
-  RenderResult result;
-  const DiagnosticSink sink = [&](const Diagnostic& d) { result.diagnostics.push_back(d.to_string()); };
+PreparedRender::PreparedRender(RenderSpec spec) : spec_(std::move(spec)) {
+  const DiagnosticSink sink = [&](const Diagnostic& d) { diagnostics_.push_back(d.to_string()); };
   ReadOptions read;
   read.sink = sink;
-  const SceneDescription description = read_scene_text(spec.xml, "test.xml", spec.directory, read);
-  const ChannelList channels = parse_channels(spec.bands);
-  const ChannelList guide = spec.guide.empty() ? channels : parse_channels(spec.guide);
-  result.scene = *compile_scene(description, {channels, guide, sink});
-  const DerivedChannels derived = derived_of(spec, channels);
+  const SceneDescription description = read_scene_text(spec_.xml, "test.xml", spec_.directory, read);
+  const ChannelList channels = parse_channels(spec_.bands);
+  const ChannelList guide = spec_.guide.empty() ? channels : parse_channels(spec_.guide);
+  scene_ = compile_scene_to_move(description, {channels, guide, sink});
+  derived_ = derived_of(spec_, channels);
+}
 
-  const ReplicatePlan plan = ReplicatePlan::deal(spec.spp, spec.sampling.replicates);
-  SamplingSettings sampling = spec.sampling;
+void PreparedRender::look_as(const std::string& xml) {
+  move_camera(*scene_, read_scene_text(xml, "test.xml", spec_.directory, {}).sensor);
+}
+
+RenderResult PreparedRender::render(SamplingSettings sampling) const {
+  RenderResult result;
+  result.diagnostics = diagnostics_;
+  result.scene = *scene_;
+  const ReplicatePlan plan = ReplicatePlan::deal(spec_.spp, sampling.replicates);
   sampling.replicates = result.replicates = plan.replicates;
   // One OpenCL program for all tests; tests/statistical/backends compares it with the others.
   BackendRequest request;
   request.backend = test_backend_name();
   say_which(request.backend);
-  request.isa = spec.isa;
-  request.threads = spec.threads;
+  request.isa = spec_.isa;
+  request.threads = spec_.threads;
   request.specialised = false;
-  const auto backend = validation::backends().make(
-      request, {std::make_shared<const FlatScene>(result.scene), derived, sampling});
+  const auto backend = validation::backends().make(request, {scene_, derived_, sampling});
 
   const PixelRect rect = validation::film_rect(result.scene);
   result.width = rect.width;
   result.height = rect.height;
-  result.channels = channels.size() + derived.names.size();
-  SpectralFilm film(rect, {result.channels, plan.replicates, true, spec.held});
+  result.channels = scene_->channels.size() + derived_.names.size();
+  SpectralFilm film(rect, {result.channels, plan.replicates, true, spec_.held});
   std::vector<uint32_t> blocks(film.blocks().size());
   std::iota(blocks.begin(), blocks.end(), 0u);
   const std::atomic<bool> stop{false};
@@ -128,12 +134,16 @@ RenderResult render(const RenderSpec& spec) {
     backend->render(film, {r, 0, static_cast<uint32_t>(plan.size(r))}, blocks, stop, {});
   }
   collect(film, backend->film_scale(), result);
-  if (spec.held) collect_tiles(film, backend->film_scale(), result);
+  if (spec_.held) collect_tiles(film, backend->film_scale(), result);
   const BackendStatistics done = backend->statistics();
   result.invalid_samples = done.invalid_samples;
   result.vertices = done.vertices;
   result.paths = done.paths;
   return result;
+}
+
+RenderResult render(const RenderSpec& spec) {
+  return PreparedRender(spec).render();
 }
 
 double z_score(double value, double expected, double variance) {

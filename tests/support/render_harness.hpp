@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,7 +50,24 @@ struct RenderResult {
 /// chooses), "opencl:pt", "opencl:dpept-path" or "opencl:dpept-batch".
 std::string test_backend_name();
 
+/// A scene that is read and compiled once for several renders, with the bits that each would have on its own.
 /// throws what reading, flattening and rendering throw
+class PreparedRender {
+ public:
+  explicit PreparedRender(RenderSpec spec);
+  /// The renders that follow are by the sensor of another <scene>: of the same kind, film and filter.
+  void look_as(const std::string& xml);
+  RenderResult render(SamplingSettings sampling) const;
+  RenderResult render() const { return render(spec_.sampling); }
+
+ private:
+  RenderSpec spec_;
+  std::vector<std::string> diagnostics_;
+  std::shared_ptr<FlatScene> scene_;
+  DerivedChannels derived_;
+};
+
+/// A scene that is rendered once.
 RenderResult render(const RenderSpec& spec);
 
 /// |value - expected| in standard errors; infinite if the error is 0 and they differ by more

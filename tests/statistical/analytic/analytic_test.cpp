@@ -80,8 +80,8 @@ std::string plane_sensor(uint32_t side) {
   return orthographic(lookat("0, 0, 5", "0, 0, 0"), 1, film(static_cast<int>(side)));
 }
 
-RenderResult render_valid(const std::string& xml, const std::string& bands, const Mode& mode,
-                          const Effort& effort, const std::filesystem::path& folder) {
+RenderSpec spec_of(const std::string& xml, const std::string& bands, const Mode& mode, const Effort& effort,
+                   const std::filesystem::path& folder) {
   RenderSpec spec;
   spec.xml = xml;
   spec.bands = bands;
@@ -89,10 +89,19 @@ RenderResult render_valid(const std::string& xml, const std::string& bands, cons
   spec.threads = 1;  // images are one or a few blocks, and programs run side by side
   spec.spp = effort.samples * effort.replicates;
   spec.sampling = {mode.wavelengths, mode.sampler, effort.seed, effort.replicates, mode.rough_dispersion};
-  RenderResult result = render(spec);
+  return spec;
+}
+
+RenderResult render_valid(const PreparedRender& prepared, const Effort& effort) {
+  RenderResult result = prepared.render();
   EXPECT_EQ(result.invalid_samples, 0u);
   EXPECT_EQ(result.replicates, effort.replicates);
   return result;
+}
+
+RenderResult render_valid(const std::string& xml, const std::string& bands, const Mode& mode,
+                          const Effort& effort, const std::filesystem::path& folder) {
+  return render_valid(PreparedRender(spec_of(xml, bands, mode, effort, folder)), effort);
 }
 
 void expect_mean(const std::string& what, double mean, double variance, double expected, uint32_t replicates,

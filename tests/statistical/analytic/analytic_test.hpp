@@ -84,7 +84,11 @@ struct Effort {
   uint32_t replicates = kReplicates;
 };
 
+/// What render_valid() renders.
+RenderSpec spec_of(const std::string& xml, const std::string& bands, const Mode& mode, const Effort& effort,
+                   const std::filesystem::path& folder);
 /// Renders and requires that no sample was invalid.
+RenderResult render_valid(const PreparedRender& prepared, const Effort& effort);
 RenderResult render_valid(const std::string& xml, const std::string& bands, const Mode& mode = {},
                           const Effort& effort = {}, const std::filesystem::path& folder = ".");
 

@@ -80,12 +80,11 @@ struct Studies {
 };
 
 Studies study(const Mode& mode, uint64_t spp, uint64_t seeds) {
-  RenderSpec spec = spec_of(mode, spp);
+  const RenderSpec spec = spec_of(mode, spp);
+  const PreparedRender prepared(spec);
+  SamplingSettings sampling = spec.sampling;
   Studies studies;
-  for (uint64_t seed = 1; seed <= seeds; ++seed) {
-    spec.sampling.seed = seed;
-    studies.add(render(spec));
-  }
+  for (sampling.seed = 1; sampling.seed <= seeds; ++sampling.seed) studies.add(prepared.render(sampling));
   return studies;
 }
 
@@ -121,11 +120,12 @@ INSTANTIATE_TEST_SUITE_P(Modes, ReplicateErrors,
 /// Why errors of sums are kept: what the marginal variances would predict is far too small, so that the tests
 /// above would not pass with them.
 TEST(ReplicateErrors, MarginalVariancesAreTooSmall) {
-  RenderSpec spec = spec_of({SamplerType::kSobol, WavelengthMode::kShared}, 32);
+  const RenderSpec spec = spec_of({SamplerType::kSobol, WavelengthMode::kShared}, 32);
+  const PreparedRender prepared(spec);
+  SamplingSettings sampling = spec.sampling;
   double channels_alone = 0, channel_sum = 0, pixels_alone = 0, image = 0;
-  for (uint64_t seed = 1; seed <= 20; ++seed) {
-    spec.sampling.seed = seed;
-    const RenderResult result = render(spec);
+  for (sampling.seed = 1; sampling.seed <= 20; ++sampling.seed) {
+    const RenderResult result = prepared.render(sampling);
     const double pixels = result.width * result.height;
     for (std::size_t c = 0; c < kChannels; ++c) channels_alone += result.image_variance[c];
     channel_sum += result.image_variance[kChannels];

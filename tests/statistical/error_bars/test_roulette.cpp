@@ -48,11 +48,11 @@ std::vector<double> every(const std::vector<double>& values, std::size_t channel
 }
 
 TEST(Roulette, BrightNarrowChannelIsUnbiasedAndItsErrorHonest) {
-  RenderSpec spec = closed_box();
+  const PreparedRender prepared(closed_box());
+  SamplingSettings sampling;
   ErrorBarStudy pixels[kChannels], image[kChannels];
-  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    spec.sampling.seed = seed;
-    const RenderResult result = render(spec);
+  for (sampling.seed = 1; sampling.seed <= kSeeds; ++sampling.seed) {
+    const RenderResult result = prepared.render(sampling);
     ASSERT_EQ(result.invalid_samples, 0u);
     for (std::size_t c = 0; c < kChannels; ++c) {
       pixels[c].add(every(result.mean, c), every(result.variance, c));
