@@ -2,7 +2,9 @@
 // with exit code 3, one message and no file. Every call of a small render is made to fail in turn.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <functional>
 #include <map>
 
 #include "tests/end_to_end/support/program.hpp"
@@ -15,8 +17,9 @@ using Environment = std::vector<std::pair<std::string, std::string>>;
 
 struct Finished {
   Outcome outcome;
-  std::map<std::string, long> report;  // of the shim: calls by name, "live_buffers", "failed"
-  std::string image;                   // bytes, empty if there is none
+  std::map<std::string, long>
+      report;         // of the shim: calls by name, "live_buffers", "failed", "clFinish_1", ...
+  std::string image;  // bytes, empty if there is none
   Names files;
 
   bool says(const std::string& text) const { return outcome.err.find(text) != std::string::npos; }
@@ -93,10 +96,15 @@ class OpenclFault : public ::testing::Test {
     ASSERT_FALSE(good_.image.empty());
   }
 
-  /// Fails call 1, 2, 3 ... of the good run in turn, each once. Returns how many runs recovered.
-  long fail_each(const std::string& function, int code, const std::string& note) const {
+  long calls(const std::string& function) const { return good_.report.at(function); }
+
+  /// Fails call 1, 2, 3 ... of the good run in turn, each once, or those of them that are wanted. Returns how many runs recovered.
+  long fail_each(
+      const std::string& function, int code, const std::string& note,
+      const std::function<bool(long)>& wanted = [](long) { return true; }) const {
     long recovered = 0;
-    for (long nth = 1; nth <= good_.report.at(function); ++nth) {
+    for (long nth = 1; nth <= calls(function); ++nth) {
+      if (!wanted(nth)) continue;
       const Fault fault{function, code, nth};
       const Finished result = run_with(fault);
       expect_clean_end(result, good_, fault);
@@ -106,31 +114,51 @@ class OpenclFault : public ::testing::Test {
     return recovered;
   }
 
+  /// Buffers of device memory that the good run had asked for before a wait; the last one has waits of its own.
+  long buffers_before(long wait) const {
+    return wait < 1 ? 0 : calls("clFinish_" + std::to_string(std::min(wait, calls("clFinish"))));
+  }
+
   Finished good_;
 };
 
 /// A lost device at any launch, transfer: set up again, the same image, one line.
 TEST_F(OpenclFault, EveryLaunch) {
-  EXPECT_EQ(fail_each("clEnqueueNDRangeKernel", -5, kRebuilt), good_.report.at("clEnqueueNDRangeKernel"));
+  ASSERT_GT(calls("clEnqueueNDRangeKernel"), 0);
+  EXPECT_EQ(fail_each("clEnqueueNDRangeKernel", -5, kRebuilt), calls("clEnqueueNDRangeKernel"));
 }
 TEST_F(OpenclFault, EveryRead) {
+  ASSERT_GT(calls("clEnqueueReadBuffer"), 0);
   for (const int code : {-5, -36, -9999})
-    EXPECT_EQ(fail_each("clEnqueueReadBuffer", code, kRebuilt), good_.report.at("clEnqueueReadBuffer"));
+    EXPECT_EQ(fail_each("clEnqueueReadBuffer", code, kRebuilt), calls("clEnqueueReadBuffer"));
 }
 TEST_F(OpenclFault, EveryWrite) {
-  EXPECT_EQ(fail_each("clEnqueueWriteBuffer", -36, kRebuilt), good_.report.at("clEnqueueWriteBuffer"));
+  ASSERT_GT(calls("clEnqueueWriteBuffer"), 0);
+  EXPECT_EQ(fail_each("clEnqueueWriteBuffer", -36, kRebuilt), calls("clEnqueueWriteBuffer"));
 }
 
 /// Refused memory: the scene's own buffers are needed, the pool can be smaller.
 TEST_F(OpenclFault, EveryAllocation) {
   const long smaller = fail_each("clCreateBuffer", -4, "device memory: 64 of 64 pixels at a time");
   EXPECT_GT(smaller, 15);
-  EXPECT_LT(smaller, good_.report.at("clCreateBuffer"));
+  EXPECT_LT(smaller, calls("clCreateBuffer"));
 }
 
-/// Waits follow allocations (their failure is refused memory there), evaluation, and the end of the queue.
+/// Waits stand before and after allocations, after evaluation, and at the end of the queue. An allocation's two, which the same lines
+/// call for every buffer, with a handler each, fail in turn: that before the first buffer, that after the second, and so on. So a
+/// device is lost at every buffer, by both handlers, in half the time of failing both at each. All other waits fail.
 TEST_F(OpenclFault, EveryWait) {
-  fail_each("clFinish", -36, kRebuilt);
+  long before = 0, after = 0, others = 0;
+  fail_each("clFinish", -36, kRebuilt, [&](long wait) {
+    const long buffers = buffers_before(wait);
+    if (buffers_before(wait + 1) > buffers && buffers % 2 == 0) return ++before > 0;
+    if (buffers > buffers_before(wait - 1) && buffers % 2 == 0) return ++after > 0;
+    return buffers_before(wait + 1) == buffers && buffers == buffers_before(wait - 1) && ++others > 0;
+  });
+  ASSERT_GT(others, 0);
+  EXPECT_EQ(before + after, buffers_before(calls("clFinish")));
+  EXPECT_GT(before, 30);
+  EXPECT_NEAR(before, after, 1);
 }
 
 TEST_F(OpenclFault, SetUp) {

@@ -8,8 +8,9 @@
 //   KILOBAND_SHIM_DEVICE    1: calls of queues of the device count and fail that was the first to have a queue, 2: of
 //                           the second ...; functions without a queue never fail then (default: any device)
 //   KILOBAND_SHIM_REPORT    file to write at exit: a line "NAME CALLS" per function, then "live_buffers N",
-//                           the references to buffers that were not released, and "failed N", the calls that
-//                           were failed
+//                           the references to buffers that were not released, "failed N", the calls that
+//                           were failed, and "clFinish_I N", the buffers of device memory that were asked for
+//                           before its call I
 //   KILOBAND_SHIM_PLATFORM  the name that platforms give
 //   KILOBAND_SHIM_TYPE      gpu: devices say that they are GPUs
 //   KILOBAND_SHIM_GROUP     work-items of a group at most: devices and kernels say so, and launches of larger groups fail
@@ -74,10 +75,12 @@ struct Plan {
   cl_int code = static_cast<cl_int>(number_of("KILOBAND_SHIM_CODE", CL_OUT_OF_RESOURCES));
   bool repeat = number_of("KILOBAND_SHIM_REPEAT", 0) != 0;
   long device = number_of("KILOBAND_SHIM_DEVICE", 0);  // 0: any
-  std::atomic<long> calls[kFunctionCount] = {}, live_buffers{0}, failed{0}, calls_of_device{0};
+  std::atomic<long> calls[kFunctionCount] = {}, live_buffers{0}, failed{0}, calls_of_device{0},
+                    device_buffers{0};
   std::mutex mutex;
   std::vector<cl_device_id> devices;                      // in the order in which they had queues
   std::vector<std::pair<cl_command_queue, long>> queues;  // and their devices' numbers, from 1
+  std::vector<long> buffers_before_finish;                // by its calls
 
   void note_queue(cl_command_queue queue, cl_device_id its_device) {
     const std::lock_guard lock(mutex);
@@ -94,9 +97,15 @@ struct Plan {
     return 0;
   }
 
+  void note_buffers() {
+    const std::lock_guard lock(mutex);
+    buffers_before_finish.push_back(device_buffers);
+  }
+
   /// The code to give; CL_SUCCESS: call the real function.
   cl_int next(Function called, cl_command_queue queue = nullptr) {
     long call = ++calls[called];
+    if (called == kFinish) note_buffers();
     if (then && failed > 0 && std::strcmp(then, kNames[called]) == 0) {
       ++failed;
       return CL_MEM_OBJECT_ALLOCATION_FAILURE;
@@ -117,6 +126,9 @@ struct Plan {
     if (!file) return;
     for (int i = 0; i < kFunctionCount; ++i) std::fprintf(file, "%s %ld\n", kNames[i], calls[i].load());
     std::fprintf(file, "live_buffers %ld\nfailed %ld\n", live_buffers.load(), failed.load());
+    long call = 0;
+    for (const long buffers : buffers_before_finish)
+      std::fprintf(file, "%s_%ld %ld\n", kNames[kFinish], ++call, buffers);
     std::fclose(file);
   }
 };
@@ -194,6 +206,7 @@ cl_command_queue clCreateCommandQueue(cl_context context, cl_device_id device,
 }
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
+  if (!(flags & CL_MEM_ALLOC_HOST_PTR)) ++plan.device_buffers;
   if (const cl_int code = plan.next(kCreateBuffer)) return refuse<_cl_mem>(code, error);
   const cl_mem buffer = REAL(clCreateBuffer)(context, flags, size, host, error);
   if (buffer) ++plan.live_buffers;
