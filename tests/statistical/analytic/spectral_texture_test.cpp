@@ -165,7 +165,7 @@ TEST_P(SpectralTextureTest, EmissionOfAnAreaLight) {
         render_valid(scene(1, plane_sensor(8) + shape("rectangle", emitter("area", texture))), kBands,
                      GetParam(), {4, 96}, folder.path());
     const Knots radiance = knots(glow);
-    expect_image_mean(result, channel_integrals([&](double nm) { return radiance(nm); }, result), 0.05);
+    expect_image_mean(result, channel_integrals([&](double nm) { return radiance(nm); }, result), 0.01);
   }
 }
 
