@@ -33,7 +33,8 @@ class Metal(RenderedPage):
     def assert_curve_of(self, metal, after):
         """The plotted pixel against a render of the scene with that metal."""
         self.wait_for_samples(64)
-        shown = self.browser.wait("return state.curves_of?.revision > given && state.curves[0]", f"the spectrum of {metal}", after)["mean"]
+        shown = self.browser.wait("return state.curves_of?.revision > given && state.curves_of.samples >= 64 && state.curves[0]",
+                                  f"the spectrum of {metal}", after)["mean"]
         file = self.saved / f"{metal}.hdr"
         kiloband("render", self.saved / "mirror.xml", "-D", f"metal={metal}", "--spp", 256, "-o", file, "--quiet")
         for value, true in zip(shown, Cube(file).spectrum(5, 6), strict=True):
