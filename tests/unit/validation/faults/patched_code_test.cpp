@@ -137,14 +137,23 @@ Said compile(const Unit& unit, const fs::path& tree) {
   return run_shell(replaced(replaced(unit.command, kRoot.string(), tree.string()), "FILE", file.string()));
 }
 
-TEST_F(PatchedCode, SourcesCompile) {
+/// In batches, so that ctest runs them side by side; each takes every kBatches-th unit.
+class PatchedSources : public PatchedCode, public testing::WithParamInterface<std::size_t> {};
+constexpr std::size_t kBatches = 4;
+
+TEST_P(PatchedSources, Compile) {
   const std::set<std::string> files = patched_sources();
   EXPECT_GE(files.size(), 20u) << "the scan of the patches has lost its way";
-  for (const Unit& unit : units_of(files)) {
-    const Said said = compile(unit, tree());
-    EXPECT_EQ(said.code, 0) << testing::PrintToString(unit.files) << "\n" << said.text;
+  const std::vector<Unit> units = units_of(files);
+  EXPECT_GE(units.size(), kBatches);
+  for (std::size_t i = GetParam(); i < units.size(); i += kBatches) {
+    const Said said = compile(units[i], tree());
+    EXPECT_EQ(said.code, 0) << testing::PrintToString(units[i].files) << "\n" << said.text;
   }
-  // The check itself can fail.
+}
+INSTANTIATE_TEST_SUITE_P(, PatchedSources, testing::Range<std::size_t>(0, kBatches));
+
+TEST_F(PatchedCode, TheCheckItselfCanFail) {
   const std::string broken = "src_cpu/path/camera.cpp";
   std::ofstream(tree() / broken, std::ios::app) << "int mistake() { return KB_PLANTED(NO_SUCH_FAULT); }\n";
   const Said said = compile(units_of({broken}).at(0), tree());
