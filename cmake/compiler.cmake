@@ -68,16 +68,24 @@ function(kiloband_test_options name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1> "$<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overflow>")
 endfunction()
 
-# The longest that a test may take. Of a release build none needs 70 s, on two busy cores and with kernels to compile: one that takes
-# longer shows a fault, such as paths that do not end. Sanitizers and debug builds are slower.
+# The longest that a test may take. Of a release build the longest need two minutes (tests/costs/costs.cmake), on two busy cores and with
+# kernels to compile: one that takes far longer shows a fault, such as paths that do not end. Sanitizers and debug builds are slower.
 if(CMAKE_BUILD_TYPE STREQUAL Release AND NOT KILOBAND_SANITIZE)
   set(KILOBAND_TEST_SECONDS 300)
 else()
   set(KILOBAND_TEST_SECONDS 900)
 endif()
 
-# kiloband_test(name SOURCES ... DEPENDS ...): a GoogleTest program whose tests ctest knows one by one, with the label that
-# KILOBAND_TEST_LABEL has (tests/CMakeLists.txt).
+# kiloband_discover(name [options...] [PROPERTIES ...]): ctest knows the tests of a program one by one, with the label that
+# KILOBAND_TEST_LABEL has (tests/CMakeLists.txt). Their names are those that --gtest_filter takes, without values of parameters: what a test
+# has cost ctest notes under its name up to the first space, and bytes of a parameter, some of them addresses, change from build to build.
+function(kiloband_discover name)
+  cmake_parse_arguments(ARG "" "" "PROPERTIES" ${ARGN})
+  gtest_discover_tests(${name} ${ARG_UNPARSED_ARGUMENTS} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT ${KILOBAND_TEST_SECONDS} LABELS "${KILOBAND_TEST_LABEL}" ${ARG_PROPERTIES})
+endfunction()
+
+# kiloband_test(name SOURCES ... DEPENDS ...): a GoogleTest program.
 function(kiloband_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -85,7 +93,7 @@ function(kiloband_test name)
   kiloband_test_options(${name})
   target_compile_definitions(${name} PRIVATE KILOBAND_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KILOBAND_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${KILOBAND_TEST_SECONDS} LABELS "${KILOBAND_TEST_LABEL}")
+  kiloband_discover(${name})
 endfunction()
 
 # kiloband_test_environment(list variables...): the environment of the tests in `list` (the TEST_LIST of gtest_discover_tests, which
@@ -112,7 +120,7 @@ function(kiloband_opencl_test name)
   kiloband_test_options(${name})
   target_compile_definitions(${name} PRIVATE KILOBAND_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KILOBAND_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${KILOBAND_TEST_SECONDS} LABELS "${KILOBAND_TEST_LABEL}")
+  kiloband_discover(${name})
   kiloband_test_environment(${name}_TESTS ${KILOBAND_OPENCL_ENVIRONMENT})
 endfunction()
 
@@ -124,7 +132,7 @@ function(kiloband_test_on name backend)
   if(ARGC GREATER 2)
     set(filter ${ARGV2})
   endif()
-  gtest_discover_tests(${name} TEST_FILTER "${filter}" TEST_PREFIX "${backend}." TEST_LIST ${name}_${backend} DISCOVERY_TIMEOUT 60
-                       PROPERTIES TIMEOUT ${KILOBAND_TEST_SECONDS} LABELS "${KILOBAND_TEST_LABEL}" FAIL_REGULAR_EXPRESSION "rendered by cpu")
+  kiloband_discover(${name} TEST_FILTER "${filter}" TEST_PREFIX "${backend}." TEST_LIST ${name}_${backend}
+                    PROPERTIES FAIL_REGULAR_EXPRESSION "rendered by cpu")
   kiloband_test_environment(${name}_${backend} ${KILOBAND_OPENCL_ENVIRONMENT} KILOBAND_TEST_BACKEND=${backend})
 endfunction()
