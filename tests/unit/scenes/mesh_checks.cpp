@@ -1,8 +1,12 @@
 #include "tests/unit/scenes/mesh_checks.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <vector>
 
 namespace kiloband::test {
 
@@ -89,6 +93,33 @@ double share_of_turned_normals(const Mesh& mesh) {
     for (const uint32_t v : t) turned += dot(front, mesh.normals[v]) < 0;
   }
   return static_cast<double>(turned) / (3.0 * static_cast<double>(mesh.triangles.size()));
+}
+
+namespace {
+/// Parts that are surfaces without an inside.
+const std::set<std::string> kOpen{
+    "floor",         "display",     "outside",      "luminaires", "laptop_screens", "paper",       "blinds",
+    "leaves",        "coffee",      "soil",         "meadow",     "skin",           "compressor",  "turbine",
+    "leading_edges", "intake_lips", "intake_ducts", "nozzle_lip", "nozzle_rear",    "nozzle_front"};
+}  // namespace
+
+std::size_t check_parts(const generator::Scene& scene) {
+  std::size_t triangles = 0;
+  for (const auto& [name, part] : scene.parts) {
+    SCOPED_TRACE(scene.name + "/" + name);
+    const generator::Mesh mesh = in_single_precision(part);
+    EXPECT_EQ(fault_of(mesh), "");
+    EXPECT_LT(share_of_turned_normals(mesh), 1e-3);
+    if (kOpen.contains(name)) {
+      EXPECT_TRUE(is_oriented(mesh));
+      EXPECT_FALSE(is_closed(mesh)) << "belongs to the closed ones";
+    } else {
+      EXPECT_TRUE(is_closed(mesh));
+      EXPECT_GT(signed_volume6(mesh), 0);
+    }
+    triangles += mesh.triangles.size();
+  }
+  return triangles;
 }
 
 }  // namespace kiloband::test

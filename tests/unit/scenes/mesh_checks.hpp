@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "scenes/generator/mesh.hpp"
+#include "scenes/generator/scenes.hpp"
 
 namespace kiloband::test {
 
@@ -31,5 +31,8 @@ bool is_oriented(const generator::Mesh& mesh);
 std::string fault_of(const generator::Mesh& mesh);
 /// Share of triangle corners whose normal looks to the other side of the triangle than its front.
 double share_of_turned_normals(const generator::Mesh& mesh);
+
+/// Expects all of that of a scene's parts. Returns how many triangles they have.
+std::size_t check_parts(const generator::Scene& scene);
 
 }  // namespace kiloband::test
