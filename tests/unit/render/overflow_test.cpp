@@ -22,23 +22,27 @@ uint64_t count_infinite(const std::vector<float>& values) {
   return static_cast<uint64_t>(std::ranges::count_if(values, [](float v) { return std::isinf(v); }));
 }
 
-TEST(Overflow, IsCounted) {
-  const test::TemporaryFolder folder;
+/// A sphere under a sky of that radiance, W m^-2 sr^-1 nm^-1, which the reader need not let through.
+RenderReport render(double radiance, const SessionSettings& settings) {
   using namespace scene_text;
   const std::string xml = scene(-1, perspective(lookat("0, 0, 3", "0, 0, 0"), 50, film(kSide)) +
                                         shape("sphere", "") + emitter("constant", ""));
   SceneDescription description = read_scene_text(xml, "test.xml", ".");
-  // Beyond what the reader lets through: 2e37 per nm are 1.2e39 in a band of 60 nm.
-  std::get<ConstantEmitter>(description.emitters.at(0).model).radiance = Spectrum::constant(2e37);
+  std::get<ConstantEmitter>(description.emitters.at(0).model).radiance = Spectrum::constant(radiance);
   const FlatScene scene = *compile_scene(description, {parse_channels("400:700:5"), {}, {}});
+  SamplingSettings sampling;
+  sampling.replicates = session_replicates(settings);
+  const auto backend = cpu::make_backend(std::make_shared<const FlatScene>(scene), {}, sampling, {});
+  return run_session(scene, {}, *backend, settings, false, {});
+}
+
+TEST(Overflow, IsCounted) {
+  const test::TemporaryFolder folder;
   SessionSettings settings;
   settings.stop.samples_per_pixel = 8;
   settings.variance = settings.keep_replicates = true;
   settings.outputs = {folder.path() / "bright.hdr"};
-  SamplingSettings sampling;
-  sampling.replicates = session_replicates(settings);
-  const auto backend = cpu::make_backend(std::make_shared<const FlatScene>(scene), {}, sampling, {});
-  const RenderReport report = run_session(scene, {}, *backend, settings, false, {});
+  const RenderReport report = render(2e37, settings);  // 1.2e39 in a band of 60 nm
 
   std::vector<float> mean(kSide * kSide * kBands), variance(mean.size());
   open_cube(settings.outputs[0])->read_rows(0, kSide, mean, variance);
@@ -57,20 +61,11 @@ TEST(Overflow, IsCounted) {
 /// Radiances are floats, the squares of their errors are not: an error bar of 0 would say that they are exact.
 TEST(Overflow, VariancesThatVanishAreCounted) {
   const test::TemporaryFolder folder;
-  using namespace scene_text;
-  const std::string xml = scene(-1, perspective(lookat("0, 0, 3", "0, 0, 0"), 50, film(kSide)) +
-                                        shape("sphere", "") + emitter("constant", ""));
-  SceneDescription description = read_scene_text(xml, "test.xml", ".");
-  std::get<ConstantEmitter>(description.emitters.at(0).model).radiance = Spectrum::constant(1e-26);
-  const FlatScene scene = *compile_scene(description, {parse_channels("400:700:5"), {}, {}});
   SessionSettings settings;
   settings.stop.samples_per_pixel = 8;
   settings.variance = true;
   settings.outputs = {folder.path() / "dark.hdr"};
-  SamplingSettings sampling;
-  sampling.replicates = session_replicates(settings);
-  const auto backend = cpu::make_backend(std::make_shared<const FlatScene>(scene), {}, sampling, {});
-  const RenderReport report = run_session(scene, {}, *backend, settings, false, {});
+  const RenderReport report = render(1e-26, settings);
   std::vector<float> mean(kSide * kSide * kBands), variance(mean.size());
   open_cube(settings.outputs[0])->read_rows(0, kSide, mean, variance);
   EXPECT_EQ(std::ranges::count(mean, 0.0f), 0);
