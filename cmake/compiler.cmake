@@ -97,11 +97,18 @@ function(kiloband_test name)
 endfunction()
 
 # kiloband_test_environment(list variables...): the environment of the tests in `list` (the TEST_LIST of gtest_discover_tests, which
-# by itself would set the first variable alone: its PROPERTIES take no lists).
+# by itself would set the first variable alone: its PROPERTIES take no lists). The first test of every suite runs before the others
+# (which need not pass, nor run, for them): side by side, all would compile the kernels that they share.
 function(kiloband_test_environment list)
   set(script ${CMAKE_CURRENT_BINARY_DIR}/${list}_environment.cmake)
   file(WRITE ${script} "foreach(test IN LISTS ${list})\n"
                        "  set_tests_properties(\"\${test}\" PROPERTIES ENVIRONMENT [==[${ARGN}]==])\n"
+                       "  string(REGEX MATCH \"^(opencl[.])?[^.]*\" suite \"\${test}\")\n"
+                       "  if(NOT DEFINED \"first_of_\${suite}\")\n"
+                       "    set(\"first_of_\${suite}\" \"\${test}\")\n"
+                       "  elseif(NOT first_of_\${suite} STREQUAL test)\n"
+                       "    set_tests_properties(\"\${test}\" PROPERTIES DEPENDS \"\${first_of_\${suite}}\")\n"
+                       "  endif()\n"
                        "endforeach()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
 endfunction()
