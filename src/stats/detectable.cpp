@@ -11,6 +11,8 @@
 namespace kiloband::stats {
 namespace {
 
+constexpr double kLeastP = 1e-300;
+
 /// The |t| from which on the test says that there is a difference, to six digits.
 double critical_t(const RelativeError& e, double one_level) {
   const double least = student_upper(one_level / 2, e.dof);
@@ -18,7 +20,9 @@ double critical_t(const RelativeError& e, double one_level) {
   // BF's law lies between Student's of Welch's and of the smaller dof, and p is nearly a power of t.
   const double most = student_upper(one_level / 2, std::min(e.dof_a, e.dof_b));
   const auto excess = [&](double log_t) {
-    return std::log(behrens_fisher_p(std::exp(log_t), e.share, e.dof_a, e.dof_b) / one_level);
+    // At the far end of few replicates p may be 0 in double, whose logarithm the search cannot use.
+    const double p = std::max(behrens_fisher_p(std::exp(log_t), e.share, e.dof_a, e.dof_b), kLeastP);
+    return std::log(p / one_level);
   };
   const double low = std::log(least), high = std::log(most), at_low = excess(low);
   const double at_high = at_low > 0 ? excess(high) : 0;

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "stats/comparison/comparison.hpp"
+#include "stats/detectable.hpp"
 #include "tests/support/simulated_image.hpp"
 
 namespace kiloband::stats::power_test {
@@ -108,6 +110,23 @@ TEST(Power, TheDetectableBiasIsDetected) {
   }
   EXPECT_GE(full, 30);
   EXPECT_LE(half, 12);
+}
+
+/// A side without noise leaves the law of the other, however few replicates it has: the quantile of its own
+/// law is so far out that the probability there is 0 in double.
+TEST(Power, ASideWithoutNoiseLeavesTheOtherSidesLaw) {
+  const float inf = std::numeric_limits<float>::infinity();
+  const auto detectable = [](RelativeError e) {
+    DetectableBias bias;
+    bias.add(e, e);
+    return bias.at(1e-3, 30).typical;
+  };
+  const double expected = detectable({.error = 0.1f, .slack = 1e-5f, .dof = inf});
+  EXPECT_NEAR(expected, 0.543, 1e-3);
+  for (const float dof : {1.f, 2.f, 3.f, 4.f, 100.f}) {
+    EXPECT_NEAR(detectable({0.1f, 1e-5f, inf, 0, 0, dof, inf}), expected, 1e-6) << dof;
+    EXPECT_NEAR(detectable({0.1f, 1e-5f, inf, 0, 1, inf, dof}), expected, 1e-6) << dof;
+  }
 }
 
 }  // namespace
