@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/json_dump.hpp"
 #include "cube/cube_layout.hpp"
 #include "stats/comparison/comparison_json.hpp"
 
@@ -151,7 +152,7 @@ std::string statistics_json(const RenderContext& context, const RenderReport& re
   json["interrupted"] = report.interrupted;
   json["ended_by"] = json_text(report.ended_by);
   json["features"] = context.features;
-  return json.dump(2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 }  // namespace kiloband

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_dump.hpp"
 #include "stats/comparison/comparison_json.hpp"
 
 namespace kiloband {
@@ -197,7 +198,7 @@ std::string compare_json(const CompareReport& report) {
   json["tails_b"] = tail_json(r.tails_b);
   json["channels"] = channels_json(report, names);
   json["notes"] = r.notes;
-  return json.dump(2) + "\n";
+  return dump_json(json, 2) + "\n";
 }
 
 }  // namespace kiloband

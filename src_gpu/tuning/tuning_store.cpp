@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/json_dump.hpp"
 #include "src_gpu/device/user_cache.hpp"
 
 namespace kiloband::opencl {
@@ -105,7 +106,7 @@ std::string TuningStore::save(const DeviceInfo& device, const TunedMethod& measu
   json all{{"format", kFormat}, {"device", device.name}, {"driver", device.driver_version}};
   for (const TunedMethod& one : tuned) all["tuned"].push_back(tuned_json(one));
   // Names of devices, scenes too, may be in any encoding.
-  return keep_file(file(device), all.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  return keep_file(file(device), dump_json(all, 2) + "\n");
 }
 
 bool TuningStore::forget(const DeviceInfo& device) const {

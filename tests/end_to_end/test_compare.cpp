@@ -192,6 +192,15 @@ TEST(Compare, VariancesInTheQuantityOfTheirCube) {
   EXPECT_EQ(p[0], p[1]);
 }
 
+/// Names of files and of bands have any bytes (here Latin-1's e with an acute accent); JSON has UTF-8 alone.
+TEST(Compare, NamesThatAreNoUtf8) {
+  const TemporaryFolder folder;
+  write_small_cube(folder / "d\xe9.hdr", 1, 0.01f);
+  const Outcome outcome = compare(folder, {"d\xe9.hdr", "d\xe9.hdr", "--json", "result.json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(read_json(folder, "result.json")["a"].get<std::string>().find("d\xef\xbf\xbd.hdr, "), 0u);
+}
+
 /// Longer than a file name may be (255 bytes), and than a path (4096).
 TEST(Compare, ListsOfAnyLength) {
   const TemporaryFolder folder;

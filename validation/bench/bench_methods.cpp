@@ -20,6 +20,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/json_dump.hpp"
 #include "film/spectral_film.hpp"
 #include "scene/read/reader.hpp"
 #include "src_gpu/opencl_backend.hpp"
@@ -177,7 +178,7 @@ int run(int argc, char** argv) {
   fmt::print("{:>5} {:>8} {:>8} {:>8}   {:>7} {:>7} {:>7}   {:>6} {:>6} {:>5}   {:>6} {:>6} {:>6}\n", "K",
              "pt", "path", "batch", "pt", "path", "batch", "pt", "triad", "ratio", "eval", "model", "all");
   for (const uint32_t k : channels) json["rows"].push_back(row(context, settings, k, cache));
-  if (settings.json) std::ofstream(*settings.json) << json.dump(2) << "\n";
+  if (settings.json) std::ofstream(*settings.json) << dump_json(json, 2) << "\n";
   return 0;
 }
 

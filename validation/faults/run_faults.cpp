@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json_dump.hpp"
 #include "validation/faults/selection.hpp"
 #include "validation/faults/table.hpp"
 #include "validation/suite/results.hpp"
@@ -170,7 +171,7 @@ int run(const std::vector<std::string>& arguments) {
     print(row);
     rows.push_back(std::move(row));
   }
-  if (!json.empty()) std::ofstream(json) << to_json(rows).dump(1) << "\n";
+  if (!json.empty()) std::ofstream(json) << dump_json(to_json(rows), 1) << "\n";
   fmt::print("{} of {} as they should be\n", rows.size() - wrong, rows.size());
   return wrong == 0 && !rows.empty() ? 0 : 1;
 }

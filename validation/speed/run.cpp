@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "base/error.hpp"
+#include "base/json_dump.hpp"
 #include "files/atomic_file.hpp"
 #include "files/output_target.hpp"
 #include "validation/speed/bench.hpp"
@@ -137,7 +138,7 @@ void write_results(const fs::path& folder, const RunOutcome& run, const Settings
     }
   }
   write_file_atomically(folder / "bench.csv", to_csv(all));
-  write_file_atomically(folder / "bench.json", json.dump(1) + "\n");
+  write_file_atomically(folder / "bench.json", dump_json(json, 1) + "\n");
 }
 
 }  // namespace kiloband::speed

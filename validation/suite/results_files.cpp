@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/json_dump.hpp"
 #include "base/text.hpp"
 #include "cube/cube_io.hpp"
 #include "files/atomic_file.hpp"
@@ -21,6 +23,11 @@ std::string escaped(std::string text) {
   replace_all(text, ">", "&gt;");
   replace_all(text, "\"", "&quot;");
   return text;
+}
+
+/// Names of files have any bytes; a file that says it is UTF-8 has no others.
+std::string utf8_text(const std::string& text) {
+  return nlohmann::json::parse(dump_json(nlohmann::json(text))).get<std::string>();
 }
 
 /// One <testcase>; failure: empty if it passed.
@@ -146,8 +153,8 @@ void prepare_results(const fs::path& directory) {
 }
 
 void write_verdicts(const fs::path& directory, const SuiteResult& result, const RunRecord& record) {
-  write_file_atomically(directory / "results.json", to_json(result, record).dump(1) + "\n");
-  write_file_atomically(directory / "junit.xml", to_junit(result));
+  write_file_atomically(directory / "results.json", dump_json(to_json(result, record), 1) + "\n");
+  write_file_atomically(directory / "junit.xml", utf8_text(to_junit(result)));
 }
 
 void write_results(const fs::path& directory, const SuiteResult& result, const RunRecord& record) {

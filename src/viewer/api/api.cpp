@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/json_dump.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "viewer/api/json_text.hpp"
@@ -174,7 +175,7 @@ Response Api::frame(const Request& request, const std::function<bool()>& gone) {
   facts.update(shown.facts);
   Response response{200, view.exact ? "image/png" : "image/jpeg", "", {}};
   response.body = view.exact ? encode_png(shown.picture) : encode_jpeg(shown.picture);
-  response.headers = {{"X-Kiloband-Frame", facts.dump(-1, ' ', true, json::error_handler_t::replace)}};
+  response.headers = {{"X-Kiloband-Frame", dump_json(facts, -1, true)}};
   return response;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/json_dump.hpp"
 #include "base/text.hpp"
 #include "cube/cube_layout.hpp"
 
@@ -106,7 +107,7 @@ json numbers_json(std::span<const float> values) {
 }
 
 std::string to_text(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
+  return dump_json(value);
 }
 
 }  // namespace kiloband::viewer

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/temporary_folder.hpp"
 #include "validation/suite/results.hpp"
@@ -95,6 +98,18 @@ TEST_F(NoEvidence, WhatIsKeptOnTheWayIsInterrupted) {
   EXPECT_FALSE(result.interrupted);
   EXPECT_TRUE(std::filesystem::exists(folder / "results.json"));
   EXPECT_FALSE(std::filesystem::exists(folder / "cubes"));
+}
+
+/// A path in a message has any bytes, such as Latin-1's e with an acute accent: the other verdicts are kept.
+TEST_F(NoEvidence, MessagesWithBytesThatAreNoTextAreWritten) {
+  validation::SuiteResult result;
+  result.cases.emplace_back().error = "cannot open 'd\xe9'";
+  validation::write_verdicts(folder.path(), result, {});
+  const std::string readable = "cannot open 'd\xef\xbf\xbd'";
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(folder / "results.json"))["cases"][0]["error"], readable);
+  std::ifstream junit(folder / "junit.xml");
+  const std::string text{std::istreambuf_iterator<char>(junit), {}};
+  EXPECT_NE(text.find(readable), std::string::npos) << text;
 }
 
 TEST_F(NoEvidence, ConvergenceOfBlackImagesFails) {

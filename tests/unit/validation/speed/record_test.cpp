@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "base/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "validation/speed/bench.hpp"
 
 namespace kiloband::speed {
@@ -40,6 +43,17 @@ TEST(SpeedRecord, JsonLeavesOutWhatDoesNotApply) {
             R"("value":1234567.25,"error":0.5,"unit":"1/s","error_kind":"half range","repetitions":3,)"
             R"("note":"a \"note\", with commas","command":"kiloband render box.xml"})");
   EXPECT_EQ(to_json(Record{}).dump(), R"({"value":null,"error":null})");
+}
+
+/// Paths have any bytes, such as Latin-1's e with an acute accent: what was measured is written all the same.
+TEST(SpeedRecord, BytesThatAreNoTextAreReplaced) {
+  const test::TemporaryFolder folder;
+  RunOutcome run;
+  run.cases.emplace_back().records = {small_record()};
+  run.cases[0].records[0].command = "kiloband bench --data d\xe9";
+  write_results(folder.path(), run, {}, {});
+  const auto written = nlohmann::json::parse(std::ifstream(folder / "bench.json"));
+  EXPECT_EQ(written["records"][0]["command"], "kiloband bench --data d\xef\xbf\xbd");
 }
 
 TEST(SpeedCases, ByName) {
