@@ -12,6 +12,7 @@
 #include "app/console/standard_output.hpp"
 #include "app/console/stop_signals.hpp"
 #include "app/options/backend_options.hpp"
+#include "app/options/whole_numbers.hpp"
 #include "app/report_page.hpp"
 #include "app/source_folder.hpp"
 #include "base/error.hpp"
@@ -126,7 +127,9 @@ Command add_bench(CLI::App& program) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"cpu", "opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"}));
   command.add_flag("--quick", options->quick, "small images and few channels: about a minute");
-  command.add_option("--seed", options->seed, "of all random numbers")->capture_default_str();
+  command.add_option("--seed", options->seed, "of all random numbers")
+      ->transform(any_whole_number())
+      ->capture_default_str();
   command.add_option("-o,--output", options->output, "folder of the results")->capture_default_str();
   command.add_option("--device", options->device,
                      "opencl: index or part of the name, as `kiloband devices` lists them");

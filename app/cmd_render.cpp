@@ -17,6 +17,7 @@
 #include "app/options/option_values.hpp"
 #include "app/options/render_options.hpp"
 #include "app/options/sampling_options.hpp"
+#include "app/options/whole_numbers.hpp"
 #include "app/render_statistics.hpp"
 #include "files/atomic_file.hpp"
 #include "render/checkpoint/checkpoint.hpp"
@@ -317,7 +318,7 @@ void add_sampling_options(CLI::App& command, RenderOptions& o) {
       .add_option(
           "--spp", o.spp,
           "samples per pixel; with --time or --target-error at most (default without these: the scene's)")
-      ->check(CLI::Range(uint64_t{1}, uint64_t{0xffffffff}));
+      ->transform(whole_numbers<uint64_t>(1, 0xffffffff));
   command.add_option("--time", o.time, "render for (at most) this long: 60s, 5min, 2h");
   command.add_option("--target-error", o.target_error,
                      "render until the relative error of the worst channel is below: 1%");
@@ -325,7 +326,7 @@ void add_sampling_options(CLI::App& command, RenderOptions& o) {
       .add_option("--replicates", o.replicates,
                   "independent replicates that error bars come from (default: 16 with --variance, "
                   "--keep-replicates or --target-error, else 1)")
-      ->check(CLI::Range(1, 4096));
+      ->transform(whole_numbers(1, 4096));
 }
 
 void add_output_options(CLI::App& command, RenderOptions& o) {

@@ -12,6 +12,7 @@
 #include "app/options/backend_options.hpp"
 #include "app/options/render_options.hpp"
 #include "app/options/sampling_options.hpp"
+#include "app/options/whole_numbers.hpp"
 #include "render/traced_path.hpp"
 
 namespace kiloband {
@@ -160,9 +161,11 @@ Command add_trace(CLI::App& program) {
   o->scene.add_to(*command);
   o->backend.add_to(*command, false);
   command->add_option("--pixel", o->pixel, "X,Y in the full film")->required();
-  command->add_option("--sample", o->sample, "number among the pixel's samples")->capture_default_str();
+  command->add_option("--sample", o->sample, "number among the pixel's samples")
+      ->transform(whole_numbers<uint32_t>(0, 0xffffffff))
+      ->capture_default_str();
   command->add_option("--replicates", o->replicates, "of the render that the sample belongs to")
-      ->check(CLI::Range(1, 4096))
+      ->transform(whole_numbers(1, 4096))
       ->capture_default_str();
   o->sampling.add_to(*command);
   return [o] { return trace(*o); };

@@ -13,6 +13,7 @@
 #include "app/console/run_progress.hpp"
 #include "app/console/standard_output.hpp"
 #include "app/console/stop_signals.hpp"
+#include "app/options/whole_numbers.hpp"
 #include "app/report_page.hpp"
 #include "app/source_folder.hpp"
 #include "base/error.hpp"
@@ -192,7 +193,9 @@ Command add_validate(CLI::App& program) {
       ->check(CLI::IsMember({"cpu", "opencl:dpept-batch", "opencl:dpept-path", "opencl:pt"}));
   command.add_flag("--quick", options->quick, "a minute or two");
   command.add_flag("--thorough", options->thorough, "hours");
-  command.add_option("--seed", options->seed, "of all random numbers")->capture_default_str();
+  command.add_option("--seed", options->seed, "of all random numbers")
+      ->transform(any_whole_number())
+      ->capture_default_str();
   command.add_option("-o,--output", options->output, "folder of the results")->capture_default_str();
   command.add_option("--root", options->scenes, "kiloband's source folder, with scenes/ and validation/");
   command

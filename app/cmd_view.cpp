@@ -18,6 +18,7 @@
 #include "app/options/backend_options.hpp"
 #include "app/options/render_options.hpp"
 #include "app/options/sampling_options.hpp"
+#include "app/options/whole_numbers.hpp"
 #include "base/text.hpp"
 #include "src_cpu/cpu_backend.hpp"
 #include "src_gpu/device/device.hpp"
@@ -203,9 +204,9 @@ Command add_view(CLI::App& program) {
   command
       ->add_option("--spp", o->spp,
                    "samples per pixel after which the render rests (default: 15120, the most)")
-      ->check(CLI::Range(uint64_t{1}, viewer::kMostLiveSamples));
+      ->transform(whole_numbers<uint64_t>(1, viewer::kMostLiveSamples));
   command->add_option("--port", o->port, "of the address that is printed (0: any that is free)")
-      ->check(CLI::Range(0, 65535))
+      ->transform(whole_numbers(0, 65535))
       ->capture_default_str();
   command->add_flag("--open", o->open, "open the page in the desktop's browser");
   command->add_option("--output-dir", o->output_dir,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "app/options/whole_numbers.hpp"
 #include "base/error.hpp"
 #include "render/backend_registry.hpp"
 #include "src_cpu/cpu_backend.hpp"
@@ -65,7 +66,7 @@ void BackendOptions::add_to(CLI::App& command, bool with_method) {
                   "auto (a GPU if there is one, else the CPU), cpu, opencl, or cpu+opencl: both together")
       ->check(CLI::IsMember({"auto", "cpu", "opencl", kBothBackends}))
       ->capture_default_str();
-  command.add_option("--threads", threads, "cpu: threads (0: all)")->check(CLI::Range(0, 4096));
+  command.add_option("--threads", threads, "cpu: threads (0: all)")->transform(whole_numbers(0, 4096));
   command.add_option("--isa", isa, "cpu: instruction set (default auto)")
       ->check(CLI::IsMember({"auto", "sse4", "avx2", "avx512"}));
   command.add_option(

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "app/console/messages.hpp"
+#include "app/options/whole_numbers.hpp"
 #include "base/error.hpp"
 #include "base/number.hpp"
 #include "cube/cube_text.hpp"
@@ -54,7 +55,7 @@ void SceneOptions::add_to(CLI::App& command) {
                      "channels that sampling decisions are averaged over (default: the rendered)");
   command.add_option("--size", size, "WxH: image size in pixels");
   command.add_option("--max-depth", max_depth, "longest path (1: emission only, -1: unlimited)")
-      ->check(CLI::Range(-1, 1 << 30));
+      ->transform(whole_numbers(-1, 1 << 30));
   command
       .add_option("--light-selection", light_selection,
                   "how lights are chosen: power, tree (by distance and orientation too), or auto, the tree "

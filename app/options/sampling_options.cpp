@@ -1,17 +1,8 @@
 #include "app/options/sampling_options.hpp"
 
-#include "base/number.hpp"
+#include "app/options/whole_numbers.hpp"
 
 namespace kiloband {
-namespace {
-
-/// CLI11 would take -1 for 2^64 - 1, and a larger number too.
-std::string check_seed(const std::string& text) {
-  if (whole_number<uint64_t>(text)) return {};
-  return "Value " + text + " not a whole number from 0 to 18446744073709551615";
-}
-
-}  // namespace
 
 void SamplingOptions::add_to(CLI::App& command) {
   command.add_option("--wavelengths", wavelengths, "wavelength sampling")
@@ -27,7 +18,7 @@ void SamplingOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"mis", "degrade"}))
       ->capture_default_str();
   command.add_option("--seed", seed, "seed of all random numbers")
-      ->check(CLI::Validator(check_seed, ""))
+      ->transform(any_whole_number())
       ->capture_default_str();
 }
 

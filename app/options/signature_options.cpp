@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "app/options/whole_numbers.hpp"
 #include "app/signature_masks.hpp"
 #include "post/convert.hpp"
 
@@ -106,10 +107,10 @@ void PlaceOptions::add_to(CLI::App& command) {
   add("--object", objects, "numbers or names of objects, of the auxiliary image 'object'; may be repeated")
       ->allow_extra_args(false);
   add("--mask", masks, "image whose pixels above 0.5 are meant; may be repeated")->allow_extra_args(false);
-  add("--grow", grow, "take in this many pixels around each mask")->check(CLI::Range(0, 65535));
+  add("--grow", grow, "take in this many pixels around each mask")->transform(whole_numbers(0, 65535));
   auto* cube = add("--background", background, "cube rendered without the objects");
   auto* ring = add("--background-ring", background_ring, "background: this many pixels around each mask")
-                   ->check(CLI::Range(1, 65535))
+                   ->transform(whole_numbers(1, 65535))
                    ->excludes(cube);
   add("--background-region", background_region, "X,Y,WIDTH,HEIGHT: background")
       ->excludes(cube)

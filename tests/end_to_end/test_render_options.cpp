@@ -151,5 +151,19 @@ TEST(RenderOptions, SamplesLimitTheTargetErrorAndTheWorstChannelIsNamed) {
   expect_text(outcome.err, "warning: --target-error 0.001% was not reached: ended by --spp; " + figures);
 }
 
+/// Not octal, as scripts with numbers of a fixed length need it.
+TEST(RenderOptions, NumbersAreDecimalWhateverTheyBeginWith) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(
+      folder, quiet_render(cornell_box(),
+                           {"--size", "8x8", "--bands", "400:700:4", "--spp", "064", "--replicates", "010",
+                            "--seed", "010", "--threads", "08", "-o", "a.hdr", "--stats", "a.json"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json stats = read_json(folder, "a.json");
+  EXPECT_EQ(stats["spp"], 64);
+  EXPECT_EQ(stats["replicates"], 10);
+  EXPECT_EQ(stats["seed"], 10);
+}
+
 }  // namespace
 }  // namespace kiloband::test

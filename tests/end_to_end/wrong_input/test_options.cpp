@@ -114,6 +114,18 @@ TEST(WrongOption, ChannelsSizeAndStopping) {
       });
 }
 
+TEST(WrongOption, SeedsOfWholeRuns) {
+  const TemporaryFolder folder;
+  for (const std::string command : {"validate", "bench"}) {
+    const std::string rule =
+        " not a whole number from 0 to 18446744073709551615 (see kiloband " + command + " --help)";
+    expect_refused(folder, {command, "--list"},
+                   {{{"--seed", "-1"}, "--seed: Value -1" + rule},
+                    {{"--seed", "0x10"}, "--seed: Value 0x10" + rule},
+                    {{"--seed", "99999999999999999999"}, "--seed: Value 99999999999999999999" + rule}});
+  }
+}
+
 TEST(WrongOption, SamplingAndOutput) {
   const TemporaryFolder folder;
   write_inputs(folder);
@@ -123,6 +135,7 @@ TEST(WrongOption, SamplingAndOutput) {
           {{"--spp", "0"}, "--spp: Value 0 not in range 1 to 4294967295 (see kiloband render --help)"},
           {{"--spp", "-1"}, "--spp: Value -1 not in range 1 to 4294967295 (see kiloband render --help)"},
           {{"--spp", "1.5"}, "--spp: Value 1.5 not in range 1 to 4294967295 (see kiloband render --help)"},
+          {{"--spp", "0x10"}, "--spp: Value 0x10 not in range 1 to 4294967295 (see kiloband render --help)"},
           {{"--seed", "-1"},
            "--seed: Value -1 not a whole number from 0 to 18446744073709551615 (see kiloband render --help)"},
           {{"--seed", "1e3"},
