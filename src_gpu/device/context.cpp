@@ -65,10 +65,17 @@ DeviceContext::DeviceContext(DeviceInfo device, ContextOptions options)
 }
 
 void DeviceContext::create() {
-  programs_ = options_.shared ? shared_programs(device_) : new_context(device_);
+  auto programs = options_.shared ? shared_programs(device_) : new_context(device_);
   checked(site(Phase::kSetup), [&] {
-    queue_ = cl::CommandQueue(context(), cl_device(), options_.profiling ? CL_QUEUE_PROFILING_ENABLE : 0);
+    queue_ = cl::CommandQueue(programs->context(), cl_device(),
+                              options_.profiling ? CL_QUEUE_PROFILING_ENABLE : 0);
   });
+  programs_ = std::move(programs);
+}
+
+ContextPrograms& DeviceContext::programs() const {
+  if (!programs_) throw DeviceError("device '" + device_.name + "': was lost and could not be set up again");
+  return *programs_;
 }
 
 /// Of a lost device an error is expected, and no news.

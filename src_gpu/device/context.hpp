@@ -78,7 +78,7 @@ class DeviceContext {
 
   const DeviceInfo& device() const { return device_; }
   const ContextOptions& options() const { return options_; }
-  const cl::Context& context() const { return programs_->context(); }
+  const cl::Context& context() const { return programs().context(); }
   cl::CommandQueue& queue() { return queue_; }
   cl::Device cl_device() const { return cl::Device(device_.id, true); }
   /// How often it was rebuilt.
@@ -107,7 +107,8 @@ class DeviceContext {
   const std::map<std::string, uint64_t>& kernel_launches() const { return kernel_launches_; }
 
   /// Built programs; build_program looks here first.
-  ContextPrograms& programs() { return *programs_; }
+  /// throws DeviceError  rebuild() has failed: there is no context
+  ContextPrograms& programs() const;
 
   /// Why built programs could not be kept on disk, the first time; empty: no reason, or not tried.
   const std::string& cache_problem() const { return cache_problem_; }

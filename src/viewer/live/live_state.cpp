@@ -66,11 +66,16 @@ bool LiveState::work() {
     else
       render_some();
   } catch (const std::exception& error) {
-    failed_ = true;
-    status_.message = error.what();
+    fail(error);
   }
   set_state();
   return !failed_ && !is_done();
+}
+
+void LiveState::fail(const std::exception& error) {
+  failed_ = true;
+  status_.message = error.what();
+  set_state();
 }
 
 void LiveState::set_state() {
@@ -154,7 +159,7 @@ void LiveState::use_film(bool reduced) {
   film_ = small_.get();
 }
 
-/// The scene stays; on failure everything does.
+/// The scene stays; if the camera is refused everything does. A backend that fails at it ends the render: its device is lost.
 void LiveState::move_to(const Sensor& sensor, bool reduced) {
   if (failed_) throw InputError("there is no render: " + status_.message);
   if (!scene_) {  // is compiled next
@@ -170,7 +175,12 @@ void LiveState::move_to(const Sensor& sensor, bool reduced) {
   move_camera(*scene_, reduced ? reduced_sensor(sensor, small_factor_) : sensor);
   sensor_ = sensor;
   use_film(reduced);
-  backend_->camera_moved();
+  try {
+    backend_->camera_moved();
+  } catch (const std::exception& error) {
+    fail(error);
+    throw;
+  }
   begin_revision();
 }
 

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <memory>
 
 #include "viewer/api/viewed_image.hpp"
@@ -53,6 +54,7 @@ class LiveState {
   void render_some();
   void measure(std::size_t blocks, double seconds);
   void update_error();
+  void fail(const std::exception& error);
   void set_state();
   uint32_t reduction() const;
   bool is_done() const;

@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "tests/support/messages.hpp"
+#include "tests/unit/render/wrapped_backend.hpp"
 #include "tests/unit/viewer/live_wall.hpp"
 #include "viewer/api/selections.hpp"
 
@@ -172,29 +174,18 @@ TEST_F(LiveStateTest, ACameraThatIsLeftMovingIsSeenAtFullSize) {
 }
 
 /// A backend that is interrupted as soon as it has rendered all that it was given, from some call on.
-class LateInterrupt final : public Backend {
+class LateInterrupt final : public WrappedBackend {
  public:
   LateInterrupt(std::unique_ptr<Backend> backend, std::atomic<bool>& interrupt)
-      : backend_(std::move(backend)), interrupt_(interrupt) {}
+      : WrappedBackend(std::move(backend)), interrupt_(interrupt) {}
 
   void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
               const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override {
-    backend_->render(film, range, blocks, stop, progress);
+    WrappedBackend::render(film, range, blocks, stop, progress);
     interrupt_ = true;
   }
-  std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override { return backend_->auxiliary(rect); }
-  std::vector<TracedPath> trace(const PixelRect& rect, const SampleRange& range) override {
-    return backend_->trace(rect, range);
-  }
-  void camera_moved() override { backend_->camera_moved(); }
-  BackendInfo info() const override { return backend_->info(); }
-  BackendStatistics statistics() const override { return backend_->statistics(); }
-  std::vector<double> film_scale() const override { return backend_->film_scale(); }
-  SumRule sum_rule() const override { return backend_->sum_rule(); }
-  uint32_t blocks_at_once(uint32_t samples) const override { return backend_->blocks_at_once(samples); }
 
  private:
-  std::unique_ptr<Backend> backend_;
   std::atomic<bool>& interrupt_;
 };
 
@@ -215,6 +206,48 @@ TEST_F(LiveStateTest, EveryWholePassIsAFrame) {
   EXPECT_EQ(state_->status().newest.samples, 6u);
   EXPECT_EQ(state_->status().newest.frame, 6u);
   EXPECT_TRUE(state_->status().error) << "of the last sample";
+}
+
+/// A backend whose device is lost as the camera moves, and cannot be set up again.
+class LostInMotion final : public WrappedBackend {
+ public:
+  using WrappedBackend::WrappedBackend;
+
+  void camera_moved() override {
+    lost_ = true;
+    throw DeviceError("the device is lost");
+  }
+  void render(SpectralFilm& film, const SampleRange& range, const std::vector<uint32_t>& blocks,
+              const std::atomic<bool>& stop, const std::function<void(uint64_t)>& progress) override {
+    EXPECT_FALSE(lost_) << "there is no device";
+    WrappedBackend::render(film, range, blocks, stop, progress);
+  }
+
+ private:
+  bool lost_ = false;
+};
+
+TEST_F(LiveStateTest, ADeviceThatIsLostAsTheCameraMovesEndsTheRender) {
+  LiveOptions options = wall_options(4);
+  int made = 0;
+  options.backends.make = [&made, make = options.backends.make](const LiveSettings& settings,
+                                                                std::shared_ptr<const FlatScene> scene) {
+    auto backend = make(settings, std::move(scene));
+    return made++ > 0 ? std::move(backend) : std::make_unique<LostInMotion>(std::move(backend));
+  };
+  start(std::move(options));
+  work();
+  const json moved{{"origin", {1, 0, 4}}, {"target", {1, 0, 0}}};
+  EXPECT_EQ(error_of<DeviceError>([&] { state_->set_camera(moved); }), "the device is lost");
+  EXPECT_EQ(state_->status().state, "failed");
+  EXPECT_EQ(state_->status().message, "the device is lost");
+  EXPECT_FALSE(state_->work());
+  EXPECT_EQ(error_of([&] { state_->set_camera(moved); }), "there is no render: the device is lost");
+  state_->restart();
+  work();
+  EXPECT_EQ(made, 2) << "a backend of its own";
+  EXPECT_EQ(state_->status().state, "done") << state_->status().message;
+  EXPECT_EQ(state_->scene_json()["camera"]["origin"], json({1.0, 0.0, 4.0})) << "where it was to be";
 }
 
 }  // namespace
