@@ -48,7 +48,9 @@ uint64_t peak_memory_bytes() {
 
 std::string describe_errors(const RenderReport& report) {
   const BandErrors& errors = report.errors;
-  if (!errors.worst) return "no relative error: no channel has light";
+  if (!errors.worst)
+    return errors.dark_bands > 0 ? "no relative error: no channel has light"
+                                 : "no relative error: no pixel has samples in two replicates";
   std::string text = fmt::format(
       "relative error (RMS of the pixels over the image's mean): {:.3g} % in the worst channel ({}), {:.3g} % in "
       "the median one",

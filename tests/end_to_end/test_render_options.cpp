@@ -165,5 +165,16 @@ TEST(RenderOptions, NumbersAreDecimalWhateverTheyBeginWith) {
   EXPECT_EQ(stats["seed"], 10);
 }
 
+TEST(RenderOptions, WhatEndsBeforeThereAreErrorsIsNotDark) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_program(folder, {"render", cornell_box(), "--size", "8x8", "--bands", "400:700:4", "--backend",
+                           "cpu", "--time", "1e-9", "--target-error", "1%", "-o", "a.exr"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_text(outcome.err,
+              "warning: --target-error 1% was not reached: ended by --time; no relative error: no pixel has "
+              "samples in two replicates\n");
+}
+
 }  // namespace
 }  // namespace kiloband::test
