@@ -41,8 +41,9 @@ class Session {
     const bool whole = revisits || row_bytes * image.height <= settings_.memory_budget_bytes;
     strip_ = static_cast<uint32_t>(strip);
     whole ? run_whole(image, options) : run_strips(image, options);
-    report_.interrupted = stop_;
-    report_.ended_by = passes_.ended_by();
+    // Not what is asked for while a complete image is written.
+    report_.ended_by = left_out_ ? StopReason::kInterrupt : passes_.ended_by();
+    report_.interrupted = report_.ended_by == StopReason::kInterrupt;
     if (!settings_.variance) report_.errors = passes_.errors();  // of a target error
     report_.sampling_seconds = passes_.seconds();
     finish_image_moments();
@@ -126,6 +127,7 @@ class Session {
     for (uint32_t y = 0; y < image.height; y += strip_) {
       const PixelRect rect{image.x0, image.y0 + y, image.width, std::min(strip_, image.height - y)};
       if (stop_) {
+        left_out_ = true;
         output.write_missing(rect);
         counter.add_missing();
         continue;
@@ -167,6 +169,7 @@ class Session {
   BandSelection bands_;
   std::size_t channels_;
   uint32_t replicates_, strip_ = 0;
+  bool left_out_ = false;  // strips, of an interrupted render
   RenderReport report_;
   Passes passes_;
   std::vector<std::vector<double>> image_sums_;

@@ -3,6 +3,7 @@
 
 #include "post/replicated_cube.hpp"
 #include "tests/unit/render/session_fixture.hpp"
+#include "tests/unit/render/wrapped_backend.hpp"
 
 namespace kiloband::session_test {
 namespace {
@@ -159,6 +160,38 @@ TEST_F(SessionTest, InterruptedStripsBecomeNan) {
   EXPECT_TRUE(std::isnan(values.mean.back()));
   const auto missing = std::ranges::count_if(values.mean, [](float v) { return std::isnan(v); });
   EXPECT_EQ(static_cast<uint64_t>(missing), 5 * report.pixels_without_sample);
+}
+
+/// Asks for a stop as soon as something is written: auxiliary images are rendered then.
+class StopAtWriting final : public test::WrappedBackend {
+ public:
+  StopAtWriting(std::unique_ptr<Backend> backend, std::atomic<bool>& stop)
+      : WrappedBackend(std::move(backend)), stop_(stop) {}
+  std::vector<AuxiliaryPixel> auxiliary(const PixelRect& rect) override {
+    stop_ = true;
+    return WrappedBackend::auxiliary(rect);
+  }
+
+ private:
+  std::atomic<bool>& stop_;
+};
+
+TEST_F(SessionTest, ARenderThatIsCompleteIsNotInterruptedAsItIsWritten) {
+  settings_.aux = {"depth"};
+  std::atomic<bool> stop{false};
+  StopAtWriting renderer(backend(), stop);
+  const RenderReport whole = run(renderer, "whole.hdr", stop);
+  EXPECT_TRUE(stop);
+  EXPECT_FALSE(whole.interrupted);
+  EXPECT_EQ(whole.ended_by, StopReason::kSamples);
+
+  settings_.memory_budget_bytes = 100000;
+  stop = false;
+  const RenderReport strips = run(renderer, "strips.hdr", stop);
+  EXPECT_TRUE(strips.streamed);
+  EXPECT_TRUE(strips.interrupted) << "the strips after the first are missing";
+  EXPECT_EQ(strips.ended_by, StopReason::kInterrupt);
+  EXPECT_GT(strips.pixels_without_sample, 0u);
 }
 
 }  // namespace
