@@ -138,6 +138,8 @@ void CompareSide::open_renders(const std::vector<std::string>& files, const Diag
 }
 
 void CompareSide::open_single(const SideOptions& options, const DiagnosticSink& sink) {
+  if (options.exact && (options.variance || options.dof))
+    throw InputError("--b-exact: B then has no errors, which --variance-b and --dof-b would describe");
   ReplicatedCube cube = open_replicated_cube(options.files, sink);
   if (options.exact || options.variance || !cube.has_errors()) {
     source_ = options.exact ? ErrorSource::kExact : ErrorSource::kVariance;
