@@ -10,6 +10,7 @@
 #include "app/compare/compare_input.hpp"
 #include "app/compare/compare_report.hpp"
 #include "app/console/messages.hpp"
+#include "app/console/open_files.hpp"
 #include "app/console/output_files.hpp"
 #include "app/console/standard_output.hpp"
 #include "app/options/render_options.hpp"
@@ -178,6 +179,7 @@ OutputFiles output_files(const CompareOptions& o) {
 }
 
 int compare(const CompareOptions& o) {
+  allow_many_open_files();
   const DiagnosticSink sink = print_diagnostics(false);
   check_values(o);
   check_output_files(output_files(o));

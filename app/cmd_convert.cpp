@@ -7,6 +7,7 @@
 
 #include "app/commands.hpp"
 #include "app/console/messages.hpp"
+#include "app/console/open_files.hpp"
 #include "app/console/output_files.hpp"
 #include "app/options/render_options.hpp"
 #include "app/options/signature_options.hpp"
@@ -70,6 +71,7 @@ CubeSelection selection_of(const ConvertOptions& options, const CubeInfo& info) 
 }
 
 int convert(const ConvertOptions& options) {
+  allow_many_open_files();
   const DiagnosticSink sink = print_diagnostics(false);
   const std::filesystem::path out = options.out;
   const CubeInfo info = open_cube(options.in)->info();

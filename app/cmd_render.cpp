@@ -10,6 +10,7 @@
 
 #include "app/commands.hpp"
 #include "app/console/messages.hpp"
+#include "app/console/open_files.hpp"
 #include "app/console/output_files.hpp"
 #include "app/console/progress_bar.hpp"
 #include "app/console/stop_signals.hpp"
@@ -239,6 +240,7 @@ void print_problems(const RenderReport& report, const Backend& backend) {
 
 OutputFiles checked_files(const RenderOptions& options) {
   const OutputFiles files = output_files(options);
+  if (files.kept_replicates > 0) allow_many_open_files();
   check_output_files(files);
   if (!files.checkpoint) return files;
   check_checkpoint_file(*files.checkpoint, options.resume);  // first: it says what is no regular file

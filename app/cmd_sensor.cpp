@@ -6,6 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/console/messages.hpp"
+#include "app/console/open_files.hpp"
 #include "app/console/output_files.hpp"
 #include "app/options/render_options.hpp"
 #include "app/options/signature_options.hpp"
@@ -95,6 +96,7 @@ OutputFiles output_files(const SensorOptions& o) {
 }
 
 int sensor(const SensorOptions& o) {
+  allow_many_open_files();
   const DiagnosticSink sink = print_diagnostics(false);
   check_options(o);
   check_output_files(output_files(o));
