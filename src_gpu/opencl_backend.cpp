@@ -38,6 +38,12 @@ struct LeftSums {
   std::vector<uint32_t> blocks;
 };
 
+/// Replicates that have come to the film, and what they took.
+struct Delivered {
+  uint32_t replicates = 0;
+  RunTally tally;
+};
+
 class Renderer final : public Backend {
  public:
   Renderer(std::shared_ptr<HostScene> host, const SamplingSettings& settings, const Options& options,
@@ -97,7 +103,7 @@ class Renderer final : public Backend {
   void render_group(std::span<const ImagePixel> pixels, const SampleRange& range, const SumsBefore* before,
                     const std::atomic<bool>& stop, ToldSamples& told);
   void add_replicates(SpectralFilm& film, const ReplicatePlan& plan, const std::atomic<bool>& stop,
-                      ToldSamples& told, uint32_t& delivered);
+                      ToldSamples& told, Delivered& delivered);
   void count(const RunTally& tally);
 
   Options options_;
@@ -276,9 +282,9 @@ void Renderer::render(SpectralFilm& film, const SampleRange& range, const std::v
 }
 
 /// On the device, from where they come to the film at their end, and now and then before, so that not all is lost with the device.
-/// delivered  how many the film has
+/// delivered  what the film has
 void Renderer::add_replicates(SpectralFilm& film, const ReplicatePlan& plan, const std::atomic<bool>& stop,
-                              ToldSamples& told, uint32_t& delivered) {
+                              ToldSamples& told, Delivered& delivered) {
   using Moments = FilmForm::Moments;
   const std::vector<ImagePixel> pixels = pixels_of(film.blocks());
   std::vector<std::size_t> block_pixels;
@@ -294,11 +300,11 @@ void Renderer::add_replicates(SpectralFilm& film, const ReplicatePlan& plan, con
     const SampleRange range{r, 0, samples_of(r)};
     const uint32_t done = groups_->add_replicate(pixels, range, open, stop, on_samples, tally);
     if (done < range.count || r + 1 == plan.replicates || pace.is_due()) {
-      delivered = 0;  // of some blocks, should the device fail meanwhile
+      delivered = {};  // of some blocks, should the device fail meanwhile: all is rendered again
       pace.measured([&] { deliver_replicates(film, groups_->replicates()); });
-      delivered = groups_->replicates().folded().number;
+      delivered = {groups_->replicates().folded().number, tally};
       told.deliver();
-      count(std::exchange(tally, {}));
+      losses_in_a_row_ = 0;
     }
     if (done < range.count) return;
   }
@@ -311,19 +317,21 @@ uint32_t Renderer::render_replicates(SpectralFilm& film, const ReplicatePlan& pl
   const NeutralFolder neutral;
   left_ = {};
   ToldSamples told(outside(neutral, progress));
-  uint32_t attempts = 0, delivered = 0;
+  uint32_t attempts = 0;
+  Delivered delivered;
   try {
     repeated([&] {
       told.begin_attempt();
-      if (delivered > 0) return;
+      if (delivered.replicates > 0) return;
       if (attempts++ > 0) forget_replicates(film);
       add_replicates(film, plan, stop, told, delivered);
     });
   } catch (const DeviceOutOfMemory& refusal) {
-    if (delivered == 0) forget_replicates(film);
+    if (delivered.replicates == 0) forget_replicates(film);
     retreat(refusal);
   }
-  return delivered;
+  if (delivered.replicates > 0) count(delivered.tally);
+  return delivered.replicates;
 }
 
 std::vector<AuxiliaryPixel> Renderer::auxiliary(const PixelRect& rect) {
