@@ -57,12 +57,17 @@ PlaceAndTime read_place_and_time(const ObjectReader& object) {
   return at;
 }
 
-/// In files of Mitsuba 0.x up is +Y, and sun_direction stands in the world. Local there to local here.
+/// In files of Mitsuba 0.x up is +Y. Local there to local here.
 Transform up_to_y() {
   return glm::rotate(glm::dmat4(1), -90 * kDegree, glm::dvec3(1, 0, 0));
 }
 
-/// Unit vector to the sun, local. Of old files +X is east and +Z south.
+/// Of the sky.
+Transform local_to_world(const ObjectReader& object) {
+  return rotation_and_position(object) * (object.node().legacy ? up_to_y() : Transform(1.0));
+}
+
+/// Unit vector to the sun, local; sun_direction stands in the world. Of old files +X is east and +Z south.
 glm::dvec3 read_direction(const ObjectReader& object) {
   if (object.has("sun_direction")) {
     for (const char* name : kTimeParameters)
@@ -70,9 +75,7 @@ glm::dvec3 read_direction(const ObjectReader& object) {
     const glm::dvec3 direction = object.get_vector("sun_direction", {0, 0, 1});
     const double length = glm::length(direction);
     if (!(length > 0)) object.fail_at("sun_direction", "sun_direction: its length must be > 0");
-    if (!object.node().legacy) return direction / length;
-    const glm::dmat3 frame(rotation_and_position(object) * up_to_y());
-    return glm::normalize(glm::inverse(frame) * direction);
+    return glm::normalize(glm::inverse(glm::dmat3(local_to_world(object))) * direction);
   }
   const SunPosition sun = sun_position(read_place_and_time(object));
   const double elevation = sun.elevation_deg * kDegree, azimuth = sun.azimuth_deg * kDegree;
@@ -164,8 +167,7 @@ std::vector<Emitter> read_sunsky(ReadContext& context, const ObjectReader& objec
   parameters.sun_azimuth_deg = std::atan2(sun.x, sun.y) / kDegree;  // of the map that is turned to +Z
   parameters.aerosol_500nm = aerosol_of(turbidity);
   parameters.ground_albedo = read_albedo(context, object);
-  const Transform to_world =
-      rotation_and_position(object) * (object.node().legacy ? up_to_y() : Transform(1.0));
+  const Transform to_world = local_to_world(object);
   note_differences(context, object);
 
   const ClearSky sky(parameters);

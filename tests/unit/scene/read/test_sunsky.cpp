@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 
 #include "sky/sky_map.hpp"
 #include "support.hpp"
@@ -78,13 +79,43 @@ TEST(SceneSunsky, IsTheClearSkyOfItsTurbidity) {
   EXPECT_EQ(below, 0);
 }
 
-TEST(SceneSunsky, TurnsWithItsTransform) {
-  const auto emitters = emitters_of(direction("0.8, 0, 0.6") +
-                                    "<transform name='to_world'><rotate x='1' angle='-90'/></transform>");
-  const glm::dvec3 expected(0.8, 0.6, 0);
-  EXPECT_NEAR(glm::length(std::get<DirectionalEmitter>(emitters[1].model).direction + expected), 0, 1e-12);
-  EXPECT_GT(glm::dot(brightest(std::get<SpectralEnvmapEmitter>(emitters[0].model)), expected),
-            std::cos(6 * kDegree));
+std::string turned(const std::string& steps) {
+  return "<transform name='to_world'>" + steps + "</transform>";
+}
+
+/// to_world turns the sky; sun_direction stands in the world, as Mitsuba 3.9.1's eval() and sample_direction() have it.
+/// Local up is towards (0, 1, 0), (sin 20, 0, cos 20 degrees) turned by 70 about z, (0, 0.6, 0.8).
+TEST(SceneSunsky, SunDirectionStandsInTheWorld) {
+  const glm::dvec3 towards = glm::normalize(glm::dvec3(0.3, 0.6, 0.6));
+  const double c = std::cos(20 * kDegree), s = std::sin(20 * kDegree), phi = 70 * kDegree;
+  const std::pair<std::string, glm::dvec3> cases[] = {
+      {"<rotate x='1' angle='-90'/>", {0, 1, 0}},
+      {"<rotate y='1' angle='20'/><rotate z='1' angle='70'/>", {s * std::cos(phi), s * std::sin(phi), c}},
+      {"<scale x='-2' y='2' z='2'/><rotate x='1' angle='-36.86989764584402'/>", {0, 0.6, 0.8}}};
+  for (const auto& [steps, up] : cases) {
+    SCOPED_TRACE(steps);
+    const auto emitters = emitters_of(direction("0.3, 0.6, 0.6") + turned(steps));
+    const auto& sun = std::get<DirectionalEmitter>(emitters[1].model);
+    EXPECT_NEAR(glm::length(sun.direction + towards), 0, 1e-9);
+    EXPECT_GT(glm::dot(brightest(std::get<SpectralEnvmapEmitter>(emitters[0].model)), towards),
+              std::cos(6 * kDegree));
+    SkyParameters parameters;  // of the sun over the local horizon
+    parameters.sun_elevation_deg = std::asin(glm::dot(up, towards)) / kDegree;
+    parameters.aerosol_500nm = (0.04608 * 3 - 0.04586) * std::pow(0.5, -1.3);
+    EXPECT_NEAR(sun.irradiance(555) / ClearSky(parameters).direct_normal()(555), 1, 0.02);
+  }
+  EXPECT_NE(error_of(scene("<emitter type='sunsky'>" + direction("0, 0, 1") +
+                           turned("<rotate x='1' angle='100'/>") + "</emitter>" + kSensor + kSphere))
+                .find("the sun is not above the horizon"),
+            std::string::npos);
+}
+
+TEST(SceneSunsky, TheSunOfATimeTurnsWithTheTransform) {
+  const auto sun = std::get<DirectionalEmitter>(emitters_of("")[1].model).direction;
+  const auto other =
+      std::get<DirectionalEmitter>(emitters_of(turned("<scale x='-1'/><rotate x='1' angle='-90'/>"))[1].model)
+          .direction;
+  EXPECT_NEAR(glm::length(other - glm::dvec3(-sun.x, sun.z, -sun.y)), 0, 1e-12);
 }
 
 /// Mitsuba's default: Tokyo, 10 July 2010, 15 h.
