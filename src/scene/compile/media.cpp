@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "base/diagnostics.hpp"
 #include "scene/compile/place.hpp"
 #include "scene/compile/record_vectors.hpp"
 #include "spectral/planck.hpp"
@@ -34,7 +35,11 @@ void set_to_local(KbMedium& record, const Transform& to_world, const glm::dvec3&
 }  // namespace
 
 MediumCompiler::MediumCompiler(const CompileContext& context, const std::vector<const Shape*>& sources)
-    : in_(context.in), out_(context.out), spectra_(context.spectra), sources_(sources) {}
+    : sink_(context.options.sink),
+      in_(context.in),
+      out_(context.out),
+      spectra_(context.spectra),
+      sources_(sources) {}
 
 /// hc / (k lambda T) from the longest to the shortest rendered wavelength, in equal ratios.
 void MediumCompiler::set_ladder(KbMedium& record) const {
@@ -165,9 +170,28 @@ uint32_t MediumCompiler::interior(uint32_t shape_index) {
   if (boundaries.empty()) return KB_NONE;
   const auto [inside, is_new] = interiors_.try_emplace(&shape);
   if (is_new)
-    inside->second = add_medium(empty_medium(KB_MEDIUM_EMPTY), "inside of " + out_.shape_names[shape_index],
-                                shape.position);
+    inside->second = add_inside(shape_index);
+  else
+    repeated_.push_back(shape_index);
   return inside->second;
+}
+
+uint32_t MediumCompiler::add_inside(uint32_t shape_index) {
+  return add_medium(empty_medium(KB_MEDIUM_EMPTY), "inside of " + out_.shape_names[shape_index],
+                    sources_[shape_index]->position);
+}
+
+/// Instances of a glass body may stand in each other: each has an inside of its own, while there are numbers.
+void MediumCompiler::part_instances() {
+  if (repeated_.size() <= kMaxMedia - out_.media.size()) {
+    for (const uint32_t shape : repeated_) out_.interiors[shape] = add_inside(shape);
+    return;
+  }
+  const uint32_t first = repeated_.front();
+  warn(sink_, sources_[first]->position,
+       fmt::format("shape '{}': more than {} media and shapes that transmit light: instances of one shape "
+                   "count as one body, which is wrong where they stand in each other",
+                   out_.shape_names[first], kMaxMedia));
 }
 
 void MediumCompiler::add_media() {
@@ -178,6 +202,7 @@ void MediumCompiler::add_media() {
   out_.features.gas = true;
   if (in_.atmosphere) out_.atmosphere = medium(in_.atmosphere, KB_NONE);
   for (uint32_t i = 0; i < out_.shapes.size(); ++i) out_.interiors.push_back(interior(i));
+  part_instances();
 }
 
 }  // namespace kiloband

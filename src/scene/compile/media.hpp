@@ -25,16 +25,20 @@ class MediumCompiler {
   uint32_t add_medium(const KbMedium& record, const std::string& name, const SourcePosition& position);
   bool refracting_materials(const KbSurface& surface, std::vector<uint32_t>& found) const;
   uint32_t interior(uint32_t shape_index);
+  uint32_t add_inside(uint32_t shape_index);
+  void part_instances();
   void set_grid(KbMedium& record, const GridField& grid);
   void set_jet(KbMedium& record, const JetField& jet);
   void set_ladder(KbMedium& record) const;
 
+  const DiagnosticSink& sink_;
   const SceneDescription& in_;
   FlatScene& out_;
   SpectrumTableBuilder& spectra_;
   const std::vector<const Shape*>& sources_;
   std::map<std::pair<const void*, uint32_t>, uint32_t> media_;  // by medium and the boundary's material
-  std::map<const Shape*, uint32_t> interiors_;  // that are not a medium's: of shapes that instances repeat
+  std::map<const Shape*, uint32_t> interiors_;                  // that are not a medium's
+  std::vector<uint32_t> repeated_;  // shapes that share one of these with an instance before
 };
 
 }  // namespace kiloband

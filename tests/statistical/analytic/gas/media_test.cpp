@@ -63,6 +63,31 @@ TEST(Gas, FollowsTheMediumThatARayIsIn) {
   }
 }
 
+/// Two instances of a glass body, one in the other, keep out as much of the atmosphere as two bodies: 16 m are left of 20.
+TEST(Gas, InstancesNestLikeShapes) {
+  const std::string glass = bsdf("dielectric", real("int_ior", 1.0001) + real("ext_ior", 1));
+  const std::string far = scale(20, 20, 1) + translate(0, 0, -10);
+  const std::string lit =
+      gas("atmosphere", spectrum("absorption", 0.5)) +
+      perspective(lookat("0.0123, 0.0057, 10.0001", "0.0123, 0.0057, 0"), 0.05, film(4)) +
+      shape("rectangle", to_world(far) + diffuse(0) + emitter("area", spectrum("radiance", 1)));
+  for (const char* const type : {"cube", "sphere"}) {
+    SCOPED_TRACE(type);
+    const auto own = [&](const char* size) { return shape(type, to_world(scale(size)) + glass); };
+    const std::string group = "<shape type='shapegroup' id='body'>" + shape(type, glass) + "</shape>";
+    const auto placed = [&](const char* size) {
+      return shape("instance", "<ref id='body'/>" + to_world(scale(size)));
+    };
+    const auto image = [&](const std::string& bodies) {
+      return render_valid(scene(20, lit + bodies), "500-510", {}, {4096, 39, 4});
+    };
+    const RenderResult bodies = image(own("2") + own("1"));
+    const RenderResult instances = image(group + placed("1") + placed("2"));
+    EXPECT_NEAR(instances.image_mean[0] / bodies.image_mean[0], 1, 2e-3);
+    EXPECT_NEAR(instances.image_mean[0] / (10 * std::exp(-8.0)), 1, 2e-3);
+  }
+}
+
 /// What the environment shows is as seen in the scene, behind an atmosphere too; interiors count, and what
 /// they emit is seen through the atmosphere in front of them.
 TEST(Gas, EscapingRaysCarryNoAtmosphere) {

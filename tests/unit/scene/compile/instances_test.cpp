@@ -1,18 +1,22 @@
 // Instances: meshes are stored once, records say where they stand.
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "scene/compile/flat_scene.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/unit/scene/compile/support.hpp"
 
 namespace kiloband::test::instances_test {
 namespace {
 
-FlatScene compiled(const std::string& shapes) {
+FlatScene compiled(const std::string& shapes, const DiagnosticSink& sink = {}) {
   const std::string scene = "<scene version='3.0.0'>" + shapes +
                             "<emitter type='constant'/><sensor type='perspective'><transform name='to_world'>"
                             "<translate z='5'/></transform></sensor></scene>";
   const ChannelList channels = parse_channels("500-510");
-  return *compile_scene(read_scene_text(scene, "scene.xml", "."), {channels, channels, {}});
+  return *compile_scene(read_scene_text(scene, "scene.xml", "."), {channels, channels, sink});
 }
 std::string placed(const std::string& steps) {
   return "<transform name='to_world'>" + steps + "</transform>";
@@ -92,6 +96,49 @@ TEST(Instances, InGroupsAreMultipliedOut) {
   EXPECT_TRUE(scene.shapes[7].flags & KB_SHAPE_FLIP_NORMALS);
   EXPECT_NEAR(vertex(scene, scene.shapes[4], 0).x - vertex(scene, scene.shapes[2], 0).x, 2, 1e-4);
   EXPECT_TRUE(scene.shapes[8].flags & KB_SHAPE_MIRRORED);
+}
+
+const std::string kGlass =
+    "<shape type='shapegroup' id='g'><shape type='cube' id='ice'><bsdf type='dielectric'/></shape></shape>";
+const std::string kAir =
+    "<medium type='absorbing' name='atmosphere'><spectrum name='absorption' value='0.5'/></medium>";
+
+// They may stand in each other. Without gas nobody asks.
+TEST(Instances, OfGlassHaveAnInsideEach) {
+  const std::string three =
+      kGlass + instance("<scale value='3'/>") + instance("<scale value='2'/>") + instance("");
+  const FlatScene scene = compiled(kAir + three);
+  ASSERT_EQ(scene.interiors.size(), 3u);
+  EXPECT_EQ(scene.interiors, (std::vector<uint32_t>{1, 2, 3}));
+  ASSERT_EQ(scene.media.size(), 4u);
+  for (const uint32_t m : scene.interiors) EXPECT_EQ(scene.media[m].type, uint32_t{KB_MEDIUM_EMPTY});
+  const FlatScene empty = compiled(three);
+  EXPECT_TRUE(empty.media.empty() && empty.interiors.empty());
+  const FlatScene opaque = compiled(kAir + kGroup + instance("") + instance("<scale value='2'/>"));
+  EXPECT_EQ(opaque.media.size(), 1u);
+  EXPECT_EQ(opaque.interiors, std::vector<uint32_t>(4, KB_NONE));
+}
+
+// 65,534 numbers are one for the atmosphere and those of 65,533 instances.
+TEST(Instances, ShareAnInsideWhereNumbersEnd) {
+  std::string row = "<shape type='shapegroup' id='row'>", rows, more;
+  for (int i = 0; i < 256; ++i) row += instance("");
+  for (int i = 0; i < 255; ++i) rows += instance("", "row");
+  for (int i = 0; i < 253; ++i) more += instance("");
+  Messages messages;
+  const std::string most = kAir + kGlass + row + "</shape>" + rows + more;
+  const FlatScene parted = compiled(most, messages.lines());
+  EXPECT_EQ(parted.media.size(), 65534u);
+  EXPECT_EQ(parted.interiors.back(), 65533u);
+  EXPECT_TRUE(messages.texts.empty());
+  const FlatScene shared = compiled(most + instance(""), messages.lines());
+  EXPECT_EQ(shared.interiors, std::vector<uint32_t>(65534, 1));
+  ASSERT_EQ(messages.texts.size(), 1u);
+  EXPECT_NE(
+      messages.texts[0].find(
+          "warning: shape 'ice': more than 65534 media and shapes that transmit light: instances of one "
+          "shape count as one body, which is wrong where they stand in each other"),
+      std::string::npos);
 }
 
 }  // namespace
