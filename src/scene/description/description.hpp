@@ -37,7 +37,7 @@ struct BitmapTexture {
   std::shared_ptr<const Image> image;
   bool nearest = false;
   WrapMode wrap = WrapMode::kRepeat;
-  bool raw = false;  // values are taken as they are: spectrally flat; 3 raw channels are averaged
+  bool raw = false;  // values are taken as they are: spectrally flat; of 3 channels numbers and normals alone
   glm::dmat3 to_uv{1.0};
 };
 

@@ -175,10 +175,13 @@ BsdfModel read_two_sided(ReadContext& context, const ObjectReader& object) {
   return bsdf;
 }
 
-/// A share from 0 to 1: a number or a bitmap.
+/// A share from 0 to 1: a number or a bitmap, of colours their luminance.
 Texture read_share(ReadContext& context, const ObjectReader& object, const std::string& name,
                    const Texture& fallback) {
-  Texture share = reflectance(context, object, name, fallback);
+  Node* node = object.find(name);
+  Texture share =
+      node ? read_texture_node(context, *node, object.label() + ": " + name, SpectrumUse::kReflectance)
+           : fallback;
   if (auto board = number_board(share)) return board;
   if (std::holds_alternative<std::shared_ptr<const CheckerboardTexture>>(share))
     object.fail_at(name, name + ": a checkerboard must have two numbers here");

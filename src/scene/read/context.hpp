@@ -71,6 +71,7 @@ Spectrum read_used_file(ReadContext& context, const std::filesystem::path& file,
 Spectrum read_spectrum(ReadContext& context, const ObjectReader& object, std::string_view name,
                        SpectrumUse use, const Spectrum& fallback);
 /// The same where bitmaps and checkerboards are allowed as well.
+/// throws InputError  also a raw bitmap of three channels: what is raw are numbers, not colours
 Texture read_texture(ReadContext& context, const ObjectReader& object, std::string_view name, SpectrumUse use,
                      const Texture& fallback);
 /// Any spectrum or texture element or parameter. `label` is for messages.

@@ -209,7 +209,14 @@ Texture read_texture_node(ReadContext& context, Node& parameter, const std::stri
 Texture read_texture(ReadContext& context, const ObjectReader& object, std::string_view name, SpectrumUse use,
                      const Texture& fallback) {
   Node* node = object.find(name);
-  return node ? read_texture_node(context, *node, object.label() + ": " + std::string(name), use) : fallback;
+  if (!node) return fallback;
+  Texture texture = read_texture_node(context, *node, object.label() + ": " + std::string(name), use);
+  const auto* bitmap = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture);
+  if (bitmap && (*bitmap)->raw && (*bitmap)->image->channels != 1)
+    object.fail_at(name, std::string(name) + ": '" + (*bitmap)->file.filename().string() +
+                             "' is raw and has three channels, which are no spectrum: leave raw out, or "
+                             "give it one channel");
+  return texture;
 }
 
 Spectrum read_spectrum(ReadContext& context, const ObjectReader& object, std::string_view name,

@@ -268,5 +268,45 @@ TEST(SceneBsdf, NamesAndFilesThatAreNearlyRight) {
   });
 }
 
+/// What is raw are numbers: three of them are no spectrum, whatever asks for one. Numbers may be the luminance of three.
+TEST(SceneBsdf, RawBitmapsOfThreeChannelsAreNoSpectra) {
+  const TemporaryFolder folder;
+  folder.write("red.ppm", "P3\n1 1\n255\n230 26 26\n");
+  folder.write("grey.pgm", "P2\n1 1\n255\n26\n");
+  const auto image = [](const std::string& name, const std::string& file, bool raw = true) {
+    return "<texture type='bitmap' name='" + name + "'><string name='filename' value='" + file +
+           "'/><boolean name='raw' value='" + (raw ? "true" : "false") + "'/></texture>";
+  };
+  const auto message = [&](const std::string& in_shape, const std::string& in_scene = "") {
+    return error_of(scene("<shape type='sphere'>" + in_shape + "</shape>" + in_scene + kSensor + kLight),
+                    folder.path());
+  };
+  const auto surface = [](const std::string& type, const std::string& contents) {
+    return "<bsdf type='" + type + "'>" + contents + "</bsdf>";
+  };
+  const std::string rule =
+      ": 'red.ppm' is raw and has three channels, which are no spectrum: leave raw out, or give it one channel";
+  const auto refused = [&](const std::string& said, const std::string& name) {
+    EXPECT_NE(said.find(name + rule), std::string::npos) << said;
+  };
+  refused(message(surface("diffuse", image("reflectance", "red.ppm"))), "error: diffuse bsdf: reflectance");
+  refused(message(surface("plastic", image("diffuse_reflectance", "red.ppm"))), "diffuse_reflectance");
+  refused(message(surface("principled", image("base_color", "red.ppm"))), "base_color");
+  refused(message("<emitter type='area'>" + image("radiance", "red.ppm") + "</emitter>"), "radiance");
+  refused(message("", "<emitter type='projector'>" + image("irradiance", "red.ppm") + "</emitter>"),
+          "irradiance");
+  refused(message("", "<emitter type='spot'>" + image("texture", "red.ppm") + "</emitter>"), "texture");
+  for (const std::string& accepted :
+       {surface("diffuse", image("reflectance", "grey.pgm")),
+        surface("diffuse", image("reflectance", "red.ppm", false)),
+        surface("mask", image("opacity", "red.ppm") + surface("diffuse", "")),
+        surface("blendbsdf", image("weight", "red.ppm") + surface("diffuse", "") + surface("plastic", "")),
+        surface("roughconductor", image("alpha", "red.ppm")),
+        surface("principled", image("roughness", "red.ppm")),
+        surface("bumpmap", image("height", "red.ppm") + surface("diffuse", "")),
+        surface("normalmap", image("normalmap", "red.ppm") + surface("diffuse", ""))})
+    EXPECT_EQ(message(accepted), "accepted") << accepted;
+}
+
 }  // namespace
 }  // namespace kiloband::test::test_bsdfs
