@@ -160,6 +160,18 @@ inline void look_up_principled(Shading& s, M seen) {
   set_principled_alpha(s.material, lanes);
 }
 
+/// Whose facets lie along the tangent. Those by which light passes a thin principled sheet have a roughness of their own.
+KB_INLINE M is_anisotropic(const Shading& s, M seen) {
+  M anisotropic = seen & (s.material.alpha_u != s.material.alpha_v);
+  if (s.scene().features.principled) {
+    const M sheet = seen & is_type(s.material.type, KB_MATERIAL_PRINCIPLED) &
+                    has_bits(s.material.flags, KB_MATERIAL_THIN);
+    if (any(sheet))
+      anisotropic = anisotropic | (sheet & (s.principled.number[KB_PRINCIPLED_ANISOTROPIC] > F(0)));
+  }
+  return anisotropic;
+}
+
 /// What of an environment map the surface may receive light from.
 KB_INLINE void find_facing(Shading& s) {
   const M both_sides = has_bits(s.surface_flags, KB_SURFACE_TRANSMISSIVE);
@@ -191,8 +203,7 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   if (scene.features.principled) look_up_principled(s, seen);
   const V3 normal = scene.features.bump ? bump_normals(s, seen, turned) : s.hit.shading_normal;
   s.frame = make_frame(normal);
-  const M anisotropic = seen & (s.material.alpha_u != s.material.alpha_v);
-  if (any(anisotropic)) {
+  if (const M anisotropic = is_anisotropic(s, seen); any(anisotropic)) {
     const Frame along = make_frame(normal, s.hit.tangent);
     s.frame.x = select(anisotropic, along.x, s.frame.x);
     s.frame.y = select(anisotropic, along.y, s.frame.y);

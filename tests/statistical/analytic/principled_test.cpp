@@ -2,6 +2,9 @@
 //
 // A metal of base colour 1 is a perfect mirror of roughness alpha = roughness^2, since S + (1 - S) s = 1; with spec_trans 1 and base colour 1
 // the material is rough glass of the same alpha. Both are sampled as those are, so that images agree but for rounding.
+#include <cmath>
+#include <numbers>
+
 #include "tests/statistical/analytic/analytic_test.hpp"
 
 namespace kiloband::test::principled_test {
@@ -126,6 +129,29 @@ TEST_P(PrincipledTest, TintsOfImagesAreThoseOfColours) {
   const RenderResult picture =
       render_room(bsdf("principled", tints + image("base_color", "colour.pfm", false)), GetParam(), folder);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(picture.image_mean[k] / number.image_mean[k], 1, 0.02) << k;
+}
+
+/// Facets by which light passes a sheet are rougher than those that reflect, whose alphas are both the least here: the square's
+/// tangent is asked for all the same. Light that comes from below, 0.03 off the axis, by its azimuth from the tangent; values of Mitsuba 3.9.1's eval().
+TEST(Principled, LightThatPassesASheetGoesByItsTangent) {
+  const Text material =
+      bsdf("principledthin", real("base_color", 1) + real("roughness", 0.017) + real("anisotropic", 1) +
+                                 real("spec_trans", 1) + real("eta", 8));
+  const Text sensor =
+      object("sensor", "radiancemeter",
+             number("point", "origin", "0, 0, 3") + number("vector", "direction", "0, 0, -1") + film(1));
+  const auto passed = [&](double turned, double azimuth) {
+    const double phi = azimuth * std::numbers::pi / 180;
+    const Text along = point(std::sin(0.03) * std::cos(phi), std::sin(0.03) * std::sin(phi), std::cos(0.03));
+    const Text sun = emitter("directional", number("vector", "direction", along) + spectrum("irradiance", 1));
+    const Text square = shape("rectangle", to_world(turn("z", turned)) + material);
+    return render_valid(scene(2, sensor + square + sun), "549.5-550.5", {}, {4, 61}).image_mean[0];
+  };
+  for (const double turned : {0.0, 45.0, 90.0}) {
+    EXPECT_NEAR(passed(turned, turned) / 307.8, 1, 1e-3) << turned;
+    EXPECT_NEAR(passed(turned, turned + 45) / 1.039, 1, 1e-3) << turned;
+    EXPECT_NEAR(passed(turned, turned + 90) / 0.2756, 1, 1e-3) << turned;
+  }
 }
 
 TEST(Principled, WhatHasNoMeaningIsRefused) {
