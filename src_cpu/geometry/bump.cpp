@@ -144,9 +144,9 @@ BumpedNormal bumped_normal(const FlatScene& scene, const KbBump& bump, const Bum
   if (at.turned && !(bump.flags & KB_BUMP_OUTSIDE)) normal = half_turned(n, normal);
   if ((bump.flags & KB_BUMP_FLIP) && glm::dot(at.away, n) * glm::dot(at.away, normal) <= 0)
     normal = half_turned(n, normal);
-  if (!(bump.flags & KB_BUMP_SHADOW)) return {normal, 0};
+  if (!(bump.flags & KB_BUMP_SHADOW)) return {normal, 0, mapped};
   const float cos2 = std::min(glm::dot(n, normal) * glm::dot(n, normal), 1.0f);
-  return {normal, std::min(0.125f * (1 - cos2) / std::max(cos2, 1e-6f), 1.0f)};
+  return {normal, std::min(0.125f * (1 - cos2) / std::max(cos2, 1e-6f), 1.0f), mapped};
 }
 
 }  // namespace kiloband::cpu

@@ -9,7 +9,8 @@
 // of a nearest texel and where clamping or mirroring repeats a texel.
 //
 // A normal map has n' itself, (x, y, z) = 2 rgb - 1 interpolated and normalised, in the frame s along p_u - n (n . p_u), t = n x s, n.
-// n' . n may be negative there.
+// n' . n may be negative there. Anisotropic materials have their tangent along s - n' (n' . s), as in Mitsuba 3.9.1; of a bump map,
+// whose frames there depend on the axes of the world, along p_u - n' (n' . p_u).
 //
 // What is done with n' is Mitsuba 3.9.1's, observed with its eval() and sample():
 // * KB_BUMP_FLIP: where n and n' see the direction w that the path comes from on different sides, (w . n) (w . n') <= 0, n' is
@@ -42,6 +43,7 @@ constexpr float kNotBumped = -1;
 struct BumpedNormal {
   glm::vec3 normal;           // n', on n's side: turned surfaces take its negative
   float alpha2 = kNotBumped;  // of the masking function; 0: none
+  bool mapped = false;        // by a normal map
 };
 BumpedNormal bumped_normal(const FlatScene& scene, const KbBump& bump, const BumpPoint& at);
 

@@ -101,14 +101,14 @@ inline U choose_surfaces(Shading& s, U surface, M hit) {
   return chosen;
 }
 
-/// Normals that bump and normal maps turn.
-inline V3 bump_normals(Shading& s, M seen, M turned) {
+/// Normals that bump and normal maps turn, and the tangents that they leave.
+inline V3 bump_normals(Shading& s, M seen, M turned, V3& tangent) {
   const FlatScene& scene = s.scene();
   const RayQueue& rays = s.wave.rays();
   const WordArray side(s.side), shape(s.hit.shape);
   const V3Array unbumped(s.hit.shading_normal), along(s.direction);
   const FloatArray u(s.hit.uv.x), v(s.hit.uv.y);
-  V3Array normal(s.hit.shading_normal);
+  V3Array normal(s.hit.shading_normal), tangents(tangent);
   FloatArray alpha2{F(kNotBumped)};
   const uint32_t behind = bits_of(turned);
   each_lane(seen, [&](uint32_t i) KB_LAMBDA {
@@ -118,8 +118,10 @@ inline V3 bump_normals(Shading& s, M seen, M turned) {
     const BumpedNormal bumped = bumped_normal(scene, scene.bumps[side[i]], at);
     normal.put(i, bumped.normal);
     alpha2[i] = bumped.alpha2;
+    if (bumped.mapped) tangents.put(i, tangents[i] - unbumped[i] * glm::dot(unbumped[i], tangents[i]));
   });
   s.alpha2 = alpha2;
+  tangent = tangents;
   return normal;
 }
 
@@ -201,10 +203,11 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   s.material.bound_b = bound_at(scene, ref_b, s.vertex.b, s.material.bound_b, seen & (ref_b != U(KB_NONE)));
   if (scene.features.roughness_map) look_up_roughness(s, seen);
   if (scene.features.principled) look_up_principled(s, seen);
-  const V3 normal = scene.features.bump ? bump_normals(s, seen, turned) : s.hit.shading_normal;
+  V3 tangent = s.hit.tangent;
+  const V3 normal = scene.features.bump ? bump_normals(s, seen, turned, tangent) : s.hit.shading_normal;
   s.frame = make_frame(normal);
   if (const M anisotropic = is_anisotropic(s, seen); any(anisotropic)) {
-    const Frame along = make_frame(normal, s.hit.tangent);
+    const Frame along = make_frame(normal, tangent);
     s.frame.x = select(anisotropic, along.x, s.frame.x);
     s.frame.y = select(anisotropic, along.y, s.frame.y);
   }

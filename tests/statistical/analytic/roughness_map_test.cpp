@@ -3,6 +3,11 @@
 // A square [-1, 1]^2 is seen from above, filling the film, by its own light alone (max_depth 2). The map's halves, looked up without
 // interpolation, are compared with renders of the two numbers; a map of one value with the render of it; and a bilinear map at one place
 // with the number that it has there.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/glm.hpp>
+
 #include "tests/statistical/analytic/analytic_test.hpp"
 
 namespace kiloband::test::roughness_map_test {
@@ -97,6 +102,57 @@ TEST(RoughnessMap, NotWhereTablesAreOfOneRoughness) {
           shape("rectangle", bsdf("roughdielectric", text("int_material", "SF11") + map("alpha", "map.pfm"))))
           .find("alpha: a rough dielectric whose index depends on the wavelength cannot have a texture here"),
       std::string::npos);
+}
+
+/// A triangle in z = 0 with one normal at its corners and dp/du at an angle from +X.
+Text leaning_triangle(const glm::dvec3& normal, double angle) {
+  Text vertices, coordinates, corners;
+  const glm::dvec2 places[] = {{-3, -3}, {4, -3}, {-1, 4}};
+  const auto line = [](const Text& key, const std::vector<double>& values) {
+    Text text = key;
+    for (const double value : values) text += " " + exact(value);
+    return text + "\n";
+  };
+  for (int i = 0; i < 3; ++i) {
+    const double x = places[i].x, y = places[i].y, c = std::cos(angle), s = std::sin(angle);
+    vertices += line("v", {x, y, 0});
+    coordinates += line("vt", {c * x + s * y, c * y - s * x});
+    corners += fmt::format(" {0}/{0}/1", i + 1);
+  }
+  return vertices + coordinates + line("vn", {normal.x, normal.y, normal.z}) + "f" + corners + "\n";
+}
+
+/// Under a normal map the tangent is s, dp/du made perpendicular to the surface's own normal n, made perpendicular to n': as that of a triangle whose
+/// normals are n' and whose dp/du is the vector of its plane that s and n' span.
+TEST(AnisotropicRoughness, NormalMapsTurnTheFrameOfTheSurface) {
+  const glm::dvec3 n = glm::normalize(glm::dvec3(0.5, -0.3, 0.8)), du(std::cos(0.4), std::sin(0.4), 0);
+  const glm::dvec3 s = glm::normalize(du - n * glm::dot(n, du));
+  const glm::dvec3 local = glm::normalize(glm::dvec3(-0.5, 0.25, 0.75));  // 2 rgb - 1
+  const glm::dvec3 mapped = local.x * s + local.y * glm::cross(n, s) + local.z * n;
+  const glm::dvec3 along = s - mapped * (s.z / mapped.z);
+  const TemporaryFolder folder;
+  folder.write("turn.pfm", pfm_image(1, 1, 3, {0.25f, 0.625f, 0.875f}));
+  folder.write("surface.obj", leaning_triangle(n, 0.4));
+  folder.write("turned.obj", leaning_triangle(mapped, std::atan2(along.y, along.x)));
+  const Text metal =
+      bsdf("roughconductor", text("distribution", "ggx") + real("alpha_u", 0.1) + real("alpha_v", 0.4));
+  const Text plain = number("boolean", "flip_invalid_normals", "false") +
+                     number("boolean", "use_shadowing_function", "false");
+  const Text map =
+      "<texture name='normalmap' type='bitmap'>" + text("filename", "turn.pfm") + yes("raw") + "</texture>";
+  const Text sensor = perspective(lookat("0.7, 0.4, 3", "0, 0, 0"), 1e-3, film(2));
+  for (const char* const light : {"0.3, 0.5, -1", "-0.5, 0.2, -1", "0.6, -0.5, -1"}) {
+    SCOPED_TRACE(light);
+    const Text sun = emitter("directional", number("vector", "direction", light) + spectrum("irradiance", 1));
+    const auto value = [&](const Text& mesh, const Text& material) {
+      const Text triangle = shape("obj", text("filename", mesh) + material);
+      return render_valid(scene(2, sensor + triangle + sun), "500-510", {}, {4, 61}, folder.path())
+          .image_mean[0];
+    };
+    const double expected = value("turned.obj", metal);
+    EXPECT_GT(expected, 1e-3);
+    EXPECT_NEAR(value("surface.obj", bsdf("normalmap", plain + map + metal)) / expected, 1, 1e-4);
+  }
 }
 
 }  // namespace
