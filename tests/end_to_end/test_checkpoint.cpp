@@ -4,7 +4,7 @@
 
 #include "tests/end_to_end/support/kills.hpp"
 #include "tests/end_to_end/support/program.hpp"
-#include "tests/support/sanitizer.hpp"
+#include "tests/support/effort.hpp"
 
 namespace kiloband::test {
 namespace {

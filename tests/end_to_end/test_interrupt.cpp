@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tests/end_to_end/support/program.hpp"
-#include "tests/support/sanitizer.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/special_files.hpp"
 
 namespace kiloband::test {

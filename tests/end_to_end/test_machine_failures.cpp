@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "tests/end_to_end/support/program.hpp"
-#include "tests/support/sanitizer.hpp"
+#include "tests/support/effort.hpp"
 
 namespace kiloband::test {
 namespace {

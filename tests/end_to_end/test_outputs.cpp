@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "tests/end_to_end/support/program.hpp"
-#include "tests/support/sanitizer.hpp"
+#include "tests/support/effort.hpp"
 
 namespace kiloband::test {
 namespace {

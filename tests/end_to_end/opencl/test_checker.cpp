@@ -10,7 +10,7 @@
 #include <cstdlib>
 
 #include "tests/end_to_end/support/program.hpp"
-#include "tests/support/sanitizer.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/zoo/scene_zoo.hpp"
 
 namespace kiloband::test {

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "tests/end_to_end/support/program.hpp"
+#include "tests/support/effort.hpp"
 
 namespace kiloband::test {
 namespace {
@@ -90,14 +91,13 @@ TEST(OpenclProgram, TheFormForGpusGivesTheSameBytes) {
     std::vector<std::string> methods;
   };
   const std::vector<std::string> batch{"dpept-batch"}, every{"dpept-batch", "dpept-path", "pt"};
-  const bool thorough = std::getenv("KILOBAND_THOROUGH") != nullptr;
   for (const Scene& scene : {Scene{cornell_box(), "400:700:20", 0, every},
                              {cornell_box(), "400:700:300", 0, batch},  // three vectors of a work-item, four
                              {cornell_box(), "400:700:515", 0, batch},
                              {scenes + "lens_and_glass.xml", "400:700:150", 0, batch},
                              {scenes + "metals_and_lamps.xml", "400:700:5", 1e-6f, {"pt"}},
                              {scenes + "hot_gas.xml", "3000:5000:9", 1e-6f, {"dpept-batch", "dpept-path"}}}) {
-    for (const std::string& method : thorough ? every : scene.methods) {
+    for (const std::string& method : thorough() ? every : scene.methods) {
       SCOPED_TRACE(scene.file + ", " + scene.bands + ", " + method);
       const TemporaryFolder folder;
       const auto image = [&](const std::string& type) {

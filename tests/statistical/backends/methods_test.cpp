@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 
 #include "backend_images.hpp"
+#include "tests/support/effort.hpp"
 
 namespace kiloband::test::methods_test {
 namespace {
@@ -104,11 +104,10 @@ TEST_F(Methods, AgreeForAnyNumberOfChannelsWithResponses) {
 /// that together need every feature; with KILOBAND_THOROUGH set, every scene and method
 /// (minutes of kernel builds).
 TEST_F(Methods, SpecialisedKernelsGiveTheSameBits) {
-  const bool thorough = std::getenv("KILOBAND_THOROUGH") != nullptr;
   std::vector<std::string> scenes{"diffuse_room", "crop_window",       "hidden_emitters",
                                   "thermal",      "temperature_field", "plumes"};
   std::vector<std::string> methods{"opencl:dpept-batch"};
-  if (thorough) {
+  if (thorough()) {
     scenes.clear();
     for (const ZooScene& zoo : scene_zoo()) scenes.push_back(zoo.name);
     methods.assign(kOpenclMethods.begin(), kOpenclMethods.end());

@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "tests/support/sanitizer.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/unit/viewer/viewed_cube.hpp"
 
 namespace kiloband::test {
