@@ -54,6 +54,16 @@ class Conditionals {
   int depth_ = 0, guard_ = 0, directives_ = 0;
 };
 
+bool is_of_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+
+/// Is what ends here "#define "?
+bool ends_in_define(std::string_view line) {
+  const Directive directive = directive_of(line);
+  return directive.word == "define" && directive.rest.empty();
+}
+
 class Assembler {
  public:
   explicit Assembler(const SourceMap& sources) : sources_(sources) {}
@@ -113,6 +123,18 @@ std::string assemble_source(const SourceMap& sources, std::string_view main) {
   Assembler assembler(sources);
   assembler.place(std::string(main), true);
   return assembler.take();
+}
+
+bool asks_for(std::string_view source, std::string_view macro) {
+  for (std::size_t at = source.find(macro); at != source.npos; at = source.find(macro, at + macro.size())) {
+    const std::size_t end = at + macro.size();
+    const bool whole =
+        (at == 0 || !is_of_name(source[at - 1])) && (end == source.size() || !is_of_name(source[end]));
+    if (!whole) continue;
+    const std::size_t line = source.rfind('\n', at);  // of the first line: npos + 1 is 0
+    if (!ends_in_define(source.substr(line + 1, at - line - 1))) return true;
+  }
+  return false;
 }
 
 }  // namespace kiloband::opencl

@@ -19,4 +19,8 @@ const SourceMap& embedded_sources();
 /// throws std::logic_error  a file is not there: "kernels/a.cl:3: no source 'b.clh'"
 std::string assemble_source(const SourceMap& sources, std::string_view main);
 
+/// Does a source's text name a macro anywhere but where it defines it? Names put together by ## and those of comments: they count as
+/// they stand.
+bool asks_for(std::string_view source, std::string_view macro);
+
 }  // namespace kiloband::opencl

@@ -11,7 +11,9 @@ namespace {
 
 /// No fast-math, ever: results are compared with the CPU's. Devices that can round divisions and roots
 /// correctly are asked to; the others may be off by 2.5 and 3 ulp (OpenCL 1.2, 7.4).
-std::string build_options(const DeviceContext& context, const ProgramOptions& options) {
+/// Defines that the text does not ask for are left out: programs that differ in nothing else are one.
+std::string build_options(const DeviceContext& context, const ProgramOptions& options,
+                          const std::string& source) {
   std::string text = "-cl-std=CL1.2";
   const cl_device_fp_config config = checked(
       context.site(Phase::kSetup), [&] { return context.cl_device().getInfo<CL_DEVICE_SINGLE_FP_CONFIG>(); });
@@ -19,7 +21,9 @@ std::string build_options(const DeviceContext& context, const ProgramOptions& op
   const std::string extensions = checked(context.site(Phase::kSetup),
                                          [&] { return context.cl_device().getInfo<CL_DEVICE_EXTENSIONS>(); });
   text += register_option(extensions, options.most_registers);
-  for (const std::string& define : options.defines) text += " -D" + define;
+  for (const std::string& define : options.defines) {
+    if (asks_for(source, std::string_view(define).substr(0, define.find('=')))) text += " -D" + define;
+  }
   return text;
 }
 
@@ -97,7 +101,7 @@ Kernel Program::kernel(const std::string& name) const {
 Program build_program(DeviceContext& context, const SourceMap& sources, const std::string& main,
                       const ProgramOptions& options) {
   const std::string source = assemble_source(sources, main);
-  const std::string flags = build_options(context, options);
+  const std::string flags = build_options(context, options, source);
   const std::string key = ProgramCache::key(source, flags, context.device());
   if (auto known = context.programs().find(key))
     return Program(context, std::move(*known), ProgramOrigin::kProcess);

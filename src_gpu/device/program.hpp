@@ -34,7 +34,8 @@ class Program {
 };
 
 struct ProgramOptions {
-  std::vector<std::string> defines;  // "KB_CHANNELS=64", "KB_SPECIALISED"
+  std::vector<std::string>
+      defines;  // "KB_CHANNELS=64", "KB_SPECIALISED"; what the text does not ask for makes no other program
   bool disk_cache = true;
   uint32_t most_registers = 0;  // of a work-item: register_option()
 };

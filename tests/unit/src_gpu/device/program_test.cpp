@@ -66,6 +66,14 @@ TEST_F(ProgramTest, LogNamesFileAndLineOfTheOriginal) {
   EXPECT_TRUE(files().empty()) << "nothing to keep";
 }
 
+TEST_F(ProgramTest, MacrosThatNothingAsksForMakeNoOther) {
+  build_in(context_);
+  const Program same =
+      build_program(context_, kSources, "kernels/a.cl", {{"KB_UNHEARD_OF=1", "KB_VALUE=7", "KB_VALU"}, true});
+  EXPECT_EQ(same.origin(), ProgramOrigin::kProcess);
+  EXPECT_EQ(run(context_, same), 7u);
+}
+
 TEST_F(ProgramTest, MacrosMakeOtherPrograms) {
   for (const uint32_t value : {7u, 8u}) {
     const Program program = build_in(context_, value);

@@ -52,6 +52,30 @@ TEST(AssembleSource, NamesTheLineOfAMissingFile) {
             "no source 'kernels/b.cl'");
 }
 
+TEST(AsksFor, WholeNamesThatAreNotJustDefined) {
+  for (const char* text : {"#if A\n", "x = A;", "A", "#define B A\n", "#ifndef A\n#define A 1\n#endif\n",
+                           "#define A 1\n A(2)", "#undef A"})
+    EXPECT_TRUE(asks_for(text, "A")) << text;
+  for (const char* text : {"", "#define A 1\n", "# define  A 1\n#define A 2", "AB _A A1", "#define A"})
+    EXPECT_FALSE(asks_for(text, "A")) << text;
+}
+
+/// Scenes that differ in their lights share a program of evaluation; those that differ in their gas do not.
+TEST(AsksFor, FeaturesOfEvaluationAndOfPaths) {
+  const std::string paths = assemble_source(embedded_sources(), "kernels/path/paths.cl");
+  for (const char* main : {"kernels/evaluate/evaluate.cl", "kernels/evaluate/pt.cl"}) {
+    const std::string text = assemble_source(embedded_sources(), main);
+    for (const char* macro : {"KB_HAS_GAS", "KB_HAS_DISPERSION", "KB_HAS_BITMAP", "KB_HAS_PRINCIPLED",
+                              "KB_WIDTH", "KB_CHUNK_ENTRIES"})
+      EXPECT_TRUE(asks_for(text, macro)) << main << " " << macro;
+    for (const char* macro : {"KB_HAS_DIFFUSE", "KB_HAS_SUN", "KB_HAS_AREA_LIGHT", "KB_HAS_INSTANCES",
+                              "KB_HAS_BUMP", "KB_HAS_LIGHT_TREE"}) {
+      EXPECT_FALSE(asks_for(text, macro)) << main << " " << macro;
+      EXPECT_TRUE(asks_for(paths, macro)) << macro;
+    }
+  }
+}
+
 /// Every byte of every file, so that a stale or cut embedding shows.
 TEST(EmbeddedSources, AreTheFiles) {
   const std::filesystem::path root = KILOBAND_SOURCE_DIR;
