@@ -26,11 +26,17 @@ std::vector<std::string> evaluation_defines(const HostScene& host, const DeviceS
   return defines;
 }
 
+/// Entries of a work-item's stack, in steps: scenes whose trees differ a little share a program. On CPU devices, where what is not used of it
+/// costs nothing, nearly all scenes do.
+uint32_t bvh_stack(const DeviceInfo& device, const Bvh& bvh) {
+  const uint32_t step = device.type == DeviceType::kCpu ? 96 : 8;
+  return bvh.stack_entries() / step * step + step;
+}
+
 std::vector<std::string> path_defines(const DeviceInfo& device, const HostScene& host,
                                       const DeviceSettings& settings) {
   std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
-  // In steps of 8: scenes whose trees differ a little share a program.
-  defines.push_back("KB_BVH_STACK=" + std::to_string(host.bvh.stack_entries() / 8 * 8 + 8));
+  defines.push_back("KB_BVH_STACK=" + std::to_string(bvh_stack(device, host.bvh)));
   defines.push_back("KB_SLOTS_PER_ITEM=" + std::to_string(slots_per_item(device)));
   defines.push_back("KB_SHADING_KEYS=" + std::to_string(shading_keys(device, host.scene.features)) + "u");
   if (settings.method == Method::kPt) defines.push_back("KB_METHOD_PT=1");
