@@ -8,6 +8,7 @@
 
 #include "device_scene.hpp"
 #include "spectral/planck.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/unit/src_cpu/evaluate/random_gas.hpp"
 
 namespace kiloband::test::gas_test {
@@ -60,15 +61,15 @@ TEST_P(DeviceGas, RandomPathsAgreeWithTheOracle) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, DeviceGas,
-                         testing::Values(EvaluatorBuild{16, 4, false, 0}, EvaluatorBuild{16, 2, true, 0},
-                                         EvaluatorBuild{4, 1, true, 0}, EvaluatorBuild{1, 1, false, 0},
-                                         EvaluatorBuild{1, 2, true, 0}),
-                         [](const auto& p) {
-                           return "width" + std::to_string(p.param.width) + "x" +
-                                  std::to_string(p.param.vectors) +
-                                  (p.param.per_path ? "_per_path" : "_shared");
-                         });
+std::vector<EvaluatorBuild> builds() {
+  return with_others_if_thorough<EvaluatorBuild>({{16, 4, false, 0}, {4, 1, true, 0}, {1, 1, false, 0}},
+                                                 {{16, 2, true, 0}, {1, 2, true, 0}});
+}
+
+INSTANTIATE_TEST_SUITE_P(, DeviceGas, testing::ValuesIn(builds()), [](const auto& p) {
+  return "width" + std::to_string(p.param.width) + "x" + std::to_string(p.param.vectors) +
+         (p.param.per_path ? "_per_path" : "_shared");
+});
 
 /// Planck's law relative to a reference, over exponents hc / (k lambda T) of up to 240: plumes
 /// of one black cell.

@@ -2,10 +2,10 @@
 // devices run it: the same bits. Derived channels too: a work-item adds its channels in the same order.
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 
 #include "device_scene.hpp"
 #include "shared/plume.h"
+#include "tests/support/effort.hpp"
 #include "tests/unit/src_cpu/evaluate/random_gas.hpp"
 
 namespace kiloband::test::staged_test {
@@ -42,9 +42,9 @@ class StagedEvaluation : public testing::TestWithParam<EvaluatorBuild> {};
 /// Work-items of a group: PoCL compiles kernels once for each, which is what takes time here. One for each build; with
 /// KILOBAND_THOROUGH set, all.
 std::vector<uint32_t> local_sizes(const EvaluatorBuild& build) {
-  if (std::getenv("KILOBAND_THOROUGH")) return {1, 3, 32};
+  if (thorough()) return {1, 3, 32};
   return {
-      std::array{1u, 3u, 32u}[(build.vectors + (build.per_path ? 1 : 0) + (build.width == 1 ? 1 : 0)) % 3]};
+      std::array{1u, 3u, 32u}[(build.vectors + (build.per_path ? 1 : 0) + (build.width == 1 ? 2 : 0)) % 3]};
 }
 
 /// Textures, temperatures, dispersion; groups with fewer work-items than paths, and with items that have no channels.
@@ -110,15 +110,16 @@ TEST_P(StagedEvaluation, Gas) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(, StagedEvaluation,
-                         testing::Values(EvaluatorBuild{4, 1, false, 4}, EvaluatorBuild{4, 1, true, 4},
-                                         EvaluatorBuild{4, 2, false, 4}, EvaluatorBuild{4, 3, false, 4},
-                                         EvaluatorBuild{4, 4, false, 4}, EvaluatorBuild{1, 1, false, 4}),
-                         [](const auto& p) {
-                           return "width" + std::to_string(p.param.width) + "x" +
-                                  std::to_string(p.param.vectors) +
-                                  (p.param.per_path ? "_per_path" : "_shared");
-                         });
+/// The widest, the narrowest, and wavelengths of each path.
+std::vector<EvaluatorBuild> builds() {
+  return with_others_if_thorough<EvaluatorBuild>({{4, 1, true, 4}, {4, 4, false, 4}, {1, 1, false, 4}},
+                                                 {{4, 1, false, 4}, {4, 2, false, 4}, {4, 3, false, 4}});
+}
+
+INSTANTIATE_TEST_SUITE_P(, StagedEvaluation, testing::ValuesIn(builds()), [](const auto& p) {
+  return "width" + std::to_string(p.param.width) + "x" + std::to_string(p.param.vectors) +
+         (p.param.per_path ? "_per_path" : "_shared");
+});
 
 }  // namespace
 }  // namespace kiloband::test::staged_test
