@@ -76,6 +76,10 @@ std::string detectable_text(const stats::Comparison& r, const std::vector<std::s
                         percent(test->detectable.typical), scale.typical, percent(test->detectable.largest),
                         names[test->detectable.largest_channel]);
   }
+  const bool means =
+      std::ranges::any_of(r.tests, [](const TestVerdict& t) { return t.name.starts_with("mean/"); });
+  if (text.empty() && means)
+    return "detectable bias: none to state, the means that were compared vary on neither side, or are 0 in A\n";
   if (text.empty()) return "detectable bias: none, no test of means had anything to test\n";
   return fmt::format(
              "detectable bias: from these differences on, relative to the mean of A there, a difference is found "

@@ -189,6 +189,22 @@ TEST(CompareGaps, NothingToCompare) {
                  });
 }
 
+/// Renders of what has no noise, such as a furnace: constants are a comparison, but none that could state a bias.
+TEST(CompareGaps, MeansWithoutNoiseAreComparedAsTheyAre) {
+  const TemporaryFolder folder;
+  write_variances(folder, "ten.hdr", Image(kValues, 10), Image(kValues, 0));
+  write_variances(folder, "near.hdr", Image(kValues, 10.00005f), Image(kValues, 0));
+  write_variances(folder, "far.hdr", Image(kValues, 10.001f), Image(kValues, 0));
+  for (const std::string other : {"ten.hdr", "near.hdr"}) {
+    const Outcome same = compare(folder, {"ten.hdr", other});
+    EXPECT_EQ(same.code, 0) << same.out << same.err;
+    expect_text(
+        same.out,
+        "detectable bias: none to state, the means that were compared vary on neither side, or are 0 in A\n");
+  }
+  EXPECT_EQ(compare(folder, {"ten.hdr", "far.hdr"}).code, 1);
+}
+
 /// Twice the spread, as 64 samples have it against 256: it tells the sides apart only if both say that they
 /// have equally many.
 TEST(CompareGaps, VariancesNeedCountsOfSamples) {
