@@ -81,7 +81,7 @@ std::string encode_text(std::string_view text, std::string_view special) {
 std::string decode_text(std::string_view text) {
   std::string decoded;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    int byte = 0;
+    unsigned byte = 0;  // no sign is taken
     const bool escape =
         text[i] == '%' && i + 2 < text.size() &&
         std::from_chars(text.data() + i + 1, text.data() + i + 3, byte, 16).ptr == text.data() + i + 3;

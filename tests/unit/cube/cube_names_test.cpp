@@ -77,7 +77,7 @@ TEST(CubeText, EncodedTextComesBack) {
     EXPECT_EQ(encoded.find_first_of(",{}\n\t"), std::string::npos);
     EXPECT_EQ(trimmed(encoded), encoded);
   }
-  EXPECT_EQ(decode_text("%zz%4"), "%zz%4");
+  EXPECT_EQ(decode_text("%zz%-5%+5%4"), "%zz%-5%+5%4");
 }
 
 TEST(CubeText, NumbersAreWhole) {
