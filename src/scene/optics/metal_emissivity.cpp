@@ -1,6 +1,7 @@
 #include "scene/optics/metal_emissivity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -81,12 +82,16 @@ class MetalEmissivity::Directions {
     return a;
   }
 
-  /// The formula of the header.
+  /// The formula of the header. albedo: E; absorbed: a; normal: A0
+  static double emissivity(double albedo, double absorbed, double normal) {
+    const double mean = absorbed / albedo;
+    return mean + normal * (1 - albedo) * (1 - mean);
+  }
+
   static double emissivity(const std::vector<double>& weights, const std::vector<double>& absorptances) {
     double albedo = 0, absorbed = 0;
     for (int i = 0; i <= kCells; ++i) albedo += weights[i], absorbed += weights[i] * absorptances[i];
-    const double mean = absorbed / albedo;
-    return mean + absorptances[kCells] * (1 - albedo) * (1 - mean);
+    return emissivity(albedo, absorbed, absorptances[kCells]);
   }
 
  private:
@@ -210,23 +215,55 @@ RegularTable MetalEmissivity::tabulate(const std::vector<double>& values) const 
   return table;
 }
 
-std::vector<RegularTable> MetalEmissivity::rows() const {
-  const std::size_t directions = cosines_.size() * nodes_s_, wavelengths = lambda_nm_.size();
-  std::vector<std::vector<double>> values(directions, std::vector<double>(wavelengths));
+/// By s, then cosine.
+std::vector<const std::vector<double>*> MetalEmissivity::weights_of_rows() const {
   std::vector<const std::vector<double>*> weights;
-  for (std::size_t d = 0; directions_->rough() && d < directions; ++d) {
-    const double s = nodes_s_ > 1 ? static_cast<double>(d / cosines_.size()) / (nodes_s_ - 1) : 0;
-    weights.push_back(&directions_->weights(cosines_[d % cosines_.size()], s));
+  for (uint32_t j = 0; j < nodes_s_; ++j) {
+    const double s = nodes_s_ > 1 ? static_cast<double>(j) / (nodes_s_ - 1) : 0;
+    for (const double cosine : cosines_) weights.push_back(&directions_->weights(cosine, s));
   }
-  for (std::size_t i = 0; i < wavelengths; ++i) {
-    std::vector<double> absorptances;
-    if (directions_->rough()) absorptances = Directions::absorptances(n_[i], k_[i]);
-    for (std::size_t d = 0; d < directions; ++d) {
-      const double e = directions_->rough() ? Directions::emissivity(*weights[d], absorptances)
-                                            : metal_absorptance(cosines_[d], n_[i], k_[i]);
-      values[d][i] = 1 - tint_[i] + tint_[i] * e;
+  return weights;
+}
+
+/// Of a rough metal, by direction, then wavelength. Directions go abreast through the sums over facets, each sum in the order of the cells.
+std::vector<std::vector<double>> MetalEmissivity::rough_rows() const {
+  constexpr std::size_t kAbreast = 64;
+  const std::vector<const std::vector<double>*> weights = weights_of_rows();
+  const std::size_t wavelengths = lambda_nm_.size();
+  std::vector<std::vector<double>> absorptances(wavelengths), values;
+  for (std::size_t i = 0; i < wavelengths; ++i) absorptances[i] = Directions::absorptances(n_[i], k_[i]);
+  std::vector<std::array<double, kAbreast>> cells(kCells + 1);
+  for (std::size_t first = 0; first < weights.size(); first += kAbreast) {
+    const std::size_t count = std::min(kAbreast, weights.size() - first);
+    std::array<double, kAbreast> albedos{};
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (std::size_t j = 0; j < count; ++j) albedos[j] += cells[c][j] = (*weights[first + j])[c];
+    values.resize(first + count, std::vector<double>(wavelengths));
+    for (std::size_t i = 0; i < wavelengths; ++i) {
+      std::array<double, kAbreast> absorbed{};
+      for (std::size_t c = 0; c < cells.size(); ++c)
+        for (std::size_t j = 0; j < kAbreast; ++j) absorbed[j] += cells[c][j] * absorptances[i][c];
+      for (std::size_t j = 0; j < count; ++j)
+        values[first + j][i] = Directions::emissivity(albedos[j], absorbed[j], absorptances[i][kCells]);
     }
   }
+  return values;
+}
+
+std::vector<std::vector<double>> MetalEmissivity::smooth_rows() const {
+  std::vector<std::vector<double>> values;
+  for (const double cosine : cosines_) {
+    std::vector<double>& row = values.emplace_back();
+    for (std::size_t i = 0; i < lambda_nm_.size(); ++i)
+      row.push_back(metal_absorptance(cosine, n_[i], k_[i]));
+  }
+  return values;
+}
+
+std::vector<RegularTable> MetalEmissivity::rows() const {
+  std::vector<std::vector<double>> values = directions_->rough() ? rough_rows() : smooth_rows();
+  for (auto& row : values)
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = 1 - tint_[i] + tint_[i] * row[i];
   std::vector<RegularTable> tables;
   for (const auto& v : values) tables.push_back(tabulate(v));
   return tables;

@@ -50,6 +50,9 @@ class MetalEmissivity {
   std::vector<double> at(double cosine, double s) const;
   bool refine(double from, double to, int depth);
   void choose_nodes_s();
+  std::vector<const std::vector<double>*> weights_of_rows() const;
+  std::vector<std::vector<double>> rough_rows() const;
+  std::vector<std::vector<double>> smooth_rows() const;
   RegularTable tabulate(const std::vector<double>& values) const;
 
   std::vector<double> lambda_nm_, n_, k_, tint_;  // regular
