@@ -66,6 +66,15 @@ const TestVerdict* find_test(const stats::Comparison& r, const char* name) {
   return test != r.tests.end() && std::isfinite(test->detectable.typical) ? &*test : nullptr;
 }
 
+/// Constants are compared, but state no bias.
+std::string no_bias_text(const stats::Comparison& r) {
+  const bool means =
+      std::ranges::any_of(r.tests, [](const TestVerdict& t) { return t.name.starts_with("mean/"); });
+  return means
+             ? "detectable bias: none to state, the means that were compared vary on neither side, or are 0 in A\n"
+             : "detectable bias: none, no test of means had anything to test\n";
+}
+
 /// A pass says as much as what would have failed.
 std::string detectable_text(const stats::Comparison& r, const std::vector<std::string>& names) {
   std::string text;
@@ -76,11 +85,7 @@ std::string detectable_text(const stats::Comparison& r, const std::vector<std::s
                         percent(test->detectable.typical), scale.typical, percent(test->detectable.largest),
                         names[test->detectable.largest_channel]);
   }
-  const bool means =
-      std::ranges::any_of(r.tests, [](const TestVerdict& t) { return t.name.starts_with("mean/"); });
-  if (text.empty() && means)
-    return "detectable bias: none to state, the means that were compared vary on neither side, or are 0 in A\n";
-  if (text.empty()) return "detectable bias: none, no test of means had anything to test\n";
+  if (text.empty()) return no_bias_text(r);
   return fmt::format(
              "detectable bias: from these differences on, relative to the mean of A there, a difference is found "
              "with a probability of {:g} % or more, at a rate of false alarms of {:g} for all tests together\n",
