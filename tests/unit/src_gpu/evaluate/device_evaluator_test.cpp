@@ -140,13 +140,6 @@ std::vector<EvaluatorBuild> builds() {
       {{8, 2, false, 2}, {8, 1, true, 2}, {4, 1, true, 2}, {1, 2, false, 2}});
 }
 
-std::string build_name(const testing::TestParamInfo<EvaluatorBuild>& info) {
-  const EvaluatorBuild& b = info.param;
-  return "width" + std::to_string(b.width) + "x" + std::to_string(b.vectors) +
-         (b.per_path ? "_per_path" : "_shared") + (b.transposed ? "_transposed" : "") +
-         (b.tile > 1 ? "_tile" + std::to_string(b.tile) : "");
-}
-
 INSTANTIATE_TEST_SUITE_P(, DeviceEvaluation, testing::ValuesIn(builds()), build_name);
 
 /// The same sums, on the CPU backend's evaluator, path by path.

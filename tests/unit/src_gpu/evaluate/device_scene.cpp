@@ -157,4 +157,11 @@ double largest_difference(const std::vector<float>& a, const std::vector<float>&
   return largest;
 }
 
+std::string build_name(const testing::TestParamInfo<EvaluatorBuild>& info) {
+  const EvaluatorBuild& b = info.param;
+  return "width" + std::to_string(b.width) + "x" + std::to_string(b.vectors) +
+         (b.per_path ? "_per_path" : "_shared") + (b.transposed ? "_transposed" : "") +
+         (b.tile > 1 ? "_tile" + std::to_string(b.tile) : "");
+}
+
 }  // namespace kiloband::test

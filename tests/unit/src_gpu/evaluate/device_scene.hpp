@@ -1,7 +1,10 @@
 // Scenes for tests of device evaluation, and what the double-precision oracle says of them.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <random>
+#include <string>
 #include <vector>
 
 #include "device_evaluator.hpp"
@@ -10,6 +13,9 @@
 namespace kiloband::test {
 
 using namespace cpu;
+
+/// "width4x2_per_path": what tests with a build as their parameter are called by.
+std::string build_name(const testing::TestParamInfo<EvaluatorBuild>& info);
 
 /// make_scene() with tables whose kinks meet nodes: steps that are simple fractions of a channel for equal
 /// channels, straight lines for others, so that interpolation is exact and what is compared is evaluation.

@@ -66,10 +66,7 @@ std::vector<EvaluatorBuild> builds() {
                                                  {{16, 2, true, 0}, {1, 2, true, 0}});
 }
 
-INSTANTIATE_TEST_SUITE_P(, DeviceGas, testing::ValuesIn(builds()), [](const auto& p) {
-  return "width" + std::to_string(p.param.width) + "x" + std::to_string(p.param.vectors) +
-         (p.param.per_path ? "_per_path" : "_shared");
-});
+INSTANTIATE_TEST_SUITE_P(, DeviceGas, testing::ValuesIn(builds()), build_name);
 
 /// Planck's law relative to a reference, over exponents hc / (k lambda T) of up to 240: plumes
 /// of one black cell.

@@ -116,10 +116,7 @@ std::vector<EvaluatorBuild> builds() {
                                                  {{4, 1, false, 4}, {4, 2, false, 4}, {4, 3, false, 4}});
 }
 
-INSTANTIATE_TEST_SUITE_P(, StagedEvaluation, testing::ValuesIn(builds()), [](const auto& p) {
-  return "width" + std::to_string(p.param.width) + "x" + std::to_string(p.param.vectors) +
-         (p.param.per_path ? "_per_path" : "_shared");
-});
+INSTANTIATE_TEST_SUITE_P(, StagedEvaluation, testing::ValuesIn(builds()), build_name);
 
 }  // namespace
 }  // namespace kiloband::test::staged_test
