@@ -143,13 +143,13 @@ ChannelList read_channels_file(const std::filesystem::path& file) {
   for (std::string_view line; lines.next(line);) {
     const std::size_t hash = line.find('#');
     if (hash != std::string_view::npos && first)
-      unit = find_unit_in_comment(line.substr(hash + 1)).value_or(unit);
+      unit = unit_in_comment(file.string(), line.substr(hash + 1)).value_or(unit);
     line = trimmed(line.substr(0, hash), kBlanks);
     if (line.empty()) continue;
     const std::vector<std::string_view> fields = split_fields(line, 4);
     const bool header = first && is_header(fields);
     first = false;
-    if (header) unit = find_unit(line).value_or(unit);
+    if (header) unit = unit_of_column(file.string(), line).value_or(unit);
     if (header) continue;
     const std::string where = file.string() + ":" + std::to_string(lines.line_number());
     channels.push_back(parse_line(where, fields, unit));

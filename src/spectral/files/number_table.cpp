@@ -105,7 +105,7 @@ std::optional<WavelengthUnit> radis_unit(const NumberTable& table) {
 std::optional<WavelengthUnit> unit_in_comments(const NumberTable& table) {
   std::optional<WavelengthUnit> found;
   for (const std::string& comment : table.comments) {
-    const std::optional<WavelengthUnit> unit = find_unit_in_comment(comment);
+    const std::optional<WavelengthUnit> unit = unit_in_comment(table.file.string(), comment);
     if (found && unit && *unit != *found)
       throw InputError(table.file.string() + ": comments give wavelengths in " + unit_name(*found) +
                        " and in " + unit_name(*unit));
@@ -197,12 +197,7 @@ void require_two_rows(const NumberTable& table) {
 }
 
 std::optional<WavelengthUnit> stated_wavelength_unit(const NumberTable& table) {
-  const std::string text = column_text(table, 0);
-  if (const auto unit = find_unit_in_comment(text)) return *unit;
-  if (const auto unit = find_unit(text)) return *unit;
-  if (const auto foreign = find_foreign_unit(text))
-    throw InputError(table.file.string() + ": a first column in '" + *foreign +
-                     "': must be a wavelength in nm, um, mm, cm, m or angstrom, or a wavenumber in cm-1");
+  if (const auto unit = unit_of_column(table.file.string(), column_text(table, 0))) return *unit;
   if (const auto unit = radis_unit(table)) return *unit;
   return unit_in_comments(table);
 }

@@ -2,32 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <vector>
 
+#include "base/error.hpp"
 #include "spectral/files/text_table.hpp"
-#include "spectral/files/value_units.hpp"
+#include "spectral/files/unit_words.hpp"
 
 namespace kiloband {
 namespace {
-
-/// Lower-case words without units of power; the ways to write micrometres and inverse centimetres made one.
-std::vector<std::string> words(std::string_view text) {
-  std::string plain = lowered(without_power_units(text));
-  replace_all(plain, "cm^-1", "cm-1");
-  replace_all(plain, "1/cm", "cm-1");
-  std::vector<std::string> result;
-  std::string word;
-  for (const char c : plain + " ") {
-    const bool in_word = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '%';
-    if (in_word) {
-      word += c;
-    } else if (!word.empty()) {
-      result.push_back(std::move(word));
-      word.clear();
-    }
-  }
-  return result;
-}
 
 template <std::size_t N>
 bool is_one_of(const std::string& word, const std::array<const char*, N>& set) {
@@ -41,25 +24,89 @@ std::optional<WavelengthUnit> unit_of(const std::string& word) {
   constexpr std::array kWavenumbers = {"cm-1", "wavenumber", "wavenumbers"};
   if (is_one_of(word, kNm)) return WavelengthUnit::kNanometre;
   if (is_one_of(word, kUm)) return WavelengthUnit::kMicrometre;
-  constexpr std::array kAngstroms = {"angstrom", "angstroms", "ang"};
+  constexpr std::array kAngstroms = {"angstrom", "angstroms"};
   if (is_one_of(word, kWavenumbers)) return WavelengthUnit::kWavenumber;
   if (is_one_of(word, kAngstroms)) return WavelengthUnit::kAngstrom;
   return std::nullopt;
 }
 
-/// Units that only the name of a column means: a comment may speak of a cell of 10 cm.
-std::optional<WavelengthUnit> long_unit_of(const std::string& word) {
+/// Words that short units of length also are: a comment may speak of a cell of 10 cm, and people have initials.
+std::optional<WavelengthUnit> long_unit_of(const UnitWord& word) {
   constexpr std::array kMetres = {"m", "meter", "meters", "metre", "metres"};
-  if (word == "mm") return WavelengthUnit::kMillimetre;
-  if (word == "cm") return WavelengthUnit::kCentimetre;
-  if (is_one_of(word, kMetres)) return WavelengthUnit::kMetre;
+  if (word.text == "mm") return WavelengthUnit::kMillimetre;
+  if (word.text == "cm" || word.text.starts_with("centimet")) return WavelengthUnit::kCentimetre;
+  if (word.text == "ang") return WavelengthUnit::kAngstrom;
+  if (is_one_of(word.text, kMetres) && (word.text.size() > 1 || !word.is_capital))
+    return WavelengthUnit::kMetre;
   return std::nullopt;
 }
 
-std::optional<WavelengthUnit> first_unit(std::span<const std::string> some_words) {
-  for (const std::string& word : some_words)
-    if (const auto unit = unit_of(word)) return unit;
+bool is_wavelength(const std::string& word) {
+  constexpr std::array kWords = {"wavelength", "wavelengths", "wavenumber", "wavenumbers", "lambda", "wl"};
+  return is_one_of(word, kWords);
+}
+
+bool joins(const std::string& word) {
+  constexpr std::array kWords = {"in", "of", "is", "are", "unit", "units"};
+  return is_one_of(word, kWords);
+}
+
+using Words = std::span<const UnitWord>;
+
+/// The next word that is more than "in".
+const UnitWord* next_word(Words words, std::size_t i) {
+  do ++i;
+  while (i < words.size() && joins(words[i].text));
+  return i < words.size() ? &words[i] : nullptr;
+}
+
+/// The first unit, which may be foreign; "wavenumber" is one where no foreign one follows at once.
+struct Found {
+  std::optional<WavelengthUnit> unit;
+  std::string foreign;
+};
+
+Found first_unit(Words words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const UnitWord* next = is_wavelength(words[i].text) ? next_word(words, i) : nullptr;
+    for (const UnitWord* word : {&words[i], next})
+      if (word && word->is_foreign) return {std::nullopt, word->text};
+    if (const auto unit = unit_of(words[i].text)) return {unit, {}};
+  }
+  return {};
+}
+
+/// mm, cm, m and Ang: in brackets, behind "wavelength", or among few words.
+std::optional<WavelengthUnit> first_long_unit(Words words) {
+  constexpr std::size_t kFew = 3;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const UnitWord* next = is_wavelength(words[i].text) ? next_word(words, i) : nullptr;
+    if (next && long_unit_of(*next)) return long_unit_of(*next);
+    if ((words[i].in_brackets || words.size() <= kFew) && long_unit_of(words[i]))
+      return long_unit_of(words[i]);
+  }
   return std::nullopt;
+}
+
+/// Of a text that may speak of other things; foreign units count directly behind "wavelength" alone.
+Found unit_among_others(Words words) {
+  constexpr std::size_t kFew = 3;
+  const auto trigger = std::ranges::find_if(words, [](const UnitWord& w) { return is_wavelength(w.text); });
+  if (trigger == words.end() && words.size() > kFew) return {};
+  const UnitWord* next = trigger == words.end() ? nullptr : next_word({trigger, words.end()}, 0);
+  if (next && next->is_foreign) return {std::nullopt, next->text};
+  std::vector<UnitWord> ours;
+  std::ranges::copy_if(words, std::back_inserter(ours), [](const UnitWord& w) { return !w.is_foreign; });
+  const auto place = std::ranges::find_if(ours, [](const UnitWord& w) { return is_wavelength(w.text); });
+  const Found after = first_unit({place, ours.end()});
+  return after.unit ? after : first_unit(ours);
+}
+
+std::optional<WavelengthUnit> unit_or_error(const std::string& where, const Found& found) {
+  if (!found.foreign.empty())
+    throw InputError(where + ": a first column in " + quote_text(found.foreign) +
+                     ": must be a wavelength in nm, um, mm, cm, m or angstrom, or a wavenumber in cm-1");
+  return found.unit;
 }
 
 }  // namespace
@@ -108,33 +155,25 @@ double to_nanometres(double value, WavelengthUnit unit) {
 }
 
 std::optional<WavelengthUnit> find_unit(std::string_view text) {
-  const std::vector<std::string> all = words(text);
-  if (const auto unit = first_unit(all)) return unit;
-  for (const std::string& word : all)
-    if (const auto unit = long_unit_of(word)) return unit;
-  return std::nullopt;
+  const std::vector<UnitWord> words = unit_words(text);
+  const Found found = first_unit(words);
+  return found.unit || !found.foreign.empty() ? found.unit : first_long_unit(words);
 }
 
 bool begins_with_unit(std::string_view text) {
-  const std::vector<std::string> all = words(text);
-  return !all.empty() && unit_of(all.front());
+  const std::vector<UnitWord> words = unit_words(text);
+  return !words.empty() && unit_of(words.front().text);
 }
 
-std::optional<std::string> find_foreign_unit(std::string_view text) {
-  constexpr std::array kForeign = {"hz", "khz", "mhz", "ghz", "thz", "ev", "mev", "kev"};
-  const std::vector<std::string> all = words(text);
-  const auto found = std::ranges::find_if(all, [&](const auto& word) { return is_one_of(word, kForeign); });
-  return found == all.end() ? std::nullopt : std::optional(*found);
+std::optional<WavelengthUnit> unit_of_column(const std::string& where, std::string_view text) {
+  const std::vector<UnitWord> words = unit_words(text);
+  if (const auto unit = unit_or_error(where, unit_among_others(words))) return unit;
+  if (const auto unit = unit_or_error(where, first_unit(words))) return unit;
+  return first_long_unit(words);
 }
 
-std::optional<WavelengthUnit> find_unit_in_comment(std::string_view comment) {
-  constexpr std::array kTriggers = {"wavelength", "wavelengths", "wavenumber", "wavenumbers", "lambda", "wl"};
-  const std::vector<std::string> all = words(comment);
-  const auto trigger =
-      std::find_if(all.begin(), all.end(), [&](const std::string& w) { return is_one_of(w, kTriggers); });
-  if (trigger == all.end()) return all.size() <= 3 ? first_unit(all) : std::nullopt;
-  if (const auto after = first_unit({trigger, all.end()})) return after;
-  return first_unit(all);
+std::optional<WavelengthUnit> unit_in_comment(const std::string& where, std::string_view comment) {
+  return unit_or_error(where, unit_among_others(unit_words(comment)));
 }
 
 }  // namespace kiloband

@@ -26,15 +26,16 @@ std::string describe(double value, WavelengthUnit unit);
 double to_nanometres(double value, WavelengthUnit unit);
 
 /// The first unit of wavelength named in the text as a word of its own ("wavelength_um", "Wavelength
-/// (micrometers)", "wavenumber", "cm-1"); Latin-1 and UTF-8 micro signs are understood. Lengths in a unit of
-/// power ("W/m2/nm") are none.
+/// (micrometers)", "wavenumber", "cm-1"); the ways to write them: unit_words.hpp. Lengths in a unit of power ("W/m2/nm") are none. mm, cm, m
+/// and Ang count in brackets, behind "wavelength" and among at most three words. Empty where a foreign unit comes first.
 std::optional<WavelengthUnit> find_unit(std::string_view text);
 /// Whether the first word of the text is a unit of wavelength: "microns".
 bool begins_with_unit(std::string_view text);
-/// A unit of frequency or energy, which no column of wavelengths may have: "THz", "eV".
-std::optional<std::string> find_foreign_unit(std::string_view text);
+/// The unit of a first column with this name, or in a file with these header lines.
+/// throws InputError  "where: a first column in 'THz': ...": frequencies, energies, inverse lengths other than cm-1, powers of ten
+std::optional<WavelengthUnit> unit_of_column(const std::string& where, std::string_view text);
 /// The same for a comment, which may speak of other things: the unit must follow a word such as "wavelength"
-/// (or precede it, or stand in a comment of at most three words). mm, cm and m are not looked for.
-std::optional<WavelengthUnit> find_unit_in_comment(std::string_view comment);
+/// (or precede it, or stand in a comment of at most three words), a foreign one directly. mm, cm and m are not looked for.
+std::optional<WavelengthUnit> unit_in_comment(const std::string& where, std::string_view comment);
 
 }  // namespace kiloband

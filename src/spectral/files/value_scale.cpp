@@ -17,6 +17,12 @@ std::string quoted(const ValueUnit& unit) {
   return "values in " + quote_text(unit.text);
 }
 
+void refuse_factor(const std::string& where, const ValueUnit& unit) {
+  if (unit.is_scaled)
+    throw InputError(where + ": " + quoted(unit) +
+                     ": write the values without the factor, in the unit alone");
+}
+
 bool is_power(ValueKind kind) {
   return kind == ValueKind::kRadiance || kind == ValueKind::kIrradiance || kind == ValueKind::kIntensity;
 }
@@ -28,6 +34,7 @@ ValueScale percent_scale(bool percent) {
 std::optional<ValueScale> absorption_scale(const std::string& where, std::string_view text) {
   const std::optional<ValueUnit> unit = find_inverse_length(text);
   if (!unit) return std::nullopt;
+  refuse_factor(where, *unit);
   if (!unit->is_understood)
     throw InputError(where + ": " + quoted(*unit) +
                      ": an absorption coefficient must be in 1/m, 1/cm, 1/mm or 1/km");
@@ -46,6 +53,7 @@ void check_quantity(const std::string& where, const ValueUnit& unit, ValueKind k
 
 ValueScale power_scale(const std::string& where, const ValueUnit& unit, ValueKind kind,
                        const DiagnosticSink& sink) {
+  refuse_factor(where, unit);
   if (!unit.is_understood)
     throw InputError(where + ": " + quoted(unit) +
                      ": must be power per interval of wavelength or wavenumber, such as W/m2/sr/nm");

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "spectral/files/powers_of_ten.hpp"
 #include "spectral/files/text_table.hpp"
 #include "spectral/files/unit_names.hpp"
 
@@ -24,6 +25,8 @@ struct Run {
   std::vector<Factor> factors;
   std::size_t begin = 0, end = 0;
   bool divides = false;  // a slash, "per" or a negative exponent
+  bool named = false;    // factors are joined by "_"
+  bool is_cut = false;   // what follows at once belongs to it and is not understood: "m~2"
 
   std::size_t count(Dimension dimension) const {
     return static_cast<std::size_t>(
@@ -35,12 +38,6 @@ struct Run {
 bool is_source(Dimension dimension) {
   return dimension == Dimension::kPower || dimension == Dimension::kEnergy;
 }
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 /// Reads one run of units from a place on.
 class RunParser {
@@ -50,9 +47,11 @@ class RunParser {
   Run parse() {
     expression(0);
     // "W_m2_nm": names of columns have no signs. All behind the power is below it.
-    if (!run_.divides && run_.count(Dimension::kPower) == 1)
+    if (run_.named && !run_.divides && run_.count(Dimension::kPower) == 1)
       for (Factor& f : run_.factors)
         if (f.dimension != Dimension::kPower) f.exponent = -f.exponent;
+    const char next = run_.end < text_.size() ? text_[run_.end] : ' ';
+    run_.is_cut = next == '^' || is_ascii_digit(next) || static_cast<unsigned char>(next) >= 0x80;
     return run_;
   }
 
@@ -67,7 +66,7 @@ class RunParser {
   bool take_division() {
     if (peek() == '/') return ++at_, true;
     const std::size_t word = peek() == '_' ? at_ + 1 : at_;
-    if (lowered(text_.substr(word, 3)) != "per" || is_letter(peek(word + 3 - at_))) return false;
+    if (lowered(text_.substr(word, 3)) != "per" || is_ascii_letter(peek(word + 3 - at_))) return false;
     at_ = word + 3;
     if (peek() == '_') ++at_;
     return true;
@@ -76,24 +75,9 @@ class RunParser {
   /// What may stand between two factors instead of a slash.
   void skip_product() {
     const bool joins = peek() == '*' || peek() == '.' || peek() == '-' || peek() == '_';
-    if (joins && (is_letter(peek(1)) || peek(1) == '(')) ++at_;
-  }
-
-  /// "2", "-2", "^-2", "^{-2}", "^(-2)"; empty where there is none.
-  std::optional<int> take_exponent() {
-    std::size_t p = at_;
-    const bool marked = p < text_.size() && text_[p] == '^';
-    if (marked) ++p;
-    const bool wrapped = marked && p < text_.size() && (text_[p] == '{' || text_[p] == '(');
-    if (wrapped) ++p;
-    const bool negative = p < text_.size() && text_[p] == '-';
-    if (negative || (p < text_.size() && text_[p] == '+')) ++p;
-    if (p >= text_.size() || !is_digit(text_[p]) || (p + 1 < text_.size() && is_digit(text_[p + 1])))
-      return std::nullopt;
-    const int value = text_[p++] - '0';
-    if (wrapped && p < text_.size() && (text_[p] == '}' || text_[p] == ')')) ++p;
-    at_ = p;
-    return negative ? -value : value;
+    if (!joins || (!is_ascii_letter(peek(1)) && peek(1) != '(')) return;
+    run_.named = run_.named || (peek() == '_' && !run_.factors.empty());
+    ++at_;
   }
 
   void append(const KnownUnit& unit, std::optional<int> exponent, int sign) {
@@ -107,7 +91,7 @@ class RunParser {
   /// A unit, or a power and a length that nothing separates ("Wm-2").
   bool take_unit(bool below, bool divided) {
     std::size_t end = at_;
-    while (end < text_.size() && is_letter(text_[end])) ++end;
+    while (end < text_.size() && is_ascii_letter(text_[end])) ++end;
     const std::string_view name = text_.substr(at_, end - at_);
     std::vector<KnownUnit> units;
     if (const auto unit = known_unit(name)) units = {*unit};
@@ -120,7 +104,7 @@ class RunParser {
     const bool begins = run_.factors.empty() && !divided;
     if (units.empty() || (is_source(units.front().dimension) && !begins)) return false;
     at_ = end;
-    const std::optional<int> exponent = take_exponent();
+    const std::optional<int> exponent = take_exponent(text_, at_);
     const bool inverse = divided || (below && exponent.value_or(1) > 0);
     if (units.size() == 2) append(units.front(), std::nullopt, 1);
     append(units.back(), exponent, inverse ? -1 : 1);
@@ -134,7 +118,7 @@ class RunParser {
     skip_blanks();
     if (run_.factors.size() == first || (peek() != ')' && peek() != ']')) return false;
     ++at_;
-    const std::optional<int> exponent = take_exponent();
+    const std::optional<int> exponent = take_exponent(text_, at_);
     const bool inverse = divided || (below && exponent.value_or(1) > 0);
     const int power = exponent.value_or(1) * (inverse ? -1 : 1);
     run_.divides = run_.divides || power < 0;
@@ -177,8 +161,8 @@ std::vector<Run> find_runs(std::string_view text) {
   std::vector<Run> runs;
   for (std::size_t at = 0; at < text.size(); ++at) {
     const char before = at == 0 ? ' ' : text[at - 1];
-    const bool starts = is_letter(text[at]) || text[at] == '1';
-    if (!starts || is_letter(before) || is_digit(before)) continue;
+    const bool starts = is_ascii_letter(text[at]) || text[at] == '1';
+    if (!starts || is_ascii_letter(before) || is_ascii_digit(before)) continue;
     Run run = RunParser(text, at).parse();
     if (run.factors.empty()) continue;
     at = std::max(at, run.end - 1);
@@ -224,10 +208,20 @@ bool take_factor(const Factor& f, ValueUnit& unit, int& intervals) {
   return (f.exponent == -1 || f.exponent == -3) && ++intervals == 1;
 }
 
-ValueUnit power_unit(const Run& run, std::string text) {
+/// Its place in the text, from a power of ten before it to one behind it, which nothing here multiplies by: some write what
+/// the values were multiplied by, some what they are to be.
+ValueUnit unit_at(const Run& run, std::string_view text) {
+  const auto [begin, end] = with_powers_of_ten(text, run.begin, run.end);
   ValueUnit unit;
-  unit.text = std::move(text);
+  unit.text = std::string(text.substr(begin, end - begin));
   unit.factors = run.factors.size();
+  unit.is_scaled = begin != run.begin || end != run.end;
+  unit.is_understood = !run.is_cut;
+  return unit;
+}
+
+ValueUnit power_unit(const Run& run, std::string_view text) {
+  ValueUnit unit = unit_at(run, text);
   int intervals = 0;
   for (const Factor& factor : run.factors)
     unit.is_understood = take_factor(factor, unit, intervals) && unit.is_understood;
@@ -244,7 +238,7 @@ std::optional<ValueUnit> find_power_unit(std::string_view text) {
   std::optional<ValueUnit> first;
   for (const Run& run : find_runs(plain)) {
     if (!is_power(run)) continue;
-    ValueUnit unit = power_unit(run, plain.substr(run.begin, run.end - run.begin));
+    ValueUnit unit = power_unit(run, plain);
     if (unit.is_understood) return unit;
     if (!first) first = std::move(unit);
   }
@@ -257,13 +251,11 @@ std::optional<ValueUnit> find_inverse_length(std::string_view text) {
     const std::size_t lengths = run.count(Dimension::kLength) + run.count(Dimension::kWavenumber);
     const bool power_of_length = run.divides || run.factors.front().exponent != 1;
     if (!power_of_length || (lengths == 0 && run.count(Dimension::kOther) == 0)) continue;
-    ValueUnit unit;
-    unit.text = plain.substr(run.begin, run.end - run.begin);
-    unit.factors = run.factors.size();
+    ValueUnit unit = unit_at(run, plain);
     const Factor& only = run.factors.front();
     if (only.dimension == Dimension::kWavenumber) unit.factor = 100;
     if (only.dimension == Dimension::kLength) unit.factor = 1 / only.scale;
-    unit.is_understood = run.factors.size() == 1 && lengths == 1 &&
+    unit.is_understood = unit.is_understood && run.factors.size() == 1 && lengths == 1 &&
                          only.exponent == (only.dimension == Dimension::kWavenumber ? 1 : -1);
     return unit;
   }

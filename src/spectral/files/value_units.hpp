@@ -15,7 +15,8 @@ struct ValueUnit {
   bool per_solid_angle = false;  // power per sr
   bool per_wavenumber = false;   // an interval of wavenumber in cm-1, not of wavelength
   bool is_understood = true;     // false: a unit, but none of these ("photons/s/cm2/nm", "W/m2", "W/m2/Hz")
-  std::size_t factors = 0;       // units that it is made of, W/m2/nm: 3
+  bool is_scaled = false;   // a power of ten stands before or behind it: "10^-3 W/m2/nm", "W/m2/nm x 1000"
+  std::size_t factors = 0;  // units that it is made of, W/m2/nm: 3
 };
 
 /// The first unit of power in the text that is understood, or else the first. Factors are joined by "/",
