@@ -6,39 +6,55 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
-#include <unordered_map>
+#include <unordered_set>
 
 #include "scene/mesh/finish.hpp"
 
 namespace kiloband {
 namespace {
 
-using Key = std::array<uint32_t, 5>;
-
-struct KeyHash {
-  size_t operator()(const Key& key) const {
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (const uint32_t word : key) hash = (hash ^ word) * 0x100000001b3u;
-    return hash ^ hash >> 29;
-  }
-};
-
 uint32_t bits(float x) {
   return std::bit_cast<uint32_t>(x == 0 ? 0.0f : x);  // -0 is 0
 }
 
-/// For every vertex the first one at its position with its texture coordinates; with further attributes, itself.
+/// Calls action with the bits of all that a vertex of the mesh has but its normal.
+template <class Action>
+void for_words(const Mesh& mesh, uint32_t vertex, Action action) {
+  for (int axis = 0; axis < 3; ++axis) action(bits(mesh.positions[vertex][axis]));
+  if (!mesh.uvs.empty())
+    for (int axis = 0; axis < 2; ++axis) action(bits(mesh.uvs[vertex][axis]));
+  for (const auto& [name, values] : mesh.vertex_attributes) action(bits(values[vertex]));
+}
+
+struct VertexHash {
+  const Mesh& mesh;
+  size_t operator()(uint32_t vertex) const {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for_words(mesh, vertex, [&](uint32_t word) { hash = (hash ^ word) * 0x100000001b3u; });
+    return hash ^ hash >> 29;
+  }
+};
+
+struct VertexEqual {
+  const Mesh& mesh;
+  bool operator()(uint32_t a, uint32_t b) const {
+    const auto same = [](float x, float y) { return bits(x) == bits(y); };
+    for (int axis = 0; axis < 3; ++axis)
+      if (!same(mesh.positions[a][axis], mesh.positions[b][axis])) return false;
+    for (int axis = 0; axis < 2 && !mesh.uvs.empty(); ++axis)
+      if (!same(mesh.uvs[a][axis], mesh.uvs[b][axis])) return false;
+    return std::ranges::all_of(mesh.vertex_attributes, [&](const auto& attribute) {
+      return same(attribute.second[a], attribute.second[b]);
+    });
+  }
+};
+
+/// For every vertex the first one at its position with its texture coordinates and attributes.
 std::vector<uint32_t> first_equals(const Mesh& mesh) {
   std::vector<uint32_t> first(mesh.positions.size());
-  std::iota(first.begin(), first.end(), 0u);
-  if (!mesh.vertex_attributes.empty()) return first;
-  std::unordered_map<Key, uint32_t, KeyHash> known;
-  for (uint32_t i = 0; i < first.size(); ++i) {
-    const Vec3f& p = mesh.positions[i];
-    const Vec2f uv = mesh.uvs.empty() ? Vec2f{} : mesh.uvs[i];
-    first[i] =
-        known.emplace(Key{bits(p[0]), bits(p[1]), bits(p[2]), bits(uv[0]), bits(uv[1])}, i).first->second;
-  }
+  std::unordered_set<uint32_t, VertexHash, VertexEqual> known(first.size(), VertexHash{mesh},
+                                                              VertexEqual{mesh});
+  for (uint32_t i = 0; i < first.size(); ++i) first[i] = *known.insert(i).first;
   return first;
 }
 

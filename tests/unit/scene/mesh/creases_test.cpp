@@ -70,6 +70,14 @@ TEST(Creases, EqualVerticesAreOne) {
   EXPECT_EQ(mesh.uvs.size(), 36u);
   mesh = apart;
   mesh.vertex_attributes["kelvin"].assign(mesh.positions.size(), 300);
+  mesh.vertex_attributes["zero"].assign(mesh.positions.size(), 0);
+  mesh.vertex_attributes["zero"][1] = -0.0f;
+  split_at_creases(mesh, std::numbers::pi);
+  EXPECT_EQ(mesh.positions.size(), 8u);
+  EXPECT_EQ(mesh.vertex_attributes["kelvin"].size(), 8u);
+  mesh = apart;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    mesh.vertex_attributes["kelvin"].push_back(static_cast<float>(i / 3));
   split_at_creases(mesh, std::numbers::pi);
   EXPECT_EQ(mesh.positions.size(), 36u);
   EXPECT_EQ(mesh.vertex_attributes["kelvin"].size(), 36u);
