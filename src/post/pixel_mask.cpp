@@ -1,8 +1,17 @@
 #include "post/pixel_mask.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kiloband {
+namespace {
+
+/// Planes of others hold what they like: NaN, infinities and fractions are of no object.
+bool is_id(float value) {
+  return value >= 0 && value < 0x1p32f && value == std::floor(value);
+}
+
+}  // namespace
 
 PixelMask PixelMask::of_rectangle(uint32_t width, uint32_t height, const PixelRect& rect) {
   PixelMask mask(width, height);
@@ -15,7 +24,7 @@ PixelMask PixelMask::of_ids(uint32_t width, uint32_t height, const std::vector<f
                             const std::set<uint32_t>& ids) {
   PixelMask mask(width, height);
   for (std::size_t i = 0; i < plane.size(); ++i)
-    mask.in_[i] = plane[i] >= 0 && ids.contains(static_cast<uint32_t>(plane[i]));
+    mask.in_[i] = is_id(plane[i]) && ids.contains(static_cast<uint32_t>(plane[i]));
   return mask;
 }
 

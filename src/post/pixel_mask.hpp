@@ -16,7 +16,7 @@ class PixelMask {
       : width_(width), height_(height), in_(std::size_t{width} * height) {}
   /// rect lies in the image.
   static PixelMask of_rectangle(uint32_t width, uint32_t height, const PixelRect& rect);
-  /// Pixels whose value in a plane [y][x] is one of `ids`.
+  /// Pixels whose value in a plane [y][x] is one of `ids`; what is no whole number of 32 bits is none of them.
   static PixelMask of_ids(uint32_t width, uint32_t height, const std::vector<float>& plane,
                           const std::set<uint32_t>& ids);
 

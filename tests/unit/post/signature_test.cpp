@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "post/convert.hpp"
 #include "tests/unit/cube/cube_support.hpp"
@@ -99,6 +100,15 @@ TEST(PixelMask, GrowsBySquares) {
   EXPECT_EQ(PixelMask(3, 3).rows().end, 0u);
   EXPECT_EQ(PixelMask::of_ids(2, 1, {-1, 3}, {3}).count(), 1u);
   EXPECT_EQ(PixelMask::of_rectangle(6, 5, {4, 0, 2, 3}).count(), 6u);
+}
+
+/// Ids are whole numbers of 32 bits. 5e9 without the bits above them would be 705032704.
+TEST(PixelMask, WhatIsNoIdIsOfNoObject) {
+  const float none = std::numeric_limits<float>::quiet_NaN(), infinite = INFINITY;
+  const std::vector<float> plane{3,    3.5f, 5e9f,          infinite, -infinite,
+                                 none, -1,   4294967296.0f, -0.0f,    4294967040.0f};
+  const PixelMask mask = PixelMask::of_ids(10, 1, plane, {0, 3, 705032704, 2147483648u, 4294967040u});
+  for (uint32_t x = 0; x < 10; ++x) EXPECT_EQ(mask.at(x, 0), x == 0 || x >= 8) << plane[x];
 }
 
 /// sum n (f - mean)^2 / (N (R - 1)) by hand: values 1, 2, 6 with 1, 2, 1 samples: mean 2.75, squares
