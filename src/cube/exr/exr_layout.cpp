@@ -22,9 +22,15 @@ std::optional<std::string> text_attribute(const Imf::Header& header, const std::
 }
 
 /// A number that we wrote as text (EXR's integers have 32 bits); 0 where it is missing.
-uint64_t count_attribute(const Imf::Header& header, const char* name) {
+uint64_t count_attribute(const Imf::Header& header, const char* name, uint64_t largest,
+                         const std::string& where) {
   const auto text = text_attribute(header, name);
-  return text ? parse_unsigned(*text).value_or(0) : 0;
+  if (!text) return 0;
+  const auto value = parse_unsigned(*text);
+  if (!value || *value > largest)
+    throw InputError(where + ": " + name + " '" + printable(*text) + "': must be a whole number, at most " +
+                     std::to_string(largest));
+  return *value;
 }
 
 /// Fills bands from our own attribute; false where the attribute is missing or does not fit the channels any
@@ -217,8 +223,9 @@ ExrLayout read_exr_layout(const Imf::Header& header, const std::string& where, c
   read_variances(header, layout);
   read_aux(header, layout);
   read_metadata(header, layout.info);
-  layout.info.samples_per_pixel = count_attribute(header, kExrSamplesAttribute);
-  layout.info.replicates = static_cast<uint32_t>(count_attribute(header, kExrReplicatesAttribute));
+  layout.info.samples_per_pixel = count_attribute(header, kExrSamplesAttribute, UINT64_MAX, where);
+  layout.info.replicates =
+      static_cast<uint32_t>(count_attribute(header, kExrReplicatesAttribute, UINT32_MAX, where));
   if (const auto samples = text_attribute(header, kExrReplicateSamplesAttribute))
     layout.info.replicate_samples = parse_counts(*samples).value_or(std::vector<uint64_t>{});
   check_cube_info(layout.info, where);

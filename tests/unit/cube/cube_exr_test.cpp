@@ -120,6 +120,22 @@ TEST_F(ExrFile, ChannelsThatOthersChangedAreFoundByName) {
   EXPECT_EQ(read.mean[0], cube.mean[1]);
 }
 
+/// As with ENVI: 4294967298 would be read as 2.
+TEST_F(ExrFile, CountsAreWholeNumbersThatFit) {
+  Cube cube = make_cube(2, 2, equal_bands(400, 500, 1), true);
+  cube.info.replicates = 1'000'000'000;
+  write_cube_file(cube, folder / "a.exr");
+  const std::string good = folder.read("a.exr");
+  for (const char* count : {"9999999999", "99999999 9"}) {
+    std::string bytes = good;
+    folder.write("b.exr", bytes.replace(bytes.find("1000000000"), 10, count));
+    EXPECT_EQ(
+        error_of(folder, [&] { open_cube(folder / "b.exr"); }),
+        "b.exr: kilobandReplicates '" + std::string(count) + "': must be a whole number, at most 4294967295");
+  }
+  EXPECT_EQ(open_cube(folder / "a.exr")->info().replicates, 1'000'000'000u);
+}
+
 TEST_F(ExrFile, NamesThatCollideAreRefused) {
   for (const char* name : {"R", "S0.450,000000nm", "var.S0.450,000000nm", "S0.123nm"}) {
     const Cube cube = make_cube(2, 2, equal_bands(400, 500, 1), true, {name});
