@@ -9,7 +9,12 @@
 namespace kiloband {
 namespace {
 
-constexpr std::array<std::string_view, 3> kOfBands{"bbl", "data gain values", "data offset values"};
+constexpr std::array<std::string_view, 6> kOfBands{"bbl",
+                                                   "data gain values",
+                                                   "data offset values",
+                                                   "data reflectance gain values",
+                                                   "data reflectance offset values",
+                                                   "solar irradiance"};
 
 std::string picked_list(const std::vector<std::string_view>& entries,
                         const std::vector<std::size_t>& picked) {

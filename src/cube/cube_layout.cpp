@@ -72,6 +72,10 @@ ChannelList channels_of(const std::vector<Band>& bands) {
   return channels;
 }
 
+double without_roundings(double nm) {
+  return std::round(nm * 1e9) / 1e9;
+}
+
 std::string metadata_of(const CubeInfo& info, const std::string& key) {
   const auto found = info.metadata.find(key);
   return found == info.metadata.end() ? std::string() : found->second;

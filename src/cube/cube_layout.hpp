@@ -28,6 +28,8 @@ std::string band_text(const Band& band);
 
 /// The channels of all bands that are not derived.
 ChannelList channels_of(const std::vector<Band>& bands);
+/// To a billionth: 1000 * 1.005 is a little less than the 1005 that is meant.
+double without_roundings(double nm);
 /// Empty where the cube has no such entry.
 std::string metadata_of(const CubeInfo& info, const std::string& key);
 

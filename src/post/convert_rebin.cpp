@@ -10,15 +10,12 @@
 namespace kiloband {
 namespace {
 
-double tolerance(double nm) {
-  return 1e-9 * nm;
-}
 bool same(double a_nm, double b_nm) {
-  return std::abs(a_nm - b_nm) <= tolerance(a_nm);
+  return std::abs(a_nm - b_nm) <= edge_tolerance(a_nm);
 }
 /// The edge lies inside the channel and not on its bounds.
 bool cuts(double edge_nm, const Channel& c) {
-  return edge_nm > c.min_nm + tolerance(edge_nm) && edge_nm < c.max_nm - tolerance(edge_nm);
+  return edge_nm > c.min_nm + edge_tolerance(edge_nm) && edge_nm < c.max_nm - edge_tolerance(edge_nm);
 }
 
 /// A wavelength that a chain of bands from the coarse channel's lower edge ends at.
@@ -42,8 +39,8 @@ std::vector<std::size_t> candidates(const std::vector<Band>& bands, const Channe
   std::vector<std::size_t> inside;
   for (std::size_t k = 0; k < bands.size(); ++k) {
     const Channel& c = bands[k].channel;
-    const bool begins = c.min_nm >= coarse.min_nm - tolerance(coarse.min_nm);
-    if (!bands[k].derived && begins && c.max_nm <= coarse.max_nm + tolerance(coarse.max_nm))
+    const bool begins = c.min_nm >= coarse.min_nm - edge_tolerance(coarse.min_nm);
+    if (!bands[k].derived && begins && c.max_nm <= coarse.max_nm + edge_tolerance(coarse.max_nm))
       inside.push_back(k);
   }
   std::stable_sort(inside.begin(), inside.end(), [&](std::size_t a, std::size_t b) {
@@ -53,6 +50,10 @@ std::vector<std::size_t> candidates(const std::vector<Band>& bands, const Channe
 }
 
 }  // namespace
+
+double edge_tolerance(double nm) {
+  return 1e-9 * nm;
+}
 
 std::vector<std::size_t> bands_of_channel(const std::vector<Band>& bands, const Channel& coarse,
                                           const std::string& what) {
@@ -64,7 +65,7 @@ std::vector<std::size_t> bands_of_channel(const std::vector<Band>& bands, const 
   std::vector<Node> nodes = {{0, 0}};
   std::map<double, std::size_t> reached = {{coarse.min_nm, 0}};
   const auto find = [&](double nm) {
-    const auto at = reached.lower_bound(nm - tolerance(nm));
+    const auto at = reached.lower_bound(nm - edge_tolerance(nm));
     return at != reached.end() && same(at->first, nm) ? at : reached.end();
   };
   for (const std::size_t k : inside) {

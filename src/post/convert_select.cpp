@@ -7,6 +7,7 @@
 #include "cube/band_lists.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
+#include "cube/georeference.hpp"
 #include "post/camera_geometry.hpp"
 #include "post/convert.hpp"
 #include "post/convert_bands.hpp"
@@ -21,14 +22,18 @@ struct Recipe {
   std::vector<std::size_t> sources;
 };
 
+bool lies_inside(const Channel& c, const WavelengthRange& range) {
+  return c.min_nm >= range.min_nm - edge_tolerance(range.min_nm) &&
+         c.max_nm <= range.max_nm + edge_tolerance(range.max_nm);
+}
+
 /// Steps 1 and 2 of CubeSelection: indices, then the wavelength range.
 std::vector<Recipe> select_bands(const NamedBands& source, const CubeSelection& selection) {
   const std::vector<Band>& bands = source.bands;
   std::vector<Recipe> chosen;
   const auto take = [&](std::size_t k) {
-    const Channel& c = bands[k].channel;
     const auto& range = selection.range;
-    if (range && (bands[k].derived || c.min_nm < range->min_nm || c.max_nm > range->max_nm)) return;
+    if (range && (bands[k].derived || !lies_inside(bands[k].channel, *range))) return;
     chosen.push_back({bands[k], {k}});
   };
   for (const std::size_t k : selection.bands)
@@ -69,7 +74,7 @@ class SelectedCube : public CubeReader {
  public:
   /// bands  those of the source, with the wavelengths that they were given
   SelectedCube(std::unique_ptr<CubeReader> source, std::vector<Band> bands, std::vector<Recipe> recipes,
-               PixelRect crop, Quantity quantity)
+               PixelRect crop, Quantity quantity, const DiagnosticSink& sink)
       : source_(std::move(source)),
         bands_(std::move(bands)),
         recipes_(std::move(recipes)),
@@ -87,6 +92,7 @@ class SelectedCube : public CubeReader {
     pick_band_lists(info_.metadata, bands_.size(), singles_only());
     info_.replicate_samples.clear();  // no replicates stand beside what is written
     crop_camera(info_, crop.x0, crop.y0);
+    crop_georeference(info_, crop.x0, crop.y0, sink);
   }
 
   const CubeInfo& info() const override { return info_; }
@@ -231,7 +237,7 @@ std::unique_ptr<CubeReader> select(std::unique_ptr<CubeReader> source, const Cub
   }
   const Quantity quantity = selection.quantity.value_or(info.quantity);
   return std::make_unique<SelectedCube>(std::move(source), std::move(bands.bands), std::move(recipes), crop,
-                                        quantity);
+                                        quantity, sink);
 }
 
 }  // namespace

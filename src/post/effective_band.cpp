@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "cube/cube_layout.hpp"
 #include "spectral/quadrature.hpp"
 
 namespace kiloband {
@@ -24,11 +25,6 @@ std::vector<std::pair<double, double>> covered(ChannelList channels) {
     }
   }
   return pieces;
-}
-
-/// The edges of a box come back as they were given.
-double without_roundings(double nm) {
-  return std::round(nm * 1e9) / 1e9;
 }
 
 /// A piece with the response's knots inside, between which it is smooth.
@@ -58,6 +54,7 @@ Channel effective_band(const Spectrum& response, const ChannelList& channels) {
   }
   if (!(integral > 0)) return {hull(channels).min_nm, hull(channels).max_nm, ""};
   const double centre = moment / integral, half = 0.5 * integral / largest;
+  // The edges of a box come back as they were given.
   return {without_roundings(centre - half), without_roundings(centre + half), ""};
 }
 

@@ -13,6 +13,8 @@
 namespace kiloband {
 namespace {
 
+constexpr std::array<std::string_view, 2> kEnviFrameKeys{"major frame offsets", "minor frame offsets"};
+
 /// Next line without its end; advances `position` and `line`.
 std::string_view next_line(std::string_view text, std::size_t& position, int& line) {
   const std::size_t end = std::min(text.find('\n', position), text.size());
@@ -20,6 +22,27 @@ std::string_view next_line(std::string_view text, std::size_t& position, int& li
   position = end + 1;
   ++line;
   return result;
+}
+
+/// Of a newer layout we might take the numbers for something else than they are.
+void check_layout(const EnviHeader& header) {
+  const EnviHeader::Entry* layout = header.find(kEnviLayoutKey);
+  if (!layout || layout->value == "1") return;
+  const bool newer = parse_unsigned(layout->value).value_or(0) > 1;
+  throw InputError(header.where(*layout) + " '" + printable(layout->value) + "': must be 1" +
+                   (newer ? ": the file was written by a newer kiloband, take that one to read it" : ""));
+}
+
+/// Offsets are bytes before and behind each frame of the data file.
+void check_frame_offsets(const EnviHeader& header) {
+  for (const std::string_view key : kEnviFrameKeys) {
+    const EnviHeader::Entry* entry = header.find(key);
+    if (!entry) continue;
+    for (const std::string_view offset : split(entry->value, ','))
+      if (parse_number(offset) != 0.0)
+        throw InputError(header.where(*entry) + " '" + printable(entry->value) +
+                         "': must be 0: images with bytes between their frames are not read");
+  }
 }
 
 }  // namespace
@@ -122,6 +145,7 @@ uint64_t EnviStorage::bytes_per_value() const {
 }
 
 EnviStorage read_envi_storage(const EnviHeader& header) {
+  check_layout(header);
   EnviStorage storage;
   storage.samples = static_cast<uint32_t>(header.count("samples", kMaxImageEdge));
   storage.lines = static_cast<uint32_t>(header.count("lines", kMaxImageEdge));
@@ -146,6 +170,7 @@ EnviStorage read_envi_storage(const EnviHeader& header) {
   storage.interleave = kind == "bsq"   ? EnviInterleave::kBsq
                        : kind == "bil" ? EnviInterleave::kBil
                                        : EnviInterleave::kBip;
+  check_frame_offsets(header);
   return storage;
 }
 
@@ -168,12 +193,21 @@ std::filesystem::path envi_file(const std::filesystem::path& stem, EnviContent c
   return file;
 }
 
+bool is_envi_part(const EnviHeader& header, EnviContent content) {
+  if (!header.find(kEnviLayoutKey)) return false;
+  if (content == EnviContent::kAux) return !header.find(kEnviMinKey);  // planes have no wavelengths
+  // The first versions had no such key: of their headers only those of variances state an ignored value.
+  if (const EnviHeader::Entry* stated = header.find(kEnviContentKey)) return stated->value == "variance";
+  return header.find("data ignore value") != nullptr;
+}
+
 bool is_reserved_envi_key(std::string_view lower_key) {
-  constexpr std::array<std::string_view, 15> kReserved = {
+  constexpr std::array<std::string_view, 16> kReserved = {
       "description",      "samples",   "lines",      "bands",         "header offset",
       "file type",        "data type", "interleave", "byte order",    "wavelength",
-      "wavelength units", "fwhm",      "band names", "default bands", "data ignore value"};
-  return lower_key.starts_with("kiloband ") ||
+      "wavelength units", "fwhm",      "band names", "default bands", "data ignore value",
+      "file compression"};
+  return lower_key.starts_with("kiloband ") || std::ranges::count(kEnviFrameKeys, lower_key) > 0 ||
          std::find(kReserved.begin(), kReserved.end(), lower_key) != kReserved.end();
 }
 

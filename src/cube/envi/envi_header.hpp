@@ -60,7 +60,8 @@ struct EnviStorage {
   uint64_t bytes() const { return bytes_per_value() * samples * lines * bands; }
 };
 
-/// throws InputError  a mandatory key is missing, wrong, or of a kind that cannot be read (complex numbers)
+/// throws InputError  a mandatory key is missing, wrong, or of a kind that cannot be read (complex numbers, bytes
+///                    between frames, the header of a newer kiloband)
 EnviStorage read_envi_storage(const EnviHeader& header);
 
 /// The cube of a main header, without looking at other files. info.variance and info.aux are left empty.
@@ -69,6 +70,8 @@ CubeInfo read_envi_info(const EnviHeader& header, const EnviStorage& storage, co
 /// What a data file of ours holds.
 enum class EnviContent { kValues, kVariance, kAux };
 std::string envi_header_text(const CubeInfo& info, EnviContent content);
+/// Whether a header is that of variances or auxiliary planes of ours, and not a cube's whose name ends like theirs.
+bool is_envi_part(const EnviHeader& header, EnviContent content);
 
 /// X.hdr -> X, the common stem of a cube's files.
 std::filesystem::path envi_stem(const std::filesystem::path& header);

@@ -47,7 +47,9 @@ std::vector<Band> foreign_bands(const EnviHeader& header, std::size_t count, con
   std::vector<double> centres = header.numbers("wavelength", count), widths = header.numbers("fwhm", count);
   const double unit = centres.empty() ? 0 : wavelength_unit(header, centres, sink);
   if (unit == 0) return index_bands(header, count, sink);
-  for (double& centre : centres) centre *= unit;
+  // Nanometres stay as they are written.
+  const auto converted = [&](double nm) { return unit == 1 ? nm : without_roundings(nm); };
+  for (double& centre : centres) centre = converted(unit * centre);
   std::vector<Band> bands(count);
   if (widths.empty()) {
     note(sink, {header.file().string()},
@@ -58,7 +60,7 @@ std::vector<Band> foreign_bands(const EnviHeader& header, std::size_t count, con
   }
   for (std::size_t k = 0; k < count; ++k) {
     const double half = 0.5 * unit * widths[k];
-    bands[k].channel = {centres[k] - half, centres[k] + half, ""};
+    bands[k].channel = {converted(centres[k] - half), converted(centres[k] + half), ""};
     if (!(half > 0) || !(centres[k] - half > 0))
       throw InputError(header.where(*header.find("fwhm")) + ": band " + std::to_string(k) + " of width " +
                        format_number(2 * half) + " nm at " + format_number(centres[k]) +
@@ -143,7 +145,8 @@ void note_bad_bands(const EnviHeader& header, bool own, std::size_t count, const
 
 /// What others state of the numbers in their files, and we do not apply.
 void check_calibration(const EnviHeader& header, const DiagnosticSink& sink) {
-  for (const char* key : {"data gain values", "data offset values", "reflectance scale factor"})
+  for (const char* key : {"data gain values", "data offset values", "data reflectance gain values",
+                          "data reflectance offset values", "reflectance scale factor"})
     if (const EnviHeader::Entry* entry = header.find(key))
       warn(sink, {}, header.where(*entry) + ": not applied: values are taken as they are stored");
   const EnviHeader::Entry* compression = header.find("file compression");

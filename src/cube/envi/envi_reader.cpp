@@ -49,14 +49,10 @@ void convert(const char* from, std::size_t count, bool swap, std::optional<doubl
   }
 }
 
-/// A double beyond float's range: the conversion would be undefined, infinity is what IEEE arithmetic gives.
+/// A double may be beyond float's range: the conversion would be undefined, IEEE arithmetic rounds or gives infinity.
 struct WideDouble {
   double value;
-  explicit operator float() const {
-    if (std::abs(value) > std::numeric_limits<float>::max())
-      return std::copysign(INFINITY, static_cast<float>(value > 0 ? 1 : -1));
-    return static_cast<float>(value);
-  }
+  explicit operator float() const { return nearest_float(value); }
   explicit operator double() const { return value; }
 };
 
@@ -165,27 +161,49 @@ class EnviPixels {
   std::vector<char> buffer_;
 };
 
-/// X.img -> X.hdr or X.img.hdr; a header is taken as it is.
+bool is_file(const std::filesystem::path& file) {
+  std::error_code unknown;  // a name that is too long is no file
+  return std::filesystem::is_regular_file(file, unknown);
+}
+
+bool in_capitals(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  return extension != lowered(extension);
+}
+
+/// base.hdr or base.HDR
+std::filesystem::path with_ending(std::filesystem::path base, std::string_view ending, bool capitals) {
+  std::string spelled(ending);
+  if (capitals)
+    for (char& c : spelled) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+  return base += spelled;
+}
+
+/// X.img -> X.hdr or X.img.hdr. Nothing if there is none. In capitals beside a name in capitals: X.HDR and X.hdr may be two cubes.
+std::optional<std::filesystem::path> header_beside(const std::filesystem::path& file) {
+  for (const bool capitals : {in_capitals(file), !in_capitals(file)})
+    for (const auto& base : {envi_stem(file), file})
+      if (const auto candidate = with_ending(base, ".hdr", capitals); is_file(candidate)) return candidate;
+  return std::nullopt;
+}
+
+/// A header is taken as it is.
 std::filesystem::path find_header(const std::filesystem::path& file) {
   if (lowered_extension(file) == ".hdr") return file;
-  const std::filesystem::path replaced = envi_stem(file) += ".hdr",
-                              appended = std::filesystem::path(file) += ".hdr";
-  std::error_code unknown;  // a name that is too long is no file
-  for (const auto& candidate : {replaced, appended})
-    if (std::filesystem::is_regular_file(candidate, unknown)) return candidate;
-  throw InputError("'" + file.string() + "': no header '" + replaced.filename().string() + "' or '" +
-                   appended.filename().string() + "' beside it");
+  if (const auto header = header_beside(file)) return *header;
+  const auto name = [&](const std::filesystem::path& base) {
+    return with_ending(base, ".hdr", in_capitals(file)).filename().string();
+  };
+  throw InputError("'" + file.string() + "': no header '" + name(envi_stem(file)) + "' or '" + name(file) +
+                   "' beside it");
 }
 
 /// X.hdr -> X.img or what other programs write; X.img.hdr -> X.img. Nothing if there is none.
 std::optional<std::filesystem::path> data_beside(const std::filesystem::path& header) {
-  const auto stem = envi_stem(header);
-  std::error_code unknown;
-  for (const char* extension : {".img", "", ".dat", ".raw", ".bsq", ".bil", ".bip"}) {
-    std::filesystem::path candidate = stem;
-    candidate += extension;
-    if (std::filesystem::is_regular_file(candidate, unknown)) return candidate;
-  }
+  for (const bool capitals : {in_capitals(header), !in_capitals(header)})
+    for (const char* extension : {".img", "", ".dat", ".raw", ".bsq", ".bil", ".bip"})
+      if (const auto candidate = with_ending(envi_stem(header), extension, capitals); is_file(candidate))
+        return candidate;
   return std::nullopt;
 }
 
@@ -196,10 +214,10 @@ std::filesystem::path header_with_data(const std::filesystem::path& header) {
 }
 
 std::filesystem::path find_data(const std::filesystem::path& header) {
-  const auto stem = envi_stem(header);
   if (const auto data = data_beside(header)) return *data;
-  throw InputError("'" + header.string() + "': no data file '" + stem.filename().string() +
-                   ".img' beside it");
+  throw InputError("'" + header.string() + "': no data file '" +
+                   with_ending(envi_stem(header), ".img", in_capitals(header)).filename().string() +
+                   "' beside it");
 }
 
 /// The largest double in too few digits is more than any, and meant all the same.
@@ -247,12 +265,23 @@ class EnviReader : public CubeReader {
   }
 
  private:
+  /// A cube that was written under the name of a part has replaced it.
+  static void check_part(const EnviHeader& header, const std::filesystem::path& stem, EnviContent content) {
+    if (is_envi_part(header, content)) return;
+    const bool aux = content == EnviContent::kAux;
+    const std::string cube = stem.filename().string() + ".hdr", parts = aux ? "planes" : "variances";
+    throw InputError(header.file().string() + ": must hold the " + (aux ? "auxiliary " : "") + parts +
+                     " of " + cube + " but is a cube of its own: put the " + parts + " back, or take '" +
+                     std::string(aux ? kEnviAuxKey : kEnviVarianceKey) + "' out of " + cube);
+  }
+
   /// Opens X.var or X.aux, whose image must have the cube's size.
   EnviHeader open_part(const std::filesystem::path& stem, EnviContent content,
                        std::optional<EnviPixels>& pixels) {
     const auto path = envi_file(stem, content, ".hdr");
     EnviHeader header(path, read_small_file(path, kMaxHeaderBytes));
     const EnviStorage storage = read_envi_storage(header);
+    check_part(header, stem, content);
     const bool same_bands = content == EnviContent::kAux || storage.bands == info_.bands.size();
     if (storage.samples != info_.width || storage.lines != info_.height || !same_bands)
       throw InputError(path.string() + ": " + std::to_string(storage.samples) + "x" +
@@ -280,11 +309,6 @@ class EnviReader : public CubeReader {
   std::optional<EnviPixels> values_, variance_, aux_;
 };
 
-bool is_file(const std::filesystem::path& file) {
-  std::error_code unknown;
-  return std::filesystem::is_regular_file(file, unknown);
-}
-
 /// Begins as headers do: what is not ENVI (Radiance pictures end in .hdr, too) has one file.
 bool is_envi_header(const std::filesystem::path& file) {
   std::string line;
@@ -296,10 +320,7 @@ bool is_envi_header(const std::filesystem::path& file) {
 
 std::vector<std::filesystem::path> envi_files(const std::filesystem::path& file) {
   std::filesystem::path header = file;
-  if (lowered_extension(file) == ".img") {
-    const std::filesystem::path replaced = envi_stem(file) += ".hdr";
-    header = is_file(replaced) ? replaced : std::filesystem::path(file) += ".hdr";
-  }
+  if (lowered_extension(file) == ".img") header = header_beside(file).value_or(file);
   std::vector<std::filesystem::path> files{file};
   if (!is_file(header) || !is_envi_header(header)) return files;
   header = header_with_data(header);

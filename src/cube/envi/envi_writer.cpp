@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <future>
+#include <optional>
 
 #include "cube/band_planes.hpp"
 #include "cube/cube_layout.hpp"
@@ -79,17 +80,33 @@ class EnviPart {
   AtomicFile data_, header_;
 };
 
-/// Removes X.var.* or X.aux.* that an earlier cube of ours left and this one has not; foreign files stay.
-void remove_stale(const std::filesystem::path& stem, EnviContent content) {
+/// Of the ENVI image that stands under a part's name, if there is one.
+std::optional<EnviHeader> part_header(const std::filesystem::path& stem, EnviContent content) {
   const auto header = envi_file(stem, content, ".hdr");
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(header, ignored)) return;
+  if (!std::filesystem::is_regular_file(header, ignored)) return std::nullopt;
   try {
-    if (!EnviHeader(header, read_small_file(header, 1u << 28)).find(kEnviLayoutKey)) return;
+    return EnviHeader(header, read_small_file(header, 1u << 28));
   } catch (const std::runtime_error&) {
-    return;  // no header of ours
+    return std::nullopt;
   }
-  remove_output(header);
+}
+
+/// A part takes the place of an earlier one; of another image nobody has said that it may go.
+void check_place(const std::filesystem::path& stem, EnviContent content) {
+  const auto header = part_header(stem, content);
+  if (!header || is_envi_part(*header, content)) return;
+  throw InputError("'" + header->file().string() + "': is a cube of its own, which the " +
+                   (content == EnviContent::kAux ? "auxiliary planes" : "variances") + " of " +
+                   stem.filename().string() + ".hdr would replace: give one of them another name");
+}
+
+/// Removes X.var.* or X.aux.* that an earlier cube of ours left and this one has not. Others stay, foreign ones and cubes of
+/// their own: X.hdr does not refer to them, so nobody takes them for its parts.
+void remove_stale(const std::filesystem::path& stem, EnviContent content) {
+  const auto header = part_header(stem, content);
+  if (!header || !is_envi_part(*header, content)) return;
+  remove_output(header->file());
   remove_output(envi_file(stem, content, ".img"));
 }
 
@@ -171,6 +188,8 @@ std::unique_ptr<CubeWriter> create_envi_writer(const std::filesystem::path& file
                                                uint32_t rows_per_strip, Quantity given) {
   for (const auto& [key, value] : info.metadata)
     if (key.empty()) throw InputError(file.string() + ": a metadata entry has no name");
+  if (info.variance) check_place(envi_output_stem(file), EnviContent::kVariance);
+  if (!info.aux.empty()) check_place(envi_output_stem(file), EnviContent::kAux);
   return std::make_unique<EnviWriter>(file, info, rows_per_strip, given);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
 
 namespace kiloband {
@@ -41,11 +42,12 @@ std::optional<int> prefix_exponent(std::string_view prefix) {
   return std::nullopt;
 }
 
-/// Wavelength in nm of value * 10^exponent in metres or hertz. Powers of ten multiply exactly where they can.
+/// Wavelength in nm of value * 10^exponent in metres or hertz. Nanometres stay as they are written.
 double to_nm(double value, int exponent, bool hertz) {
   if (hertz) return kLightSpeed * 1e9 / (value * std::pow(10.0, exponent));
   const int shift = exponent + 9;
-  return shift >= 0 ? value * std::pow(10.0, shift) : value / std::pow(10.0, -shift);
+  if (shift == 0) return value;
+  return without_roundings(shift > 0 ? value * std::pow(10.0, shift) : value / std::pow(10.0, -shift));
 }
 
 /// As written, and as a wavelength.

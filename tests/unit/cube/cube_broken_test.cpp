@@ -53,6 +53,13 @@ TEST(BrokenEnvi, Messages) {
       {with("fwhm", "kiloband band minimum = {500, 700}\nkiloband band maximum = {510, 650}\nfwhm"),
        ": band 1: interval 700-650 nm: must be positive and ascending"},
       {with("fwhm", "kiloband band minimum = {500, 700}\nfwhm"), ": 'kiloband band maximum' is missing"},
+      {with("fwhm", "major frame offsets = {8, 0}\nfwhm"),
+       ":10: major frame offsets '8, 0': must be 0: images with bytes between their frames are not read"},
+      {with("fwhm", "Minor Frame Offsets = {0, none}\nfwhm"),
+       ":10: Minor Frame Offsets '0, none': must be 0: images with bytes between their frames are not read"},
+      {with("fwhm", "kiloband layout = 2\nfwhm"),
+       ":10: kiloband layout '2': must be 1: the file was written by a newer kiloband, take that one to read it"},
+      {with("fwhm", "kiloband layout = new\nfwhm"), ":10: kiloband layout 'new': must be 1"},
       {with("fwhm", "data ignore value = none\nfwhm"), ":10: data ignore value 'none': must be a number"},
       {with("{500, 600}", "{500, 6\x01\xFF}"), ":9: wavelength: '6\\x01\\xFF' is not a number"},
   };

@@ -100,5 +100,82 @@ TEST(EnviFile, AVarianceFileOfAnotherCubeIsRefused) {
             (folder / "a.var.hdr").string() + ": 3x2x2 values do not fit the cube's 2x2x2");
 }
 
+TEST(EnviFile, APartOfANewerLayoutIsRefused) {
+  const TemporaryFolder folder;
+  write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2), true), folder / "a.hdr");
+  std::string header = folder.read("a.var.hdr");
+  header.replace(header.find("kiloband layout = 1"), 19, "kiloband layout = 2");
+  folder.write("a.var.hdr", header);
+  EXPECT_NE(error_of([&] { open_cube(folder / "a.hdr"); }).find("a.var.hdr:"), std::string::npos);
+}
+
+/// Their names end like those of parts, and that is all.
+TEST(EnviFile, CubesNamedLikePartsStay) {
+  const TemporaryFolder folder;
+  const Cube other = make_cube(2, 2, equal_bands(400, 500, 2));
+  for (const char* name : {"a.var.hdr", "a.aux.hdr"}) write_cube_file(other, folder / name);
+  write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2)), folder / "a.hdr");
+  EXPECT_EQ(folder.list(),
+            (std::vector<std::string>{"a.aux.hdr", "a.aux.img", "a.hdr", "a.img", "a.var.hdr", "a.var.img"}));
+  EXPECT_FALSE(open_cube(folder / "a.hdr")->info().variance);
+  EXPECT_EQ(count_differences(read_cube(folder / "a.var.hdr").mean, other.mean), 0u);
+}
+
+TEST(EnviFile, CubesNamedLikePartsAreNotReplaced) {
+  const TemporaryFolder folder;
+  const auto error = [&](bool variance, const std::vector<std::string>& aux) {
+    return error_of(folder, [&] {
+      write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2), variance, aux), folder / "a.hdr");
+    });
+  };
+  write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2)), folder / "a.var.hdr");
+  folder.write("a.aux.hdr", "ENVI\nsamples = 1\n");
+  EXPECT_EQ(error(true, {}),
+            "'a.var.hdr': is a cube of its own, which the variances of a.hdr would replace: give one of them "
+            "another name");
+  EXPECT_EQ(
+      error(false, {"depth.Z"}),
+      "'a.aux.hdr': is a cube of its own, which the auxiliary planes of a.hdr would replace: give one of "
+      "them another name");
+  EXPECT_EQ(folder.list(), (std::vector<std::string>{"a.aux.hdr", "a.var.hdr", "a.var.img"}));
+  folder.write("a.var.hdr", "no header");
+  folder.write("a.aux.hdr", "");
+  EXPECT_EQ(error(true, {"depth.Z"}), "accepted");
+  EXPECT_EQ(error(true, {"depth.Z"}), "accepted");
+}
+
+/// Those of the first versions did not say what they are.
+TEST(EnviFile, PartsOfAnEarlierCubeGo) {
+  for (const bool first_version : {false, true}) {
+    const TemporaryFolder folder;
+    write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2), true, {"depth.Z"}), folder / "a.hdr");
+    if (first_version) {
+      std::string header = folder.read("a.var.hdr");
+      const std::string content = "kiloband content = variance\n";
+      folder.write("a.var.hdr", header.erase(header.find(content), content.size()));
+      EXPECT_TRUE(open_cube(folder / "a.hdr")->info().variance);
+    }
+    write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2)), folder / "a.hdr");
+    EXPECT_EQ(folder.list(), (std::vector<std::string>{"a.hdr", "a.img"}));
+  }
+}
+
+TEST(EnviFile, ACubeInThePlaceOfAPartIsRefused) {
+  const TemporaryFolder folder;
+  const Cube other = make_cube(2, 2, equal_bands(400, 500, 2));
+  const auto error = [&] { return error_of(folder, [&] { open_cube(folder / "a.hdr"); }); };
+  write_cube_file(make_cube(2, 2, equal_bands(400, 500, 2), true, {"depth.Z"}), folder / "a.hdr");
+  write_cube_file(other, folder / "a.aux.hdr");
+  EXPECT_EQ(
+      error(),
+      "a.aux.hdr: must hold the auxiliary planes of a.hdr but is a cube of its own: put the planes back, or "
+      "take 'kiloband aux' out of a.hdr");
+  write_cube_file(other, folder / "a.var.hdr");
+  EXPECT_EQ(
+      error(),
+      "a.var.hdr: must hold the variances of a.hdr but is a cube of its own: put the variances back, or "
+      "take 'kiloband variance' out of a.hdr");
+}
+
 }  // namespace
 }  // namespace kiloband

@@ -239,5 +239,89 @@ TEST_F(EnviHeaderText, CalibrationsAreNotAppliedAloud) {
   EXPECT_THROW(open(1, "file compression = 1\n"), InputError);
 }
 
+TEST_F(EnviHeaderText, ReflectanceCalibrationsAreNotAppliedAloud) {
+  open(1, "data reflectance gain values = {2}\ndata reflectance offset values = {1}\n");
+  EXPECT_TRUE(messages.contain("data reflectance gain values: not applied"));
+  EXPECT_TRUE(messages.contain("data reflectance offset values: not applied"));
+}
+
+/// They are of the file and not of its copy.
+TEST_F(EnviHeaderText, FrameOffsetsOfZeroAreNotCopied) {
+  open(1, "wavelength = {500}\nmajor frame offsets = {0, 0}\nminor frame offsets = 0\n");
+  convert_cube(folder / "f.hdr", folder / "g.hdr", {});
+  EXPECT_EQ(folder.read("g.hdr").find("frame offsets"), std::string::npos);
+}
+
+TEST_F(EnviHeaderText, EveryListOfTheBandsGoesWithThem) {
+  open(3,
+       "wavelength = {500, 600, 700}\nwavelength units = nm\ndata reflectance gain values = {1, 2, 3}\n"
+       "Data Reflectance Offset Values = {4, 5, 6}\nsolar irradiance = {7, 8, 9}\n"
+       "spectra names = {a, b, c}\n");
+  CubeSelection selection;
+  selection.bands = {2, 0};
+  convert_cube(folder / "f.hdr", folder / "two.hdr", selection);
+  const std::string two = folder.read("two.hdr");
+  for (const char* line :
+       {"data reflectance gain values = {3, 1}\n", "Data Reflectance Offset Values = {6, 4}\n",
+        "solar irradiance = {9, 7}\n", "spectra names = {a, b, c}\n"})
+    EXPECT_NE(two.find(line), std::string::npos) << line << two;
+}
+
+/// 1000 * 1.005 is a little less than 1005.
+TEST_F(EnviHeaderText, MicrometresBecomeTheNanometresThatAreMeant) {
+  const std::string units = "wavelength units = Micrometers\nwavelength = {1.005, 0.3001}\n";
+  const auto cube = open(2, units + "fwhm = {0.0101, 0.0002}\n");
+  EXPECT_EQ(cube->info().bands[0].channel.min_nm, 999.95);
+  EXPECT_EQ(cube->info().bands[0].channel.max_nm, 1010.05);
+  EXPECT_EQ(cube->info().bands[1].channel.min_nm, 300);
+  EXPECT_EQ(cube->info().bands[1].channel.max_nm, 300.2);
+  EXPECT_EQ(open(1, "wavelength units = um\nwavelength = {1.005}\n")->info().bands[0].channel.min_nm, 1004.5);
+}
+
+/// Cameras and DOS write names in capitals; a cube of the same name in small letters is another.
+TEST(ForeignEnvi, NamesInCapitals) {
+  const TemporaryFolder folder;
+  const std::string header =
+      "ENVI\nsamples = 1\nlines = 1\nbands = 1\ndata type = 1\ninterleave = bsq\nbyte order = 0\n";
+  const auto value = [&](const char* name) { return read_cube(folder / name).mean.at(0); };
+  folder.write("UP.HDR", header);
+  EXPECT_EQ(error_of(folder, [&] { open_cube(folder / "UP.HDR"); }),
+            "'UP.HDR': no data file 'UP.IMG' beside it");
+  folder.write("UP.IMG", "\1");
+  EXPECT_EQ(value("UP.HDR"), 1);
+  EXPECT_EQ(value("UP.IMG"), 1);
+  EXPECT_EQ(cube_files(folder / "UP.IMG"),
+            (std::vector{folder / "UP.IMG", folder / "UP.HDR", folder / "UP.IMG"}));
+  folder.write("UP.img", "\2");
+  folder.write("UP.hdr", header);
+  EXPECT_EQ(value("UP.HDR"), 1);
+  EXPECT_EQ(value("UP.hdr"), 2);
+  EXPECT_EQ(value("UP.img"), 2);
+  folder.write("MIX.HDR", header);
+  folder.write("MIX.img", "\3");
+  EXPECT_EQ(value("MIX.HDR"), 3);
+  EXPECT_EQ(value("MIX.img"), 3);
+  folder.write("RAW.HDR", header);
+  folder.write("RAW.BIL", "\4");
+  EXPECT_EQ(value("RAW.HDR"), 4);
+}
+
+/// 3.4028235e38 is more than the largest float and nearer to it than to the next power of two.
+TEST(ForeignEnvi, DoublesAreRoundedToFloats) {
+  const TemporaryFolder folder;
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  const double doubles[] = {3.4028235e38, -3.4028235e38, 0x1.ffffffp127, -1e300, NAN};
+  folder.write("a.img", std::string(reinterpret_cast<const char*>(doubles), sizeof doubles));
+  folder.write("a.hdr",
+               "ENVI\nsamples = 5\nlines = 1\nbands = 1\ndata type = 5\ninterleave = bsq\nbyte "
+               "order = 0\nwavelength = {500}\nfwhm = {10}\n");
+  const std::vector<float> read = read_cube(folder / "a.hdr").mean;
+  EXPECT_EQ(read[0], kLargest);
+  EXPECT_EQ(read[1], -kLargest);
+  EXPECT_EQ(read[2], INFINITY);
+  EXPECT_EQ(read[3], -INFINITY);
+  EXPECT_TRUE(std::isnan(read[4]));
+}
+
 }  // namespace
 }  // namespace kiloband

@@ -53,6 +53,13 @@ TEST(ExrNames, AreParsedByTheGrammarOfTheLayout) {
     EXPECT_FALSE(parse_spectral_name(bad)) << bad;
 }
 
+TEST(ExrNames, OtherUnitsBecomeTheNanometresThatAreMeant) {
+  EXPECT_EQ(parse_spectral_name("S0.1,005um")->centre_nm, 1005);
+  EXPECT_EQ(parse_spectral_name("S0.0,0000003001m")->centre_nm, 300.1);
+  EXPECT_EQ(parse_spectral_name("S0.550100pm")->centre_nm, 550.1);
+  EXPECT_EQ(parse_sensitivity("0.3001um:1;1.005um:1;")->min_nm, 300.1);
+}
+
 TEST(ExrNames, SensitivitiesCarryExactBounds) {
   const Channel channel{380 + 1 / 3.0, 390.1, ""};
   EXPECT_EQ(sensitivity_text({545, 555, ""}), "545nm:1;555nm:1;");

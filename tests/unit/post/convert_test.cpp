@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "tests/unit/cube/cube_support.hpp"
 
@@ -163,6 +165,22 @@ TEST_F(Convert, BandsAreChosenByIndexAndWavelength) {
   EXPECT_EQ(selection_error(in, selection), "band index 8: the cube has 8 bands, counted from 0");
 }
 
+/// Edges that were computed differently are the same.
+TEST_F(Convert, RangesTakeBandsOnTheirEdges) {
+  const auto in = write(make_cube(1, 1, {{{512.3 - 5, 512.3 + 5, ""}, false}}), "a.hdr");
+  CubeSelection selection;
+  selection.range = WavelengthRange{507.3, 517.3};
+  EXPECT_EQ(converted(in, "b.hdr", selection).info.bands.size(), 1u);
+  folder.write("um.hdr",
+               "ENVI\nsamples = 1\nlines = 1\nbands = 2\ndata type = 1\ninterleave = bsq\nbyte order = 0\n"
+               "wavelength units = Micrometers\nwavelength = {1.005, 1.015}\nfwhm = {0.01, 0.01}\n");
+  folder.write("um.img", "12");
+  selection.range = WavelengthRange{1000, 1020};
+  EXPECT_EQ(converted(folder / "um.hdr", "c.hdr", selection).info.bands.size(), 2u);
+  selection.range = WavelengthRange{1000.001, 1020};
+  EXPECT_EQ(converted(folder / "um.hdr", "d.hdr", selection).info.bands.size(), 1u);
+}
+
 TEST_F(Convert, IndexListsAreChecked) {
   EXPECT_EQ(parse_band_indices("3, 0-1", 4), (std::vector<std::size_t>{3, 0, 1}));
   const auto error = [](const char* text) { return error_of([&] { parse_band_indices(text, 4); }); };
@@ -257,6 +275,50 @@ TEST_F(Convert, CropsAreRegionsOfTheImage) {
   EXPECT_EQ(selection_error(in, selection), "region 4,0,3,1: must lie in the image of 6x40 pixels");
   selection.crop = PixelRect{0, 0, 0, 1};
   EXPECT_EQ(selection_error(in, selection), "region 0,0,0,1: must lie in the image of 6x40 pixels");
+}
+
+/// The reference pixel moves with the image's corner, which keeps its place in the image that it is cut out of.
+TEST_F(Convert, CropsKeepTheirPlaceOnTheGround) {
+  Cube cube = whole_numbers();
+  cube.info.metadata = {{"Map Info", "{UTM, 1.000, 1.5, 500000.0, 4100000.0, 10.0, 10.0, 33, North, WGS-84}"},
+                        {"x start", "1"},
+                        {"y start", "101"}};
+  CubeSelection selection;
+  selection.crop = PixelRect{2, 31, 3, 5};
+  const Cube part = converted(write(cube, "a.hdr"), "b.hdr", selection);
+  EXPECT_EQ(part.info.metadata.at("Map Info"),
+            "{UTM, -1, -29.5, 500000.0, 4100000.0, 10.0, 10.0, 33, North, WGS-84}");
+  EXPECT_EQ(part.info.metadata.at("x start"), "3");
+  EXPECT_EQ(part.info.metadata.at("y start"), "132");
+  EXPECT_TRUE(notes.empty());
+  cube.info.metadata.erase("x start");  // 1 where it is not stated
+  const Cube other = converted(write(cube, "a.hdr"), "b.hdr", selection);
+  EXPECT_EQ(other.info.metadata.at("x start"), "3");
+  EXPECT_EQ(other.info.metadata.at("y start"), "132");
+}
+
+TEST_F(Convert, CropsLoseWhatTheyCannotMove) {
+  Cube cube = whole_numbers();
+  const std::map<std::string, std::string> metadata = {{"map info", "{UTM, one, 1, 5, 6}"},
+                                                       {"x start", "left"},
+                                                       {"geo points", "{1, 1, 50, 10, 6, 1, 50, 11}"},
+                                                       {"RPC Info", "{1, 2, 3}"},
+                                                       {"seed", "1"}};
+  cube.info.metadata = metadata;
+  const auto in = write(cube, "a.exr");
+  CubeSelection selection;
+  selection.crop = PixelRect{0, 0, 6, 20};  // the corner stays
+  EXPECT_EQ(converted(in, "b.exr", selection).info.metadata, metadata);
+  EXPECT_TRUE(notes.empty());
+  selection.crop = PixelRect{1, 0, 5, 40};
+  EXPECT_EQ(converted(in, "b.exr", selection).info.metadata,
+            (std::map<std::string, std::string>{{"seed", "1"}}));
+  std::ranges::sort(notes);
+  const std::string dropped = "left out: it is of the image before it was cropped";
+  EXPECT_EQ(notes,
+            (std::vector<std::string>{"RPC Info: " + dropped, "geo points: " + dropped,
+                                      "map info '{UTM, one, 1, 5, 6}': not understood, so it is " + dropped,
+                                      "x start 'left': not understood, so it is " + dropped}));
 }
 
 TEST_F(Convert, PixelsAndRegionsAsTables) {
