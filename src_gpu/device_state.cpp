@@ -22,6 +22,7 @@ void add_chunk_define(std::vector<std::string>& defines, const HostScene& host, 
 
 std::vector<std::string> evaluation_defines(const HostScene& host, const DeviceSettings& settings) {
   std::vector<std::string> defines = scene_defines(host.scene.features, settings.specialised);
+  if (host.spectra.has_lines) defines.push_back("KB_SPECTRAL_LINES=1");
   add_chunk_define(defines, host, settings.method);
   return defines;
 }

@@ -1,4 +1,5 @@
-// Dense spectra of shared wavelengths (build macros KB_WIDTH, see path_spectra.clh, and KB_HAS_GAS: Evaluation gives no others).
+// Dense spectra of shared wavelengths (build macros KB_WIDTH and KB_SPECTRAL_LINES, see path_spectra.clh, and KB_HAS_GAS: Evaluation gives no
+// others).
 //
 //   kernel         work-items
 //   resample_rows  blocks * samples of the round * rows * stride / KB_WIDTH
@@ -15,14 +16,14 @@ __kernel void resample_rows(KB_EVALUATION_PARAMS) {
   const kb_u32 k = (kb_u32)(i % vectors) * KB_WIDTH;
   const kb_u32 row = (kb_u32)(i / vectors % layout->rows);
   const float mu = pool_shared_mu[i / vectors / layout->rows];
-#if KB_HAS_GAS
-  const KbChannelTable lines = spectra_tables[row];
-  if (lines.cells == 0u) {
-    store_reals(evaluation_dense + i * KB_WIDTH, line_values(spectra_nodes, lines.first, layout->channels, k, mu));
-    return;
-  }
+  Reals value;
+#if KB_HAS_GAS || KB_SPECTRAL_LINES
+  const KbChannelTable table = spectra_tables[row];
+  if (table.cells == 0u)
+    value = line_values(spectra_nodes, table.first, layout->channels, k, mu);
+  else
 #endif
-  Reals value = mixed_value(find_nodes(spectra_nodes, spectra_tables, layout->stride, row, mu), layout->stride, k);
+    value = mixed_value(find_nodes(spectra_nodes, spectra_tables, layout->stride, row, mu), layout->stride, k);
   if (layout->overlapping && row >= layout->derived_row)
     value = value / load_cover(spectra_cover, spectra_cover_breaks, layout->channels, k, mu);
   store_reals(evaluation_dense + i * KB_WIDTH, value);

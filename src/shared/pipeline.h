@@ -260,7 +260,8 @@ KB_STATIC_ASSERT(sizeof(KbFaults) == 128, faults_size);
    at nodes[first + j * stride + k], j = 0 .. cells. */
 typedef struct {
   kb_u32 first;
-  kb_u32 cells; /* at least 1; 0: a gas's row, kernels/evaluate/spectral_row.clh has its layout */
+  kb_u32
+      cells; /* at least 1; 0: a row of knots (gases, narrow spectra), kernels/evaluate/spectral_row.clh has its layout */
 } KB_ALIGNED(8) KbChannelTable;
 KB_STATIC_ASSERT(sizeof(KbChannelTable) == 8, channel_table_size);
 

@@ -29,12 +29,14 @@ Program build(DeviceContext& context, const char* file, std::vector<std::string>
   return build_program(context, file, ProgramOptions{std::move(defines), cache, registers});
 }
 
-/// resample_rows asks for the width, and whether the scene has gas: scenes that differ in all else share its program.
+/// resample_rows asks for the width, and whether the scene has gas or narrow spectra: scenes that differ in all else share its program.
 std::vector<std::string> resample_defines(const EvaluationShape& shape,
                                           const std::vector<std::string>& of_scene) {
   std::vector<std::string> d{"KB_WIDTH=" + std::to_string(shape.width)};
   if (std::ranges::find(of_scene, "KB_HAS_GAS=0") != of_scene.end())
     d.insert(d.end(), {"KB_SPECIALISED", "KB_HAS_GAS=0"});
+  if (std::ranges::find(of_scene, "KB_SPECTRAL_LINES=1") != of_scene.end())
+    d.push_back("KB_SPECTRAL_LINES=1");
   return d;
 }
 

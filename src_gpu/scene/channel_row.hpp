@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "spectral/channel_knots.hpp"
 #include "spectral/channels.hpp"
 #include "spectral/spectrum.hpp"
 
@@ -39,10 +40,17 @@ RowCells choose_cells(const RowFunction& row, const ChannelList& channels, doubl
 /// The error of a given number of cells.
 double error_of_cells(const RowFunction& row, const ChannelList& channels, uint32_t cells);
 
+/// What interpolation between a given number of cells makes of a channel's mean: the largest relative error, that of a row in one channel. Cells
+/// without kinks and jumps are left out: there it is right, or as good as error_of_cells() says.
+double mean_error_of_cells(const RowFunction& row, const ChannelList& channels, uint32_t cells);
+
 /// What is made of a row's values: value * factor[k] - shift[k]; empty: 1 and 0.
 struct RowUnits {
   std::vector<double> factor, shift;  // by channel
 };
+
+/// The row's very kinks and jumps in every channel, in the channel's units; curved rows in steps between them.
+ChannelKnots knots_of(const RowFunction& row, const ChannelList& channels, const RowUnits& units);
 
 /// nodes[j * stride + k] = row(lambda_k(mu = j / cells)) in the channel's units, j = 0 .. cells. At mu = 0
 /// and 1 a jump counts as outside the channel.

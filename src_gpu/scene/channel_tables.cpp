@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <stdexcept>
 
@@ -16,6 +17,8 @@ namespace {
 
 /// Where no number of cells attains the wanted error, ten times that is good enough.
 constexpr double kAcceptedFactor = 10;
+/// Rows whose ramps move the mean of a channel by more than this keep their knots: what half a cell of 4096 is of a channel, as where data end.
+constexpr double kMeanError = 0.5 / 4096;
 
 uint32_t padded(std::size_t n) {
   return static_cast<uint32_t>((n + 15) / 16 * 16);
@@ -39,7 +42,8 @@ class TableMaker {
     double precision = 1;  // the error bound is divided by it
     /// By channel, at mu 0 and 1; if not empty, nothing else counts.
     std::vector<std::pair<double, double>> ends = {};
-    const ChannelKnots* lines = nullptr;  // a gas's: then there is no function
+    const ChannelKnots* lines = nullptr;  // a gas's: then there is no function; or made of the function
+    bool may_have_lines = false;          // read by evaluation alone
   };
 
   void add_spectra();
@@ -53,6 +57,7 @@ class TableMaker {
   const SpectrumRow& spectrum(uint32_t row) const;
   std::vector<RowCells> choose() const;
   void fit(std::vector<RowCells>& cells) const;
+  void keep_lines(std::vector<RowCells>& cells);
   void fill(const std::vector<RowCells>& cells);
 
   const FlatScene& scene_;
@@ -60,6 +65,7 @@ class TableMaker {
   const ChannelTableOptions& options_;
   std::vector<double> emission_factor_;
   std::vector<Row> rows_;
+  std::deque<ChannelKnots> lines_;  // of rows that keep theirs
   ChannelTables out_;
 };
 
@@ -76,6 +82,7 @@ void TableMaker::add_spectra() {
       continue;
     }
     rows_.push_back({spectrum_row(row), {row.is_emission ? emission_factor_ : std::vector<double>(), {}}});
+    rows_.back().may_have_lines = true;
   }
   for (const KbTexture& texture : scene_.textures)
     if (texture.illuminant_row != KB_NONE) rows_.at(texture.illuminant_row).units.factor = emission_factor_;
@@ -166,6 +173,7 @@ void TableMaker::add_band_sets() {
     unit.value = [&set](double lambda_nm) { return band_position(set, lambda_nm).inside ? set.scale : 0.0; };
     if (!set.extrapolate) unit.jumps_nm = {set.min_nm, set.max_nm};
     rows_.push_back({std::move(unit), {set.is_emission ? emission_factor_ : std::vector<double>(), {}}});
+    rows_.back().may_have_lines = true;
   }
 }
 
@@ -186,6 +194,7 @@ void TableMaker::add_derived() {
     for (double& f : factor) f /= scale;
     out_.derived_scale.push_back(scale);
     rows_.push_back({RowFunction::of_table(response), {std::move(factor), {}}});
+    rows_.back().may_have_lines = true;
   }
 }
 
@@ -221,6 +230,20 @@ void TableMaker::fit(std::vector<RowCells>& cells) const {
     largest->cells /= 2;
     const auto row = static_cast<std::size_t>(largest - cells.begin());
     largest->error = error_of_cells(rows_[row].function, scene_.channels, largest->cells);
+  }
+}
+
+/// Emission narrower than a cell would be lost, or be as wide as one.
+void TableMaker::keep_lines(std::vector<RowCells>& cells) {
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    Row& row = rows_[r];
+    const bool attained = cells[r].error <= kAcceptedFactor * options_.relative_error && !cells[r].has_jump;
+    if (!row.may_have_lines || row.lines || attained) continue;
+    if (mean_error_of_cells(row.function, scene_.channels, cells[r].cells) <= kMeanError) continue;
+    lines_.push_back(knots_of(row.function, scene_.channels, row.units));
+    row.lines = &lines_.back();
+    cells[r] = {0, 0, false};
+    out_.has_lines = true;
   }
 }
 
@@ -268,6 +291,7 @@ ChannelTables TableMaker::make() {
   layout.rows = static_cast<uint32_t>(rows_.size());
   std::vector<RowCells> cells = choose();
   fit(cells);
+  keep_lines(cells);
   fill(cells);
   if (layout.derived > 0) {
     ChannelCover cover = make_channel_cover(scene_.channels, options_.max_bytes);

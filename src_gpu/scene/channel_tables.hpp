@@ -23,7 +23,7 @@ struct ChannelTableOptions {
 /// Between nodes rows are linear in mu. Tabulated spectra are piecewise linear: where nodes meet their kinks,
 /// as with equal channels on a table's grid, interpolation is exact. A jump (an end of data inside a channel)
 /// is a ramp over one cell. Absorption coefficients of gases keep the very knots
-/// of their data instead (cells = 0).
+/// of their data instead (cells = 0), and so do spectra and responses that are too narrow for the cells.
 struct ChannelTables {
   KbSpectraLayout layout{};
   std::vector<KbChannelTable> tables;   // by row
@@ -35,7 +35,8 @@ struct ChannelTables {
   std::vector<double> derived_scale;       // by derived channel: film unit, W m^-2 sr^-1
   std::vector<double> error;   // by row: largest interpolation error beside jumps, relative to the
                                // row's largest value in the channel
-  std::vector<bool> has_jump;  // by row: data end inside a channel
+  std::vector<bool> has_jump;  // by row: data end inside a channel, and a ramp stands for it
+  bool has_lines = false;      // rows besides those of gases keep their knots
 };
 
 /// throws InputError        channels overlap so much that counting covers takes more memory than allowed

@@ -3,14 +3,26 @@
 
 #include "base/error.hpp"
 #include "device_scene.hpp"
+#include "shared/lang.h"
+#include "spectral/planck.hpp"
 #include "src_gpu/scene/channel_cover.hpp"
 #include "src_gpu/scene/channel_row.hpp"
 
 namespace kiloband::test::channel_tables_test {
 namespace {
 
+/// A row that keeps its knots, as kernels/evaluate/spectral_row.clh reads it.
+double on_knots(const opencl::ChannelTables& t, uint32_t row, std::size_t k, double mu) {
+  const float* heads = &t.nodes[t.tables[row].first];
+  const auto begin = [&](std::size_t channel) { return kb_as_u32(heads[channel]); };
+  const float* knot = heads + begin(k);
+  while (knot + 2 < heads + begin(k + 1) - 2 && knot[2] <= mu) knot += 2;
+  return knot[2] > knot[0] ? knot[1] + (mu - knot[0]) / (knot[2] - knot[0]) * (knot[3] - knot[1]) : knot[3];
+}
+
 double interpolated(const opencl::ChannelTables& t, uint32_t row, std::size_t k, double mu) {
   const KbChannelTable table = t.tables[row];
+  if (table.cells == 0) return on_knots(t, row, k, mu);
   const double position = mu * table.cells;
   const auto cell = std::min<uint32_t>(static_cast<uint32_t>(position), table.cells - 1);
   const float* node = &t.nodes[table.first + std::size_t{cell} * t.layout.stride + k];
@@ -61,8 +73,9 @@ TEST(ChannelTables, StateTheirErrorWhereKinksAreAnywhere) {
   for (uint32_t s = 0; s < scene.spectra.size(); ++s) {
     EXPECT_LE(t.tables[s].cells, 64u);
     if (scene.spectra[s].is_planck || t.has_jump[s]) continue;
-    // A random sample of a channel may miss its largest value by a little.
-    EXPECT_LE(observed_error(scene, t, s, random), 1.05 * t.error[s] + 3e-7) << s;
+    // A random sample of a channel may miss its largest value by a little. Knots are at wavelengths in float.
+    const double rounding = t.tables[s].cells == 0 ? 1e-6 : 3e-7;
+    EXPECT_LE(observed_error(scene, t, s, random), 1.05 * t.error[s] + rounding) << s;
     stated += t.error[s] > 1e-6;
   }
   EXPECT_GT(stated, 0);
@@ -96,16 +109,78 @@ TEST(ChannelTables, DataThatEndAtAnEdgeDoNotReachAcrossIt) {
   }
 }
 
-TEST(ChannelTables, AJumpInsideAChannelIsANarrowRamp) {
+/// A ramp, as far as it changes the mean by no more than half a cell of 4096 does.
+TEST(ChannelTables, AJumpInsideAChannelIsANarrowRampOrAJump) {
   FlatScene scene;
   scene.channels = {{400, 410, {}}};
   scene.channel_scale.assign(1, 1.0);
+  scene.spectra.push_back(row(table(400, 4.99, {0.5, 0.5, 0.5})));
   scene.spectra.push_back(row(table(400, 2.5, {0.5, 0.5, 0.5})));
   const opencl::ChannelTables t = opencl::make_channel_tables(scene, {});
   EXPECT_TRUE(t.has_jump[0]);
   EXPECT_GE(t.tables[0].cells, 4000u);
-  EXPECT_EQ(interpolated(t, 0, 0, 0.4999), 0.5);
-  EXPECT_EQ(interpolated(t, 0, 0, 0.5005), 0);
+  EXPECT_EQ(interpolated(t, 0, 0, 0.9978), 0.5);
+  EXPECT_EQ(interpolated(t, 0, 0, 0.9984), 0);
+  EXPECT_EQ(t.tables[1].cells, 0u);
+  EXPECT_EQ(interpolated(t, 1, 0, 0.499999), 0.5);
+  EXPECT_EQ(interpolated(t, 1, 0, 0.500001), 0);
+}
+
+/// Mean over a channel of what devices see, by the rule of midpoints.
+double device_mean(const opencl::ChannelTables& t, uint32_t row, std::size_t k, double from_mu,
+                   double to_mu) {
+  constexpr int kSteps = 20000;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i)
+    sum += interpolated(t, row, k, from_mu + (to_mu - from_mu) * (i + 0.5) / kSteps);
+  return sum / kSteps * (to_mu - from_mu);
+}
+
+/// Lines between nodes vanished, or were as wide as a cell.
+TEST(ChannelTables, NarrowSpectraKeepTheirKnots) {
+  FlatScene scene;
+  scene.channels = {{400, 1400, {}}, {380, 780, {}}, {560, 570, {}}};
+  scene.channel_scale.assign(3, 1.0);
+  const RegularTable line = table(531.95, 0.05, {0, 1, 0}), box = table(550.1, 0.95, {1, 1}),
+                     wide = table(300, 100, {1, 2, 1, 3}, true);
+  for (const RegularTable& spectrum : {line, box, wide}) scene.spectra.push_back(row(spectrum));
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {});
+  EXPECT_TRUE(t.has_lines);
+  const double area[] = {0.05, 0.95};
+  for (uint32_t s = 0; s < 2; ++s) {
+    EXPECT_EQ(t.tables[s].cells, 0u) << s;
+    EXPECT_EQ(t.error[s], 0) << s;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Channel& c = scene.channels[k];
+      const auto mu = [&](double lambda_nm) { return (lambda_nm - c.min_nm) / c.width_nm(); };
+      const double mean = device_mean(t, s, k, mu(531), mu(552)) * c.width_nm();
+      EXPECT_NEAR(mean, area[s], 1e-3 * area[s]) << s << " " << k;  // floats of mu: 6e-8 of a channel
+    }
+    for (const double mu : {0.0, 0.5, 1.0}) EXPECT_EQ(interpolated(t, s, 2, mu), 0) << s;
+  }
+  EXPECT_GT(t.tables[2].cells, 0u);
+}
+
+/// Between 4000 and 4002 nm alone, and continued over the whole channel.
+TEST(ChannelTables, NarrowBlackBody) {
+  FlatScene scene;
+  scene.channels = {{3000, 14000, {}}};
+  scene.channel_scale.assign(1, 1.0);
+  SpectrumRow thermal;
+  thermal.is_planck = thermal.is_emission = true;
+  thermal.temperature_k = 800;
+  thermal.planck_min_nm = 4000;
+  thermal.planck_max_nm = 4002;
+  scene.spectra.push_back(thermal);
+  const opencl::ChannelTables t = opencl::make_channel_tables(scene, {});
+  const double mean = device_mean(t, 0, 0, 999.0 / 11000, 1003.0 / 11000);
+  EXPECT_NEAR(mean, thermal.planck_scale * planck_radiance(4001, 800) * 2, 2e-3 * mean);
+}
+
+TEST(ChannelTables, OrdinaryTablesHaveNoLines) {
+  std::mt19937 random(6);
+  for (const Layout layout : {Layout::kRegular, Layout::kOverlapping, Layout::kInfrared})
+    EXPECT_FALSE(opencl::make_channel_tables(make_device_scene(40, layout, random), {}).has_lines);
 }
 
 TEST(ChannelTables, FitTheirBudget) {
