@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scene/compile/scene_features.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/opencl_syntax.hpp"
 
 namespace kiloband::test {
@@ -92,8 +93,10 @@ TEST(KernelSyntax, EveryFeatureCanBeAbsent) {
     for (const std::string& feature : features) {
       if (!depends_on(texts, feature)) continue;
       unused.erase(feature);
-      EXPECT_EQ(kernel_syntax(file, defines(feature, "1", "0")), "")
-          << file << " with " << feature << " alone";
+      if (thorough()) {  // scenes' own programs have few features, too
+        EXPECT_EQ(kernel_syntax(file, defines(feature, "1", "0")), "")
+            << file << " with " << feature << " alone";
+      }
       EXPECT_EQ(kernel_syntax(file, defines(feature, "0", "1")), "") << file << " without " << feature;
     }
   }

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/effort.hpp"
 #include "tests/unit/validation/faults/shell.hpp"
 
 namespace kiloband::test {
@@ -142,6 +143,9 @@ class PatchedSources : public PatchedCode, public testing::WithParamInterface<st
 constexpr std::size_t kBatches = 4;
 
 TEST_P(PatchedSources, Compile) {
+  if (!thorough())
+    GTEST_SKIP()
+        << "a minute and a half of compiling: with KILOBAND_THOROUGH, and by scripts/build_faults.sh";
   const std::set<std::string> files = patched_sources();
   EXPECT_GE(files.size(), 20u) << "the scan of the patches has lost its way";
   const std::vector<Unit> units = units_of(files);
