@@ -80,67 +80,136 @@ void check_size(std::size_t knots, const std::string& name) {
     throw InputError(name + ": the channels together contain more than 268435456 points of its data");
 }
 
-struct Weighted {
-  double value, weight;
+double largest_value(const ChannelKnots& knots, std::size_t k) {
+  double largest = 0;
+  for (uint32_t i = knots.first[k]; i < knots.first[k + 1]; ++i)
+    largest = std::max(largest, std::abs(knots.value[i]));
+  return largest;
+}
+
+/// What begins or ends at a value: the parts of the channel that have values between two of them, or an atom,
+/// the part that has this very value.
+struct LevelEvent {
+  double value;
+  double density = 0;  // added to the fraction of the channel per value / scale
+  int pieces = 0;      // added to the number of pieces that rise or fall through the values above
+  double atom = 0;     // fraction of the channel
 };
 
-/// The values of a channel with the fractions of it that have them:
-/// each piece in equal parts, by their middles.
-std::vector<Weighted> values_of_channel(const ChannelKnots& sampled, std::size_t k) {
-  constexpr std::size_t kParts = 8, kFewest = 4096;
-  const uint32_t first = sampled.first[k], end = sampled.first[k + 1];
-  const std::size_t parts = std::max(kParts, kFewest / (end - first));
-  std::vector<Weighted> values;
-  for (uint32_t i = first; i + 1 < end; ++i) {
+/// The distribution of a channel's values: a piece that runs straight from a to b has all values between them
+/// with the same density, whatever its width, so nothing is sampled. scale: the largest value.
+std::vector<LevelEvent> level_events(const ChannelKnots& sampled, std::size_t k, double scale) {
+  constexpr double kFlat = 1e-14;      // of the values: their rounding
+  constexpr double kSteepest = 1e290;  // so that sums are finite
+  std::vector<LevelEvent> events;
+  for (uint32_t i = sampled.first[k]; i + 1 < sampled.first[k + 1]; ++i) {
     const double width = sampled.mu[i + 1] - sampled.mu[i];
     if (!(width > 0)) continue;
-    for (std::size_t j = 0; j < parts; ++j) {
-      const double t = (static_cast<double>(j) + 0.5) / static_cast<double>(parts);
-      values.push_back(
-          {(1 - t) * sampled.value[i] + t * sampled.value[i + 1], width / static_cast<double>(parts)});
+    const auto [low, high] = std::minmax(sampled.value[i], sampled.value[i + 1]);
+    const double density = width / ((high - low) / scale);
+    if (high - low <= kFlat * std::max(std::abs(low), std::abs(high)) || !(density < kSteepest)) {
+      events.push_back({.value = low, .atom = width});
+    } else {
+      events.push_back({.value = low, .density = density, .pieces = 1});
+      events.push_back({.value = high, .density = -density, .pieces = -1});
     }
   }
-  std::ranges::sort(values, {}, &Weighted::value);
-  return values;
+  std::ranges::sort(events, {}, &LevelEvent::value);
+  return events;
 }
+
+/// A sum whose error does not grow with terms that come and go: the steep density of a piece that is almost flat
+/// would else leave its rounding behind (Neumaier 1974).
+class CompensatedSum {
+ public:
+  void add(double x) {
+    const double sum = sum_ + x;
+    rest_ += std::abs(sum_) >= std::abs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
+    sum_ = sum;
+  }
+  void clear() { sum_ = rest_ = 0; }
+  double value() const { return sum_ + rest_; }
+
+ private:
+  double sum_ = 0, rest_ = 0;
+};
 
 /// Drops points of an ascending curve that lie within a tolerance of the straight line between those that
 /// stay. The slopes that keep within it, seen from the last point that stays, form an interval that shrinks
-/// from point to point.
+/// from point to point. Between the points the curve is straight, so that the tolerance holds there, too.
 class Thinner {
  public:
-  Thinner(Builder& builder, double mu, double value, double least)
-      : builder_(builder), mu_(mu), value_(value), last_mu_(mu), last_value_(value), least_(least) {
-    builder_.add(mu, value);
+  Thinner(Builder& builder, double value, double least) : builder_(builder), least_(least) {
+    begin(0, value);
   }
 
+  /// mu, value: not below the last; another value at the same mu is a jump.
   void add(double mu, double value) {
+    const double tolerance = kTolerance * std::abs(value) + least_;
+    if (mu == mu_) {
+      if (value - value_ > tolerance) begin(mu, value);
+      return;
+    }
     const double slope = (value - value_) / (mu - mu_);
-    if (slope < low_ || slope > high_) keep_last();
-    const double tolerance = kTolerance * value + least_;
+    if (slope < low_ || slope > high_) {
+      begin(last_mu_, last_value_);
+      add(mu, value);
+      return;
+    }
     low_ = std::max(low_, (value - tolerance - value_) / (mu - mu_));
     high_ = std::min(high_, (value + tolerance - value_) / (mu - mu_));
     last_mu_ = mu;
     last_value_ = value;
   }
-  void finish() { builder_.add(1, last_value_); }
+  void finish() {
+    if (mu_ < 1) builder_.add(1, last_value_);
+  }
 
  private:
   static constexpr double kTolerance = 3e-4;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  void keep_last() {
-    builder_.add(last_mu_, last_value_);
-    mu_ = last_mu_;
-    value_ = last_value_;
+  void begin(double mu, double value) {
+    builder_.add(mu, value);
+    mu_ = last_mu_ = mu;
+    value_ = last_value_ = value;
     low_ = -kInfinity;
     high_ = kInfinity;
   }
 
   Builder& builder_;
-  double mu_, value_, last_mu_, last_value_, least_;
+  double mu_ = 0, value_ = 0, last_mu_ = 0, last_value_ = 0, least_;
   double low_ = -kInfinity, high_ = kInfinity;
 };
+
+/// The inverse of the distribution: mu is the fraction of the channel with smaller values. It is straight
+/// between the values of the data, level at atoms, and jumps where the channel has no values between two.
+void add_sorted(Builder& builder, const std::vector<LevelEvent>& events, double scale) {
+  constexpr double kNothing = 1e-9;  // of the largest value
+  Thinner thinner(builder, events.front().value, kNothing * scale);
+  CompensatedSum below, density;
+  int pieces = 0;
+  double mu = 0, value = events.front().value;
+  const auto add = [&] {
+    mu = std::clamp(below.value(), mu, 1.0);  // never descends, however sums round
+    thinner.add(mu, value);
+  };
+  for (const LevelEvent& event : events) {
+    if (event.value > value) {
+      if (pieces > 0) below.add(std::max(density.value(), 0.0) * ((event.value - value) / scale));
+      value = event.value;
+      add();
+    }
+    density.add(event.density);
+    pieces += event.pieces;
+    if (pieces == 0) density.clear();
+    if (event.atom > 0) {
+      below.add(event.atom);
+      add();
+    }
+  }
+  thinner.finish();
+}
 
 }  // namespace
 
@@ -166,18 +235,11 @@ ChannelKnots sampled_knots(const Spectrum& spectrum, const ChannelList& channels
 }
 
 ChannelKnots sorted_knots(const ChannelKnots& sampled) {
-  constexpr double kNothing = 1e-9;  // of the largest value
   ChannelKnots sorted;
   Builder builder(sorted);
   for (std::size_t k = 0; k + 1 < sampled.first.size(); ++k) {
-    const std::vector<Weighted> values = values_of_channel(sampled, k);
-    double below = 0;
-    Thinner thinner(builder, 0, values.front().value, kNothing * values.back().value);
-    for (const Weighted& v : values) {
-      thinner.add(below + 0.5 * v.weight, v.value);
-      below += v.weight;
-    }
-    thinner.finish();
+    const double scale = largest_value(sampled, k);
+    add_sorted(builder, level_events(sampled, k, scale), scale);
     builder.end_channel();
   }
   return sorted;

@@ -28,7 +28,9 @@ struct ChannelKnots {
 ChannelKnots sampled_knots(const Spectrum& spectrum, const ChannelList& channels, const std::string& name);
 
 /// The same values in ascending order: mu is the fraction of the channel where the value is smaller.
-/// Integrals over mu of a function of the value alone are the same (to 3e-4), and smooth integrands.
+/// Integrals over mu of a function of the value alone are the same, and smooth integrands. The order is exact;
+/// knots are then left out where the value stays within 3e-4 of it, plus 1e-9 of the channel's largest: so an
+/// absorptance 1 - exp(-kappa x) is right to 3e-4 of it, exp(-kappa x) to 1.1e-4.
 ChannelKnots sorted_knots(const ChannelKnots& sampled);
 
 }  // namespace kiloband
