@@ -36,13 +36,11 @@ Spectrum::Range widened(std::span<const double> knots_nm, double min_nm, double 
   return range;
 }
 
-/// The table's range: the widened request, ending earlier where the data do
-/// (outside, the spectrum is 0 or flat).
+/// The table's range: the widened request, ending earlier where the spectrum is 0 or flat from there on.
 Spectrum::Range table_range(const Spectrum& spectrum, double min_nm, double max_nm) {
-  const std::optional<Spectrum::Range> data = spectrum.data_range();
   Spectrum::Range range = widened(spectrum.knots_nm(), min_nm, max_nm);
-  if (data && (!spectrum.extrapolates() || spectrum.node().is_flat_outside()))
-    range = {std::max(range.min_nm, data->min_nm), std::min(range.max_nm, data->max_nm)};
+  if (const std::optional<Spectrum::Range> varying = spectrum.node().varying_range())
+    range = {std::max(range.min_nm, varying->min_nm), std::min(range.max_nm, varying->max_nm)};
   return range;
 }
 
@@ -187,18 +185,15 @@ RegularTable resample(const Spectrum& spectrum, double min_nm, double max_nm,
   const auto [lowest, highest] = spectrum.node().bounds(min_nm, max_nm);
   const double magnitude = std::max(std::abs(lowest), std::abs(highest));
   if (magnitude == 0) return flat_table(0, min_nm, max_nm);
-  const std::optional<Spectrum::Range> data = spectrum.data_range();
+  const std::optional<Spectrum::Range> varying = spectrum.node().varying_range();
   const auto [table_min_nm, table_max_nm] = table_range(spectrum, min_nm, max_nm);
-  if (!(table_min_nm < table_max_nm) || (data && (data->max_nm <= min_nm || data->min_nm >= max_nm))) {
-    // The request has no or only one point in common with the data: 0 or the end value,
-    // or a product's values.
-    const bool ends = data && (!spectrum.extrapolates() || spectrum.node().is_flat_outside());
-    if (ends)
-      return flat_table(spectrum.extrapolates() ? spectrum(0.5 * (min_nm + max_nm)) : 0, min_nm, max_nm);
-  }
+  // The request has no or only one point in common with where the spectrum varies: 0 or the end value.
+  if (!(table_min_nm < table_max_nm) || (varying && (varying->max_nm <= min_nm || varying->min_nm >= max_nm)))
+    return flat_table(spectrum.extrapolates() ? spectrum(0.5 * (min_nm + max_nm)) : 0, min_nm, max_nm);
   // The table ends where the data do only if they end inside the request;
   // both flags are one, so one sharp end suffices.
-  const bool sharp = data && !spectrum.extrapolates() && (data->min_nm > min_nm || data->max_nm < max_nm);
+  const bool sharp =
+      varying && !spectrum.extrapolates() && (varying->min_nm > min_nm || varying->max_nm < max_nm);
   const Request request{
       spectrum, table_min_nm, table_max_nm, !sharp, options.relative_error * magnitude, options.max_entries};
   if (is_regular(spectrum.knots_nm())) {

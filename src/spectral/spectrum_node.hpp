@@ -47,8 +47,8 @@ class Spectrum::Node {
   virtual std::optional<PlanckParameters> planck_parameters() const { return std::nullopt; }
   virtual std::optional<Range> data_range() const { return std::nullopt; }
   virtual bool extrapolates() const { return false; }
-  /// Outside its data range the function keeps the value of that end.
-  virtual bool is_flat_outside() const { return false; }
+  /// The range outside of which the function is 0, or keeps the value of that end if it extrapolates.
+  virtual std::optional<Range> varying_range() const { return std::nullopt; }
   virtual std::span<const double> knots_nm() const { return {}; }
   virtual std::span<const double> knot_values() const { return {}; }
 };
@@ -82,7 +82,7 @@ class TableNode final : public Spectrum::Node {
     return {{lambda_nm_.front(), lambda_nm_.back()}};
   }
   bool extrapolates() const override { return extrapolate_; }
-  bool is_flat_outside() const override { return extrapolate_; }
+  std::optional<Spectrum::Range> varying_range() const override { return data_range(); }
   std::span<const double> knots_nm() const override { return lambda_nm_; }
   std::span<const double> knot_values() const override { return values_; }
 
@@ -106,7 +106,7 @@ class SigmoidNode final : public Spectrum::Node {
   bool is_constant() const override { return c_[0] == 0 && c_[1] == 0; }
   std::optional<Spectrum::Range> data_range() const override;
   bool extrapolates() const override { return true; }
-  bool is_flat_outside() const override { return true; }
+  std::optional<Spectrum::Range> varying_range() const override { return data_range(); }
 
  private:
   std::array<double, 3> c_;
@@ -126,6 +126,7 @@ class PlanckNode final : public Spectrum::Node {
   void append_breaks(double min_nm, double max_nm, std::vector<double>& out) const override;
   Pointer scaled(double factor) const override;
   std::optional<Spectrum::Range> data_range() const override { return range_; }
+  std::optional<Spectrum::Range> varying_range() const override { return range_; }
 
  private:
   /// The part of the interval where the spectrum is not 0; empty if none.
@@ -152,9 +153,12 @@ class ProductNode final : public Spectrum::Node {
   bool is_constant() const override;
   std::optional<Spectrum::Range> data_range() const override;
   bool extrapolates() const override;
+  std::optional<Spectrum::Range> varying_range() const override;
   const std::vector<Pointer>& factors() const { return factors_; }
 
  private:
+  bool is_cut_off() const;
+
   std::vector<Pointer> factors_;
 };
 

@@ -104,13 +104,21 @@ bool ProductNode::is_constant() const {
                      [](const Pointer& factor) { return factor->is_constant(); });
 }
 
-// Data are given where every factor that has a range has data. Disjoint ranges: a single point, outside of
+/// Whether the product is 0 outside a range: a factor has data that are not continued.
+bool ProductNode::is_cut_off() const {
+  return std::any_of(factors_.begin(), factors_.end(), [](const Pointer& factor) {
+    return factor->data_range().has_value() && !factor->extrapolates();
+  });
+}
+
+// Factors that are continued have values wherever others have data. Disjoint ranges: a single point, outside of
 // which the product is 0.
 std::optional<Spectrum::Range> ProductNode::data_range() const {
+  const bool cut_off = is_cut_off();
   std::optional<Spectrum::Range> result;
   for (const Pointer& factor : factors_) {
     const std::optional<Spectrum::Range> range = factor->data_range();
-    if (!range) continue;
+    if (!range || (cut_off && factor->extrapolates())) continue;
     if (!result) result = range;
     result = {{std::max(result->min_nm, range->min_nm), std::min(result->max_nm, range->max_nm)}};
   }
@@ -119,11 +127,18 @@ std::optional<Spectrum::Range> ProductNode::data_range() const {
 }
 
 bool ProductNode::extrapolates() const {
-  bool result = false;
+  return data_range().has_value() && !is_cut_off();
+}
+
+// A product of continued factors varies as long as one of them does.
+std::optional<Spectrum::Range> ProductNode::varying_range() const {
+  if (is_cut_off()) return data_range();
+  std::optional<Spectrum::Range> result;
   for (const Pointer& factor : factors_) {
-    if (!factor->data_range()) continue;
-    if (!factor->extrapolates()) return false;
-    result = true;
+    const std::optional<Spectrum::Range> range = factor->varying_range();
+    if (!range) return std::nullopt;
+    if (!result) result = range;
+    result = {{std::min(result->min_nm, range->min_nm), std::max(result->max_nm, range->max_nm)}};
   }
   return result;
 }
