@@ -14,6 +14,7 @@ namespace {
 struct Request {
   const Spectrum& spectrum;
   double min_nm, max_nm;  // of the table
+  Spectrum::Range asked;
   bool extrapolate;
   double tolerance;  // absolute
   std::size_t max_entries;
@@ -44,26 +45,40 @@ Spectrum::Range table_range(const Spectrum& spectrum, double min_nm, double max_
   return range;
 }
 
-/// Largest |table - spectrum| over the table's range. A table's error is largest at the knots of either
-/// function, for others at the breaks or inside a cell: there it is measured at the quarters
-/// and stated 5 % larger.
-double measure_error(const RegularTable& table, const Spectrum& spectrum) {
-  const double min_nm = table.min_nm;
-  const std::size_t cells = table.values.size() - 1;
-  const double max_nm = min_nm + table.step_nm * static_cast<double>(cells);
-  std::vector<double> points;
-  spectrum.node().append_breaks(min_nm, max_nm, points);
-  const bool piecewise_linear = !spectrum.knots_nm().empty();
-  if (!piecewise_linear)
-    for (std::size_t i = 0; i < cells; ++i)
-      for (const double t : {0.25, 0.5, 0.75})
-        points.push_back(min_nm + table.step_nm * (static_cast<double>(i) + t));
+/// Points of the table's own lattice.
+std::vector<double> nodes_of(const RegularTable& table) {
+  std::vector<double> nodes_nm;
+  for (std::size_t i = 0; i < table.values.size(); ++i)
+    nodes_nm.push_back(table.min_nm + table.step_nm * static_cast<double>(i));
+  return nodes_nm;
+}
+
+/// Largest |table - spectrum| at the points that lie in the range that was asked for.
+double error_at(std::vector<double> points, const RegularTable& table, const Request& request) {
+  std::erase_if(points, [&](double x) { return x < request.asked.min_nm || x > request.asked.max_nm; });
   std::sort(points.begin(), points.end());
   std::vector<double> exact(points.size());
-  spectrum.evaluate(points, exact);
+  request.spectrum.evaluate(points, exact);
   double error = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
     error = std::max(error, std::abs(table(points[i]) - exact[i]));
+  return error;
+}
+
+/// Largest |table - spectrum| over what of the range that was asked for the table covers, for a table whose
+/// entries are the spectrum's values. A table's error is largest at the knots of the data, for others at the
+/// breaks or inside a cell: there it is measured at the quarters and stated 5 % larger.
+double measure_error(const RegularTable& table, const Request& request) {
+  std::vector<double> points;
+  for (const double end_nm : {request.asked.min_nm, request.asked.max_nm})
+    if (end_nm > request.min_nm && end_nm < request.max_nm) points.push_back(end_nm);
+  request.spectrum.node().append_breaks(request.min_nm, request.max_nm, points);
+  const bool piecewise_linear = !request.spectrum.knots_nm().empty();
+  if (!piecewise_linear)
+    for (std::size_t i = 0; i + 1 < table.values.size(); ++i)
+      for (const double t : {0.25, 0.5, 0.75})
+        points.push_back(table.min_nm + table.step_nm * (static_cast<double>(i) + t));
+  const double error = error_at(std::move(points), table, request);
   return piecewise_linear ? error : 1.05 * error;
 }
 
@@ -78,12 +93,12 @@ RegularTable sampled(const Request& request, std::size_t cells) {
   lambda_nm[cells] = request.max_nm;
   table.values.resize(cells + 1);
   request.spectrum.evaluate(lambda_nm, table.values);
-  table.max_error = measure_error(table, request.spectrum);
+  table.max_error = measure_error(table, request);
   return table;
 }
 
 /// Whether all knots are on the lattice of `count` - 1 equal steps, within 1e-3 of a step
-/// (as Mitsuba 3 decides).
+/// (as Mitsuba 3 decides): equal steps that a file gives rounded.
 bool is_regular(std::span<const double> knots_nm) {
   if (knots_nm.size() < 2) return false;
   const double step_nm = (knots_nm.back() - knots_nm.front()) / static_cast<double>(knots_nm.size() - 1);
@@ -108,7 +123,10 @@ RegularTable clipped(const Request& request) {
       knots.front() + step_nm * static_cast<double>(first), step_nm, {}, request.extrapolate, 0};
   table.values.assign(values.begin() + static_cast<std::ptrdiff_t>(first),
                       values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-  table.max_error = measure_error(table, request.spectrum);
+  // Entries that were moved to the lattice are not the data's values there.
+  std::vector<double> nodes_nm = nodes_of(table);
+  std::erase_if(nodes_nm, [&](double x) { return x <= request.min_nm || x >= request.max_nm; });
+  table.max_error = std::max(measure_error(table, request), error_at(std::move(nodes_nm), table, request));
   return table;
 }
 
@@ -194,11 +212,13 @@ RegularTable resample(const Spectrum& spectrum, double min_nm, double max_nm,
   // both flags are one, so one sharp end suffices.
   const bool sharp =
       varying && !spectrum.extrapolates() && (varying->min_nm > min_nm || varying->max_nm < max_nm);
-  const Request request{
-      spectrum, table_min_nm, table_max_nm, !sharp, options.relative_error * magnitude, options.max_entries};
+  const Request request{spectrum,           table_min_nm, table_max_nm,
+                        {min_nm, max_nm},   !sharp,       options.relative_error * magnitude,
+                        options.max_entries};
   if (is_regular(spectrum.knots_nm())) {
+    // Where neighbours differ much, a wavelength that is off by 1e-3 of a step matters.
     RegularTable table = clipped(request);
-    if (table.values.size() <= options.max_entries) return table;
+    if (table.values.size() <= options.max_entries && table.max_error <= request.tolerance) return table;
   }
   return refined(request);
 }

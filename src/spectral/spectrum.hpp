@@ -91,8 +91,8 @@ struct ResampleOptions {
 };
 
 /// The coarsest of the tried regular tables that reproduces `spectrum` on [min_nm, max_nm] within the error
-/// bound. Data that are already regular are taken over exactly (their own step, whole data range clipped to
-/// the request). Discontinuities at the ends of the data stay sharp:
+/// bound. Data that are already regular, or so nearly that this keeps the bound, are taken over (their own step,
+/// whole data range clipped to the request). Discontinuities at the ends of the data stay sharp:
 /// the table begins and ends where the data do.
 RegularTable resample(const Spectrum& spectrum, double min_nm, double max_nm,
                       const ResampleOptions& options = {});

@@ -53,13 +53,48 @@ TEST(Resample, RegularDataAreTakenOver) {
   EXPECT_EQ(measured_error(part, s, 450, 500), 0);
 }
 
-// As Mitsuba 3: spacing within 1e-3 of the step counts as regular.
+// As Mitsuba 3: spacing within 1e-3 of the step counts as regular, but only where the bound holds.
 TEST(Resample, NearlyRegularDataAreTakenOver) {
   const Spectrum s = Spectrum::tabulated({400, 410.005, 420, 429.996}, {1, 2, 4, 3});
-  const RegularTable table = resample(s, 380, 780);
+  const RegularTable table = resample(s, 380, 780, {1e-3, 1u << 20});
   EXPECT_EQ(table.values, (std::vector<double>{1, 2, 4, 3}));
   EXPECT_GT(table.max_error, 0);
   EXPECT_LE(measured_error(table, s, 400, 429.99), table.max_error);
+}
+
+// An instrument's steps of 10/3 nm, which its file gives with three decimals.
+TEST(Resample, RoundedStepsOfAnInstrumentAreTakenOver) {
+  std::vector<double> knots, values;
+  for (int i = 0; i < 300; ++i) {
+    knots.push_back(std::round((350 + i * 10 / 3.0) * 1000) / 1000);
+    values.push_back(0.5 + 0.3 * std::sin(0.1 * i));
+  }
+  const RegularTable table = resample(Spectrum::tabulated(knots, values), 300, 2500, {1e-5, 1u << 20});
+  EXPECT_EQ(table.values, values);
+  EXPECT_LE(table.max_error, 0.8e-5);
+}
+
+TEST(Resample, NearlyRegularDataMeetTheBound) {
+  for (const double bound : {1e-3, 1e-4, 1e-5}) {
+    for (const Spectrum& s : {Spectrum::tabulated({400, 500.09, 600}, {0, 1, 0}),
+                              Spectrum::tabulated({400, 499.91, 600}, {0, 0, 1}),
+                              Spectrum::tabulated({400, 410.005, 420, 429.996}, {1, 2, 4, 3}),
+                              Spectrum::tabulated({400, 410.00731, 420, 430}, {0, 3, 0, 2}, true)}) {
+      const RegularTable table = resample(s, 380, 780, {bound, 1u << 20});
+      EXPECT_LE(table.max_error, bound * s.max_over(380, 780)) << bound;
+      EXPECT_LE(measured_error(table, s, 400, 429.995), table.max_error + 1e-13) << bound;
+      EXPECT_LE(measured_error(table, s, 430.1, 780), table.max_error + 1e-13) << bound;
+    }
+  }
+}
+
+// A peak beside the range that was asked for is no error inside.
+TEST(Resample, OnlyTheRangeThatIsAskedForMeetsTheBound) {
+  const Spectrum s = Spectrum::tabulated({400, 410.0071, 420.0013, 430.0057, 440}, {1e6, 2, 3, 2.9, 2.5});
+  const RegularTable table = resample(s, 410.0071, 430, {1e-3, 1u << 20});
+  EXPECT_LE(table.values.size(), 6u);
+  EXPECT_LE(measured_error(table, s, 410.0072, 430), table.max_error);
+  EXPECT_LE(table.max_error, 3e-3);
 }
 
 TEST(Resample, IrregularDataOnACommonLatticeAreExact) {
