@@ -11,6 +11,18 @@ bool is_id(float value) {
   return value >= 0 && value < 0x1p32f && value == std::floor(value);
 }
 
+/// Inserts the places of a line that are at most `reach` from one that is in: a run begins `reach` before it, or where the run before
+/// has ended.
+template <class In, class Insert>
+void grow_line(uint32_t length, uint32_t reach, const In& in, const Insert& insert) {
+  uint32_t done = 0;  // places before it are in, or never will be
+  for (uint32_t at = 0; at < length; ++at) {
+    if (!in(at)) continue;
+    const uint32_t end = at + 1 + std::min(reach, length - at - 1);
+    for (done = std::max(done, at - std::min(at, reach)); done < end; ++done) insert(done);
+  }
+}
+
 }  // namespace
 
 PixelMask PixelMask::of_rectangle(uint32_t width, uint32_t height, const PixelRect& rect) {
@@ -32,21 +44,16 @@ std::size_t PixelMask::count() const {
   return static_cast<std::size_t>(std::count(in_.begin(), in_.end(), true));
 }
 
-// A square is grown along one axis, then along the other.
+// A square is grown along one axis, then along the other; time does not depend on its size.
 PixelMask PixelMask::grown(uint32_t pixels) const {
-  return spread(pixels, 0).spread(0, pixels);
-}
-
-PixelMask PixelMask::spread(uint32_t dx, uint32_t dy) const {
-  PixelMask result(width_, height_);
+  PixelMask columns(width_, height_), result(width_, height_);
   for (uint32_t y = 0; y < height_; ++y)
-    for (uint32_t x = 0; x < width_; ++x) {
-      if (!at(x, y)) continue;
-      const uint32_t right = std::min(width_ - 1, x + std::min(dx, width_));
-      const uint32_t bottom = std::min(height_ - 1, y + std::min(dy, height_));
-      for (uint32_t v = y - std::min(y, dy); v <= bottom; ++v)
-        for (uint32_t u = x - std::min(x, dx); u <= right; ++u) result.insert(u, v);
-    }
+    grow_line(
+        width_, pixels, [&](uint32_t x) { return at(x, y); }, [&](uint32_t x) { columns.insert(x, y); });
+  for (uint32_t x = 0; x < width_; ++x)
+    grow_line(
+        height_, pixels, [&](uint32_t y) { return columns.at(x, y); },
+        [&](uint32_t y) { result.insert(x, y); });
   return result;
 }
 

@@ -38,8 +38,6 @@ class PixelMask {
   Rows rows() const;
 
  private:
-  PixelMask spread(uint32_t dx, uint32_t dy) const;
-
   uint32_t width_, height_;
   std::vector<bool> in_;
 };

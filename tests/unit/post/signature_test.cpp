@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "post/convert.hpp"
 #include "tests/unit/cube/cube_support.hpp"
@@ -103,6 +105,26 @@ TEST(PixelMask, GrowsBySquares) {
 }
 
 /// Ids are whole numbers of 32 bits. 5e9 without the bits above them would be 705032704.
+/// Every pixel against the definition; a square as large as the image in no more time than a small one.
+TEST(PixelMask, GrowsByAnyNumberOfPixels) {
+  std::mt19937 random(9);
+  for (const uint32_t reach : {0u, 1u, 2u, 5u, 40u}) {
+    PixelMask mask(23, 17);
+    for (int i = 0; i < 4; ++i) mask.insert(random() % 23, random() % 17);
+    const PixelMask grown = mask.grown(reach);
+    for (uint32_t y = 0; y < 17; ++y)
+      for (uint32_t x = 0; x < 23; ++x) {
+        bool near = false;
+        for (uint32_t v = y - std::min(y, reach); v <= std::min(16u, y + reach); ++v)
+          for (uint32_t u = x - std::min(x, reach); u <= std::min(22u, x + reach); ++u)
+            near = near || mask.at(u, v);
+        ASSERT_EQ(grown.at(x, y), near) << x << " " << y << " " << reach;
+      }
+  }
+  const PixelMask full = PixelMask::of_rectangle(4096, 1024, {0, 0, 4096, 1024});
+  EXPECT_EQ(full.grown(65535).count(), full.count());
+}
+
 TEST(PixelMask, WhatIsNoIdIsOfNoObject) {
   const float none = std::numeric_limits<float>::quiet_NaN(), infinite = INFINITY;
   const std::vector<float> plane{3,    3.5f, 5e9f,          infinite, -infinite,
