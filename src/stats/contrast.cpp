@@ -4,11 +4,19 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "stats/distributions.hpp"
 
 namespace kiloband::stats {
 namespace {
+
+/// Of the rounding: replicates whose mean has a smaller standard error agree.
+constexpr double kAgreeing = 0.01;
+
+bool agrees(double variance, double slack) {
+  return variance <= kAgreeing * slack * kAgreeing * slack;
+}
 
 /// Mean and variance of the mean of one side; its rows go to the contrast.
 struct Side {
@@ -77,6 +85,15 @@ void set_slack(Contrast& contrast, double rounding) {
   }
 }
 
+/// Of one side alone, whose mean is held against 0 or a truth. The slack is that of rounding.
+void set_variances(Side side, Contrast& contrast) {
+  const double chance = chance_agreement(side.dof + 1, 0);
+  for (std::size_t c = 0; c < contrast.channels; ++c)
+    contrast.agreement.push_back(agrees(side.variance[c], contrast.slack[c]) ? chance : 0);
+  contrast.dof.assign(contrast.channels, side.dof);
+  contrast.variance = std::move(side.variance);
+}
+
 }  // namespace
 
 double Contrast::t(std::size_t c) const {
@@ -88,8 +105,31 @@ double Contrast::t(std::size_t c) const {
 }
 
 double Contrast::p(std::size_t c) const {
-  if (share.empty()) return student_p(t(c), dof[c]);
-  return behrens_fisher_p(t(c), share[c], dof_a, dof_b);
+  const double p = share.empty() ? student_p(t(c), dof[c]) : behrens_fisher_p(t(c), share[c], dof_a, dof_b);
+  return std::max(p, least_p(c));
+}
+
+double chance_agreement(double a, double b) {
+  if (!std::isfinite(a + b)) return 0;
+  // max_p p^m (1 - p)^n
+  const auto most = [](double m, double n) {
+    return std::exp((m > 0 ? m * std::log(m / (m + n)) : 0) + n * std::log(n / (m + n)));
+  };
+  const double p = b == 0 ? std::exp2(1 - a) : std::min(most(a - 1, b), most(b - 1, a));
+  return p < kNoChance ? 0 : p;
+}
+
+void add_variances(double va, double vb, Contrast& contrast) {
+  const double slack = contrast.slack[contrast.variance.size()];
+  const double dof_a = contrast.dof_a, dof_b = contrast.dof_b;
+  contrast.variance.push_back(va + vb);
+  // In shares, since squares of tiny variances would underflow.
+  const double share = va + vb > 0 ? va / (va + vb) : 0.5;
+  contrast.dof.push_back(1 / (share * share / dof_a + (1 - share) * (1 - share) / dof_b));
+  const bool a = agrees(va, slack), b = agrees(vb, slack);
+  const double worst = dof_a < dof_b ? 1 : 0;
+  contrast.share.push_back(a != b ? worst : share);
+  contrast.agreement.push_back(a && b ? chance_agreement(dof_a + 1, dof_b + 1) : 0);
 }
 
 Contrast independent_contrast(const UnitSample& a, const UnitSample& b, double rounding) {
@@ -98,17 +138,12 @@ Contrast independent_contrast(const UnitSample& a, const UnitSample& b, double r
   const Side sa = add_side(a, contrast), sb = add_side(b, contrast);
   contrast.a = sa.mean;
   contrast.b = sb.mean;
-  for (std::size_t c = 0; c < a.channels; ++c) {
-    const double va = sa.variance[c], vb = sb.variance[c];
-    contrast.variance.push_back(va + vb);
-    // In shares, since squares of tiny variances would underflow.
-    const double share = va + vb > 0 ? va / (va + vb) : 0.5;
-    contrast.share.push_back(share);
-    contrast.dof.push_back(1 / (share * share / sa.dof + (1 - share) * (1 - share) / sb.dof));
-  }
   contrast.dof_a = sa.dof;
   contrast.dof_b = sb.dof;
   set_slack(contrast, rounding);
+  for (auto* numbers : {&contrast.variance, &contrast.dof, &contrast.share, &contrast.agreement})
+    numbers->reserve(a.channels);
+  for (std::size_t c = 0; c < a.channels; ++c) add_variances(sa.variance[c], sb.variance[c], contrast);
   return contrast;
 }
 
@@ -126,10 +161,9 @@ Contrast paired_contrast(const UnitSample& a, const UnitSample& b, double roundi
   Side side = add_side(d, contrast);
   contrast.a = mean_of(a_both, total_weight(d));
   contrast.b = mean_of(b_both, total_weight(d));
-  contrast.variance = side.variance;
-  contrast.dof.assign(a.channels, side.dof);
   set_slack(contrast, rounding);
   contrast.difference = side.mean;  // not the difference of two rounded means
+  set_variances(std::move(side), contrast);
   return contrast;
 }
 
@@ -139,9 +173,8 @@ Contrast truth_contrast(const UnitSample& a, const TruthValues& truth, double ro
   Side side = add_side(a, contrast);
   contrast.a = side.mean;
   contrast.b = truth.value;
-  contrast.variance = side.variance;
-  contrast.dof.assign(a.channels, side.dof);
   set_slack(contrast, rounding);
+  set_variances(std::move(side), contrast);
   for (std::size_t c = 0; c < truth.bound.size(); ++c) contrast.slack[c] += truth.bound[c];
   return contrast;
 }

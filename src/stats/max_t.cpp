@@ -13,6 +13,9 @@ namespace {
 /// Shares of smaller tails come near the smallest double, where there are no quantiles.
 constexpr double kSmallestTail = 1e-290;
 
+/// Channels whose degrees of freedom differ by more are held to pass each for itself (max_t.hpp).
+constexpr double kAlike = 1.25;
+
 bool is_wanted(const std::vector<bool>& wanted, std::size_t channel) {
   return wanted.empty() || wanted[channel];
 }
@@ -37,8 +40,28 @@ class Directions {
   }
 
   std::size_t count() const { return directions_.size(); }
-  double dof() const { return dimension_ - 1; }
+  /// Of the space across a direction.
+  double dimension() const { return dimension_ - 1; }
+  double dof(std::size_t i) const { return dof_[i]; }
   const std::vector<double>& operator[](std::size_t i) const { return directions_[i]; }
+
+  bool alike(std::size_t i, std::size_t k) const {
+    return std::max(dof_[i], dof_[k]) <= kAlike * std::min(dof_[i], dof_[k]);
+  }
+
+  /// Per direction the cosine from which on its p is `p` or less.
+  std::vector<double> cosines(double p) const {
+    std::vector<double> cosines;
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (i > 0 && dof_[i] == dof_[i - 1]) {  // quantiles take long; those of pairs and truths are one
+        cosines.push_back(cosines.back());
+        continue;
+      }
+      const double t = student_upper(0.5 * p, dof_[i]);
+      cosines.push_back(t / std::sqrt(t * t + dof_[i]));
+    }
+    return cosines;
+  }
 
   /// Uniform on the sphere, orthogonal to `axis` and to what rows cannot be (their weighted sums are 0).
   std::vector<double> draw_across(const std::vector<double>& axis, Random& random) const {
@@ -64,23 +87,26 @@ class Directions {
     v.push_back(contrast_.t(c) / std::sqrt(contrast_.dof[c]));
     scale(v, 1 / std::sqrt(dot(v, v)));
     directions_.push_back(std::move(v));
+    dof_.push_back(contrast_.dof[c]);
   }
 
   const Contrast& contrast_;
   std::vector<std::vector<double>> directions_;
+  std::vector<double> dof_;
   double dimension_ = 1;
 };
 
-/// 1 / S of one draw: how many channels pass t together with the given one.
-double draw_share(const Directions& directions, std::size_t chosen, double p, double cosine, Random& random) {
-  const double dof = directions.dof();
+/// 1 / S of one draw: how many channels pass together with the given one. cosines: from where on they pass
+double draw_share(const Directions& directions, std::size_t chosen, double p,
+                  const std::vector<double>& cosines, Random& random) {
+  const double dof = directions.dof(chosen);
   const double t = student_upper(0.5 * p * random.uniform(), dof);
   const double along = t / std::sqrt(t * t + dof), across = std::sqrt(dof / (t * t + dof));
   std::vector<double> g = directions.draw_across(directions[chosen], random);
   for (std::size_t i = 0; i < g.size(); ++i) g[i] = along * directions[chosen][i] + across * g[i];
   double passing = 1;
   for (std::size_t c = 0; c < directions.count(); ++c)
-    passing += c != chosen && std::abs(dot(directions[c], g)) >= cosine;
+    passing += c != chosen && directions.alike(c, chosen) && std::abs(dot(directions[c], g)) >= cosines[c];
   return 1 / passing;
 }
 
@@ -93,20 +119,23 @@ double largest_t(const Contrast& contrast) {
 }  // namespace
 
 // A channel with smaller |t| and fewer degrees of freedom than the best so far has a larger p: most tails
-// need not be computed.
+// need not be computed. One whose p has a floor (Contrast::least_p) is no such bound.
 Strongest strongest_channel(const Contrast& contrast, const std::vector<bool>& wanted) {
   Strongest best;
-  double best_t = -1, best_dof = 0;
+  double best_t = -1, best_dof = 0;  // of p without a floor
+  bool any = false;
   for (std::size_t c = 0; c < contrast.channels; ++c) {
     if (!is_wanted(wanted, c)) continue;
     (contrast.constant(c) ? best.constant : best.tested) += 1;
     const double t = contrast.t(c);
     if (std::abs(t) <= best_t && contrast.dof[c] <= best_dof) continue;
-    const double p = student_p(t, contrast.dof[c]);
-    if (best_t >= 0 && (p > best.p || (p == best.p && std::abs(t) <= best_t))) continue;
+    const double p = std::max(student_p(t, contrast.dof[c]), contrast.least_p(c));
+    if (any && (p > best.p || (p == best.p && std::abs(t) <= std::abs(best.t)))) continue;
+    any = true;
     best.channel = c;
     best.t = t;
     best.p = p;
+    if (contrast.least_p(c) > 0) continue;
     best_t = std::abs(t);
     best_dof = contrast.dof[c];
   }
@@ -117,16 +146,17 @@ double max_t_p(const Contrast& contrast, const std::vector<bool>& wanted, const 
                uint64_t seed) {
   const auto tests = static_cast<double>(strongest.tested);
   const double p = std::max(strongest.p, contrast.p(strongest.channel));
+  if (contrast.least_p(strongest.channel) > 0)  // any channel may agree by chance
+    return std::min(1.0, (tests + static_cast<double>(strongest.constant)) * p);
   if (p <= 0 || strongest.tested <= 1) return p;
   if (contrast.rows.empty() || p < kSmallestTail) return std::min(1.0, tests * p);
   const Directions directions(contrast, wanted);
-  if (p >= 1 || directions.dof() < 1) return std::min(1.0, tests * p);
-  const double t = student_upper(0.5 * p, directions.dof());
-  const double cosine = t / std::sqrt(t * t + directions.dof());
+  if (p >= 1 || directions.dimension() < 1) return std::min(1.0, tests * p);
+  const std::vector<double> cosines = directions.cosines(p);
   Random random(seed);
   double shares = 0;
   for (int i = 0; i < kRotations; ++i)
-    shares += draw_share(directions, random.below(directions.count()), p, cosine, random);
+    shares += draw_share(directions, random.below(directions.count()), p, cosines, random);
   return std::clamp(tests * p * shares / kRotations, p, 1.0);
 }
 

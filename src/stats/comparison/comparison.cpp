@@ -41,6 +41,8 @@ struct StripComparison::State {
         whole(1, 1, mix_seed(options.seed, 3)),
         tile(kind, shape.channels, shape.replicates, rb),
         image(kind, shape.channels, shape.replicates, rb),
+        tile_area(shape.channels),
+        image_area(shape.channels),
         pooled(shape.channels, shape.replicates, rb),
         tails_a(shape.channels),
         tails_b(shape.channels) {}
@@ -49,6 +51,12 @@ struct StripComparison::State {
     return kind == Kind::kIndependent && options.variances && same_sizes && replicates_b == shape_.replicates;
   }
 
+  uint32_t fewest_replicates() const {
+    return kind == Kind::kTruth ? shape_.replicates : std::min(shape_.replicates, replicates_b);
+  }
+
+  bool has_pixel_means() const { return options.fine_scales && fewest_replicates() >= kPixelReplicates; }
+
   bool has_unit_variances() const { return has_variances() && replicates_b >= kVarianceReplicates; }
 
   /// Not of pairs, nor of a truth that is known to a bound only.
@@ -56,6 +64,9 @@ struct StripComparison::State {
 
   void add_uniformity(FineScale& scale, const Contrast& contrast, const Sides& sides,
                       const std::vector<bool>& wanted);
+  void add_means(FineScale& scale, std::ptrdiff_t index, const UnitPlace& place, const Sides& sides,
+                 const Contrast& contrast, const std::vector<bool>& wanted, std::size_t thin);
+  void add_area(const Contrast& pixel);
   void add_rows(const PixelSource& source);
   void add_pixel(const PixelSource& source, std::size_t in_strip, uint32_t x, uint32_t y);
   void add_unit(FineScale& scale, std::ptrdiff_t index, const UnitPlace& place, const Sides& sides);
@@ -70,6 +81,7 @@ struct StripComparison::State {
   FineScale pixels, tiles;
   ScaleTest whole;
   SidesPool tile, image;
+  AgreeingArea tile_area, image_area;
   PooledVarianceTest pooled;
   Tails tails_a, tails_b;
   std::size_t non_finite = 0;
@@ -87,26 +99,43 @@ void StripComparison::State::add_uniformity(FineScale& scale, const Contrast& co
     scale.uniformity.add(contrast, unit.a, unit.b);
 }
 
-/// A pixel or tile: means, variances, uniformity; its thin channels to the pool.
+/// Means of a pixel or tile; its thin channels to the pool.
+void StripComparison::State::add_means(FineScale& scale, std::ptrdiff_t index, const UnitPlace& place,
+                                       const Sides& unit, const Contrast& contrast,
+                                       const std::vector<bool>& wanted, std::size_t thin) {
+  scale.means.add(index, place, contrast, wanted);
+  if (!contrast.valid) return;
+  scale.means.count_thin(thin, kind != Kind::kTruth);
+  if (thin == 0 || kind == Kind::kTruth) return;
+  std::vector<bool> marked = wanted;
+  marked.flip();
+  scale.thin.add_marked(unit, marked);
+  scale.any_thin = true;
+}
+
+void StripComparison::State::add_area(const Contrast& pixel) {
+  tile_area.add(pixel);
+  image_area.add(pixel);
+}
+
+/// A pixel or tile: means, variances, uniformity.
 void StripComparison::State::add_unit(FineScale& scale, std::ptrdiff_t index, const UnitPlace& place,
                                       const Sides& unit) {
   std::size_t thin = 0;
   const std::vector<bool> wanted = testable_channels(kind, unit, thin);
-  const Contrast contrast = contrast_of(kind, unit, options.rounding);
-  scale.means.add(index, place, contrast, wanted);
+  Contrast contrast = contrast_of(kind, unit, options.rounding);
+  const bool is_pixel = &scale == &pixels;
+  if (is_pixel)
+    add_area(contrast);
+  else
+    tile_area.settle(contrast);
+  if (!is_pixel || has_pixel_means()) add_means(scale, index, place, unit, contrast, wanted, thin);
   if (!contrast.valid) return;
-  scale.means.count_thin(thin, kind != Kind::kTruth);
-  if (thin > 0 && kind != Kind::kTruth) {
-    std::vector<bool> marked = wanted;
-    marked.flip();
-    scale.thin.add_marked(unit, marked);
-    scale.any_thin = true;
-  }
   add_uniformity(scale, contrast, unit, wanted);
   if (!has_variances()) return;
   if (has_unit_variances())
     scale.variances.add(index, place, deviation_contrast(unit.a, unit.b, options.rounding), wanted);
-  if (&scale == &pixels) pooled.add(unit.a, unit.b, wanted, options.rounding);
+  if (is_pixel) pooled.add(unit.a, unit.b, wanted, options.rounding);
 }
 
 /// What was too thin, together; what still is stays with the larger unit, which has it anyway.
@@ -132,7 +161,7 @@ void StripComparison::State::add_pixel(const PixelSource& source, std::size_t in
   tails_a.add(sides.a);
   if (kind != Kind::kTruth) tails_b.add(sides.b);
   if (kind == Kind::kIndependent && same_sizes) same_sizes = replicates_have_same_sizes(sides.a, sides.b);
-  if (!options.fine_scales) return;
+  if (!options.fine_scales) return add_area(contrast_of(kind, sides, options.rounding));
   add_unit(pixels, static_cast<std::ptrdiff_t>(std::size_t{y} * shape_.width + x), {x, y, 1, 1}, sides);
 }
 
@@ -144,6 +173,7 @@ void StripComparison::State::finish_tile(const UnitPlace& place) {
     add_unit(tiles, static_cast<std::ptrdiff_t>(index), place, tile.mean());
   }
   tile.clear();
+  tile_area.clear();
 }
 
 /// Where the verdict is known already its p need not be small.
@@ -207,13 +237,15 @@ Comparison StripComparison::finish() {
   State& s = *state_;
   if (s.next_row != s.shape_.height) throw std::logic_error("StripComparison: rows are missing");
   const Sides whole = s.image.mean();
-  const Contrast contrast = contrast_of(s.kind, whole, s.options.rounding);
+  Contrast contrast = contrast_of(s.kind, whole, s.options.rounding);
+  s.image_area.settle(contrast);
   s.flush_thin(s.tiles, {0, 0, s.shape_.width, s.shape_.height});
   s.whole.add(0, {0, 0, s.shape_.width, s.shape_.height}, contrast, {});
   Comparison c;
   c.kind = s.kind;
-  c.scales = {Scale::kPixel, Scale::kTile, Scale::kImage};
-  if (!s.options.fine_scales) c.scales = {Scale::kImage};
+  if (s.has_pixel_means()) c.scales.push_back(Scale::kPixel);
+  if (s.options.fine_scales) c.scales.push_back(Scale::kTile);
+  c.scales.push_back(Scale::kImage);
   c.width = s.shape_.width;
   c.height = s.shape_.height;
   c.channels = s.shape_.channels;
@@ -221,7 +253,7 @@ Comparison StripComparison::finish() {
   c.replicates_b = s.replicates_b;
   c.non_finite = s.non_finite;
   if (s.options.fine_scales) {
-    c.means.push_back(s.pixels.means.finish());
+    if (s.has_pixel_means()) c.means.push_back(s.pixels.means.finish());
     c.means.push_back(s.tiles.means.finish());
     if (s.has_unit_variances()) {
       c.variances.push_back(s.pixels.variances.finish());

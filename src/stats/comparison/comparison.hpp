@@ -8,6 +8,9 @@
 // estimator. Each gets an equal share of alpha; a comparison passes if every one does. Nothing is forgiven:
 // no share of pixels may differ.
 //
+// Pixels need kPixelReplicates: across an edge noise is discrete, so that fewer agree by chance, nearly or
+// quite, in one of thousands of pixels (contrast.hpp). What t would have to be there with 4 replicates,
+// above 1000, only such a pixel reaches. Tiles and the image, sums of many pixels, are tested.
 // What is needed: replicates that are independent of each other; independent sides (other seeds), or pairs of
 // equal seed for compare_paired. 32 replicates are wanted; fewer work, with wider tails, and are noted.
 // Against a truth pixels and tiles only speak where noise is not too skewed: a pixel whose rare bright path
@@ -37,6 +40,9 @@ struct ComparisonOptions {
 };
 
 inline constexpr double kTruthKurtosis = 6.5;
+
+/// On a side, for the means of pixels.
+inline constexpr uint32_t kPixelReplicates = 8;
 
 enum class Kind { kIndependent, kPaired, kTruth };
 

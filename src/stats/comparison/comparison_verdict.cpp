@@ -141,6 +141,9 @@ void add_notes(Comparison& c, const ComparisonOptions& options, bool same_sizes)
   if (fewest > 0 && fewest < kWantedReplicates)
     say(std::to_string(fewest) + " replicates on a side: " + std::to_string(kWantedReplicates) +
         " or more are wanted; the tests hold but see less");
+  if (fewest > 0 && fewest < kPixelReplicates && options.fine_scales)
+    say("mean/pixel: not tested, " + std::to_string(kPixelReplicates) +
+        " replicates on every side are needed");
   const bool variances = c.kind == Kind::kIndependent && options.variances && fewest > 0;
   if (variances && c.replicates_a != c.replicates_b)
     say("variances were not compared: the sides have different numbers of replicates");

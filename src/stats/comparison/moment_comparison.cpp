@@ -12,13 +12,6 @@
 namespace kiloband::stats {
 namespace {
 
-/// The share of A in the variance, and the dof of the sum (contrast.cpp).
-void add_share(double va, double vb, Contrast& contrast) {
-  const double share = va + vb > 0 ? va / (va + vb) : 0.5;
-  contrast.share.push_back(share);
-  contrast.dof.push_back(1 / (share * share / contrast.dof_a + (1 - share) * (1 - share) / contrast.dof_b));
-}
-
 /// The moments of one pixel's replicates, of which `lost` are not finite; appended. zero: of all channels
 void add_moments(const UnitSample& pixel, std::size_t lost, const TruthValues& zero, MomentImage& moments) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -59,7 +52,8 @@ MomentComparison::MomentComparison(uint32_t width, uint32_t height, std::size_t 
       options_(options),
       pixels_(width, height, mix_seed(options.seed, 1)),
       tiles_(tiles_along(width), tiles_along(height), mix_seed(options.seed, 2)),
-      whole_(1, 1, mix_seed(options.seed, 3)) {}
+      whole_(1, 1, mix_seed(options.seed, 3)),
+      image_area_(channels) {}
 
 void MomentComparison::add_sums(Sums& sums, const Contrast& pixel, const std::vector<bool>& wanted) const {
   for (auto* numbers : {&sums.pixels, &sums.a, &sums.b, &sums.variance, &sums.spread})
@@ -93,11 +87,14 @@ Contrast MomentComparison::contrast_of(const Sums& sums) const {
 }
 
 void MomentComparison::add_unit(ScaleTest& scale, std::ptrdiff_t index, const UnitPlace& place,
-                                const Sums& sums) const {
+                                const Sums& sums, const AgreeingArea& area) const {
   std::vector<bool> wanted;
   for (const double n : sums.pixels) wanted.push_back(n > 0);
   if (!wanted.empty()) scale.count_unsampled(static_cast<std::size_t>(std::ranges::count(wanted, false)));
-  scale.add(index, place, contrast_of(sums), wanted);
+  Contrast contrast = contrast_of(sums);
+  for (const double variance : contrast.variance) contrast.agreement.push_back(variance > 0 ? 0 : chance_);
+  area.settle(contrast);
+  scale.add(index, place, contrast, wanted);
 }
 
 /// Of finite means. wanted: the channels with a variance; if there is none it is not valid.
@@ -116,14 +113,28 @@ Contrast MomentComparison::pixel_contrast(const MomentImage& a, const MomentImag
     contrast.a.push_back(a.mean[i]);
     contrast.b.push_back(b.mean[i]);
     contrast.difference.push_back(double{a.mean[i]} - b.mean[i]);
-    contrast.variance.push_back(va + vb);
-    add_share(va, vb, contrast);
     contrast.slack.push_back(options_.rounding * std::max(std::abs(a.mean[i]), std::abs(b.mean[i])));
+    add_variances(va, vb, contrast);
   }
   return contrast;
 }
 
-void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y) {
+/// Of a tile's pixels. Empty where there are so many replicates that none agree by chance.
+AgreeingArea MomentComparison::area_of(const MomentImage& a, const MomentImage& b,
+                                       const UnitPlace& place) const {
+  AgreeingArea area(channels_);
+  if (chance_ == 0) return area;
+  for (uint32_t y = place.y; y < place.y + place.height; ++y) {
+    for (uint32_t x = place.x; x < place.x + place.width; ++x) {
+      std::vector<bool> wanted;
+      area.add(pixel_contrast(a, b, std::size_t{y - next_row_} * width_ + x, wanted));
+    }
+  }
+  return area;
+}
+
+void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y,
+                                 const AgreeingArea& area) {
   const std::size_t pixel = std::size_t{y - next_row_} * width_ + x, first = pixel * channels_;
   const std::span<const float> ma(&a.mean[first], channels_), mb(&b.mean[first], channels_);
   const auto finite = [](float v) { return std::isfinite(v); };
@@ -135,6 +146,7 @@ void MomentComparison::add_pixel(const MomentImage& a, const MomentImage& b, uin
   Contrast contrast;
   contrast.channels = channels_;
   if (both) contrast = pixel_contrast(a, b, pixel, wanted);
+  area.settle(contrast);
   if (contrast.valid) pixels_.count_unsampled(static_cast<std::size_t>(std::ranges::count(wanted, false)));
   pixels_.add(static_cast<std::ptrdiff_t>(std::size_t{y} * width_ + x), {x, y, 1, 1}, contrast, wanted);
   if (!contrast.valid || !independent_) return;
@@ -149,15 +161,18 @@ void MomentComparison::add(const MomentImage& a, const MomentImage& b) {
         side->mean.size() != values || side->variance.size() != values)
       throw std::logic_error("MomentComparison: the strip does not fit the image");
   }
+  chance_ = std::max(chance_, chance_agreement(a.dof + 1, b.dof + 1));
   for (uint32_t y0 = next_row_; y0 < next_row_ + a.height; y0 += kTileEdge) {
     for (uint32_t x0 = 0; x0 < width_; x0 += kTileEdge) {
       const UnitPlace place{x0, y0, std::min(kTileEdge, width_ - x0),
                             std::min(kTileEdge, next_row_ + a.height - y0)};
+      const AgreeingArea area = area_of(a, b, place);
+      image_area_.add(area);
       for (uint32_t y = y0; y < y0 + place.height; ++y) {
-        for (uint32_t x = x0; x < x0 + place.width; ++x) add_pixel(a, b, x, y);
+        for (uint32_t x = x0; x < x0 + place.width; ++x) add_pixel(a, b, x, y, area);
       }
       const std::size_t index = std::size_t{y0 / kTileEdge} * tiles_along(width_) + x0 / kTileEdge;
-      if (independent_) add_unit(tiles_, static_cast<std::ptrdiff_t>(index), place, tile_);
+      if (independent_) add_unit(tiles_, static_cast<std::ptrdiff_t>(index), place, tile_, area);
       tile_ = {};
     }
   }
@@ -174,7 +189,7 @@ Comparison MomentComparison::finish() {
   c.scales = {Scale::kPixel};
   c.means.push_back(pixels_.finish());
   if (independent_) {
-    add_unit(whole_, 0, {0, 0, width_, height_}, image_);
+    add_unit(whole_, 0, {0, 0, width_, height_}, image_, image_area_);
     c.scales = {Scale::kPixel, Scale::kTile, Scale::kImage};
     c.means.push_back(tiles_.finish());
     c.means.push_back(whole_.finish());

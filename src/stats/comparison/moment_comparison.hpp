@@ -7,6 +7,7 @@
 #pragma once
 
 #include "stats/comparison/comparison.hpp"
+#include "stats/comparison/sides.hpp"
 
 namespace kiloband::stats {
 
@@ -43,19 +44,24 @@ class MomentComparison {
   struct Sums {
     std::vector<double> pixels, a, b, variance, spread;  // [channel]; spread: sum of v^2 / dof
   };
-  void add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y);
+  AgreeingArea area_of(const MomentImage& a, const MomentImage& b, const UnitPlace& place) const;
+  void add_pixel(const MomentImage& a, const MomentImage& b, uint32_t x, uint32_t y,
+                 const AgreeingArea& area);
   Contrast pixel_contrast(const MomentImage& a, const MomentImage& b, std::size_t pixel,
                           std::vector<bool>& wanted) const;
   void add_sums(Sums& sums, const Contrast& pixel, const std::vector<bool>& wanted) const;
   Contrast contrast_of(const Sums& sums) const;
-  void add_unit(ScaleTest& scale, std::ptrdiff_t index, const UnitPlace& place, const Sums& sums) const;
+  void add_unit(ScaleTest& scale, std::ptrdiff_t index, const UnitPlace& place, const Sums& sums,
+                const AgreeingArea& area) const;
 
   uint32_t width_, height_, next_row_ = 0;
+  double chance_ = 0;  // chance_agreement of the sides
   std::size_t channels_, non_finite_ = 0;
   bool independent_;
   ComparisonOptions options_;
   ScaleTest pixels_, tiles_, whole_;
   Sums tile_, image_;
+  AgreeingArea image_area_;
 };
 
 }  // namespace kiloband::stats

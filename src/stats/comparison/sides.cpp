@@ -82,6 +82,28 @@ Contrast contrast_of(Kind kind, const Sides& sides, double rounding) {
   throw std::logic_error("contrast_of: unknown kind");
 }
 
+void AgreeingArea::add(const Contrast& pixel) {
+  ++pixels_;
+  for (std::size_t c = 0; c < pixel.agreement.size(); ++c)
+    different_[c] += pixel.agreement[c] > 0 && pixel.t(c) != 0;
+}
+
+void AgreeingArea::add(const AgreeingArea& part) {
+  pixels_ += part.pixels_;
+  for (std::size_t c = 0; c < different_.size(); ++c) different_[c] += part.different_[c];
+}
+
+void AgreeingArea::settle(Contrast& contrast) const {
+  for (std::size_t c = 0; c < contrast.agreement.size(); ++c) {
+    if (2 * different_[c] > pixels_) contrast.agreement[c] = 0;
+  }
+}
+
+void AgreeingArea::clear() {
+  pixels_ = 0;
+  std::ranges::fill(different_, 0);
+}
+
 std::vector<bool> testable_channels(Kind kind, const Sides& sides, std::size_t& thin) {
   std::vector<bool> testable(sides.a.channels);
   thin = 0;

@@ -41,6 +41,24 @@ class PixelSource {
 
 Contrast contrast_of(Kind kind, const Sides& sides, double rounding);
 
+/// Pixels of a unit whose replicates agree on both sides, on different values. An edge, whose replicates
+/// agree by chance, crosses a quarter of a tile's pixels: where more than half of a unit differ so, there
+/// is no noise, and a difference is one (Contrast::agreement).
+class AgreeingArea {
+ public:
+  explicit AgreeingArea(std::size_t channels) : different_(channels) {}
+  /// A pixel; of one that is not valid nothing is known.
+  void add(const Contrast& pixel);
+  void add(const AgreeingArea& part);
+  /// Of the unit, or of one of its pixels.
+  void settle(Contrast& contrast) const;
+  void clear();
+
+ private:
+  std::size_t pixels_ = 0;
+  std::vector<std::size_t> different_;  // [channel]
+};
+
 /// Channels with enough contributions to be tested, or none on any side (equal). thin: how many have too few.
 std::vector<bool> testable_channels(Kind kind, const Sides& sides, std::size_t& thin);
 

@@ -261,6 +261,27 @@ TEST(Comparison, StripsAreTheWhole) {
                              "8 replicates on a side: 32 or more are wanted; the tests hold but see less"});
 }
 
+/// Eight for every kind; those of tiles and the image are there.
+TEST(Comparison, PixelsNeedEightReplicates) {
+  const SimulatedImage few{32, 24, 7, 3}, many{32, 24, 8, 3};
+  const ReplicateImage a = image_of(1, few), b = image_of(2, many);
+  const std::string note = "mean/pixel: not tested, 8 replicates on every side are needed";
+  const Truth truth{{1, 1.5, 2}, {}, false};
+  for (const Comparison& c :
+       {compare_independent(a, b, {.variances = false}), compare_independent(b, a, {.variances = false}),
+        compare_paired(a, image_of(2, few), {}), compare_truth(a, truth, {})}) {
+    EXPECT_EQ(names_of(c), (std::vector<std::string>{"mean/tile", "mean/image"}));
+    EXPECT_TRUE(c.passed);
+    EXPECT_EQ(std::ranges::count(c.notes, note), 1);
+  }
+  for (const Comparison& c : {compare_independent(b, image_of(3, many), {}), compare_truth(b, truth, {})}) {
+    EXPECT_EQ(c.tests[0].name, "mean/pixel");
+    EXPECT_EQ(std::ranges::count(c.notes, note), 0);
+  }
+  const Comparison image = compare_independent(a, b, {.variances = false, .fine_scales = false});
+  EXPECT_EQ(std::ranges::count(image.notes, note), 0) << "not asked for";
+}
+
 TEST(Comparison, WrongShapesAreOurBug) {
   EXPECT_THROW(compare_independent(image_of(1), image_of(2, {32, 32, 32, 3}), {}), std::logic_error);
   EXPECT_THROW(compare_truth(image_of(1), {{1, 2}, {}, false}, {}), std::logic_error);

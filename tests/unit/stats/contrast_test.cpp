@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "film/statistics.hpp"
+#include "stats/distributions.hpp"
 
 namespace kiloband::stats::contrast_test {
 namespace {
@@ -80,6 +83,35 @@ TEST(Contrast, TinyValuesDoNotUnderflow) {
                            one_channel({2 * unit, 4 * unit, 6 * unit, 8 * unit, 10 * unit}), 0);
   EXPECT_NEAR(c.t(0), -3.5 / std::sqrt(29.0 / 12), 1e-12);
   EXPECT_NEAR(c.dof[0], 5.5208, 1e-4);
+}
+
+/// No law of two values reaches the bound, which is near the largest.
+TEST(Contrast, TheProbabilityOfAgreementByChance) {
+  for (const auto& [a, b] : {std::pair{2.0, 2.0}, std::pair{4.0, 4.0}, std::pair{8.0, 8.0},
+                             std::pair{2.0, 32.0}, std::pair{3.0, 8.0}}) {
+    double most = 0;
+    for (double p = 0.001; p < 1; p += 0.001)
+      most = std::max(most, std::pow(p, a) * std::pow(1 - p, b) + std::pow(1 - p, a) * std::pow(p, b));
+    EXPECT_LE(most, chance_agreement(a, b)) << a << " " << b;
+    EXPECT_GE(most, 0.4 * chance_agreement(a, b)) << a << " " << b;
+    EXPECT_EQ(chance_agreement(a, b), chance_agreement(b, a));
+  }
+  EXPECT_EQ(chance_agreement(4, 0), 0.125) << "signs";
+  EXPECT_EQ(chance_agreement(16, 16), 0);
+  EXPECT_EQ(chance_agreement(std::numeric_limits<double>::infinity(), 2), 0);
+}
+
+/// To a float's rounding. A difference of few replicates is no more than that by chance, one of a side that
+/// agrees has the degrees of freedom of the poorer.
+TEST(Contrast, ReplicatesThatAgreeByChance) {
+  const UnitSample two = one_channel({1, 1 + 1e-8}), other = one_channel({0.5, 0.5});
+  EXPECT_EQ(independent_contrast(two, other, 1e-5).p(0), chance_agreement(2, 2));
+  EXPECT_EQ(independent_contrast(two, two, 1e-5).p(0), 1);
+  EXPECT_EQ(truth_contrast(two, {{0.5}, {}}, 1e-5).p(0), 0.5);
+  const Contrast c = independent_contrast(two, one_channel({0, 0, 1, 0, 0, 0, 0, 0}), 1e-5);
+  EXPECT_NEAR(c.t(0), 7, 1e-3);
+  EXPECT_NEAR(c.p(0), student_p(7, 1), 1e-5);
+  EXPECT_NEAR(c.dof[0], 7, 1e-6) << "of the noise that there is";
 }
 
 TEST(Contrast, OneReplicateIsNone) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "stats/distributions.hpp"
 #include "tests/support/simulated_image.hpp"
@@ -55,6 +56,25 @@ TEST(Moments, PixelsPoolOnlyIfIndependent) {
   EXPECT_FALSE(pooled.passed);
   EXPECT_NEAR(pooled.image_error[0], compare_independent(a, b, {}).image_error[0],
               0.3 * pooled.image_error[0]);
+}
+
+/// Without noise on either side: 4 replicates may agree by chance in a pixel, not in most of a tile.
+TEST(Moments, VariancesOfReplicatesThatAgree) {
+  const auto image = [](std::size_t different, double dof) {
+    MomentImage moments{8, 16, 1, dof, std::vector<float>(128, 1), std::vector<double>(128)};
+    for (std::size_t p = 0; p < different; ++p) moments.mean[p] = 1.01f;
+    return moments;
+  };
+  for (const bool independent : {false, true}) {
+    const auto passed = [&](std::size_t different, double dof) {
+      return compare(image(0, dof), image(different, dof), independent).passed;
+    };
+    EXPECT_TRUE(passed(0, 3));
+    EXPECT_TRUE(passed(32, 3));
+    EXPECT_FALSE(passed(33, 3));
+    EXPECT_FALSE(passed(1, 15));
+    EXPECT_FALSE(passed(1, kInfinite));
+  }
 }
 
 TEST(Moments, MissingPixels) {
