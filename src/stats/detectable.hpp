@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 namespace kiloband::stats {
@@ -30,16 +31,20 @@ struct Detectable {
   std::size_t largest_channel = 0;
 };
 
-/// Collects units; computes when level and number of tests are known.
+/// Collects units; computes when level and number of tests are known. Then alone it shows what bias an error
+/// is worth: with 4 replicates t has to be 50 times that with 32. So of the values that are alike in
+/// degrees of freedom and share, to an eighth of a power of two, that with the largest error is kept.
 class DetectableBias {
  public:
-  void add(RelativeError median, RelativeError largest);
-  /// All NaN if nothing was added.
+  /// A unit; `value` is any of its values, the others by add_value().
+  void add(RelativeError median, RelativeError value);
+  void add_value(const RelativeError& value);
+  /// All NaN if no unit was added.
   Detectable at(double level, double tests) const;
 
  private:
   std::vector<RelativeError> medians_;
-  RelativeError largest_;
+  std::unordered_map<uint64_t, RelativeError> largest_;  // by class
 };
 
 }  // namespace kiloband::stats

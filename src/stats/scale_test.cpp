@@ -75,8 +75,10 @@ void ScaleTest::add_errors(const Contrast& contrast, const std::vector<bool>& wa
     if (!contrast.share.empty()) set_sides(contrast, c, errors.back());
   }
   if (errors.empty()) return;
-  std::ranges::sort(errors, {}, &RelativeError::error);
-  result_.errors.add(errors[errors.size() / 2], errors.back());
+  for (const RelativeError& error : errors) result_.errors.add_value(error);
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::ranges::nth_element(errors, middle, {}, &RelativeError::error);
+  result_.errors.add(*middle, *middle);
 }
 
 ScaleResult ScaleTest::finish() {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <boost/math/distributions/non_central_t.hpp>
+#include <vector>
 
 #include "stats/detectable.hpp"
 #include "stats/distributions.hpp"
@@ -44,6 +45,20 @@ TEST(Detectable, ByHand) {
   EXPECT_NEAR(d.largest, 0.05 * shift, 1e-7);
   EXPECT_EQ(d.largest_channel, 2u);
   EXPECT_GT(errors.at(0.05, 1000).best, d.best);
+}
+
+/// The worst is the largest bias, not the largest error: 4 replicates need a far larger t than 32.
+TEST(Detectable, TheWorstIsThatOfTheLargestBias) {
+  const RelativeError few{0.09f, 0, 3, 0, 1, 3, 31}, many{0.1f, 0, 31, 1, 0, 3, 31}, middle{0.02f, 0, 30, 2};
+  const auto at = [](const std::vector<RelativeError>& values) {
+    DetectableBias errors;
+    for (const RelativeError& value : values) errors.add(value, value);
+    return errors.at(1e-3, 8192);
+  };
+  ASSERT_GT(at({few}).largest, 10 * at({many}).largest);
+  const Detectable all = at({middle, few, many});
+  EXPECT_EQ(all.largest, at({few}).largest);
+  EXPECT_EQ(all.largest_channel, 0u);
 }
 
 }  // namespace

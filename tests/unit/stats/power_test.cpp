@@ -112,6 +112,59 @@ TEST(Power, TheDetectableBiasIsDetected) {
   EXPECT_LE(half, 12);
 }
 
+/// One channel is noisy in A's 8 replicates, the other, a little more, in B's 32. The stated worst bias, in
+/// the first channel of one pixel, is found in 90 % of the comparisons (binomial, two-sided 1e-3: 30 to 40 of
+/// 40). That of the second, whose error is larger, is found there in 15.
+TEST(Power, TheWorstDetectableBiasIsDetected) {
+  const BatchPool pool("normal", 1);
+  const auto side = [&](uint32_t replicates, double first, double second, double bias, uint64_t seed) {
+    SimulatedImage shape{16, 16, replicates, 2, 0};
+    shape.spread = [=](uint32_t, uint32_t, std::size_t c) { return c == 0 ? first : second; };
+    ReplicateImage image = simulate(shape, pool, seed);
+    constexpr std::size_t kPixel = 37;
+    for (uint32_t r = 0; r < replicates; ++r)
+      image.means[(r * image.pixels() + kPixel) * 2] += static_cast<float>(bias);
+    return image;
+  };
+  const auto run = [&](double bias, uint64_t seed) {
+    return compare_independent(side(8, 0.03, 1e-4, bias, 2 * seed), side(32, 1e-4, 0.09, 0, 2 * seed + 1),
+                               {.variances = false})
+        .tests[0];
+  };
+  const Detectable stated = run(0, 100).detectable;
+  EXPECT_EQ(stated.largest_channel, 0u);
+  int found = 0;
+  for (uint64_t seed = 0; seed < 40; ++seed) found += !run(stated.largest, seed).passed;
+  EXPECT_GE(found, 30);
+}
+
+/// What few replicates are there for: a bias of a tile, of the image, of all that does not vary.
+TEST(Power, FewReplicatesSeeTilesAndTheImage) {
+  const BatchPool pool("normal", 64);
+  const auto tests = [&](uint32_t a, uint32_t b, double bias, uint32_t edge, double noise, bool fine) {
+    SimulatedImage one{32, 32, a, 2}, other{32, 32, b, 2};
+    one.spread = other.spread = [=](uint32_t, uint32_t, std::size_t) { return noise; };
+    other.mean = [=](uint32_t x, uint32_t y, std::size_t) { return x < edge && y < edge ? 1 + bias : 1.0; };
+    std::string failed;
+    for (const TestVerdict& test : compare_independent(simulate(one, pool, 1), simulate(other, pool, 2),
+                                                       {.variances = false, .fine_scales = fine})
+                                       .tests)
+      failed += test.passed ? "" : test.name + " ";
+    return failed;
+  };
+  EXPECT_EQ(tests(4, 4, 0.05, 8, 4e-4, true), "mean/tile mean/image ");
+  EXPECT_EQ(tests(4, 32, 0.05, 32, 0.1, true), "mean/tile mean/image ");
+  EXPECT_EQ(tests(2, 32, 0.5, 32, 2e-3, true), "mean/tile mean/image ");
+  for (const uint32_t few : {2u, 4u}) {
+    EXPECT_EQ(tests(few, few, 1e-3, 8, 0, true), "mean/tile ") << "the image differs in few pixels";
+    EXPECT_EQ(tests(few, few, 1e-3, 32, 0, true), "mean/tile mean/image ");
+    EXPECT_EQ(tests(few, few, 1e-3, 32, 0, false), "mean/image ");
+    EXPECT_EQ(tests(few, few, 1e-3, 2, 0, true), "") << "four pixels may agree by chance";
+    EXPECT_EQ(tests(few, few, 1e-3, 0, 0, true), "");
+  }
+  EXPECT_EQ(tests(16, 16, 1e-3, 1, 0, true), "mean/pixel mean/tile ") << "below the image's rounding";
+}
+
 /// A side without noise leaves the law of the other, however few replicates it has: the quantile of its own
 /// law is so far out that the probability there is 0 in double.
 TEST(Power, ASideWithoutNoiseLeavesTheOtherSidesLaw) {
