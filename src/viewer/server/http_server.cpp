@@ -37,6 +37,15 @@ bool is_packed(const httplib::Request& request) {
   });
 }
 
+/// Whether a request may have a body that was not read. A page of another site could have put a request into it, which would come from
+/// no page at all.
+bool leaves_body(const httplib::Request& request, int status) {
+  const bool has_body =
+      request.has_header("Transfer-Encoding") ||
+      (request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0");
+  return has_body && !(request.method == "POST" && status < 400);
+}
+
 void fill_response(const Response& from, httplib::Response& to) {
   to.status = from.status;
   for (const auto& [name, value] : from.headers) to.set_header(name, value);
@@ -60,6 +69,11 @@ struct HttpServer::Impl final : httplib::Server {
         [this](const auto& request, auto& response) { return before_body(request, response); });
     Post("/api/[a-z]*", [this](const httplib::Request& request, httplib::Response& response) {
       fill_response(api.answer(to_request(request), [this] { return is_over(); }), response);
+    });
+    set_post_routing_handler([](const httplib::Request& request, httplib::Response& response) {
+      if (!leaves_body(request, response.status)) return;
+      connection->end_after_answer();
+      response.set_header("Connection", "close");
     });
     set_error_handler([](const httplib::Request&, httplib::Response& response) {
       if (!response.body.empty()) return;
@@ -135,7 +149,7 @@ struct HttpServer::Impl final : httplib::Server {
     bool closed = false;
     for (int i = 1; i <= kMostRequests && !closed && !stopping && stream.wait_for_request(); ++i) {
       const auto forget_ranges = [](httplib::Request& request) { request.ranges.clear(); };
-      if (!process_request(stream, i == kMostRequests, closed, forget_ranges)) break;
+      if (!process_request(stream, i == kMostRequests, closed, forget_ranges) || stream.is_last()) break;
     }
     connection = nullptr;
   }

@@ -25,6 +25,9 @@ class SocketStream final : public httplib::Stream {
   bool wait_for_request();
   /// From now on every write has a deadline of its own: for a stream of events.
   void answer_without_end() { endless_ = true; }
+  /// No further request is read: what the client has sent is not all read, and might be taken for one.
+  void end_after_answer() { is_last_ = true; }
+  bool is_last() const { return is_last_; }
   /// The client has hung up.
   bool is_gone() const;
 
@@ -44,7 +47,7 @@ class SocketStream final : public httplib::Stream {
   const std::atomic<bool>& stopping_;
   Limits limits_;
   Clock::time_point read_deadline_, write_deadline_;
-  bool answering_ = false, endless_ = false;
+  bool answering_ = false, endless_ = false, is_last_ = false;
   std::size_t bytes_left_ = 0;
   std::string buffer_;
   std::size_t next_ = 0;

@@ -125,6 +125,35 @@ TEST_F(RunningServer, RefusesOthers) {
   EXPECT_EQ(status(request("HEAD /")), "405");
 }
 
+/// What is not read of a request is no further request: a page of another site may send any body, and the headers in it would be its own.
+TEST_F(RunningServer, BodiesThatAreNotReadAreNoRequests) {
+  const std::string save = R"({"format": "png", "name": "evil", "mode": "channel"})";
+  const std::string hidden = "POST /api/save HTTP/1.1\r\nHost: localhost\r\n" + kPost +
+                             "Content-Length: " + std::to_string(save.size()) + "\r\n\r\n" + save;
+  const std::string length = "Content-Length: " + std::to_string(hidden.size()) + "\r\n\r\n";
+  const std::string host = " HTTP/1.1\r\nHost: localhost\r\n";
+  for (const std::string& head :
+       {"POST /api/save" + host + "Origin: http://evil.com\r\nContent-Type: text/plain\r\n" + length,
+        "POST /api/save" + host + "X-Kiloband: 1\r\nContent-Type: image/png\r\n" + length,
+        "POST /api/save" + host + kPost + "Content-Encoding: gzip\r\n" + length, "GET /" + host + length,
+        "PUT /api/save" + host + length, "POST /elsewhere" + host + length,
+        "GET /" + host + "Transfer-Encoding: chunked\r\n\r\n"}) {
+    const std::string answer = ask(head + hidden);
+    std::size_t answers = 0;
+    for (std::size_t at = answer.find("HTTP/1.1 "); at != std::string::npos;
+         at = answer.find("HTTP/1.1 ", at + 1))
+      ++answers;
+    EXPECT_LE(answers, 1u) << head << "\n"
+                           << answer.substr(0, 2000);  // none where the client was too fast to hear it
+  }
+  EXPECT_FALSE(std::filesystem::exists(cube_.output() / "evil.png"));
+  const Client client(server_.port());  // others go on
+  EXPECT_TRUE(client.send("GET /api/scene" + host + "\r\n"));
+  EXPECT_NE(client.receive("}"), "");
+  EXPECT_TRUE(client.send("GET /api/scene" + host + "\r\n"));
+  EXPECT_NE(client.receive("}"), "");
+}
+
 TEST_F(RunningServer, BoundsWhatIsSent) {
   EXPECT_EQ(status(request("POST /api/save", kPost, std::string(1001, ' '))), "413");
   EXPECT_EQ(status(request("POST /api/save", kPost + "Content-Length: 99999999999\r\n")), "413");
