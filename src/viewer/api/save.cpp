@@ -13,9 +13,10 @@
 namespace kiloband::viewer {
 namespace {
 
-/// What stands behind a cube's name in its files; of an ENVI cube those that it has.
+/// What stands behind a cube's name in its files; of an ENVI cube those that it has. Auxiliary planes are not saved, but would be removed as
+/// those of the cube that was there.
 std::vector<std::string> endings(const std::string& extension) {
-  if (extension == ".hdr") return {".hdr", ".img", ".var.hdr", ".var.img"};
+  if (extension == ".hdr") return {".hdr", ".img", ".var.hdr", ".var.img", ".aux.hdr", ".aux.img"};
   return {extension};
 }
 

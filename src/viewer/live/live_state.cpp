@@ -166,14 +166,17 @@ void LiveState::move_to(const Sensor& sensor, bool reduced) {
     sensor_ = sensor;
     return begin_revision();
   }
-  if (reduced) {
-    const Sensor before = sensor_;
+  const Sensor before = sensor_;
+  LiveFilm* const shown = film_;  // use_film() leaves it as it is
+  try {
     sensor_ = sensor;
-    use_film(true);
+    if (reduced) use_film(true);
+    move_camera(*scene_, reduced ? reduced_sensor(sensor, small_factor_) : sensor);
+  } catch (...) {
     sensor_ = before;
+    film_ = shown;
+    throw;
   }
-  move_camera(*scene_, reduced ? reduced_sensor(sensor, small_factor_) : sensor);
-  sensor_ = sensor;
   use_film(reduced);
   try {
     backend_->camera_moved();

@@ -189,6 +189,20 @@ class LateInterrupt final : public WrappedBackend {
   std::atomic<bool>& interrupt_;
 };
 
+/// The small film was shown in its place, without a word that it is another image.
+TEST_F(LiveStateTest, ARefusedStepOfAMovingCameraLeavesTheImage) {
+  start(wall_options(5));
+  work();
+  const ViewStatus before = state_->status();
+  EXPECT_THROW(state_->set_camera({{"origin", {2e9, 0, 0}}, {"target", {0, 0, 0}}, {"moving", true}}),
+               InputError);
+  EXPECT_EQ(state_->film()->width(), 40u);
+  EXPECT_FALSE(state_->work()) << "it was done";
+  EXPECT_EQ(state_->status().newest.revision, before.newest.revision);
+  EXPECT_EQ(state_->status().newest.samples, before.newest.samples);
+  EXPECT_EQ(state_->scene_json()["camera"]["origin"], json({0.0, 0.0, 4.0}));
+}
+
 /// A change that is refused may be on its way whenever a pass ends.
 TEST_F(LiveStateTest, EveryWholePassIsAFrame) {
   LiveOptions options = wall_options(6);
