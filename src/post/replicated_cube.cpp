@@ -149,17 +149,18 @@ std::size_t count_values(std::span<const double> values) {
 }
 
 double replicate_error(std::span<const double> values, std::span<const double> samples) {
-  double sum = 0, total = 0;
+  const auto counts = [&](std::size_t r) { return !std::isnan(values[r]) && samples[r] > 0; };
+  double sum = 0, total = 0, squares = 0;
+  std::size_t count = 0;
   for (std::size_t r = 0; r < values.size(); ++r) {
-    if (std::isnan(values[r])) continue;
+    if (!counts(r)) continue;
     sum += samples[r] * values[r];
     total += samples[r];
+    ++count;
   }
-  const std::size_t count = count_values(values);
   if (count < 2) return std::numeric_limits<double>::quiet_NaN();
-  double squares = 0;
   for (std::size_t r = 0; r < values.size(); ++r)
-    if (!std::isnan(values[r])) squares += samples[r] * (values[r] - sum / total) * (values[r] - sum / total);
+    if (counts(r)) squares += samples[r] * (values[r] - sum / total) * (values[r] - sum / total);
   return std::sqrt(squares / (total * static_cast<double>(count - 1)));
 }
 

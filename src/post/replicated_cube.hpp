@@ -28,7 +28,7 @@ struct ReplicatedCube {
 };
 
 /// Standard error of a mean from its values in the replicates. Those that have no value (NaN: an interrupted render has not reached all
-/// that it is of) are left out; NaN with fewer than two.
+/// that it is of) or no samples are left out; NaN with fewer than two.
 double replicate_error(std::span<const double> values, std::span<const double> samples);
 
 /// How many of these are numbers: one more than the degrees of freedom of their error.

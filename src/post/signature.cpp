@@ -100,12 +100,29 @@ double error_of(std::size_t replicates, const std::vector<double>& samples, cons
   return replicate_error(values, samples);
 }
 
+/// Samples of the replicates: of the object, of what is behind it, and of what is made of both.
+struct ReplicateWeights {
+  std::vector<double> object, background, both;
+};
+
+/// Of pairs the variances 1 / n and 1 / m add up.
+ReplicateWeights weights_of(const ReplicatedCube& cube, const ReplicatedCube* background) {
+  ReplicateWeights weights{cube.samples, cube.samples, cube.samples};
+  if (!background || background->samples.size() != cube.samples.size()) return weights;
+  weights.background = background->samples;
+  for (std::size_t r = 0; r < weights.both.size(); ++r) {
+    const double n = weights.object[r], m = weights.background[r];
+    weights.both[r] = n > 0 && m > 0 ? n * m / (n + m) : 0;
+  }
+  return weights;
+}
+
 /// Everything about one band of one mask, from the whole image and its replicates.
 class BandFigures {
  public:
-  BandFigures(const Radiances& whole, const std::vector<Radiances>& parts, const std::vector<double>& samples,
+  BandFigures(const Radiances& whole, const std::vector<Radiances>& parts, const ReplicateWeights& weights,
               std::size_t mask, std::size_t band)
-      : whole_(whole), parts_(parts), samples_(samples), mask_(mask), band_(band) {}
+      : whole_(whole), parts_(parts), weights_(weights), mask_(mask), band_(band) {}
 
   // Errors. L and B are mean radiances of object and background, A the area: L, A L, B and A (L - B) are
   // linear in the image, so that their values in the replicates give their errors. The contrast C = L / B - 1
@@ -115,15 +132,16 @@ class BandFigures {
     const std::size_t count = parts_.size(), pairs = background_errors ? count : 0;
     BandSignature result;
     const double l = object(whole_);
-    result.radiance = {l, error_of(count, samples_, [&](std::size_t r) { return object(parts_[r]); })};
+    result.radiance = {l, error_of(count, weights_.object, [&](std::size_t r) { return object(parts_[r]); })};
     result.intensity = {area * l, area * result.radiance.error};
     if (!background) return result;
     const double b = behind(whole_), ratio = l / b;
     const auto difference = [&](std::size_t r) { return area * (object(parts_[r]) - behind(parts_[r])); };
     const auto relative = [&](std::size_t r) { return (object(parts_[r]) - ratio * behind(parts_[r])) / b; };
-    result.background = {b, error_of(pairs, samples_, [&](std::size_t r) { return behind(parts_[r]); })};
-    result.contrast_intensity = {area * (l - b), error_of(pairs, samples_, difference)};
-    result.contrast = {ratio - 1, error_of(pairs, samples_, relative)};
+    result.background = {
+        b, error_of(pairs, weights_.background, [&](std::size_t r) { return behind(parts_[r]); })};
+    result.contrast_intensity = {area * (l - b), error_of(pairs, weights_.both, difference)};
+    result.contrast = {ratio - 1, error_of(pairs, weights_.both, relative)};
     return result;
   }
 
@@ -133,14 +151,16 @@ class BandFigures {
 
   const Radiances& whole_;
   const std::vector<Radiances>& parts_;
-  const std::vector<double>& samples_;
+  const ReplicateWeights& weights_;
   std::size_t mask_, band_;
 };
 
-/// Those that have all pixels of a mask and its background in a band.
-std::size_t complete_replicates(const std::vector<Radiances>& parts, std::size_t mask, std::size_t band) {
+/// Those that have all pixels of a mask, and of its background if it has one, in a band.
+std::size_t complete_replicates(const std::vector<Radiances>& parts, bool has_background, std::size_t mask,
+                                std::size_t band) {
   return static_cast<std::size_t>(std::ranges::count_if(parts, [&](const Radiances& part) {
-    const bool behind = part.background.empty() || !std::isnan(part.background[mask][band]);
+    const bool behind =
+        !has_background || part.background.empty() || !std::isnan(part.background[mask][band]);
     return behind && !std::isnan(part.object[mask][band]);
   }));
 }
@@ -173,6 +193,7 @@ std::vector<Signature> measure_signatures(ReplicatedCube& cube, ReplicatedCube* 
   for (std::size_t r = 0; r < cube.replicates.size(); ++r)
     parts.push_back(measurement.radiances(*cube.replicates[r],
                                           background && paired ? background->replicates[r].get() : nullptr));
+  const ReplicateWeights weights = weights_of(cube, background);
   std::vector<Signature> result;
   for (std::size_t m = 0; m < masks.size(); ++m) {
     const bool has_background = background || masks[m].surroundings;
@@ -184,9 +205,9 @@ std::vector<Signature> measure_signatures(ReplicatedCube& cube, ReplicatedCube* 
                         parts.size(),
                         {}};
     for (std::size_t k = 0; k < whole.object[m].size(); ++k) {
-      signature.replicates = std::min(signature.replicates, complete_replicates(parts, m, k));
+      signature.replicates = std::min(signature.replicates, complete_replicates(parts, has_background, m, k));
       signature.bands.push_back(
-          BandFigures(whole, parts, cube.samples, m, k).figures(signature.area_m2, has_background, paired));
+          BandFigures(whole, parts, weights, m, k).figures(signature.area_m2, has_background, paired));
     }
     result.push_back(std::move(signature));
   }

@@ -235,6 +235,26 @@ TEST_F(Signatures, BackgroundCubesArePaired) {
       "background: has another camera (orthographic pixel_area 0.25) than the cube (orthographic pixel_area 0.5)");
 }
 
+/// The background's errors are by its own samples: at +-d of 30 and 10 the mean is d / 2 off the middle, error^2 = (30 / 4 + 10 * 9 / 4) d^2 / 40.
+TEST_F(Signatures, BackgroundsHaveSamplesOfTheirOwn) {
+  const auto file = write("a.hdr", 8, 2, 0.5f);
+  ReplicatedCube behind = open_replicated_cube(write("b.hdr", 3, 3, 0.5f));
+  behind.samples = {30, 10};
+  const BandSignature band = measured(file, false, &behind).bands[0];
+  EXPECT_NEAR(band.radiance.error, 0.5, 1e-6);
+  EXPECT_NEAR(band.background.error, 0.5 * std::sqrt(0.75), 1e-6);
+  behind.samples = {30, 0};
+  EXPECT_TRUE(std::isnan(measured(file, false, &behind).bands[0].background.error))
+      << "one replicate has no spread";
+  EXPECT_TRUE(std::isnan(measured(file, false, &behind).bands[0].contrast.error));
+}
+
+TEST_F(Signatures, WithoutABackgroundAllReplicatesCount) {
+  const Signature s = measured(write("a.hdr", 8, 2, 0.5f), false);
+  EXPECT_FALSE(s.has_background);
+  EXPECT_EQ(s.replicates, 2u);
+}
+
 TEST_F(Signatures, DistanceTurnsSolidAnglesIntoAreas) {
   Cube cube = make_cube(4, 2, equal_bands(400, 500, 1));
   std::fill(cube.mean.begin(), cube.mean.end(), 3.0f);
