@@ -239,12 +239,16 @@ void print_problems(const RenderReport& report, const Backend& backend) {
 }
 
 OutputFiles checked_files(const RenderOptions& options) {
-  const OutputFiles files = output_files(options);
+  OutputFiles files = output_files(options);
   if (files.kept_replicates > 0) allow_many_open_files();
   check_output_files(files);
   if (!files.checkpoint) return files;
   check_checkpoint_file(*files.checkpoint, options.resume);  // first: it says what is no regular file
   check_writable(*files.checkpoint);
+  if (options.resume && files.kept_replicates > 0) {  // as many as were begun
+    files.kept_replicates = wanted_replicates(options);
+    check_output_files(files);
+  }
   return files;
 }
 
@@ -259,7 +263,10 @@ LoadedScene load_checked_scene(const RenderOptions& options, OutputFiles files, 
 /// The options, and what the scene asks for besides: auxiliary images unless --aov names some, variances where there can be any.
 RenderOptions with_requests(RenderOptions options, const RequestedImages& requested) {
   if (options.aux.empty()) options.aux = requested.auxiliary;
-  if (requested.variance && options.replicates.value_or(kReplicates) >= 2) options.variance = true;
+  const uint32_t usual = options.replicates.value_or(kReplicates);
+  const uint32_t replicates =
+      options.resume ? checkpoint_replicates(*options.checkpoint).value_or(usual) : usual;
+  if (requested.variance && replicates >= 2) options.variance = true;
   return options;
 }
 

@@ -29,6 +29,37 @@ TEST(Checkpoint, OneThatExistsNeedsResume) {
   EXPECT_EQ(run_program(folder, checkpointed_box({"--spp", "8", "--resume"})).code, 0);
 }
 
+/// The checkpoint says how many replicates are kept: none of them may be another output.
+TEST(Checkpoint, ItsReplicatesAreOutputs) {
+  const TemporaryFolder folder;
+  Names render = quiet_render(cornell_box(), {"--size", "4x4", "--bands", "400:700:2", "--keep-replicates",
+                                              "--checkpoint", "c", "-o", "q.hdr"});
+  Names begun = render, resumed = render;
+  begun.insert(begun.end(), {"--spp", "40", "--replicates", "20"});
+  resumed.insert(resumed.end(), {"--spp", "80", "--resume", "-o", "q.r19.hdr"});
+  ASSERT_EQ(run_program(folder, begun).code, 0);
+  const Names files = folder.list();
+  const Outcome outcome = run_program(folder, resumed);
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_EQ(folder.list(), files);
+}
+
+/// The scene asks for variances where there can be any; of one replicate there are none.
+TEST(Checkpoint, ScenesThatAskForVariancesGoOnWithOneReplicate) {
+  const TemporaryFolder folder;
+  folder.write("m.xml",
+               R"(<scene version="3.0.0"><integrator type="moment"><integrator type="path"/></integrator>
+    <sensor type="perspective"/><emitter type="constant"/></scene>)");
+  Names render =
+      quiet_render("m.xml", {"--size", "4x4", "--bands", "400:700:2", "--checkpoint", "c", "-o", "m.hdr"});
+  Names begun = render, resumed = render;
+  begun.insert(begun.end(), {"--spp", "4", "--replicates", "1"});
+  resumed.insert(resumed.end(), {"--spp", "8", "--resume"});
+  ASSERT_EQ(run_program(folder, begun).code, 0);
+  const Outcome outcome = run_program(folder, resumed);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
 TEST(Checkpoint, WhatIsNoRegularFileIsRefusedAtOnce) {
   const TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
