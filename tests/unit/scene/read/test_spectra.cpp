@@ -81,6 +81,13 @@ TEST(SceneSpectra, D65WithScaleColourAndNestedSpectrum) {
   EXPECT_NEAR(
       radiance(R"(<spectrum type="d65" name="radiance"><rgb name="color" value="2"/></spectrum>)")(500),
       2 * d65, 1e-12);
+  for (const char* color : {R"(value="2")", R"(value="400:2, 600:2")",
+                            R"(type="uniform"><float name="value" value="2"/></spectrum)"})
+    EXPECT_NEAR(
+        radiance(R"(<spectrum type="d65" name="radiance"><spectrum name="color" )" + std::string(color) +
+                 (std::string_view(color).ends_with("spectrum") ? "></spectrum>" : "/></spectrum>"))(500),
+        2 * d65, 1e-12)
+        << color;
   EXPECT_NEAR(radiance(R"(<spectrum type="d65" name="radiance"><spectrum type="uniform" name="nested">)"
                        R"(<float name="value" value="0.5"/></spectrum></spectrum>)")(500),
               0.5 * d65, 1e-12);
