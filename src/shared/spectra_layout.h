@@ -43,17 +43,18 @@ KB_FN kb_u32 kb_channel_bin_begin(kb_u32 bin, kb_u32 channels) {
 /* The part of the probability that is shared evenly by all channels. */
 #define KB_EVEN_CHANNELS 0.1f
 
-/* How many channels m have min_m <= lambda < max_m (at least 1) at the wavelength of channel k: `cover` at mu = 0,
-   and from each break's mu on that break's cover. Breaks of channel k: [first of k, first of k + 1), ascending. */
+/* Of derived channels: width_k times the sum of 1 / width_m over the channels m that have min_m <= lambda < max_m at the
+   wavelength of channel k (at least 1): `divisor` at mu = 0, and from each break's mu on that break's. Breaks of channel k:
+   [first of k, first of k + 1), ascending. */
 typedef struct {
   kb_u32 first;
-  kb_u32 cover;
+  float divisor;
 } KbCover;
 KB_STATIC_ASSERT(sizeof(KbCover) == 8, cover_size);
 
 typedef struct {
   float mu;
-  kb_u32 cover;
+  float divisor;
 } KbCoverBreak;
 KB_STATIC_ASSERT(sizeof(KbCoverBreak) == 8, cover_break_size);
 

@@ -8,14 +8,8 @@ DerivedRows::DerivedRows(const FlatScene& scene, const DerivedChannels& derived,
                          const EvaluatorKernels& kernels)
     : scene_(scene), derived_(derived), kernels_(kernels) {
   for (const RegularTable& response : derived.responses) rows_.push_back(make_row(response));
-  for (const Channel& channel : scene.channels) {
-    sorted_min_.push_back(channel.min_nm);
-    sorted_max_.push_back(channel.max_nm);
-  }
-  std::sort(sorted_min_.begin(), sorted_min_.end());
-  std::sort(sorted_max_.begin(), sorted_max_.end());
-  for (std::size_t k = 1; k < sorted_min_.size(); ++k) overlapping_ |= sorted_min_[k] < sorted_max_[k - 1];
-  inverse_cover_.assign(pad_channels(scene.channels.size()), 1.0f);
+  add_up_channels();
+  shares_.assign(pad_channels(scene.channels.size()), 1.0f);
   accumulators_ = aligned_zeros<float>(rows_.size() * kMaxLanes);
   make_plan();
 }
@@ -58,13 +52,30 @@ void DerivedRows::make_plan() {
   plan_ = {rows_.size(), group_first_.data(), entries_.data(), accumulators_.get()};
 }
 
-void DerivedRows::count_cover(const double* lambda_nm) {
-  const auto up_to = [](const std::vector<double>& edges, double x) {
-    return std::upper_bound(edges.begin(), edges.end(), x) - edges.begin();
+void DerivedRows::add_up_channels() {
+  for (const Channel& c : scene_.channels) edges_nm_.insert(edges_nm_.end(), {c.min_nm, c.max_nm});
+  std::sort(edges_nm_.begin(), edges_nm_.end());
+  edges_nm_.erase(std::unique(edges_nm_.begin(), edges_nm_.end()), edges_nm_.end());
+  density_.assign(edges_nm_.size(), 0.0);
+  std::vector<uint32_t> covering(edges_nm_.size());
+  const auto place = [&](double edge_nm) {
+    return static_cast<std::size_t>(std::lower_bound(edges_nm_.begin(), edges_nm_.end(), edge_nm) -
+                                    edges_nm_.begin());
   };
+  for (const Channel& c : scene_.channels) {
+    for (std::size_t i = place(c.min_nm); i < place(c.max_nm); ++i) {
+      density_[i] += 1 / c.width_nm();
+      overlapping_ |= ++covering[i] > 1;
+    }
+  }
+}
+
+void DerivedRows::share_wavelengths(const double* lambda_nm) {
   for (std::size_t k = 0; k < scene_.channels.size(); ++k) {
-    const auto cover = up_to(sorted_min_, lambda_nm[k]) - up_to(sorted_max_, lambda_nm[k]);
-    inverse_cover_[k] = 1.0f / static_cast<float>(std::max<std::ptrdiff_t>(cover, 1));
+    const auto behind = std::upper_bound(edges_nm_.begin(), edges_nm_.end(), lambda_nm[k]);
+    const double density =
+        behind == edges_nm_.begin() ? 0 : density_[static_cast<std::size_t>(behind - edges_nm_.begin()) - 1];
+    shares_[k] = static_cast<float>(1 / std::max(1.0, scene_.channels[k].width_nm() * density));
   }
 }
 
@@ -79,13 +90,13 @@ void DerivedRows::fill(std::size_t d, const DenseSpectra& spectra) {
     kernels_.sample_table(view_of(row.table, response), lambda_nm, n, row.weights.get());
   else
     kernels_.sample_exact(view_of(response.values, response), lambda_nm, nullptr, n, row.weights.get());
-  for (std::size_t i = 0; i < n; ++i) row.weights[i] *= row.factor[i] * inverse_cover_[first + i];
+  for (std::size_t i = 0; i < n; ++i) row.weights[i] *= row.factor[i] * shares_[first + i];
 }
 
 const DerivedPlan* DerivedRows::plan(const DenseSpectra& spectra) {
   if (rows_.empty()) return nullptr;
   if (generation_ != spectra.generation()) {
-    if (overlapping_) count_cover(spectra.lambda_nm());
+    if (overlapping_) share_wavelengths(spectra.lambda_nm());
     for (std::size_t d = 0; d < rows_.size(); ++d) fill(d, spectra);
     generation_ = spectra.generation();
   }

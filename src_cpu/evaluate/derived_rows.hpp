@@ -7,9 +7,8 @@
 
 namespace kiloband::cpu {
 
-/// Row d holds, for the channels that response d can cover at any offset, response_d(lambda_k) / cover_k
-/// times channel_scale_k / scale(d): what a film channel adds to film channel d. cover_k >= 1 is the number
-/// of channels with min_nm <= lambda_k < max_nm.
+/// Row d holds, for the channels that response d can cover at any offset, response_d(lambda_k) share_k
+/// times channel_scale_k / scale(d): what a film channel adds to film channel d. share_k: DerivedChannels.
 class DerivedRows {
  public:
   DerivedRows(const FlatScene& scene, const DerivedChannels& derived, const EvaluatorKernels& kernels);
@@ -31,16 +30,18 @@ class DerivedRows {
 
   Row make_row(const RegularTable& response) const;
   void make_plan();
-  void count_cover(const double* lambda_nm);
+  void add_up_channels();
+  void share_wavelengths(const double* lambda_nm);
   void fill(std::size_t d, const DenseSpectra& spectra);
 
   const FlatScene& scene_;
   const DerivedChannels& derived_;
   const EvaluatorKernels& kernels_;
   std::vector<Row> rows_;
-  bool overlapping_ = false;                     // else every cover is 1
-  std::vector<double> sorted_min_, sorted_max_;  // edges of all channels, nm
-  std::vector<float> inverse_cover_;
+  bool overlapping_ = false;  // else every share is 1
+  std::vector<double> edges_nm_,
+      density_;                // of all channels; from each edge to the next the sum of 1 / width, 1/nm
+  std::vector<float> shares_;  // [channel]
   std::vector<uint32_t> group_first_;
   std::vector<DerivedPlan::Entry> entries_;
   hwy::AlignedFreeUniquePtr<float[]> accumulators_;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 
@@ -24,31 +26,44 @@ float first_mu(const Channel& c, double edge_nm) {
   return kb_as_f32(low);
 }
 
-/// All edges, ascending.
-struct Edges {
-  std::vector<double> min, max, all;
-
-  explicit Edges(const ChannelList& channels) {
-    for (const Channel& c : channels) {
-      min.push_back(c.min_nm);
-      max.push_back(c.max_nm);
-    }
-    std::ranges::sort(min);
-    std::ranges::sort(max);
-    std::ranges::set_union(min, max, std::back_inserter(all));
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+/// All edges, ascending, and what channels that cover a wavelength come to: the sum of 1 / width.
+class Edges {
+ public:
+  explicit Edges(const ChannelList& channels) : channels_(channels) {
+    for (const Channel& c : channels) all_.insert(all_.end(), {c.min_nm, c.max_nm});
+    std::ranges::sort(all_);
+    all_.erase(std::unique(all_.begin(), all_.end()), all_.end());
+    for (const double edge_nm : all_) density_.push_back(density_at(edge_nm));
   }
   bool overlap() const {
-    for (std::size_t k = 1; k < min.size(); ++k)
-      if (min[k] < max[k - 1]) return true;
-    return false;
+    return std::ranges::any_of(all_, [&](double edge_nm) {
+      return std::ranges::count_if(channels_, [&](const Channel& c) { return covers(c, edge_nm); }) > 1;
+    });
   }
-  kb_u32 cover(double lambda_nm) const {
-    const auto up_to = [&](const std::vector<double>& edges) {
-      return std::ranges::upper_bound(edges, lambda_nm) - edges.begin();
-    };
-    return static_cast<kb_u32>(std::max<std::ptrdiff_t>(1, up_to(min) - up_to(max)));
+  /// The edges inside a channel.
+  std::pair<std::size_t, std::size_t> inside(const Channel& c) const {
+    const auto place = [&](auto at) { return static_cast<std::size_t>(at - all_.begin()); };
+    return {place(std::ranges::upper_bound(all_, c.min_nm)), place(std::ranges::lower_bound(all_, c.max_nm))};
   }
+  double edge_nm(std::size_t i) const { return all_[i]; }
+  /// What a channel's part is divided by from edge i to the next.
+  float divisor(const Channel& c, std::size_t i) const {
+    return static_cast<float>(std::max(1.0, c.width_nm() * density_[i]));
+  }
+
+ private:
+  static bool covers(const Channel& c, double lambda_nm) {
+    return c.min_nm <= lambda_nm && lambda_nm < c.max_nm;
+  }
+  double density_at(double lambda_nm) const {
+    double sum = 0;
+    for (const Channel& c : channels_)
+      if (covers(c, lambda_nm)) sum += 1 / c.width_nm();
+    return sum;
+  }
+
+  const ChannelList& channels_;
+  std::vector<double> all_, density_;
 };
 
 }  // namespace
@@ -59,22 +74,22 @@ ChannelCover make_channel_cover(const ChannelList& channels, std::size_t max_byt
   result.overlapping = edges.overlap();
   if (!result.overlapping) return result;
   for (const Channel& c : channels) {
-    kb_u32 cover = edges.cover(c.min_nm);
-    result.cover.push_back({static_cast<kb_u32>(result.breaks.size()), cover});
-    for (auto edge = std::ranges::upper_bound(edges.all, c.min_nm);
-         edge != edges.all.end() && *edge < c.max_nm; ++edge) {
-      if (edges.cover(*edge) == cover) continue;
-      cover = edges.cover(*edge);
-      result.breaks.push_back({first_mu(c, *edge), cover});
+    const auto inside = edges.inside(c);
+    float divisor = edges.divisor(c, inside.first - 1);
+    result.cover.push_back({static_cast<kb_u32>(result.breaks.size()), divisor});
+    for (std::size_t i = inside.first; i < inside.second; ++i) {
+      if (edges.divisor(c, i) == divisor) continue;
+      divisor = edges.divisor(c, i);
+      result.breaks.push_back({first_mu(c, edges.edge_nm(i)), divisor});
       if (result.breaks.size() * sizeof(KbCoverBreak) > max_bytes) {
         throw InputError(fmt::format(
-            "channels: {} channels overlap so much that counting how many cover a wavelength takes more than "
+            "channels: {} channels overlap so much that what they share of each wavelength takes more than "
             "{} bytes; sensor responses of them can be applied after rendering (kiloband sensor)",
             channels.size(), max_bytes));
       }
     }
   }
-  result.cover.push_back({static_cast<kb_u32>(result.breaks.size()), 1});
+  result.cover.push_back({static_cast<kb_u32>(result.breaks.size()), 1.0f});
   return result;
 }
 

@@ -52,6 +52,27 @@ TEST(Responses, NamedBandsOfASpecfilm) {
   }
 }
 
+/// A band of the whole visible besides does not spoil the estimate of one of 1 nm, in any mode of wavelengths. The narrow one has 300 / 301
+/// of it, 1.9934; a sample of the wide one that falls there, of 64 two at most, adds 1.9934 / 64.
+TEST(Responses, AWideBandLeavesANarrowOneItsAccuracy) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", sky_scene("specfilm", R"(
+    <spectrum name="all" value="400:1, 700:1"/>
+    <spectrum name="line" value="470:2, 471:2"/>)"));
+  for (const char* wavelengths : {"shared", "per-path"}) {
+    for (const char* seed : {"1", "2", "3"}) {
+      const Outcome outcome =
+          run_program(folder, quiet_render("scene.xml", {"--spp", "64", "--replicates", "1", "--wavelengths",
+                                                         wavelengths, "--seed", seed, "-o", "out.hdr"}));
+      ASSERT_EQ(outcome.code, 0) << outcome.err;
+      const Cube cube = read_cube(folder / "out.hdr");
+      ASSERT_EQ(cube.info.bands.size(), 2u);
+      expect_band(cube, 0, "all", 300, 1e-3);
+      expect_band(cube, 1, "line", 2, 0.07);
+    }
+  }
+}
+
 TEST(Responses, CommandLineBandsBeatTheFilms) {
   const TemporaryFolder folder;
   folder.write("scene.xml", sky_scene("specfilm", R"(<spectrum name="ramp" value="500:0, 600:1"/>)"));

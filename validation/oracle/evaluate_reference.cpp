@@ -274,11 +274,14 @@ std::vector<double> evaluate_path_reference(const FlatScene& scene, const Derive
     const Point at{scene, (1 - mu) * channel.min_nm + mu * channel.max_nm, channel.width_nm(),
                    static_cast<uint32_t>(k), mu};
     values[k] = channel_value(at, paths, paths.paths[path], static_cast<uint32_t>(k));
-    const auto covers = [&](const Channel& c) { return c.min_nm <= at.lambda_nm && at.lambda_nm < c.max_nm; };
-    const auto cover =
-        std::max<std::ptrdiff_t>(1, std::count_if(scene.channels.begin(), scene.channels.end(), covers));
+    double others = 0;  // channel widths for each of which one of the others falls on this wavelength
+    for (std::size_t j = 0; j < channels; ++j) {
+      const Channel& c = scene.channels[j];
+      if (j != k && c.min_nm <= at.lambda_nm && at.lambda_nm < c.max_nm)
+        others += channel.width_nm() / c.width_nm();
+    }
     for (std::size_t d = 0; d < derived.responses.size(); ++d) {
-      values[channels + d] += derived.responses[d](at.lambda_nm) / static_cast<double>(cover) * values[k];
+      values[channels + d] += derived.responses[d](at.lambda_nm) / (1 + others) * values[k];
     }
   }
   return values;

@@ -13,8 +13,7 @@ namespace kiloband {
 
 /// One path, one wavelength offset, scalar double precision, as plain as it can be. Returns K
 /// channel values followed by the derived ones, in W m^-2 sr^-1 (channel_scale undone). A derived channel d
-/// is sum_k response_d(lambda_k) / cover_k * value_k, where cover_k >= 1 is the number of channels with
-/// min_nm <= lambda_k < max_nm.
+/// is sum_k response_d(lambda_k) share_k value_k (DerivedChannels).
 std::vector<double> evaluate_path_reference(const FlatScene& scene, const DerivedChannels& derived,
                                             const cpu::PathBuffer& paths, std::size_t path, double mu);
 

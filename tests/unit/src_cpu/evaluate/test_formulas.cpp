@@ -181,12 +181,13 @@ TEST_P(Formulas, DerivedChannelsByHand) {
   EXPECT_EQ(evaluator.derived_scale(0), 16);
   std::vector<float> sums(evaluator.stride(), 0.0f);
   evaluator.add_shared(paths, 0.5, FollowingRows(evaluator, sums));
-  // At 505 nm two channels overlap, at 550 nm channel 1 is alone.
-  EXPECT_NEAR(sums[evaluator.derived_offset()] * 16.0, 0.5 * 30 + 300, 1e-4);
-  EXPECT_NEAR(sums[evaluator.derived_offset() + 1] * 16.0, 0.05 * 0.5 * 30 + 0.5 * 300, 1e-4);
+  // At 505 nm two channels overlap, of 10 and 100 nm, at 550 nm channel 1 is alone.
+  constexpr double kShare = (1 / 10.0) / (1 / 10.0 + 1 / 100.0);
+  EXPECT_NEAR(sums[evaluator.derived_offset()] * 16.0, kShare * 30 + 300, 1e-4);
+  EXPECT_NEAR(sums[evaluator.derived_offset() + 1] * 16.0, 0.05 * kShare * 30 + 0.5 * 300, 1e-4);
   const std::vector<double> expected = evaluate_path_reference(scene, derived, paths, 0, 0.5);
-  EXPECT_NEAR(expected[3], 315, 1e-9);
-  EXPECT_NEAR(expected[4], 150.75, 1e-9);
+  EXPECT_NEAR(expected[3], kShare * 30 + 300, 1e-9);
+  EXPECT_NEAR(expected[4], 0.05 * kShare * 30 + 0.5 * 300, 1e-9);
 }
 
 TEST_P(Formulas, FaintEmissionDoesNotUnderflow) {

@@ -1,4 +1,4 @@
-// Channel tables: node values, the error that they state, jumps, and the counts of covering channels.
+// Channel tables: node values, the error that they state, jumps, and how overlapping channels share a wavelength.
 #include <cmath>
 
 #include "base/error.hpp"
@@ -217,14 +217,15 @@ TEST(ChannelCover, IsExactForEveryOffset) {
   ASSERT_TRUE(cover.overlapping);
   const auto counted = [&](std::size_t k, float mu) {
     const double lambda = (1 - static_cast<double>(mu)) * channels[k].min_nm + mu * channels[k].max_nm;
-    return std::max<long>(1, std::ranges::count_if(channels, [&](const Channel& c) {
-                            return c.min_nm <= lambda && lambda < c.max_nm;
-                          }));
+    double sum = 0;
+    for (const Channel& c : channels)
+      if (c.min_nm <= lambda && lambda < c.max_nm) sum += 1 / c.width_nm();
+    return static_cast<float>(std::max(1.0, channels[k].width_nm() * sum));
   };
   const auto looked_up = [&](std::size_t k, float mu) {
-    long value = cover.cover[k].cover;
+    float value = cover.cover[k].divisor;
     for (kb_u32 i = cover.cover[k].first; i < cover.cover[k + 1].first; ++i)
-      if (cover.breaks[i].mu <= mu) value = cover.breaks[i].cover;
+      if (cover.breaks[i].mu <= mu) value = cover.breaks[i].divisor;
     return value;
   };
   for (std::size_t k = 0; k < channels.size(); ++k) {
