@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "base/utf8.hpp"
 #include "spectral/files/text_table.hpp"
 
 namespace kiloband {
@@ -121,19 +122,6 @@ constexpr Spelling kSquares[] = {{"square meter", "m2"},
 
 void replace(std::string& text, std::span<const Spelling> spellings) {
   for (const auto& [from, to] : spellings) replace_all(text, from, to);
-}
-
-/// Whether the bytes are sequences of UTF-8; overlong ones and surrogates, which no Latin-1 text has either, count.
-bool is_utf8(std::string_view text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[at++]);
-    if (lead < 0x80) continue;
-    int more = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : 1;
-    if (lead < 0xC2 || lead > 0xF4) return false;
-    for (; more > 0; --more)
-      if (at >= text.size() || (static_cast<unsigned char>(text[at++]) & 0xC0) != 0x80) return false;
-  }
-  return true;
 }
 
 /// "cm -1", as copied from a page: "cm-1".
