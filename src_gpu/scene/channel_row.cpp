@@ -6,8 +6,6 @@
 namespace kiloband::opencl {
 namespace {
 
-/// Edges of channels and of data that agree to this fraction are the same wavelength.
-constexpr double kSameWavelength = 1e-11;
 /// A node this close to a kink, in cells, meets it.
 constexpr double kOnNode = 1e-9;
 
@@ -20,13 +18,16 @@ bool is_jump(const RowFunction& row, double lambda_nm) {
       row.jumps_nm, [&](double j) { return std::abs(lambda_nm - j) <= kSameWavelength * lambda_nm; });
 }
 
-/// The row at node j of a channel, as the limit from inside the channel.
+}  // namespace
+
 double node_value(const RowFunction& row, const Channel& c, uint32_t j, uint32_t cells) {
   double lambda_nm = lambda_at(c, static_cast<double>(j) / cells);
   if ((j == 0 || j == cells) && is_jump(row, lambda_nm))
     lambda_nm *= 1 + (j == 0 ? 10 : -10) * kSameWavelength;
   return row.value(lambda_nm);
 }
+
+namespace {
 
 /// The kinks inside one channel.
 struct ChannelKinks {

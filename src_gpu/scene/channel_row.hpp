@@ -12,6 +12,9 @@
 
 namespace kiloband::opencl {
 
+/// Edges of channels and of data that agree to this fraction are the same wavelength.
+inline constexpr double kSameWavelength = 1e-11;
+
 /// A function of wavelength that is linear, or at least smooth, between its kinks.
 struct RowFunction {
   std::function<double(double)> value;  // of lambda_nm
@@ -36,6 +39,9 @@ struct RowCells {
 /// channel gets as many as fit `most`, so that the ramp in the jump's place is narrow.
 RowCells choose_cells(const RowFunction& row, const ChannelList& channels, double wanted, double accepted,
                       uint32_t most);
+
+/// The row at node j of a channel, as the limit from inside the channel.
+double node_value(const RowFunction& row, const Channel& c, uint32_t j, uint32_t cells);
 
 /// The error of a given number of cells.
 double error_of_cells(const RowFunction& row, const ChannelList& channels, uint32_t cells);

@@ -9,17 +9,15 @@
 namespace kiloband::opencl {
 namespace {
 
-/// Edges, kinks and jumps that agree to this fraction are the same wavelength.
-constexpr double kSame = 1e-11;
 /// Steps of a curved row from break to break.
 constexpr int kCurvedSteps = 64;
 
 /// A row between two wavelengths, without a break inside, has its limits from inside there.
 double right_of(const RowFunction& row, double lambda_nm) {
-  return row.value(lambda_nm * (1 + 10 * kSame));
+  return row.value(lambda_nm * (1 + 10 * kSameWavelength));
 }
 double left_of(const RowFunction& row, double lambda_nm) {
-  return row.value(lambda_nm * (1 - 10 * kSame));
+  return row.value(lambda_nm * (1 - 10 * kSameWavelength));
 }
 
 /// All kinks and jumps, ascending, each once.
@@ -27,15 +25,15 @@ std::vector<double> breaks_of(const RowFunction& row) {
   std::vector<double> all = row.kinks_nm;
   all.insert(all.end(), row.jumps_nm.begin(), row.jumps_nm.end());
   std::ranges::sort(all);
-  const auto same = [](double a, double b) { return b - a <= kSame * b; };
+  const auto same = [](double a, double b) { return b - a <= kSameWavelength * b; };
   all.erase(std::unique(all.begin(), all.end(), same), all.end());
   return all;
 }
 
 /// Those strictly between two wavelengths.
 std::span<const double> between(const std::vector<double>& breaks, double low_nm, double high_nm) {
-  const auto first = std::ranges::upper_bound(breaks, low_nm * (1 + kSame));
-  const auto end = std::ranges::lower_bound(breaks, high_nm * (1 - kSame));
+  const auto first = std::ranges::upper_bound(breaks, low_nm * (1 + kSameWavelength));
+  const auto end = std::ranges::lower_bound(breaks, high_nm * (1 - kSameWavelength));
   return first < end ? std::span<const double>(first, end) : std::span<const double>();
 }
 
@@ -63,9 +61,7 @@ double missed_integral(const RowFunction& row, const std::vector<double>& breaks
                        uint32_t cells) {
   const std::span<const double> inside = between(breaks, c.min_nm, c.max_nm);
   const auto edge_nm = [&](double j) { return c.min_nm + c.width_nm() * j / cells; };
-  const auto node = [&](double j) {
-    return j == 0 ? right_of(row, c.min_nm) : j == cells ? left_of(row, c.max_nm) : row.value(edge_nm(j));
-  };
+  const auto node = [&](double j) { return node_value(row, c, static_cast<uint32_t>(j), cells); };
   double missed = 0, last = -1;
   for (const double at_nm : inside) {
     const double cell = std::min(std::floor((at_nm - c.min_nm) / c.width_nm() * cells), cells - 1.0);
