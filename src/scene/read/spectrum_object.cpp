@@ -121,8 +121,8 @@ Texture read_d65(ReadContext& context, const ObjectReader& object) {
   if (nested && color && &color->resolved() != nested) object.fail_here("both 'color' and a nested texture");
   if (!nested) {
     if (!color) return illuminant_d65().scaled(scale);
-    if (color->resolved().tag ==
-        "spectrum") {  // which has no D65 of its own, as numbers and colours of emission have
+    // It has no D65 of its own, as numbers and colours of emission have.
+    if (color->resolved().tag == "spectrum") {
       const Spectrum own = read_spectrum(context, object, "color", SpectrumUse::kAny, Spectrum());
       return Spectrum::product(illuminant_d65(), own).scaled(scale);
     }
