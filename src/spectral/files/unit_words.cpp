@@ -69,8 +69,10 @@ class WordReader {
   }
 
   std::size_t behind_per(std::size_t from) const {
-    const bool per = lower(from, 3) == "per" && (at(from + 3) == ' ' || at(from + 3) == '_');
-    return per ? skip_blanks(from + 4) : from;
+    const std::size_t end = from + 3;  // of the word, or beyond the text
+    const bool per =
+        end < text_.size() && lower(from, 3) == "per" && (text_[end] == ' ' || text_[end] == '_');
+    return per ? skip_blanks(end + 1) : from;
   }
 
   /// A length with what makes it an inverse one or a multiple; nothing where it is a length alone, which is a word like others.
