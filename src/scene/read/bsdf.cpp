@@ -175,24 +175,6 @@ BsdfModel read_two_sided(ReadContext& context, const ObjectReader& object) {
   return bsdf;
 }
 
-/// A share from 0 to 1: a number or a bitmap, of colours their luminance.
-Texture read_share(ReadContext& context, const ObjectReader& object, const std::string& name,
-                   const Texture& fallback) {
-  Node* node = object.find(name);
-  Texture share =
-      node ? read_texture_node(context, *node, object.label() + ": " + name, SpectrumUse::kReflectance)
-           : fallback;
-  if (auto board = number_board(share)) return board;
-  if (std::holds_alternative<std::shared_ptr<const CheckerboardTexture>>(share))
-    object.fail_at(name, name + ": a checkerboard must have two numbers here");
-  if (std::holds_alternative<std::shared_ptr<const SpectralBitmapTexture>>(share))
-    object.fail_at(name, name + ": a spectral_bitmap is not supported here");
-  if (const auto* spectrum = std::get_if<Spectrum>(&share); spectrum && !spectrum->is_constant())
-    warn(context.sink, object.value_place(name).position(),
-         object.label() + ": " + name + ": one number for all wavelengths: the mean over the bands is taken");
-  return share;
-}
-
 BsdfModel read_mask(ReadContext& context, const ObjectReader& object) {
   MaskBsdf bsdf;
   bsdf.opacity = read_share(context, object, "opacity", bsdf.opacity);

@@ -87,6 +87,10 @@ Texture read_texture_object(ReadContext& context, Node& node);
 /// A checkerboard of two numbers, where a number is wanted, as a bitmap of 2 x 2 texels; null for any other texture. As in Mitsuba 3.9.1
 /// color1 is where its colours have color0.
 std::shared_ptr<const BitmapTexture> number_board(const Texture& texture);
+/// A share from 0 to 1, one number for all wavelengths or a bitmap of them: of colours their luminance, of other spectra the mean of
+/// their data, with a warning.
+Texture read_share(ReadContext& context, const ObjectReader& object, const std::string& name,
+                   const Texture& fallback);
 /// A <texture type="spectral_bitmap">.
 Texture read_spectral_bitmap(ReadContext& context, const ObjectReader& object);
 /// throws InputError  values or mixtures above 1, endmembers that describe emission

@@ -75,8 +75,8 @@ uint32_t SurfaceCompiler::add(const KbSurface& record) {
 
 void SurfaceCompiler::set_share(const Texture& texture, const SpectrumSource& use, uint32_t& ref,
                                 float& constant) {
-  if (const auto* spectrum = std::get_if<Spectrum>(&texture)) {
-    constant = static_cast<float>(spectra_.guide_mean(*spectrum));
+  if (const auto* spectrum = std::get_if<Spectrum>(&texture); spectrum && spectrum->is_constant()) {
+    constant = static_cast<float>((*spectrum)(550));
   } else if (const auto* image = std::get_if<std::shared_ptr<const BitmapTexture>>(&texture)) {
     ref = KB_REF_BITMAP | textures_.bitmap(*image, BitmapUse::kOpacity);
   } else if (const auto* attribute = std::get_if<std::shared_ptr<const MeshAttributeTexture>>(&texture)) {

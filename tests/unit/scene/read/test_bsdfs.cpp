@@ -217,20 +217,35 @@ TEST(SceneBsdf, TwoSidedAndMask) {
   EXPECT_TRUE(std::holds_alternative<TwoSidedBsdf>(mask.nested->model));
 }
 
-/// A share is one number: a spectrum's mean is taken aloud.
-TEST(SceneBsdf, SpectraAsSharesAreWarnedOf) {
-  const auto warnings = [](const std::string& opacity) {
+/// Neither the channels of an image nor its guide bands may change what is where: the luminance and the mean of the data ask for none.
+TEST(SceneBsdf, SpectraAsSharesAreOneNumber) {
+  const auto share_of = [](const std::string& opacity, std::string* warnings) {
     Messages messages;
-    read(complete_scene("<bsdf type=\"mask\">" + opacity + "<bsdf type=\"diffuse\"/></bsdf>"), "/nonexistent",
-         {}, messages.lines());
-    return messages.texts;
+    const SceneDescription scene = read(complete_scene("<shape type=\"disk\"><bsdf type=\"mask\">" + opacity +
+                                                       "<bsdf type=\"diffuse\"/></bsdf></shape>"),
+                                        "/nonexistent", {}, messages.lines());
+    for (const std::string& text : messages.texts) *warnings += text + "\n";
+    return value(std::get<MaskBsdf>(scene.shapes.at(0).bsdf->model).opacity);
   };
-  EXPECT_TRUE(warnings("<spectrum name=\"opacity\" value=\"0.5\"/>").empty());
-  EXPECT_TRUE(warnings("<rgb name=\"opacity\" value=\"0.5\"/>").empty());
-  const auto of_spectrum = warnings("<spectrum name=\"opacity\" value=\"400:0, 700:1\"/>");
-  ASSERT_EQ(of_spectrum.size(), 1u);
-  EXPECT_NE(of_spectrum[0].find("warning: mask bsdf: opacity: one number for all wavelengths"),
-            std::string::npos);
+  struct Case {
+    std::string opacity;
+    double share, tolerance;
+    std::string warning;
+  };
+  const std::vector<Case> cases = {
+      {R"(<spectrum name="opacity" value="0.5"/>)", 0.5, 0, ""},
+      {R"(<rgb name="opacity" value="0.5"/>)", 0.5, 0, ""},
+      {R"(<spectrum name="opacity" value="400:0, 700:1"/>)", 0.5, 1e-12,
+       "the mean of its data, 0.5, is taken"},
+      {R"(<spectrum name="opacity" value="8000:0.2, 9000:0.2, 10000:0.6"/>)", 0.3, 1e-12, "0.3, is taken"},
+      {R"(<rgb name="opacity" value="0.9, 0.3, 0.1"/>)", 0.2126 * 0.9 + 0.7152 * 0.3 + 0.0722 * 0.1, 2e-3,
+       "mask bsdf: opacity: one number for all wavelengths: its luminance, 0.41"}};
+  for (const Case& c : cases) {
+    std::string warnings;
+    EXPECT_NEAR(share_of(c.opacity, &warnings), c.share, c.tolerance) << c.opacity;
+    EXPECT_EQ(warnings.empty(), c.warning.empty()) << warnings;
+    EXPECT_NE(warnings.find(c.warning), std::string::npos) << warnings;
+  }
 }
 
 TEST(SceneBsdf, CheckerboardsAreSharedThroughReferences) {
