@@ -61,7 +61,7 @@ KbSurface empty_surface() {
 SurfaceCompiler::SurfaceCompiler(const CompileContext& context, TextureCompiler& textures,
                                  MaterialCompiler& materials, ThermalCompiler& thermal)
     : out_(context.out),
-      spectra_(context.spectra),
+      sink_(context.options.sink),
       current_(context.mesh),
       textures_(textures),
       materials_(materials),
@@ -86,6 +86,30 @@ void SurfaceCompiler::set_share(const Texture& texture, const SpectrumSource& us
   }
 }
 
+/// Whether a part of it, or all of it, refracts light: panes do not, nor does the opening of a mask.
+bool SurfaceCompiler::refracts(const KbSurface& surface, bool wholly) const {
+  if (surface.flags & KB_SURFACE_BLEND) {
+    const bool first = refracts(out_.surfaces[surface.first], wholly);
+    const bool second = refracts(out_.surfaces[surface.second], wholly);
+    return wholly ? first && second : first || second;
+  }
+  if (!(surface.flags & KB_SURFACE_TRANSMISSIVE)) return false;
+  const KbMaterial& material = out_.materials[surface.front];
+  const bool bends = material.eta != 1 || (material.flags & KB_MATERIAL_DISPERSIVE);
+  const bool open = surface.opacity_ref != KB_NONE || surface.opacity < 1;
+  return bends && !(material.flags & KB_MATERIAL_THIN) && !(wholly && open);
+}
+
+/// Inside glass of index n the radiance of equilibrium is n² B. What is opaque emits B there, an opening lets B in and n² B out.
+void SurfaceCompiler::warn_of_inside(const KbSurface& surface, const Bsdf& bsdf, uint32_t heat) const {
+  if (heat == KB_NONE || thermal_.heats()[heat].temperature_k == 0) return;
+  if (!refracts(surface, false) || refracts(surface, true)) return;
+  warn(sink_, bsdf.position,
+       describe(bsdf) +
+           ": thermal emission: a dielectric in a mask, or blended with what does not refract: a closed body "
+           "of it is not in equilibrium with its surroundings");
+}
+
 /// Blends are outermost: what is in a mask or a twosided bsdf was moved out.
 uint32_t SurfaceCompiler::blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t heat) {
   out_.features.blend = true;
@@ -93,8 +117,8 @@ uint32_t SurfaceCompiler::blend(const BlendBsdf& model, const Bsdf& bsdf, uint32
   record.flags = KB_SURFACE_BLEND;
   set_share(model.weight, {describe(bsdf) + ": weight", bsdf.position, false}, record.weight_ref,
             record.weight);
-  record.first = surface(model.first, heat);
-  record.second = surface(model.second, heat);
+  record.first = part(model.first, heat);
+  record.second = part(model.second, heat);
   const KbSurface& first = out_.surfaces[record.first];
   record.front = first.front;
   record.back = first.back;
@@ -103,6 +127,13 @@ uint32_t SurfaceCompiler::blend(const BlendBsdf& model, const Bsdf& bsdf, uint32
 }
 
 uint32_t SurfaceCompiler::surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
+  const bool is_new = !surfaces_.find(*bsdf, heat);
+  const uint32_t index = part(bsdf, heat);
+  if (is_new) warn_of_inside(out_.surfaces[index], *bsdf, heat);
+  return index;
+}
+
+uint32_t SurfaceCompiler::part(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat) {
   if (const auto* known = surfaces_.find(*bsdf, heat)) return *known;
   const std::size_t lookups = current_.lookups;
   const BsdfPointer outermost = distributed(*bsdf);

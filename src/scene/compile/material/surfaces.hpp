@@ -20,12 +20,16 @@ class SurfaceCompiler {
  private:
   /// A number, or a reference to a bitmap: a share from 0 to 1.
   void set_share(const Texture& texture, const SpectrumSource& use, uint32_t& ref, float& constant);
+  /// A shape's surface, or a part of a blend.
+  uint32_t part(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
   uint32_t new_surface(const std::shared_ptr<const Bsdf>& bsdf, uint32_t heat);
   uint32_t blend(const BlendBsdf& model, const Bsdf& bsdf, uint32_t heat);
   uint32_t add(const KbSurface& record);
+  bool refracts(const KbSurface& surface, bool wholly) const;
+  void warn_of_inside(const KbSurface& surface, const Bsdf& bsdf, uint32_t heat) const;
 
   FlatScene& out_;
-  SpectrumTableBuilder& spectra_;
+  const DiagnosticSink& sink_;
   CurrentMesh& current_;
   TextureCompiler& textures_;
   MaterialCompiler& materials_;

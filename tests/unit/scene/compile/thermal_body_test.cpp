@@ -55,6 +55,28 @@ TEST(ThermalBody, HotGasHasOneIndexAroundIt) {
     EXPECT_EQ(body_flattened(boundary + gas(true)), "") << boundary;
 }
 
+/// Such bodies are up to 14 % off Planck's law: nobody should learn it from the image.
+TEST(ThermalBody, PartsThatDoNotRefractAreWarnedOf) {
+  const auto hot = [](const std::string& kelvin) {
+    return "<emitter type='thermal'>" + number("temperature", kelvin) + "</emitter>";
+  };
+  const std::string warning =
+      "bsdf: thermal emission: a dielectric in a mask, or blended with what does not refract: a closed body of it "
+      "is not in equilibrium with its surroundings";
+  const std::string flat = bsdf("dielectric", number("int_ior", "1.5") + number("ext_ior", "1.5"));
+  for (const std::string& surface :
+       {mask("0.3", kGlass), blend(kGlass, kPaint), blend(kPaint, bsdf("roughdielectric")),
+        blend(kGlass, kPane), blend(kGlass, mask("0.3", kGlass)), blend(kPaint, blend(kGlass, kPaint))}) {
+    EXPECT_NE(body_flattened(surface + hot("900")).find(warning), std::string::npos) << surface;
+    EXPECT_EQ(body_flattened(surface + hot("0")), "") << surface;
+    EXPECT_EQ(body_flattened(surface), "") << surface;
+  }
+  for (const std::string& surface :
+       {kGlass, kPane, kPaint, mask("1", kGlass), mask("0.3", kPaint), mask("0.3", kPane),
+        blend(kGlass, kGlass), blend(kPane, kPaint), blend(flat, kPaint)})
+    EXPECT_EQ(body_flattened(surface + hot("900")), "") << surface;
+}
+
 TEST(ThermalBody, EmissivitiesOfExtremelyBrushedMetalsAreWarnedOf) {
   const auto brushed = [](const std::string& type, const std::string& u, const std::string& v,
                           const std::string& more = "") {
