@@ -140,7 +140,8 @@ class SameThreadRender final : public ViewedImage, public RenderControls {
   void read(const std::function<void(const ImageView&)>& look) override {
     if (!state_.film()) throw InputError("there is no image yet");
     const auto [width, height] = state_.full_size();
-    look({*state_.film(), state_.status().newest, width, height, [this] { return state_.metadata(); }});
+    look({*state_.film(), state_.status().newest, state_.status().blank, width, height,
+          [this] { return state_.metadata(); }});
   }
   unsigned threads() const override { return 1; }
   RenderControls* controls() override { return this; }

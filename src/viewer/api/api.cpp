@@ -238,17 +238,25 @@ Response Api::save(const json& wanted) {
   const std::string format = get_text(wanted, "format").value_or("");
   const std::filesystem::path file =
       new_file(*settings_.output_dir, get_text(wanted, "name").value_or(""), format);
+  const auto check = [](const ImageView& seen) {
+    if (seen.blank) throw InputError("there is no image yet: the render has no sample");
+  };
   if (format == "png") {
     Request parameters;
     for (const auto& [name, value] : wanted.items())
       parameters.query[name] = value.is_string() ? value.get<std::string>() : to_text(value);
     const ViewParameters view = parse_view(parameters);
     Plane plane;
-    image_.read(
-        [&](const ImageView& seen) { plane = make_plane(seen.pixels, view, responses_, image_.threads()); });
+    image_.read([&](const ImageView& seen) {
+      check(seen);
+      plane = make_plane(seen.pixels, view, responses_, image_.threads());
+    });
     save_picture(file, encode_png(show(plane, view).picture));
   } else {
-    image_.read([&](const ImageView& seen) { save_cube(file, seen); });
+    image_.read([&](const ImageView& seen) {
+      check(seen);
+      save_cube(file, seen);
+    });
   }
   return answer_json({{"files", files_of(file)}});
 }

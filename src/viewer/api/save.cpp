@@ -40,6 +40,7 @@ CubeInfo info_of(const ImageView& seen, const std::filesystem::path& file) {
   info.bands = seen.pixels.bands();
   info.variance = seen.pixels.has_variances();
   info.quantity = file.extension() == ".exr" ? Quantity::kDensity : Quantity::kIntegral;
+  info.replicates = seen.pixels.replicates();
   info.samples_per_pixel = seen.stamp.samples;
   info.metadata = seen.metadata();
   return info;

@@ -41,6 +41,7 @@ class StoredPixels final : public PixelSource {
     if (info_.variance) return copy_row(variances_, y, out);
     std::ranges::fill(out, std::numeric_limits<float>::quiet_NaN());
   }
+  uint32_t replicates() const override { return info_.replicates; }
   const CubeInfo& info() const { return info_; }
 
  private:
@@ -95,7 +96,7 @@ class StoredImage final : public ViewedImage {
     return true;
   }
   void read(const std::function<void(const ImageView&)>& look) override {
-    look({pixels_, stamp(), info().width, info().height, [this] { return info().metadata; }});
+    look({pixels_, stamp(), false, info().width, info().height, [this] { return info().metadata; }});
   }
   unsigned threads() const override { return threads_; }
   RenderControls* controls() override { return nullptr; }

@@ -37,6 +37,7 @@ struct ViewStatus {
 struct ImageView {
   const PixelSource& pixels;
   FrameStamp stamp;
+  bool blank;                        // as of ViewStatus
   uint32_t full_width, full_height;  // where pixels are those of a reduced image
   /// What a saved cube is to state. To be called while the image is looked at.
   std::function<std::map<std::string, std::string>()> metadata;

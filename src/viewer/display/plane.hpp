@@ -43,6 +43,8 @@ class PixelSource {
   virtual bool has_variances() const = 0;
   /// Variances of the means, [x][band]; NaN where they are not known. Thread-safe.
   virtual void variances(uint32_t y, std::span<float> out) const = 0;
+  /// That stand behind each variance at least: one more than its degrees of freedom; 0: not known.
+  virtual uint32_t replicates() const { return 0; }
   /// Whether pixels' errors are known to have nothing to do with each other, so that those of means of pixels follow.
   virtual bool has_independent_errors() const { return false; }
   /// The sums of all pixels of row y, [x][3]. Thread-safe for different rows, once prepare() was called with the same.

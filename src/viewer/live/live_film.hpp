@@ -52,6 +52,8 @@ class LiveFilm final : public PixelSource {
   void means(uint32_t y, std::span<float> out) const override;
   bool has_variances() const override { return film_.options().variance; }
   void variances(uint32_t y, std::span<float> out) const override;
+  /// The closed ones.
+  uint32_t replicates() const override { return has_variances() ? replicate_ : 0; }
   bool has_independent_errors() const override { return independent_errors_; }
   /// Of paths that have wavelengths of their own: pixels of a block share nothing.
   void set_independent_errors() { independent_errors_ = true; }

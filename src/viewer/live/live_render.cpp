@@ -119,7 +119,8 @@ class LiveRender final : public ViewedImage, public RenderControls {
     const LiveFilm* const film = state_.film();
     if (!film) throw InputError("there is no image yet");
     const auto [width, height] = state_.full_size();
-    look({*film, state_.status().newest, width, height, [this] { return state_.metadata(); }});
+    look({*film, state_.status().newest, state_.status().blank, width, height,
+          [this] { return state_.metadata(); }});
   }
 
   /// interrupts: what is being rendered will not be needed

@@ -59,9 +59,10 @@ bool LiveState::work() {
       set_state();
       return true;
     }
-    if (failed_ || paused_ || is_done()) return false;
+    if (failed_ || is_done()) return false;
     if (is_reduced() && seconds_since(last_moving_) > kMovingPause) move_to(sensor_, false);
-    if (is_reduced() && film_->samples() >= *status_.target_samples)
+    if (paused_ && !is_reduced()) return false;
+    if (paused_ || (is_reduced() && film_->samples() >= *status_.target_samples))
       std::this_thread::sleep_for(kRest);
     else
       render_some();

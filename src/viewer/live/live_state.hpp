@@ -20,7 +20,7 @@ class LiveState {
   LiveState(LiveOptions options, const std::atomic<bool>& interrupt);
 
   /// A piece of work: compiling, or a pass over the film (over a part of it where passes are long). A camera that nobody
-  /// has moved for a second is seen at full size from then on, in a new revision. False: nothing is left to do. What goes wrong is told by status(); throws nothing.
+  /// has moved for a second is seen at full size from then on, in a new revision, paused or not. False: nothing is left to do. What goes wrong is told by status(); throws nothing.
   bool work();
 
   /// Null: nothing was compiled.

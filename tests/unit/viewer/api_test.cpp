@@ -156,6 +156,7 @@ TEST_F(ApiOfACube, SavesOnlyUnderPlainNewNames) {
   saved->read_rows(0, 2, mean, variance);
   EXPECT_EQ(mean, cube_.values());
   EXPECT_EQ(variance, std::vector<float>(12, 4.0f));
+  EXPECT_EQ(saved->info().replicates, 5u) << "or errors would seem to be known exactly";
   EXPECT_EQ(error(post("/api/save", R"({"format": "envi", "name": "copy"})")),
             "'copy.hdr' is there already: choose another name");
   for (const char* name : {"../x", "/etc/x", "a/b", ".hidden", "", "a\\u0000b", "x\\n", "-x"}) {

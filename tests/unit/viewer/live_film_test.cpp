@@ -133,6 +133,7 @@ TEST(LiveFilm, VariancesAreThoseOfTheMean) {
     for (const float v : row) sum += v;
   }
   EXPECT_NEAR(sum / (40 * 33 * 2), 4.0 / 100, 0.05 * 4.0 / 100);
+  EXPECT_EQ(film.replicates(), 10u) << "of 1, 1, 2, 4, 8 and 5 times 16 samples";
 }
 
 TEST(LiveFilm, RestartedItIsAsNew) {

@@ -10,6 +10,8 @@
 #include "scene/read/reader.hpp"
 #include "tests/support/messages.hpp"
 #include "tests/unit/viewer/live_wall.hpp"
+#include "tests/unit/viewer/test_requests.hpp"
+#include "viewer/api/api.hpp"
 #include "viewer/api/selections.hpp"
 #include "viewer/live/camera_view.hpp"
 #include "viewer/live/scene_spectra.hpp"
@@ -209,6 +211,32 @@ TEST_F(EndlessWall, PausesAndGoesOn) {
   image_->controls()->resume();
   EXPECT_TRUE(image_->wait_for_frame(paused.newest.frame, std::chrono::seconds(20)));
   EXPECT_EQ(image_->status().newest.revision, paused.newest.revision) << "samples are kept";
+}
+
+/// It would be an image of NaN.
+TEST_F(EndlessWall, NothingIsSavedBeforeTheFirstSample) {
+  const TemporaryFolder folder;
+  ApiSettings settings;
+  settings.output_dir = folder.path();
+  Api api(*image_, settings);
+  const auto save = [&](const std::string& format) {
+    return api.answer(post_request("/api/save", R"({"name": "wall", "format": ")" + format + "\"}"),
+                      [] { return true; });
+  };
+  ASSERT_TRUE(image_->wait_for_frame(2, std::chrono::seconds(20)));
+  image_->controls()->pause();
+  EXPECT_EQ(save("exr").status, 200);
+  std::filesystem::remove(folder / "wall.exr");
+  image_->controls()->restart();
+  for (const char* const format : {"exr", "envi", "png"}) {
+    const Response refused = save(format);
+    EXPECT_EQ(refused.status, 400) << format;
+    EXPECT_NE(refused.body.find("there is no image yet"), std::string::npos) << refused.body;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  image_->controls()->resume();
+  ASSERT_TRUE(image_->wait_for_frame(image_->status().newest.frame, std::chrono::seconds(20)));
+  EXPECT_EQ(save("png").status, 200);
 }
 
 }  // namespace

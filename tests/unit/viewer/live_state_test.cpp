@@ -173,6 +173,22 @@ TEST_F(LiveStateTest, ACameraThatIsLeftMovingIsSeenAtFullSize) {
   EXPECT_EQ(state_->scene_json()["camera"]["origin"], json({1.0, 0.0, 4.0}));
 }
 
+/// It could be neither saved nor seen whole until the render went on.
+TEST_F(LiveStateTest, APausedCameraThatIsLeftMovingGetsItsFullSize) {
+  start(wall_options(5));
+  work();
+  state_->pause(true);
+  state_->set_camera({{"origin", {1, 0, 4}}, {"moving", true}});
+  EXPECT_EQ(state_->film()->width(), 20u);
+  work();
+  EXPECT_EQ(state_->film()->width(), 40u);
+  EXPECT_EQ(state_->status().state, "paused");
+  EXPECT_TRUE(state_->status().blank);
+  state_->pause(false);
+  work();
+  EXPECT_EQ(state_->status().newest.samples, 5u);
+}
+
 /// A backend that is interrupted as soon as it has rendered all that it was given, from some call on.
 class LateInterrupt final : public WrappedBackend {
  public:

@@ -23,6 +23,7 @@ class ViewedCube {
     info.bands = {{{500, 510, ""}}, {{600, 620, ""}}};
     info.variance = true;
     info.samples_per_pixel = 16;
+    info.replicates = 5;
     for (int pixel = 0; pixel < 6; ++pixel)
       for (int k = 0; k < 2; ++k) values_.push_back(static_cast<float>(10 * pixel + k + 1));
     const std::vector<float> variances(values_.size(), 4.0f);
