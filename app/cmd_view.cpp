@@ -138,7 +138,8 @@ std::vector<viewer::BackendChoice> backend_choices() {
 
 /// The backend of the command line's options, changed by what a page has chosen.
 std::unique_ptr<Backend> make_chosen(const BackendOptions& given, const viewer::LiveSettings& chosen,
-                                     std::shared_ptr<const FlatScene> scene, const DiagnosticSink& sink) {
+                                     std::shared_ptr<const FlatScene> scene, const DerivedChannels& derived,
+                                     const DiagnosticSink& sink) {
   BackendOptions options = given;
   options.backend = chosen.backend;
   if (chosen.backend == "cpu") {
@@ -148,7 +149,7 @@ std::unique_ptr<Backend> make_chosen(const BackendOptions& given, const viewer::
     options.device = chosen.device;
     options.method = chosen.method;
   }
-  return make_backend(options, std::move(scene), {}, chosen.sampling, sink);
+  return make_backend(options, std::move(scene), derived, chosen.sampling, sink);
 }
 
 std::unique_ptr<viewer::ViewedImage> open_scene(const ViewOptions& options, unsigned threads,
@@ -160,6 +161,7 @@ std::unique_ptr<viewer::ViewedImage> open_scene(const ViewOptions& options, unsi
   live.settings.sampling = options.sampling.settings(1);
   LoadedScene loaded = load_scene(options.scene, sink);
   live.settings.max_depth = loaded.description.integrator.max_depth;
+  live.derived = load_responses({}, loaded, sink);
   live.settings.bands = options.scene.bands.value_or("");
   live.scene = std::move(loaded.description);
   live.channels = std::move(loaded.channels);
@@ -167,8 +169,9 @@ std::unique_ptr<viewer::ViewedImage> open_scene(const ViewOptions& options, unsi
   live.scene_name = std::filesystem::path(options.scene.scene).filename().string();
   live.backends.choices = backend_choices();
   live.backends.make = [given = options.backend, sink](const viewer::LiveSettings& chosen,
-                                                       std::shared_ptr<const FlatScene> scene) {
-    return make_chosen(given, chosen, std::move(scene), sink);
+                                                       std::shared_ptr<const FlatScene> scene,
+                                                       const DerivedChannels& derived) {
+    return make_chosen(given, chosen, std::move(scene), derived, sink);
   };
   live.samples = options.spp;
   live.memory_bytes = kMemoryBytes;

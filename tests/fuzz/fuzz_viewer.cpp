@@ -110,7 +110,8 @@ LiveOptions live_options() {
   options.settings.backend = "none";
   options.settings.method = "a";
   options.backends.choices = {{"none", "none", {}, {"a", "b"}}};
-  options.backends.make = [](const LiveSettings&, std::shared_ptr<const FlatScene> scene) {
+  options.backends.make = [](const LiveSettings&, std::shared_ptr<const FlatScene> scene,
+                             const DerivedChannels&) {
     return std::make_unique<NoBackend>(scene->channels.size());
   };
   options.memory_bytes = std::size_t{1} << 24;

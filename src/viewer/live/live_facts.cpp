@@ -72,15 +72,13 @@ void choose_backend(const json& wanted, const std::vector<BackendChoice>& choice
 }  // namespace
 
 json LiveState::scene_json() const {
-  std::vector<Band> bands;
-  for (const Channel& channel : channels_) bands.push_back({channel});
   const auto [width, height] = full_size();
   json scene{{"kind", "scene"},
              {"name", options_.scene_name},
              {"revision", status_.newest.revision},
              {"width", width},
              {"height", height},
-             {"channels", channels_json(bands)},
+             {"channels", channels_json(bands())},
              {"errors", variance_},
              {"camera", camera_json(sensor_, distance_, scene_size_)},
              {"choices", choices_json(options_.backends.choices)},
@@ -120,6 +118,7 @@ void LiveState::set_settings(const json& wanted) {
   check_members(wanted, {"backend", "device", "method", "bands", "sampler", "wavelengths", "max_depth"});
   LiveSettings settings = settings_;
   ChannelList channels = channels_;
+  DerivedChannels derived = derived_;
   choose_backend(wanted, options_.backends.choices, settings);
   choose<SamplerType>(wanted, "sampler", {"sobol", SamplerType::kSobol},
                       {"independent", SamplerType::kIndependent}, settings.sampling.sampler);
@@ -134,10 +133,12 @@ void LiveState::set_settings(const json& wanted) {
     channels = parse_channels(*bands);
     check_film(channels.size());
     edits_.check_all(options_.scene, hull(channels));
+    derived = {};  // as with --bands
     settings.bands = *bands;
   }
   settings_ = settings;
   channels_ = std::move(channels);
+  derived_ = std::move(derived);
   failed_ = false;
   status_.message.clear();
   scene_.reset();

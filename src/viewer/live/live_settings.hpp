@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/backend.hpp"
+#include "scene/description/derived_channels.hpp"
 #include "scene/description/description.hpp"
 
 namespace kiloband::viewer {
@@ -33,12 +34,15 @@ struct BackendChoice {
 struct BackendProvider {
   std::vector<BackendChoice> choices;
   /// throws InputError, DeviceError
-  std::function<std::unique_ptr<Backend>(const LiveSettings&, std::shared_ptr<const FlatScene>)> make;
+  std::function<std::unique_ptr<Backend>(const LiveSettings&, std::shared_ptr<const FlatScene>,
+                                         const DerivedChannels&)>
+      make;
 };
 
 struct LiveOptions {
   SceneDescription scene;
   ChannelList channels, guide;  // guide: empty where it is that of the channels
+  DerivedChannels derived;      // responses of a specfilm, while a page has not chosen other channels
   std::string scene_name;
   LiveSettings settings;
   BackendProvider backends;

@@ -36,6 +36,7 @@ LiveState::LiveState(LiveOptions options, const std::atomic<bool>& interrupt)
       interrupt_(interrupt),
       settings_(options_.settings),
       channels_(options_.channels),
+      derived_(options_.derived),
       sensor_(options_.scene.sensor) {
   settings_.sampling.replicates = LiveFilm::kReplicates;
   status_.state = "loading";
@@ -100,7 +101,8 @@ void LiveState::check_film(std::size_t channels) const {
 
 /// What was before goes first: two films or two acceleration structures may be more than there is memory for.
 void LiveState::compile() {
-  check_film(channels_.size());
+  const std::size_t channels = bands().size();
+  check_film(channels);
   film_ = nullptr;
   full_.reset();
   small_.reset();
@@ -109,24 +111,27 @@ void LiveState::compile() {
   scene.sensor = sensor_;
   scene.integrator.max_depth = settings_.max_depth;
   scene_ = compile_scene_to_move(scene, {channels_, options_.guide, options_.sink});
-  backend_ = options_.backends.make(settings_, scene_);
+  backend_ = options_.backends.make(settings_, scene_, derived_);
   units_ = backend_->film_scale();
-  const std::size_t bytes =
-      LiveFilm::bytes(film_rect(sensor_.film), channels_.size(), backend_->sum_rule(), true);
+  const std::size_t bytes = LiveFilm::bytes(film_rect(sensor_.film), channels, backend_->sum_rule(), true);
   variance_ = bytes <= options_.memory_bytes;
-  status_.memory_bytes =
-      LiveFilm::bytes(film_rect(sensor_.film), channels_.size(), backend_->sum_rule(), variance_);
+  status_.memory_bytes = LiveFilm::bytes(film_rect(sensor_.film), channels, backend_->sum_rule(), variance_);
   if (!variance_) status_.message = "no error bars: the film would be too large with them";
   full_ = make_film(sensor_);
   film_ = full_.get();
   look_along_the_axis();
 }
 
-std::unique_ptr<LiveFilm> LiveState::make_film(const Sensor& sensor) const {
+std::vector<Band> LiveState::bands() const {
   std::vector<Band> bands;
-  for (const Channel& channel : channels_) bands.push_back({channel});
-  auto film = std::make_unique<LiveFilm>(film_rect(sensor.film), std::move(bands), units_,
-                                         backend_->sum_rule(), variance_);
+  for (const Channel& channel : channels_) bands.push_back({channel, false});
+  for (const Channel& response : derived_.bands) bands.push_back({response, true});
+  return bands;
+}
+
+std::unique_ptr<LiveFilm> LiveState::make_film(const Sensor& sensor) const {
+  auto film =
+      std::make_unique<LiveFilm>(film_rect(sensor.film), bands(), units_, backend_->sum_rule(), variance_);
   if (settings_.sampling.wavelengths == WavelengthMode::kPerPath) film->set_independent_errors();
   return film;
 }
@@ -274,7 +279,7 @@ void LiveState::update_error() {
   if (!variance_ || film_ != full_.get()) return;
   if (!is_done() && seconds_since(last_error_) < kErrorInterval) return;
   last_error_ = Clock::now();
-  const std::size_t bands = channels_.size(), width = film_->width();
+  const std::size_t bands = film_->bands().size(), width = film_->width();
   ErrorSums sums(bands);
   std::vector<float> means(width * bands), variances(width * bands);
   std::vector<double> mean(bands), variance(bands);

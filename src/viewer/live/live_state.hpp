@@ -47,6 +47,8 @@ class LiveState {
   void check_film(std::size_t channels) const;
   void compile();
   void look_along_the_axis();
+  /// The film's: channels and derived ones.
+  std::vector<Band> bands() const;
   std::unique_ptr<LiveFilm> make_film(const Sensor& sensor) const;
   void use_film(bool reduced);
   void move_to(const Sensor& sensor, bool reduced);
@@ -64,6 +66,7 @@ class LiveState {
   const std::atomic<bool>& interrupt_;
   LiveSettings settings_;
   ChannelList channels_;
+  DerivedChannels derived_;
   SpectrumEdits edits_;
   Sensor sensor_;
   double distance_ = 1, scene_size_ = 1;  // m: to what the camera looks at; of the scene

@@ -42,7 +42,8 @@ std::unique_ptr<ViewedImage> start(Maker make) {
 }
 
 std::unique_ptr<ViewedImage> start(std::size_t devices) {
-  return start([devices](const LiveSettings& settings, std::shared_ptr<const FlatScene> scene) {
+  return start([devices](const LiveSettings& settings, std::shared_ptr<const FlatScene> scene,
+                         const DerivedChannels&) {
     std::vector<std::unique_ptr<Backend>> backends;
     for (std::size_t d = 0; d < devices; ++d)
       backends.push_back(cpu::make_backend(scene, {}, settings.sampling, {cpu::Isa::kAuto, 1}));
@@ -90,12 +91,13 @@ TEST(LiveDevices, ShowWhatOneShows) {
 /// What is lost with a device is had again once there is one: by a backend of its own.
 TEST(LiveDevices, AFailedRenderIsRestarted) {
   int made = 0;
-  const auto image = start([&](const LiveSettings& settings, std::shared_ptr<const FlatScene> scene) {
-    Fault fault;
-    if (++made == 1) fault = {Fault::Kind::kDevice, 2, 0, true};
-    return std::make_unique<FaultyBackend>(
-        cpu::make_backend(std::move(scene), {}, settings.sampling, {cpu::Isa::kAuto, 1}), fault);
-  });
+  const auto image = start(
+      [&](const LiveSettings& settings, std::shared_ptr<const FlatScene> scene, const DerivedChannels&) {
+        Fault fault;
+        if (++made == 1) fault = {Fault::Kind::kDevice, 2, 0, true};
+        return std::make_unique<FaultyBackend>(
+            cpu::make_backend(std::move(scene), {}, settings.sampling, {cpu::Isa::kAuto, 1}), fault);
+      });
   for (int i = 0; i < 3000 && image->status().state != "failed"; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   EXPECT_EQ(image->status().state, "failed");

@@ -134,6 +134,27 @@ TEST_F(LiveStateTest, EditsAreRightForAllChannels) {
 }
 
 /// So that an image that was changed does not pass as the scene file's.
+/// A wall of reflectance 0.5 under 1 W m^-2 sr^-1 nm^-1 is 0.5 times a response's integral over the channels.
+TEST_F(LiveStateTest, ResponsesOfAFilmAreShown) {
+  LiveOptions options = wall_options(16);
+  const Spectrum box = Spectrum::tabulated({520, 560}, {0.25, 0.25});
+  options.derived = {{"box"}, {resample(box, 500, 600)}, {{520, 560, "box"}}};
+  start(std::move(options));
+  work();
+  ASSERT_EQ(state_->status().state, "done") << state_->status().message;
+  const json channels = state_->scene_json()["channels"];
+  ASSERT_EQ(channels.size(), 5u);
+  EXPECT_EQ(channels[4]["name"], "box");
+  EXPECT_EQ(channels[4]["derived"], true);
+  const Curve curve = read_curves(*state_->film(), {{"", 0, 0, 39, 35}}, 40, 36).front();
+  EXPECT_NEAR(curve.mean[0], 0.5, 5 * curve.standard_error[0]);
+  EXPECT_NEAR(curve.mean[4], 0.5 * 0.25 * 40, 5 * curve.standard_error[4]);
+  EXPECT_LT(curve.standard_error[4], 0.1);
+  state_->set_settings({{"bands", "500:600:4"}});
+  work();
+  EXPECT_EQ(state_->scene_json()["channels"].size(), 4u) << "as with --bands";
+}
+
 TEST_F(LiveStateTest, ASavedCubeSaysWhatItIsOf) {
   start(wall_options(4));
   work();
@@ -223,8 +244,9 @@ TEST_F(LiveStateTest, ARefusedStepOfAMovingCameraLeavesTheImage) {
 TEST_F(LiveStateTest, EveryWholePassIsAFrame) {
   LiveOptions options = wall_options(6);
   options.backends.make = [this, make = options.backends.make](const LiveSettings& settings,
-                                                               std::shared_ptr<const FlatScene> scene) {
-    return std::make_unique<LateInterrupt>(make(settings, std::move(scene)), interrupt_);
+                                                               std::shared_ptr<const FlatScene> scene,
+                                                               const DerivedChannels& derived) {
+    return std::make_unique<LateInterrupt>(make(settings, std::move(scene), derived), interrupt_);
   };
   start(std::move(options));
   for (bool works = true; works;) {
@@ -261,8 +283,9 @@ TEST_F(LiveStateTest, ADeviceThatIsLostAsTheCameraMovesEndsTheRender) {
   LiveOptions options = wall_options(4);
   int made = 0;
   options.backends.make = [&made, make = options.backends.make](const LiveSettings& settings,
-                                                                std::shared_ptr<const FlatScene> scene) {
-    auto backend = make(settings, std::move(scene));
+                                                                std::shared_ptr<const FlatScene> scene,
+                                                                const DerivedChannels& derived) {
+    auto backend = make(settings, std::move(scene), derived);
     return made++ > 0 ? std::move(backend) : std::make_unique<LostInMotion>(std::move(backend));
   };
   start(std::move(options));

@@ -33,8 +33,9 @@ inline viewer::LiveOptions wall_options(uint64_t samples, const std::string& tex
   live.settings.max_depth = 3;
   live.settings.sampling.wavelengths = WavelengthMode::kPerPath;
   live.backends.choices = {{"cpu", "this one", {}, {"dpept-batch"}}};
-  live.backends.make = [](const viewer::LiveSettings& settings, std::shared_ptr<const FlatScene> scene) {
-    return cpu::make_backend(std::move(scene), {}, settings.sampling, {});
+  live.backends.make = [](const viewer::LiveSettings& settings, std::shared_ptr<const FlatScene> scene,
+                          const DerivedChannels& derived) {
+    return cpu::make_backend(std::move(scene), derived, settings.sampling, {});
   };
   live.samples = samples;
   live.threads = 2;
