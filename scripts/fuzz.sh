@@ -25,7 +25,7 @@ run_target() {
     -artifact_prefix="$out/findings/$target-")
   [ ! -f "$dictionary" ] || options+=(-dict="$dictionary")
   mkdir -p "$out/corpus/$target"
-  UBSAN_OPTIONS=print_stacktrace=1 "$out/tests/fuzz/fuzz_$target" "${options[@]}" "$out/corpus/$target" \
+  KILOBAND_FUZZ_TARGET=$target UBSAN_OPTIONS=print_stacktrace=1 "$out/tests/fuzz/fuzz_inputs" "${options[@]}" "$out/corpus/$target" \
     "tests/fuzz/corpus/$target" > "$log" 2>&1 || result=$?
   local executions edges
   executions=$(sed -n 's/^stat::number_of_executed_units: //p' "$log")

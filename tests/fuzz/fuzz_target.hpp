@@ -17,7 +17,7 @@ struct Target {
   void (*run)(std::string_view bytes);
 };
 
-/// All targets. Programs for libFuzzer hold one target each, the test of all inputs holds them all.
+/// All targets.
 std::span<const Target> targets();
 
 void scene(std::string_view bytes);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <string>
@@ -150,7 +151,9 @@ class SceneMutator {
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(uint8_t* data, std::size_t size, std::size_t max_size,
                                                unsigned seed) {
-  if (seed % 4 == 0) return LLVMFuzzerMutate(data, size, max_size);
+  static const char* const kTarget = std::getenv("KILOBAND_FUZZ_TARGET");
+  static const bool kOfScenes = kTarget && std::strcmp(kTarget, "scene") == 0;
+  if (!kOfScenes || seed % 4 == 0) return LLVMFuzzerMutate(data, size, max_size);
   const std::string before(reinterpret_cast<const char*>(data), size);
   const std::string after = kiloband::fuzz::SceneMutator(before, seed).mutate();
   if (after.size() > max_size) return LLVMFuzzerMutate(data, size, max_size);
