@@ -12,6 +12,7 @@
 #include "tests/statistical/analytic/dispersive_glass.hpp"
 #include "tests/statistical/analytic/fresnel_exact.hpp"
 #include "tests/statistical/analytic/gas/gas_scenes.hpp"
+#include "tests/support/effort.hpp"
 
 namespace kiloband::test::dispersion_test {
 namespace {
@@ -97,11 +98,15 @@ TEST_P(DegradationTest, ColouredBall) {
                            folder.path(), 2);
 }
 
+/// Both ways; without KILOBAND_THOROUGH each in one of the modes, while RoughBallOfGas has heroes in both.
 TEST_P(DegradationTest, RoughBall) {
+  const bool shared = GetParam().wavelengths == WavelengthMode::kShared;
+  Ways ways{shared ? RoughDispersion::kSpectralMis : RoughDispersion::kDegrade};
+  if (thorough()) ways.push_back(shared ? RoughDispersion::kDegrade : RoughDispersion::kSpectralMis);
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());
   expect_channels_as_alone(ball_scene(glass("roughdielectric", real("alpha", 0.2))), GetParam(),
-                           folder.path(), 1, {RoughDispersion::kDegrade, RoughDispersion::kSpectralMis});
+                           folder.path(), 1, ways);
 }
 
 /// A rough ball of glass with gas in it, in an atmosphere: what every hero's ray passes follows its light.
