@@ -168,8 +168,8 @@ std::optional<OpticalConstants> read_conductor_name(ReadContext& context, const 
 
 void read_metal(ReadContext& context, const ObjectReader& object, ConductorBsdf& bsdf) {
   const bool explicit_index = object.has("eta") || object.has("k");
-  bsdf.eta = read_spectrum(context, object, "eta", SpectrumUse::kQuantity, bsdf.eta);
-  bsdf.k = read_spectrum(context, object, "k", SpectrumUse::kQuantity, bsdf.k);
+  bsdf.eta = read_spectrum(context, object, "eta", SpectrumUse::kIndex, bsdf.eta);
+  bsdf.k = read_spectrum(context, object, "k", SpectrumUse::kIndex, bsdf.k);
   check_metal_index(bsdf.eta, object.label() + ": eta", object.value_place("eta"));
   check_metal_index(bsdf.k, object.label() + ": k", object.value_place("k"));
   if (object.has("material") && explicit_index)

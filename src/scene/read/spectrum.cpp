@@ -16,6 +16,7 @@ namespace {
 ValueKind kind_of(SpectrumUse use) {
   switch (use) {
     case SpectrumUse::kReflectance:
+    case SpectrumUse::kIndex:
       return ValueKind::kPlain;
     case SpectrumUse::kEmission:
       return ValueKind::kRadiance;
@@ -142,7 +143,7 @@ Spectrum from_spectrum(ReadContext& context, const Node& node, const std::string
 Texture from_object(ReadContext& context, Node& node, const std::string& label, SpectrumUse use) {
   if (auto spectrum = read_spectrum_object(context, node, use)) return *spectrum;
   Texture texture = read_texture_object(context, node);
-  if (use == SpectrumUse::kQuantity || use == SpectrumUse::kAbsorption)
+  if (use == SpectrumUse::kQuantity || use == SpectrumUse::kIndex || use == SpectrumUse::kAbsorption)
     fail(node.type_place, label + ": a texture is not supported here");
   return texture;
 }

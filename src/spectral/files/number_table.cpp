@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spectral/files/powers_of_ten.hpp"
 #include "spectral/files/text_table.hpp"
 
 namespace kiloband {
@@ -154,7 +155,8 @@ std::string column_text(const NumberTable& table, std::size_t column) {
     for (const std::string& field : *line) joined += (joined.empty() ? "" : " ") + field;
     whole = joined + " ; " + whole;
     const bool is_title = std::ranges::any_of(*line, [](const std::string& field) { return field.empty(); });
-    if (line->size() == table.row_fields && !is_title) of_column += line->at(column) + " ; ";
+    const bool is_parted = std::ranges::any_of(*line, is_bare_power_of_ten);  // from its unit, at a blank
+    if (line->size() == table.row_fields && !is_title && !is_parted) of_column += line->at(column) + " ; ";
   }
   return of_column.empty() || unit_has_a_field_of_its_own(table) ? whole : of_column;
 }

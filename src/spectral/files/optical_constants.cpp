@@ -171,9 +171,14 @@ Found read_text(const std::filesystem::path& file, const std::string& text, cons
   const auto unit = stated_wavelength_unit(table);
   report_assumed_units(table, unit.has_value(), {}, ValueKind::kPlain, sink);
   const WavelengthAxis axis = axis_in(table, unit);
+  const auto in_column = [&](std::size_t column) {
+    const ValueScale scale = scale_of_column(table, column, ValueKind::kPlain, sink);
+    report_small_percents(table, column, scale, sink);
+    return column_spectrum(table, axis, column, scale);
+  };
   Found found;
-  found.n = column_spectrum(table, axis, columns.n, {});
-  if (columns.k > 0) found.k = column_spectrum(table, axis, columns.k, {});
+  found.n = in_column(columns.n);
+  if (columns.k > 0) found.k = in_column(columns.k);
   return found;
 }
 

@@ -82,6 +82,12 @@ std::size_t end_with_factor(std::string_view text, std::size_t end) {
 
 }  // namespace
 
+bool is_bare_power_of_ten(std::string_view text) {
+  const bool times = !text.empty() && is_times(text.front());
+  const std::string_view number = text.substr(times ? 1 : 0);
+  return power_of_ten(number) && (times || !to_number(number));
+}
+
 std::pair<std::size_t, std::size_t> with_powers_of_ten(std::string_view text, std::size_t begin,
                                                        std::size_t end) {
   return {begin_with_factor(text, begin, end), end_with_factor(text, end)};

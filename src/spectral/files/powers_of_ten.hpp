@@ -13,4 +13,7 @@ namespace kiloband {
 std::pair<std::size_t, std::size_t> with_powers_of_ten(std::string_view text, std::size_t begin,
                                                        std::size_t end);
 
+/// Whether the text is a power of ten that is no number of its own: "10^-3", "x1000".
+bool is_bare_power_of_ten(std::string_view text);
+
 }  // namespace kiloband

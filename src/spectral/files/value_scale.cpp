@@ -131,7 +131,8 @@ ValueScale scale_of_name(const std::string& where, std::string_view name, ValueK
                          const DiagnosticSink& sink) {
   if (kind == ValueKind::kAbsorption) return absorption_scale(where, name).value_or(ValueScale{});
   const std::optional<ValueUnit> unit = find_power_unit(name);
-  const bool counts = unit && (is_power(kind) || unit->is_understood);
+  const bool is_other = kind == ValueKind::kPlain && unit && unit->factors >= 2;  // W/m2
+  const bool counts = unit && (is_power(kind) || unit->is_understood || is_other);
   if (!counts) return percent_scale(says_percent(name));
   if (kind == ValueKind::kPlain)
     throw InputError(where + ": " + quoted(*unit) + ": must be numbers without a unit, or percent");

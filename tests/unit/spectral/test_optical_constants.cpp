@@ -176,6 +176,10 @@ TEST(OpticalConstants, HeadersSayWhichColumnIsWhich) {
             "a.csv: the header names a permittivity: n and k are needed");
   EXPECT_EQ(values("nm,Re(n),Im(n)\n400,1,2\n500,3,4\n"), (std::pair{3.0, 4.0}));
   EXPECT_EQ(error("nm,k\n400,1\n500,3\n"), "a.csv: the header names k and no n");
+  EXPECT_EQ(values("nm,n (%),k (%)\n400,150,300\n500,150,300\n"), (std::pair{1.5, 3.0}))
+      << "as in a file of n alone";
+  EXPECT_EQ(error("nm,n (W/m2/nm)\n400,1\n500,3\n"),
+            "a.csv: values in 'W/m2/nm': must be numbers without a unit, or percent");
 }
 
 TEST(OpticalConstants, DeepNestingIsAnErrorNotACrash) {

@@ -82,6 +82,10 @@ TEST(UnitSpellings, PowersOfTenAreRefused) {
     EXPECT_NE(message.find("write the values without the factor"), std::string::npos)
         << unit << ": " << message;
   }
+  // A header that parts at its blank as the rows do.
+  EXPECT_NE(refusal("10^-3 W/m2/sr/nm\n400,5\n500,5\n", ValueKind::kRadiance).find("without the factor"),
+            std::string::npos);
+  EXPECT_EQ(refusal("W/m2/sr/nm radiance\n400,5\n500,5\n", ValueKind::kRadiance), "accepted");
   EXPECT_NE(refusal("# Radiance in 10^-3 W/m2/sr/nm\n400 5\n500 5\n", ValueKind::kRadiance), "accepted");
   EXPECT_NE(refusal("nm;absorption (10^-3 cm-1)\n400;5\n500;5\n", ValueKind::kAbsorption), "accepted");
   for (const char* name :

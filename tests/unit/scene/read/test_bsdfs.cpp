@@ -168,6 +168,12 @@ TEST(SceneBsdf, OpticalConstantsFromFiles) {
       R"(<bsdf type="roughconductor"><string name="metal" value="metal.txt"/></bsdf>)", folder.path());
   EXPECT_NEAR(metal.eta(600), 0.6, 1e-12);
   EXPECT_NEAR(metal.k(600), 4, 1e-12);
+  folder.write("power.csv", "nm,n (W/m2/um)\n500,1.5\n700,1.5\n");  // was 0.0015
+  const std::string eta =
+      R"(<bsdf type="conductor"><spectrum name="eta" filename="power.csv"/><spectrum name="k" value="3"/></bsdf>)";
+  EXPECT_NE(error_of(folder, [&] { read(complete_scene(eta), folder.path()); })
+                .find("must be numbers without a unit"),
+            std::string::npos);
 }
 
 TEST(SceneBsdf, BuiltInMaterials) {
