@@ -73,10 +73,10 @@ ThinLensSensor read_lens(const ObjectReader& object, const Sensor& sensor, doubl
 }
 
 /// What all three kinds have.
-void read_common(ReadContext& context, const ObjectReader& object, Sensor& sensor) {
+void read_common(ReadContext& context, const ObjectReader& object, Sensor& sensor, double near_clip = 0.01) {
   sensor.position = object.node().place.position();
   sensor.to_world = object.get_transform("to_world");
-  sensor.near_clip = object.get_float("near_clip", 0.01);
+  sensor.near_clip = object.get_float("near_clip", near_clip);
   sensor.far_clip = object.get_float("far_clip", 1e4);
   object.check(sensor.near_clip > 0, "near_clip", sensor.near_clip, "must be > 0");
   check_at_most(object, "near_clip", sensor.near_clip, kMaxLength, "m");
@@ -111,8 +111,7 @@ void check_rigid(const ObjectReader& object, const Transform& to_world) {
 /// One ray: a camera whose film of one pixel has no extent.
 Sensor read_radiance_meter(ReadContext& context, const ObjectReader& object) {
   Sensor sensor;
-  read_common(context, object, sensor);
-  sensor.near_clip = kNearOfMeter;
+  read_common(context, object, sensor, kNearOfMeter);
   if (object.has("origin") || object.has("direction")) {
     if (object.has("to_world"))
       object.fail_at("to_world", "'to_world' together with 'origin' or 'direction'");

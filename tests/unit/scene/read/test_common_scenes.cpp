@@ -67,6 +67,10 @@ TEST(CommonScenes, RadianceMetersAreCamerasOfOneRay) {
   EXPECT_EQ(glm::dvec3(sensor.to_world[2]), glm::dvec3(0, 0, -1));
   EXPECT_EQ(glm::dvec3(sensor.to_world[3]), glm::dvec3(1, 2, 3));
   EXPECT_NEAR(glm::determinant(glm::dmat3(sensor.to_world)), 1, 1e-12);
+  EXPECT_LT(sensor.near_clip, 1e-6) << "it has no lens in front";
+  const auto clipped = read(scene(R"(<sensor type="radiancemeter"><float name="near_clip" value="2"/>)" +
+                                  film + "</sensor>" + kLight));
+  EXPECT_EQ(clipped.sensor.near_clip, 2);
   expect_messages(
       {{"film", scene(R"(<sensor type="radiancemeter"/>)" + kLight),
         "scene.xml:2:2: error: radiancemeter sensor: its film must be of one pixel, found 768 x 576"},
