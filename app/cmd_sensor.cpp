@@ -103,6 +103,7 @@ int sensor(const SensorOptions& o) {
   check_holds_radiances(o.cube, open_cube(o.cube)->info());
   const std::vector<NamedResponse> responses = load_responses(o.responses, sink);
   if (!responses.empty()) apply_responses(open_cube(o.cube, sink), responses);  // errors before warnings
+  if (responses.empty()) open_cube(o.cube, sink);
   report_responses(*open_cube(o.cube), responses, sink);
   const CubeChange change = [&](ReplicatedCube cube) {
     return std::move(cube).transformed(

@@ -33,6 +33,11 @@ double without_roundings(double nm);
 /// Empty where the cube has no such entry.
 std::string metadata_of(const CubeInfo& info, const std::string& key);
 
+/// Names, in small letters, of what others state of the numbers in their files (ENVI), and we do not apply.
+inline constexpr std::string_view kCalibrations[] = {
+    "data gain values", "data offset values", "data reflectance gain values",
+    "data reflectance offset values", "reflectance scale factor"};
+
 /// Changes values and variances of bands from one quantity to the other; derived bands stay as they are.
 class QuantityConversion {
  public:

@@ -35,6 +35,28 @@ TEST(Messages, ConvertSaysWhatItWrote) {
   EXPECT_EQ(run_program(folder, {"convert", "a.exr", "b.csv", "--pixel", "1,1"}).err, "wrote b.csv\n");
 }
 
+/// Once, whatever is made of the cube.
+TEST(Messages, SensorSaysWhatItReads) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene(""));
+  ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "1", "-o", "a.hdr"})).code, 0);
+  folder.write("a.hdr", folder.read("a.hdr") + "reflectance scale factor = 10000\n");
+  folder.write("r.csv", "nm,r\n400,1\n700,1\n");
+  for (const Names& more : {Names{"--png", "x.png"},
+                            {"--png", "x.png", "--picture", "false"},
+
+                            {"--response", "r.csv", "-o", "x.exr"}}) {
+    Names arguments{"sensor", "a.hdr"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_program(folder, arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::string warning = "reflectance scale factor: not applied";
+    const std::size_t first = outcome.err.find(warning);
+    EXPECT_NE(first, std::string::npos) << more.front() << ": " << outcome.err;
+    EXPECT_EQ(outcome.err.find(warning, first + 1), std::string::npos) << more.front() << ": " << outcome.err;
+  }
+}
+
 /// What a cube has no use for is no option without effect.
 TEST(Messages, OptionsOfScenesAreNotForCubes) {
   const TemporaryFolder folder;

@@ -145,8 +145,7 @@ void note_bad_bands(const EnviHeader& header, bool own, std::size_t count, const
 
 /// What others state of the numbers in their files, and we do not apply.
 void check_calibration(const EnviHeader& header, const DiagnosticSink& sink) {
-  for (const char* key : {"data gain values", "data offset values", "data reflectance gain values",
-                          "data reflectance offset values", "reflectance scale factor"})
+  for (const std::string_view key : kCalibrations)
     if (const EnviHeader::Entry* entry = header.find(key))
       warn(sink, {}, header.where(*entry) + ": not applied: values are taken as they are stored");
   const EnviHeader::Entry* compression = header.find("file compression");

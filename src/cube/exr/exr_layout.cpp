@@ -6,8 +6,10 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
+#include "base/text.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
 #include "cube/exr/exr_names.hpp"
@@ -190,6 +192,13 @@ void read_metadata(const Imf::Header& header, CubeInfo& info) {
   }
 }
 
+/// Of a copy of others' ENVI cube.
+void warn_of_calibration(const CubeInfo& info, const std::string& where, const DiagnosticSink& sink) {
+  for (const auto& [name, value] : info.metadata)
+    if (std::ranges::find(kCalibrations, lowered(name)) != std::end(kCalibrations))
+      warn(sink, {where}, "'" + printable(name) + "': not applied: values are taken as they are stored");
+}
+
 /// The layout's unit leaves open whether values are per nm;
 /// its reference code and other renderers take them so.
 Quantity read_quantity(const Imf::Header& header, const std::string& where, const DiagnosticSink& sink) {
@@ -223,6 +232,7 @@ ExrLayout read_exr_layout(const Imf::Header& header, const std::string& where, c
   read_variances(header, layout);
   read_aux(header, layout);
   read_metadata(header, layout.info);
+  warn_of_calibration(layout.info, where, sink);
   layout.info.samples_per_pixel = count_attribute(header, kExrSamplesAttribute, UINT64_MAX, where);
   layout.info.replicates =
       static_cast<uint32_t>(count_attribute(header, kExrReplicatesAttribute, UINT32_MAX, where));

@@ -224,6 +224,11 @@ TEST_F(EnviHeaderText, ListsOfOthersAreCopiedAsLists) {
   EXPECT_TRUE(copied.contain("bbl: marks 1 of 2 bands as bad"));
   EXPECT_TRUE(copied.contain("data gain values: not applied"));
   EXPECT_TRUE(copied.contain("reflectance scale factor: not applied"));
+  convert_cube(folder / "f.hdr", folder / "two.exr", selection);
+  Messages as_exr;
+  open_cube(folder / "two.exr", as_exr.sink());
+  EXPECT_TRUE(as_exr.contain("'data gain values': not applied"));
+  EXPECT_TRUE(as_exr.contain("'reflectance scale factor': not applied"));
   selection.bands = {};
   selection.rebin = ChannelList{{450, 650, ""}};
   convert_cube(folder / "f.hdr", folder / "sum.hdr", selection);
