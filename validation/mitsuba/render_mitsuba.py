@@ -58,24 +58,39 @@ def _found(name, folders):
     return str(next((file for file in candidates if file.exists()), candidates[0]))
 
 
-def _with_includes(scene_file, folders):
-    """The scene's XML with what it includes in its place, and absolute file names: all are in relation to the first scene."""
+def _substituted(name, defaults):
+    """With the values of <default> for $parameters, those with the longest names first."""
+    for parameter in sorted(defaults, key=len, reverse=True):
+        name = name.replace("$" + parameter, defaults[parameter])
+    return name
+
+
+def _with_includes(scene_file, folders, defaults):
+    """The scene's XML with what it includes in its place, at any depth, and absolute file names: all are in relation to the first
+    scene, or else in its <path> folders."""
     root = ElementTree.parse(scene_file).getroot()
-    folders = folders + [folders[0] / path.get("value") for path in root.findall("path")]
+    for default in root.iter("default"):
+        defaults.setdefault(default.get("name"), default.get("value"))
+    folders = folders + [folders[0] / _substituted(path.get("value"), defaults) for path in root.findall("path")]
+
+    def found(name):
+        return _found(_substituted(name, defaults), folders)
+
     for element in root.iter():
         if element.tag == "spectrum" and "filename" in element.attrib:
-            element.set("filename", _found(element.get("filename"), folders))
+            element.set("filename", found(element.get("filename")))
         if element.tag == "string" and element.get("name") == "filename":
-            element.set("value", _found(element.get("value"), folders))
-    for element in root.iter("lookAt"):  # of Mitsuba 0.x; version 3.9.1 takes its other names
-        element.tag = "lookat"
-    for place, element in reversed(list(enumerate(root))):
-        if element.tag == "path":
-            root.remove(element)
-        if element.tag == "include":
-            root.remove(element)
-            for inner in reversed(list(_with_includes(folders[0] / element.get("filename"), folders))):
-                root.insert(place, inner)
+            element.set("value", found(element.get("value")))
+        if element.tag == "lookAt":  # of Mitsuba 0.x; version 3.9.1 takes its other names
+            element.tag = "lookat"
+    for parent in list(root.iter()):
+        for place, element in reversed(list(enumerate(parent))):
+            if element.tag == "path":
+                parent.remove(element)
+            if element.tag == "include":
+                parent.remove(element)
+                for inner in reversed(list(_with_includes(found(element.get("filename")), folders, defaults))):
+                    parent.insert(place, inner)
     return root
 
 
@@ -85,7 +100,7 @@ OBSOLETE = {"sampler": ["dimension"], "integrator": ["strictNormals"], "film": [
 
 def adapted(scene_file, film=None):
     """The scene's XML with absolute file names, and that film if one is given."""
-    root = _with_includes(scene_file, [pathlib.Path(scene_file).resolve().parent])
+    root = _with_includes(scene_file, [pathlib.Path(scene_file).resolve().parent], {})
     for parent in root.iter():
         for child in list(parent):
             if child.get("name") in OBSOLETE.get(parent.tag, []):

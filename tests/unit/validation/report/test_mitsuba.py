@@ -55,6 +55,27 @@ class Scene(unittest.TestCase):
             self.assertEqual(root.find("shape/string").get("value"), str(scene.parent / "far" / "a.obj"))
             self.assertEqual(root.findall("path"), [])
 
+    def test_includes(self):
+        """In <path> folders, inside objects, in each other; names with parameters; all in relation to the first scene."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name).resolve()
+            (folder / "parts").mkdir()
+            for file in ("parts/a.obj", "b.obj"):
+                (folder / file).write_text("")
+            (folder / "parts/shape.xml").write_text(
+                """<scene><shape type="obj"><string name="filename" value="a.obj"/><include filename="bsdf.xml"/></shape></scene>"""
+            )
+            (folder / "bsdf.xml").write_text("""<scene><bsdf type="diffuse" id="d"/><bsdf type="plastic" id="p"/></scene>""")
+            scene = folder / "scene.xml"
+            scene.write_text(f"""<scene version="3.0.0"><path value="parts"/><default name="file" value="{folder}/b.obj"/>
+                <default name="part" value="shape"/><include filename="$part.xml"/>
+                <shape type="obj"><string name="filename" value="$file"/></shape></scene>""")
+            root = ElementTree.fromstring(render_mitsuba.adapted(scene))
+            self.assertEqual(list(root.iter("include")), [])
+            names = [e.get("value") for e in root.iter("string")]
+            self.assertEqual(names, [str(folder / "parts/a.obj"), str(folder / "b.obj")])
+            self.assertEqual([e.get("id") for e in root.findall("shape")[0].findall("bsdf")], ["d", "p"])
+
     def test_scenes_have_box_filters(self):
         """Other filters treat the image's border differently in the two programs."""
         scenes = sorted((ROOT / "validation/mitsuba/scenes").glob("*.xml"))
