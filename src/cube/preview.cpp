@@ -13,12 +13,11 @@ constexpr double kVisibleMinNm = 380, kVisibleMaxNm = 780;
 
 /// Linear sRGB per unit of band radiance. With a constant density inside the band,
 /// X = integral of xbar * value / width, so the weight is the mean of xbar over the band.
-/// What several channels cover counts once: xbar over the number of channels there.
+/// What several channels cover counts once: xbar times the channel's share of it.
 std::array<float, 3> colour_weight(const Channel& c, const ChannelCover& cover) {
   const auto mean = [&](const Spectrum& s) {
     double integral = 0;
-    cover.for_pieces(c.min_nm, c.max_nm,
-                     [&](double a, double b, int count) { integral += s.integral(a, b) / count; });
+    cover.for_shares(c, [&](double a, double b, double share) { integral += s.integral(a, b) * share; });
     return integral / (c.max_nm - c.min_nm) / kCieYIntegral;
   };
   const auto rgb = xyz_to_linear_srgb({mean(cie_x()), mean(cie_y()), mean(cie_z())});
@@ -33,8 +32,8 @@ std::array<float, 3> false_colour_weight(const Channel& c, const ChannelCover& c
   for (int part = 0; part < 3; ++part) {
     const double begin = low + part * third, end = begin + third;
     double share = 0;
-    cover.for_pieces(c.min_nm, c.max_nm, [&](double from, double to, int count) {
-      share += std::max(std::min(to, end) - std::max(from, begin), 0.0) / count;
+    cover.for_shares(c, [&](double from, double to, double part_of_it) {
+      share += std::max(std::min(to, end) - std::max(from, begin), 0.0) * part_of_it;
     });
     weight[static_cast<std::size_t>(2 - part)] = static_cast<float>(share / c.width_nm());
   }

@@ -142,8 +142,8 @@ double uncovered_part(const Spectrum& response, const ChannelList& channels) {
   const double total = absolute_integral(response, from, to);
   if (!(total > 0)) return 0;
   double covered = 0;
-  ChannelCover(channels).for_pieces(from, to, [&](double a, double b, int count) {
-    if (count > 0) covered += absolute_integral(response, a, b);
+  ChannelCover(channels).for_pieces(from, to, [&](double a, double b, double density) {
+    if (density > 0) covered += absolute_integral(response, a, b);
   });
   return 1 - covered / total;
 }
@@ -155,12 +155,12 @@ SensorWeights sensor_weights(const Spectrum& response, const std::vector<Band>& 
     if (bands[k].derived) continue;
     const Channel& c = bands[k].channel;
     double integral = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-    cover.for_pieces(c.min_nm, c.max_nm, [&](double a, double b, int count) {
-      integral += response.integral(a, b) / count;
+    cover.for_shares(c, [&](double a, double b, double share) {
+      integral += response.integral(a, b) * share;
       const double from = a * (1 + kEdge), to = b * (1 - kEdge);
       if (!(from < to)) return;
-      lowest = std::min(lowest, response.min_over(from, to) / count);
-      highest = std::max(highest, response.max_over(from, to) / count);
+      lowest = std::min(lowest, response.min_over(from, to) * share);
+      highest = std::max(highest, response.max_over(from, to) * share);
     });
     const double weight = integral / c.width_nm();
     result.weight[k] = weight;

@@ -60,6 +60,18 @@ TEST_F(Sensor, OverlappingChannelsCountOnce) {
   EXPECT_NEAR(read_cube(*density).mean[0], 200, 1e-4);
 }
 
+/// A line that a narrow channel resolves, 2 over 1 nm on a ground of 1 per nm: its band is 3. Were the line's nanometre
+/// shared equally with the wide channel, which spreads it over 300 nm, the band would be 2.
+TEST_F(Sensor, NarrowChannelsHaveMoreOfWhatTheyResolve) {
+  Cube cube = make_cube(1, 1, {{{400, 700, ""}, false}, {{470, 471, ""}, false}}, false);
+  cube.mean = {302, 3};
+  auto sensor =
+      apply_responses(open(cube), {{"line", Spectrum::tabulated({470, 471}, {1, 1})}, {"flat", kFlat}});
+  const Cube seen = read_cube(*sensor);
+  EXPECT_NEAR(seen.mean[0], (302.0 / 300 + 300 * 3) / 301, 1e-5);
+  EXPECT_NEAR(seen.mean[1], 2 * (302.0 / 300 * (299 + 1 / 301.0) + 3 * 300 / 301.0), 1e-3);
+}
+
 void expect_band(const Spectrum& response, const ChannelList& channels, double min_nm, double max_nm) {
   const Channel band = effective_band(response, channels);
   EXPECT_NEAR(band.min_nm, min_nm, 1e-6);
@@ -97,7 +109,7 @@ TEST_F(Sensor, WeightsAndTheirDeviationByHand) {
   const SensorWeights ramp = sensor_weights(kRamp, bands());
   EXPECT_NEAR(ramp.weight[0], 0.2, 1e-12);  // 0 to 0.4
   EXPECT_NEAR(ramp.deviation[0], 0.2, 1e-12);
-  EXPECT_NEAR(ramp.weight[1], (20 * 0.5 + 10 * 0.65 / 2) / 30, 1e-12);  // 0.4 to 0.6, then 0.6 to 0.7 halved
+  EXPECT_NEAR(ramp.weight[1], (20 * 0.5 + 10 * 0.65 * 4 / 7) / 30, 1e-12);  // 0.4 to 0.6, 4/7 of 0.6 to 0.7
   EXPECT_NEAR(ramp.deviation[1], 0.6 - ramp.weight[1], 1e-12);
   EXPECT_EQ(ramp.weight[3], 0);
   const SensorWeights flat = sensor_weights(Spectrum::tabulated({400, 440}, {3, 3}), bands());
