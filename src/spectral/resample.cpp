@@ -130,18 +130,17 @@ RegularTable clipped(const Request& request) {
   return table;
 }
 
-/// Number of cells of the coarsest lattice through both ends and all knots between them; 0 if there is none
-/// with fewer than `max_cells`. Euclid's algorithm on lengths,
-/// in which less than 1e-6 of the range is nothing.
-std::size_t common_cells(const Request& request, std::size_t max_cells) {
-  std::vector<double> points = {request.max_nm};
-  request.spectrum.node().append_breaks(request.min_nm, request.max_nm, points);
-  const double span_nm = request.max_nm - request.min_nm;
-  const double smallest_nm = span_nm / static_cast<double>(max_cells);
-  const double nothing_nm = std::min(1e-6 * span_nm, 0.1 * smallest_nm);
-  double step_nm = span_nm;
-  for (const double point : points) {
-    double a = point - request.min_nm;
+struct Lattice {
+  double min_nm, max_nm;
+  std::size_t cells;  // 0: there is none
+};
+
+/// The largest step that all distances of the points from the first one are multiples of: Euclid's algorithm on lengths, in which
+/// `nothing_nm` is nothing. 0: below `smallest_nm`.
+double common_step(std::span<const double> points_nm, double nothing_nm, double smallest_nm) {
+  double step_nm = points_nm.back() - points_nm.front();
+  for (const double point : points_nm) {
+    double a = point - points_nm.front();
     double b = step_nm;
     while (a > nothing_nm) {
       const double remainder = std::fmod(b, a);
@@ -151,25 +150,50 @@ std::size_t common_cells(const Request& request, std::size_t max_cells) {
     step_nm = b;
     if (step_nm < smallest_nm) return 0;
   }
-  return static_cast<std::size_t>(std::llround(span_nm / step_nm));
+  return step_nm;
+}
+
+/// The coarsest lattice through all knots of the request with at most `max_cells`, from the last of its points at or before the
+/// request to the first at or after it. Less than 1e-6 of the range is nothing.
+Lattice lattice_of_knots(const Request& request, std::size_t max_cells) {
+  const double span_nm = request.max_nm - request.min_nm;
+  const double smallest_nm = span_nm / static_cast<double>(max_cells);
+  const double nothing_nm = std::min(1e-6 * span_nm, 0.1 * smallest_nm);
+  const std::span<const double> knots = request.spectrum.knots_nm();
+  const auto first = std::lower_bound(knots.begin(), knots.end(), request.min_nm - nothing_nm);
+  const auto end = std::upper_bound(first, knots.end(), request.max_nm + nothing_nm);
+  if (end - first < 2) return {};
+  const double roughly_nm = common_step({first, end}, nothing_nm, smallest_nm);
+  if (roughly_nm == 0) return {};
+  const double between = std::round((*(end - 1) - *first) / roughly_nm);
+  const double step_nm = (*(end - 1) - *first) / between;
+  const auto steps = [&](double distance_nm) { return std::ceil(distance_nm / step_nm - 1e-6); };
+  const double before = std::max(steps(*first - request.min_nm), 0.0);
+  const double after = std::max(steps(request.max_nm - *(end - 1)), 0.0);
+  const double cells = before + between + after;
+  if (cells > static_cast<double>(max_cells)) return {};
+  return {*first - before * step_nm, *(end - 1) + after * step_nm, static_cast<std::size_t>(cells)};
 }
 
 /// Halves the step until the bound holds; the lattice of the data's own knots is taken where it is not finer.
 RegularTable refined(const Request& request) {
   const std::size_t max_cells = request.max_entries - 1;
   const bool piecewise_linear = !request.spectrum.knots_nm().empty();
-  std::size_t common = piecewise_linear ? common_cells(request, max_cells) : 0;
+  const Lattice lattice = piecewise_linear ? lattice_of_knots(request, max_cells) : Lattice{};
+  Request on_lattice = request;
+  on_lattice.min_nm = lattice.min_nm, on_lattice.max_nm = lattice.max_nm;
+  std::size_t common = lattice.cells;
   RegularTable table;
   for (std::size_t cells = piecewise_linear ? 1 : 16; cells <= max_cells; cells *= 2) {
     if (common > 0 && common <= cells) {
-      table = sampled(request, common);
+      table = sampled(on_lattice, common);
       if (table.max_error <= request.tolerance) return table;
       common = 0;  // a lattice that fits only roughly
     }
     table = sampled(request, cells);
     if (table.max_error <= request.tolerance) return table;
   }
-  if (common > 0 && (table = sampled(request, common)).max_error <= request.tolerance) return table;
+  if (common > 0 && (table = sampled(on_lattice, common)).max_error <= request.tolerance) return table;
   throw InputError("spectrum: " + std::to_string(request.max_entries) + " entries over " +
                    format_number(request.min_nm) + " to " + format_number(request.max_nm) +
                    " nm reach an error of " + format_number(table.max_error) + ": must be at most " +

@@ -106,6 +106,25 @@ TEST(Resample, IrregularDataOnACommonLatticeAreExact) {
   EXPECT_LT(measured_error(table, s, 380, 780), 1e-12);
 }
 
+/// Lines of 0.1 nm on a lattice of 0.01 nm, whose ground has its next points far outside of what is asked for: the ends of
+/// the table are on the data's lattice, too.
+TEST(Resample, LinesOnALatticeAreExactBetweenDistantKnots) {
+  const Spectrum lines =
+      Spectrum::tabulated({250, 500, 500.05, 500.1, 612.03, 612.08, 612.13, 950}, {1, 1, 10, 1, 1, 5, 1, 2});
+  const RegularTable table = resample(lines, 400, 700, {.relative_error = 1e-5});
+  EXPECT_NEAR(table.step_nm, 0.01, 1e-12);
+  EXPECT_LT(table.values.size(), 30010u);
+  EXPECT_LE(table.min_nm, 400);
+  EXPECT_TRUE(table.extrapolate);
+  EXPECT_LT(measured_error(table, lines, 400, 700), 1e-8);
+  EXPECT_NEAR(table(500.05), 10, 1e-6);
+  // A far knot within a step beyond what is asked for bends the line there: the bound is kept.
+  const Spectrum coarse = Spectrum::tabulated({345, 430, 470, 800}, {5, 1, 2, 0});
+  const RegularTable bent = resample(coarse, 400, 700, {.relative_error = 1e-4});
+  EXPECT_LE(bent.max_error, 1e-4 * 5);
+  EXPECT_LE(measured_error(bent, coarse, 400, 700), 1.01e-4 * 5);
+}
+
 TEST(Resample, IrregularDataMeetTheBound) {
   std::mt19937 generator(9);
   std::uniform_real_distribution<double> uniform(0, 1);
