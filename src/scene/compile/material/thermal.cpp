@@ -132,6 +132,21 @@ void ThermalCompiler::warn_of_ratio(const Bsdf& bsdf, const KbMaterial& material
                    describe(bsdf), ratio, kRatio, ratio <= 100 ? 0.01 : 0.2));
 }
 
+/// Energy compensation scales each of a path's bounces: where light stays inside for many of them, weights have a long tail.
+void ThermalCompiler::warn_of_trapped_light(const Bsdf& bsdf, const KbMaterial& material) const {
+  constexpr float kRoughness = 0.1f,
+                  kIndex = 2.5f;  // 0.99 +- 0.01 of Planck's law there, 0.96 at an index of 3
+  const auto* glass = std::get_if<DielectricBsdf>(&bsdf.model);
+  if (!glass || !glass->roughness || std::max(material.alpha_u, material.alpha_v) < kRoughness) return;
+  const float index = std::max(material.eta, 1 / material.eta);
+  if (index < kIndex || !is_one(glass->specular_reflectance)) return;
+  warn(sink_, bsdf.position,
+       fmt::format(
+           "{}: a rough dielectric of relative index {:.3g} that absorbs nothing keeps light inside for many "
+           "bounces: means of few thousand samples may be some percent too small",
+           describe(bsdf), index));
+}
+
 uint32_t ThermalCompiler::add_thermal(KbThermal record, uint32_t heat) {
   record.field = heats_[heat].field;
   record.field_offset = heats_[heat].field_offset;
@@ -156,6 +171,7 @@ uint32_t ThermalCompiler::thermal(const std::shared_ptr<const Bsdf>& bsdf, uint3
   const auto [place, is_new] = thermals_.try_emplace({material, heat}, KB_NONE);
   if (!is_new) return place->second;
   warn_of_ratio(*bsdf, record);
+  warn_of_trapped_light(*bsdf, record);
   const KbThermal made = thermal_of(record, describe(*bsdf), heat);
   const bool nothing = std::ranges::all_of(made.ref, [](uint32_t ref) { return ref == KB_NONE; });
   if (!nothing || made.type == KB_THERMAL_NODES) place->second = add_thermal(made, heat);

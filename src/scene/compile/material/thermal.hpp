@@ -41,6 +41,7 @@ class ThermalCompiler {
   KbThermal thermal_of_metal(const KbMaterial& material, const std::string& name, uint32_t heat);
   uint32_t nonlinear_complement(const KbMaterial& material, uint32_t heat);
   void check_thermal(const Bsdf& bsdf, const KbMaterial& material) const;
+  void warn_of_trapped_light(const Bsdf& bsdf, const KbMaterial& material) const;
   void warn_of_ratio(const Bsdf& bsdf, const KbMaterial& material) const;
   void require_emission_data(const Texture& texture, const SpectrumSource& use) const;
   // temperature.cpp

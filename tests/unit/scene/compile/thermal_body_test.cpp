@@ -77,6 +77,20 @@ TEST(ThermalBody, PartsThatDoNotRefractAreWarnedOf) {
     EXPECT_EQ(body_flattened(surface + hot("900")), "") << surface;
 }
 
+TEST(ThermalBody, LightThatStaysInRoughGlassIsWarnedOf) {
+  const auto rough = [](const std::string& index, const std::string& alpha, const std::string& more = "") {
+    return bsdf("roughdielectric",
+                number("int_ior", index) + number("ext_ior", "1") + number("alpha", alpha) + more) +
+           "<emitter type='thermal'>" + number("temperature", "350") + "</emitter>";
+  };
+  EXPECT_EQ(body_flattened(rough("4", "0.49")),
+            "bsdf: a rough dielectric of relative index 4 that absorbs nothing keeps light inside for many "
+            "bounces: means of few thousand samples may be some percent too small");
+  EXPECT_EQ(body_flattened(rough("2", "0.49")), "");
+  EXPECT_EQ(body_flattened(rough("4", "0.05")), "");
+  EXPECT_EQ(body_flattened(rough("4", "0.49", "<spectrum name='specular_reflectance' value='0.9'/>")), "");
+}
+
 TEST(ThermalBody, EmissivitiesOfExtremelyBrushedMetalsAreWarnedOf) {
   const auto brushed = [](const std::string& type, const std::string& u, const std::string& v,
                           const std::string& more = "") {
