@@ -83,13 +83,23 @@ struct NamedMask {
   PixelMask pixels;
 };
 
-std::vector<NamedMask> chosen_masks(const PlaceOptions& options, CubeReader& cube) {
+/// Of several objects in one option, those that are not seen: hidden ones, and numbers that the scene has not.
+void warn_of_unseen(const CubeInfo& info, const std::vector<float>& plane, const std::string& text,
+                    const DiagnosticSink& sink) {
+  for (const std::string_view word : split(text, ','))
+    if (PixelMask::of_ids(info.width, info.height, plane, object_ids(info, std::string(word))).empty())
+      warn(sink, {}, fmt::format("--object {}: '{}' is in no pixel", text, trimmed(word)));
+}
+
+std::vector<NamedMask> chosen_masks(const PlaceOptions& options, CubeReader& cube,
+                                    const DiagnosticSink& sink) {
   const CubeInfo& info = cube.info();
   std::vector<NamedMask> masks;
   for (const std::string& text : options.objects) {
     const auto plane = aux_plane(cube, "object", "--object");
     masks.push_back({text, PixelMask::of_ids(info.width, info.height, plane, object_ids(info, text))});
     if (masks.back().pixels.empty()) throw InputError(fmt::format("--object {}: is in no pixel", text));
+    warn_of_unseen(info, plane, text, sink);
   }
   for (const std::string& text : options.regions) {
     const PixelRect rect = parse_rect("--region", text);
@@ -139,14 +149,14 @@ std::optional<PixelMask> surroundings_of(const PlaceOptions& options, const Cube
 }  // namespace
 
 std::vector<SignatureMask> signature_masks(const PlaceOptions& options, CubeReader& cube,
-                                           const CameraGeometry& camera) {
+                                           const CameraGeometry& camera, const DiagnosticSink& sink) {
   if (camera.orthographic && options.distance_m)
     throw InputError("--distance: the camera is orthographic: intensities do not depend on it");
   if (options.distance_m && !(*options.distance_m > 0 && std::isfinite(*options.distance_m)))
     throw InputError(fmt::format("--distance {}: must be > 0 and finite", *options.distance_m));
   if (options.distance_m && *options.distance_m > 1e15)
     throw InputError(fmt::format("--distance {}: must be <= 1e+15 m", *options.distance_m));
-  std::vector<NamedMask> masks = chosen_masks(options, cube);
+  std::vector<NamedMask> masks = chosen_masks(options, cube, sink);
   std::vector<double> distances;
   for (NamedMask& mask : masks) {
     distances.push_back(camera.orthographic ? 1 : distance_of(options, cube, mask));

@@ -73,7 +73,7 @@ void write_signature_table(const PlaceOptions& options, ReplicatedCube cube, con
   if (!camera)
     throw InputError(file.string() +
                      ": does not state its camera: signatures need a cube that kiloband rendered");
-  const std::vector<SignatureMask> masks = signature_masks(options, *cube.mean, *camera);
+  const std::vector<SignatureMask> masks = signature_masks(options, *cube.mean, *camera, sink);
   std::optional<ReplicatedCube> background;
   if (options.background) {
     background = change(open_replicated_cube(*options.background, sink));

@@ -58,6 +58,10 @@ TEST(WrongSignatures, Options) {
                      {{"--object", "ball", "--background-ring", "1", "--background", "plain.exr"},
                       "--background excludes --background-ring (see kiloband convert --help)"},
                  });
+  const Outcome partly =
+      run_program(folder, {"convert", "cube.exr", "out.csv", "--signature", "--object", "ball,7"});
+  EXPECT_EQ(partly.code, 0);
+  EXPECT_NE(partly.err.find("warning: --object ball,7: '7' is in no pixel"), std::string::npos) << partly.err;
   ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "4", "--bands", "400:700:4", "--variance",
                                                            "-o", "var.hdr"}))
                 .code,
