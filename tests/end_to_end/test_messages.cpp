@@ -42,11 +42,10 @@ TEST(Messages, SensorSaysWhatItReads) {
   ASSERT_EQ(run_program(folder, quiet_render("scene.xml", {"--spp", "1", "-o", "a.hdr"})).code, 0);
   folder.write("a.hdr", folder.read("a.hdr") + "reflectance scale factor = 10000\n");
   folder.write("r.csv", "nm,r\n400,1\n700,1\n");
-  for (const Names& more : {Names{"--png", "x.png"},
-                            {"--png", "x.png", "--picture", "false"},
-
-                            {"--response", "r.csv", "-o", "x.exr"}}) {
-    Names arguments{"sensor", "a.hdr"};
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--png", "x.png"},
+                                               {"--png", "x.png", "--picture", "false"},
+                                               {"--response", "r.csv", "-o", "x.exr"}}) {
+    std::vector<std::string> arguments{"sensor", "a.hdr"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = run_program(folder, arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
