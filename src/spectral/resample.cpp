@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "spectral/files/text_table.hpp"
@@ -135,65 +137,90 @@ struct Lattice {
   std::size_t cells;  // 0: there is none
 };
 
-/// The largest step that all distances of the points from the first one are multiples of: Euclid's algorithm on lengths, in which
-/// `nothing_nm` is nothing. 0: below `smallest_nm`.
-double common_step(std::span<const double> points_nm, double nothing_nm, double smallest_nm) {
-  double step_nm = points_nm.back() - points_nm.front();
-  for (const double point : points_nm) {
-    double a = point - points_nm.front();
-    double b = step_nm;
-    while (a > nothing_nm) {
-      const double remainder = std::fmod(b, a);
-      b = a;
-      a = b - remainder <= nothing_nm ? 0 : remainder;
-    }
-    step_nm = b;
-    if (step_nm < smallest_nm) return 0;
+/// The smallest denominator of a fraction within `tolerance` of x in [0, 1]: of a convergent of its continued fraction.
+/// 0: above `most`.
+double denominator(double x, double tolerance, double most) {
+  double before = 0, last = 1, rest = x;
+  while (std::abs(x * last - std::round(x * last)) > tolerance * last) {
+    if (rest == 0) return 0;
+    rest = 1 / rest;
+    const double whole = std::floor(rest);
+    rest -= whole;
+    before = std::exchange(last, whole * last + before);
+    if (!(last <= most)) return 0;
   }
-  return step_nm;
+  return last;
+}
+
+/// Into how many equal parts the points' span has to be divided so that all points are ends of parts, within `nothing_nm`; 0: more than
+/// `most`. Parts of a whole and not a step, whose rounding many parts would multiply.
+double common_parts(std::span<const double> points_nm, double nothing_nm, double most) {
+  const double span_nm = points_nm.back() - points_nm.front();
+  double parts = 1;
+  for (const double point : points_nm) {
+    const double at = (point - points_nm.front()) / span_nm * parts;
+    const double more = denominator(at - std::floor(at), nothing_nm / span_nm * parts, most / parts);
+    if (more == 0) return 0;
+    parts *= more;
+  }
+  return parts;
 }
 
 /// The coarsest lattice through all knots of the request with at most `max_cells`, from the last of its points at or before the
-/// request to the first at or after it. Less than 1e-6 of the range is nothing.
-Lattice lattice_of_knots(const Request& request, std::size_t max_cells) {
-  const double span_nm = request.max_nm - request.min_nm;
-  const double smallest_nm = span_nm / static_cast<double>(max_cells);
-  const double nothing_nm = std::min(1e-6 * span_nm, 0.1 * smallest_nm);
+/// request to the first at or after it. Less than `nothing` of the range is nothing.
+Lattice lattice_of_knots(const Request& request, std::size_t max_cells, double nothing) {
+  const double span_nm = request.max_nm - request.min_nm, nothing_nm = nothing * span_nm;
   const std::span<const double> knots = request.spectrum.knots_nm();
   const auto first = std::lower_bound(knots.begin(), knots.end(), request.min_nm - nothing_nm);
   const auto end = std::upper_bound(first, knots.end(), request.max_nm + nothing_nm);
   if (end - first < 2) return {};
-  const double roughly_nm = common_step({first, end}, nothing_nm, smallest_nm);
-  if (roughly_nm == 0) return {};
-  const double between = std::round((*(end - 1) - *first) / roughly_nm);
+  const double between = common_parts({first, end}, nothing_nm, static_cast<double>(max_cells));
+  if (between == 0) return {};
   const double step_nm = (*(end - 1) - *first) / between;
-  const auto steps = [&](double distance_nm) { return std::ceil(distance_nm / step_nm - 1e-6); };
-  const double before = std::max(steps(*first - request.min_nm), 0.0);
-  const double after = std::max(steps(request.max_nm - *(end - 1)), 0.0);
+  const auto steps = [&](double distance_nm) {
+    return std::max(std::ceil(distance_nm / step_nm - 1e-6), 0.0);
+  };
+  const double before = steps(*first - request.min_nm), after = steps(request.max_nm - *(end - 1));
   const double cells = before + between + after;
   if (cells > static_cast<double>(max_cells)) return {};
   return {*first - before * step_nm, *(end - 1) + after * step_nm, static_cast<std::size_t>(cells)};
 }
 
-/// Halves the step until the bound holds; the lattice of the data's own knots is taken where it is not finer.
+/// The data's own lattices, coarsest first: one that fits roughly, as their rounded wavelengths may, and one that fits as decimals do.
+std::vector<Lattice> lattices_of(const Request& request, std::size_t max_cells) {
+  std::vector<Lattice> lattices;
+  for (const double nothing : {1e-7, 1e-11}) {
+    const Lattice lattice = lattice_of_knots(request, max_cells, nothing);
+    if (lattice.cells > 0 && (lattices.empty() || lattice.cells != lattices.back().cells))
+      lattices.push_back(lattice);
+  }
+  return lattices;
+}
+
+/// Halves the step until the bound holds; a lattice of the data's own knots is taken where it is not finer.
 RegularTable refined(const Request& request) {
   const std::size_t max_cells = request.max_entries - 1;
   const bool piecewise_linear = !request.spectrum.knots_nm().empty();
-  const Lattice lattice = piecewise_linear ? lattice_of_knots(request, max_cells) : Lattice{};
-  Request on_lattice = request;
-  on_lattice.min_nm = lattice.min_nm, on_lattice.max_nm = lattice.max_nm;
-  std::size_t common = lattice.cells;
+  const std::vector<Lattice> lattices =
+      piecewise_linear ? lattices_of(request, max_cells) : std::vector<Lattice>{};
+  auto next = lattices.begin();
   RegularTable table;
+  const auto fits = [&](const Request& asked, std::size_t cells) {
+    table = sampled(asked, cells);
+    return table.max_error <= request.tolerance;
+  };
+  const auto fits_lattice = [&](const Lattice& lattice) {
+    Request on_lattice = request;
+    on_lattice.min_nm = lattice.min_nm, on_lattice.max_nm = lattice.max_nm;
+    return fits(on_lattice, lattice.cells);
+  };
   for (std::size_t cells = piecewise_linear ? 1 : 16; cells <= max_cells; cells *= 2) {
-    if (common > 0 && common <= cells) {
-      table = sampled(on_lattice, common);
-      if (table.max_error <= request.tolerance) return table;
-      common = 0;  // a lattice that fits only roughly
-    }
-    table = sampled(request, cells);
-    if (table.max_error <= request.tolerance) return table;
+    while (next != lattices.end() && next->cells <= cells)
+      if (fits_lattice(*next++)) return table;
+    if (fits(request, cells)) return table;
   }
-  if (common > 0 && (table = sampled(on_lattice, common)).max_error <= request.tolerance) return table;
+  while (next != lattices.end())
+    if (fits_lattice(*next++)) return table;
   throw InputError("spectrum: " + std::to_string(request.max_entries) + " entries over " +
                    format_number(request.min_nm) + " to " + format_number(request.max_nm) +
                    " nm reach an error of " + format_number(table.max_error) + ": must be at most " +

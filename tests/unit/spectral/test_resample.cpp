@@ -125,6 +125,27 @@ TEST(Resample, LinesOnALatticeAreExactBetweenDistantKnots) {
   EXPECT_LE(measured_error(bent, coarse, 400, 700), 1.01e-4 * 5);
 }
 
+/// Wavelengths of two and three decimals: a step found by subtracting alone is too inexact after 10^5 of them.
+TEST(Resample, LinesWhoseWavelengthsAreDecimalsAreExact) {
+  std::mt19937 generator(3);
+  for (const int digits : {2, 3})
+    for (int i = 0; i < 20; ++i) {
+      const double unit = std::pow(10, -digits);
+      const double width = unit * std::uniform_int_distribution<int>(1, 20)(generator);
+      const double centre =
+          unit * std::round(std::uniform_real_distribution<double>(410, 690)(generator) / unit);
+      const auto rounded = [&](double nm) { return std::round(nm / unit) * unit; };
+      const Spectrum line = Spectrum::tabulated(
+          {400, rounded(centre - width), centre, rounded(centre + width), 700}, {1, 1, 500, 1, 1});
+      const RegularTable table = resample(line, 400, 700, {.relative_error = 1e-5});
+      EXPECT_NEAR(table(centre), 500, 5e-3) << centre << " " << width;
+      EXPECT_NEAR(table(0.5 * (centre + rounded(centre + width))), 250.5, 5e-3) << centre << " " << width;
+      EXPECT_LE(measured_error(table, line, 400, 700), 5e-3) << centre << " " << width;
+    }
+  const Spectrum line = Spectrum::tabulated({400, 450.003, 450.013, 450.023, 600}, {1, 1, 500, 1, 1});
+  EXPECT_EQ(resample(line, 400, 600, {.relative_error = 1e-5}).values.size(), 200001u);
+}
+
 TEST(Resample, IrregularDataMeetTheBound) {
   std::mt19937 generator(9);
   std::uniform_real_distribution<double> uniform(0, 1);
