@@ -171,8 +171,11 @@ Found read_text(const std::filesystem::path& file, const std::string& text, cons
   const auto unit = stated_wavelength_unit(table);
   report_assumed_units(table, unit.has_value(), {}, ValueKind::kPlain, sink);
   const WavelengthAxis axis = axis_in(table, unit);
+  const bool is_named = table.names.size() == table.row_fields;
+  // By its own name alone: comments and other columns speak of the reflectances that n and k come from, in percent.
   const auto in_column = [&](std::size_t column) {
-    const ValueScale scale = scale_of_column(table, column, ValueKind::kPlain, sink);
+    const ValueScale scale =
+        is_named ? scale_of_name(file.string(), table.names[column], ValueKind::kPlain, sink) : ValueScale{};
     report_small_percents(table, column, scale, sink);
     return column_spectrum(table, axis, column, scale);
   };

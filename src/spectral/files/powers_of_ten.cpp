@@ -8,6 +8,7 @@
 
 #include "base/text.hpp"
 #include "spectral/files/text_table.hpp"
+#include "spectral/files/unit_names.hpp"
 
 namespace kiloband {
 namespace {
@@ -21,11 +22,17 @@ bool is_times(char c) {
   return c == '*' || c == 'x' || c == 'X';
 }
 
+/// 10-3 and 10+6 are powers, 10-12 is a range.
+bool has_bare_exponent(std::string_view digits) {
+  return digits.size() == 4 && (digits.starts_with("10-") || digits.starts_with("10+")) &&
+         is_ascii_digit(digits[3]);
+}
+
 /// What 10^-3, 10^{3}, 10-3, 1e-3 and 1000 are; empty for all else, and for 1.
 std::optional<double> power_of_ten(std::string_view text) {
   std::string digits(text);
   for (const char* bracket : {"{", "}", "(", ")"}) replace_all(digits, bracket, "");
-  const bool raised = digits.starts_with("10^") || digits.starts_with("10-") || digits.starts_with("10+");
+  const bool raised = digits.starts_with("10^") || has_bare_exponent(digits);
   if (raised) digits = "1e" + digits.substr(digits[2] == '^' ? 3 : 2);
   const std::optional<double> value = to_number(digits);
   if (!value || !(*value > 0) || *value == 1) return std::nullopt;
@@ -55,7 +62,7 @@ bool is_behind_times(std::string_view text, std::size_t at) {
 }
 
 /// A number is a factor if it looks like one: with an exponent, behind a "times", or alone in brackets with the unit.
-std::size_t begin_with_factor(std::string_view text, std::size_t begin, std::size_t end) {
+std::size_t begin_with_factor(std::string_view text, std::size_t begin, std::size_t end, PlainPowers plain) {
   const std::size_t behind = skip_back(text, begin, " *x([");
   std::size_t first = begin_of_number(text, behind);
   while (first < behind && is_open(text[first])) ++first;
@@ -65,7 +72,8 @@ std::size_t begin_with_factor(std::string_view text, std::size_t begin, std::siz
   if (is_behind_times(text, before)) return before - 1;
   const bool in_word = first > 0 && std::isalpha(static_cast<unsigned char>(text[first - 1])) != 0;
   const bool is_closed = end < text.size() && (text[end] == ')' || text[end] == ']');
-  const bool bracketed = before > 0 && is_open(text[before - 1]) && is_closed;
+  const bool bracketed =
+      plain == PlainPowers::kInBrackets && before > 0 && is_open(text[before - 1]) && is_closed;
   return !in_word && (bracketed || !is_plain(number)) ? first : begin;
 }
 
@@ -89,8 +97,8 @@ bool is_bare_power_of_ten(std::string_view text) {
 }
 
 std::pair<std::size_t, std::size_t> with_powers_of_ten(std::string_view text, std::size_t begin,
-                                                       std::size_t end) {
-  return {begin_with_factor(text, begin, end), end_with_factor(text, end)};
+                                                       std::size_t end, PlainPowers plain) {
+  return {begin_with_factor(text, begin, end, plain), end_with_factor(text, end)};
 }
 
 }  // namespace kiloband

@@ -129,11 +129,12 @@ std::string with_joined_exponents(const std::string& text) {
   std::string result;
   for (std::size_t at = 0; at < text.size(); ++at) {
     std::size_t sign = at;
-    while (sign < text.size() && text[sign] == ' ') ++sign;
+    const bool behind_letter = !result.empty() && is_ascii_letter(result.back());
+    while (behind_letter && sign < text.size() && text[sign] == ' ') ++sign;
     const auto digit_at = [&](std::size_t i) { return i < text.size() && is_ascii_digit(text[i]); };
     const bool exponent = sign > at && sign < text.size() && text[sign] == '-' && digit_at(sign + 1) &&
                           !digit_at(sign + 2) && (sign + 2 >= text.size() || text[sign + 2] != '.');
-    if (exponent && !result.empty() && is_ascii_letter(result.back())) at = sign;
+    if (exponent) at = sign;
     result += text[at];
   }
   return result;

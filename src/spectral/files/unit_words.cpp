@@ -86,7 +86,7 @@ class WordReader {
     const bool angular = behind_angle(at_) != at_;
     const bool divided = name != at_ && !exponent;
     const bool inverse = divided || exponent == -1;
-    const auto [first, last] = with_powers_of_ten(text_, at_, end);
+    const auto [first, last] = with_powers_of_ten(text_, at_, end, PlainPowers::kNever);
     const bool scaled = first != at_ || last != end;
     if (!inverse && !scaled) return false;
     while (!begins_.empty() && begins_.back() >= first)

@@ -23,6 +23,11 @@ void refuse_factor(const std::string& where, const ValueUnit& unit) {
                      ": write the values without the factor, in the unit alone");
 }
 
+/// "W/m2" and "W m-2", not the initials "J M".
+bool is_quotient(const ValueUnit& unit) {
+  return unit.factors >= 2 && unit.text.find_first_of("/^-0123456789") != std::string::npos;
+}
+
 bool is_power(ValueKind kind) {
   return kind == ValueKind::kRadiance || kind == ValueKind::kIrradiance || kind == ValueKind::kIntensity;
 }
@@ -131,7 +136,7 @@ ValueScale scale_of_name(const std::string& where, std::string_view name, ValueK
                          const DiagnosticSink& sink) {
   if (kind == ValueKind::kAbsorption) return absorption_scale(where, name).value_or(ValueScale{});
   const std::optional<ValueUnit> unit = find_power_unit(name);
-  const bool is_other = kind == ValueKind::kPlain && unit && unit->factors >= 2;  // W/m2
+  const bool is_other = kind == ValueKind::kPlain && unit && is_quotient(*unit);
   const bool counts = unit && (is_power(kind) || unit->is_understood || is_other);
   if (!counts) return percent_scale(says_percent(name));
   if (kind == ValueKind::kPlain)

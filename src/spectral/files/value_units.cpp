@@ -211,7 +211,7 @@ bool take_factor(const Factor& f, ValueUnit& unit, int& intervals) {
 /// Its place in the text, from a power of ten before it to one behind it, which nothing here multiplies by: some write what
 /// the values were multiplied by, some what they are to be.
 ValueUnit unit_at(const Run& run, std::string_view text) {
-  const auto [begin, end] = with_powers_of_ten(text, run.begin, run.end);
+  const auto [begin, end] = with_powers_of_ten(text, run.begin, run.end, PlainPowers::kInBrackets);
   ValueUnit unit;
   unit.text = std::string(text.substr(begin, end - begin));
   unit.factors = run.factors.size();

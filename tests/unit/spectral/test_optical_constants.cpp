@@ -178,6 +178,12 @@ TEST(OpticalConstants, HeadersSayWhichColumnIsWhich) {
   EXPECT_EQ(error("nm,k\n400,1\n500,3\n"), "a.csv: the header names k and no n");
   EXPECT_EQ(values("nm,n (%),k (%)\n400,150,300\n500,150,300\n"), (std::pair{1.5, 3.0}))
       << "as in a file of n alone";
+  EXPECT_EQ(values("# nm  n  k  R%  T%\n400 1.5 3 61 0\n500 1.5 3 61 0\n"), (std::pair{1.5, 3.0}));
+  EXPECT_EQ(values("# n and k fitted to measured reflectance in %\n400 1.5 3\n500 1.5 3\n"),
+            (std::pair{1.5, 3.0}));
+  EXPECT_EQ(values("nm;n;k;R (%)\n400;1.5;3;61\n500;1.5;3;61\n"), (std::pair{1.5, 3.0}));
+  EXPECT_EQ(values("nm n J M\n400 1.5 3 1\n500 1.5 3 1\n"), (std::pair{1.5, -1.0}))
+      << "initials are no units";
   EXPECT_EQ(error("nm,n (W/m2/nm)\n400,1\n500,3\n"),
             "a.csv: values in 'W/m2/nm': must be numbers without a unit, or percent");
 }

@@ -91,6 +91,18 @@ TEST(UnitSpellings, PowersOfTenAreRefused) {
   EXPECT_EQ(refusal("# a step of 10 nm\nwavelength (nm), 10 nm apart;r\n400;5\n500;5\n"), "accepted");
 }
 
+// What begins with 10 and goes on to more is a range: data of the infrared begin there.
+TEST(UnitSpellings, RangesAreNoPowersOfTen) {
+  const TemporaryFolder folder;
+  for (const char* comment :
+       {"# Wavelength 10-12 um", "# wavelengths from 10-14 um", "# Wavelength (um) 10-12",
+        "# Wavelength 10\u201312 \u00b5m", "# wavelengths in um, 10-12"})
+    EXPECT_NEAR(plain(folder, comment + std::string("\n10,1\n12,3\n"))(11000), 2, 1e-9) << comment;
+  EXPECT_NEAR(plain(folder, "radiance W/m2/sr/um 10-12 um\n10,1000\n12,3000\n", ValueKind::kRadiance)(11000),
+              2, 1e-9);
+  EXPECT_EQ(refusal("wavelengths (10 nm);r\n400;5\n500;5\n"), "accepted");
+}
+
 TEST(UnitSpellings, PowerWithTypographicSigns) {
   for (const char* unit :
        {"W m\u20132 sr\u20131 nm\u20131", "W m\u20112 sr\u20111 nm\u20111", "W m$^{-2}$ sr$^{-1}$ nm$^{-1}$",

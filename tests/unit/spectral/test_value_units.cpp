@@ -184,6 +184,10 @@ TEST(ValueUnits, WrongOnesHaveTheirMessages) {
   }
 }
 
+TEST(ValueUnits, InitialsAreNone) {
+  EXPECT_EQ(read("nm,J M Smith\n400,0.5\n500,0.5\n", ValueKind::kPlain).spectrum(450), 0.5);
+}
+
 // Shares of other things in a name or a comment divided the values by 100.
 TEST(ValueUnits, PercentIsAUnitOnlyWhereItIsOne) {
   const auto scale = [](const std::string& header) {
