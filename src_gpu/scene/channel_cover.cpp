@@ -26,20 +26,25 @@ float first_mu(const Channel& c, double edge_nm) {
   return kb_as_f32(low);
 }
 
-/// All edges, ascending, and what channels that cover a wavelength come to: the sum of 1 / width.
+/// All edges, ascending, and what channels that cover a wavelength come to: the sum of 1 / width. In time that grows with the pieces
+/// of all channels.
 class Edges {
  public:
-  explicit Edges(const ChannelList& channels) : channels_(channels) {
+  explicit Edges(const ChannelList& channels) {
     for (const Channel& c : channels) all_.insert(all_.end(), {c.min_nm, c.max_nm});
     std::ranges::sort(all_);
     all_.erase(std::unique(all_.begin(), all_.end()), all_.end());
-    for (const double edge_nm : all_) density_.push_back(density_at(edge_nm));
+    density_.assign(all_.size(), 0.0);
+    std::vector<kb_u32> covering(all_.size());
+    for (const Channel& c : channels) {
+      const auto [second, end] = inside(c);
+      for (std::size_t i = second - 1; i < end; ++i) {
+        density_[i] += 1 / c.width_nm();
+        overlap_ |= ++covering[i] > 1;
+      }
+    }
   }
-  bool overlap() const {
-    return std::ranges::any_of(all_, [&](double edge_nm) {
-      return std::ranges::count_if(channels_, [&](const Channel& c) { return covers(c, edge_nm); }) > 1;
-    });
-  }
+  bool overlap() const { return overlap_; }
   /// The edges inside a channel.
   std::pair<std::size_t, std::size_t> inside(const Channel& c) const {
     const auto place = [&](auto at) { return static_cast<std::size_t>(at - all_.begin()); };
@@ -52,18 +57,8 @@ class Edges {
   }
 
  private:
-  static bool covers(const Channel& c, double lambda_nm) {
-    return c.min_nm <= lambda_nm && lambda_nm < c.max_nm;
-  }
-  double density_at(double lambda_nm) const {
-    double sum = 0;
-    for (const Channel& c : channels_)
-      if (covers(c, lambda_nm)) sum += 1 / c.width_nm();
-    return sum;
-  }
-
-  const ChannelList& channels_;
   std::vector<double> all_, density_;
+  bool overlap_ = false;
 };
 
 }  // namespace

@@ -1,11 +1,14 @@
 #include "src_gpu/scene/channel_tables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
 #include <stdexcept>
 
+#include "base/error.hpp"
 #include "scene/compile/spectra/band_set.hpp"
 #include "src_gpu/scene/channel_cover.hpp"
 #include "src_gpu/scene/channel_lines.hpp"
@@ -234,7 +237,9 @@ void TableMaker::fit(std::vector<RowCells>& cells) const {
 }
 
 /// Emission narrower than a cell would be lost, or be as wide as one.
+/// throws InputError  their points, of each channel its own, take more than max_line_bytes
 void TableMaker::keep_lines(std::vector<RowCells>& cells) {
+  std::size_t bytes = 0;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     Row& row = rows_[r];
     const bool attained = cells[r].error <= kAcceptedFactor * options_.relative_error && !cells[r].has_jump;
@@ -242,6 +247,12 @@ void TableMaker::keep_lines(std::vector<RowCells>& cells) {
     if (mean_error_of_cells(row.function, scene_.channels, cells[r].cells) <= kMeanError) continue;
     lines_.push_back(knots_of(row.function, scene_.channels, row.units));
     row.lines = &lines_.back();
+    bytes += line_floats(lines_.back()) * sizeof(float);
+    if (bytes > options_.max_line_bytes)
+      throw InputError(fmt::format(
+          "channels: the points of spectra with lines that are narrow for the channels take more than {} bytes in {} channels: "
+          "render fewer at a time, or on the CPU",
+          options_.max_line_bytes, scene_.channels.size()));
     cells[r] = {0, 0, false};
     out_.has_lines = true;
   }

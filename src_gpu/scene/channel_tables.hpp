@@ -16,6 +16,8 @@ struct ChannelTableOptions {
   double relative_error = 1e-6;                  // of the row's largest value in the channel
   uint32_t max_cells = 4096;                     // per row
   std::size_t max_bytes = std::size_t{1} << 28;  // of all nodes; beyond, rows get fewer cells
+  std::size_t max_line_bytes = std::size_t{1}
+                               << 31;  // of the points of rows that keep them; beyond: InputError
 };
 
 /// What the kernels of spectra and evaluation read (see the table of kernels in kernels/evaluate/evaluate.cl).

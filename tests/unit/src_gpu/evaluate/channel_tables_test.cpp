@@ -159,6 +159,7 @@ TEST(ChannelTables, NarrowSpectraKeepTheirKnots) {
     for (const double mu : {0.0, 0.5, 1.0}) EXPECT_EQ(interpolated(t, s, 2, mu), 0) << s;
   }
   EXPECT_GT(t.tables[2].cells, 0u);
+  EXPECT_THROW(opencl::make_channel_tables(scene, {}, {.max_line_bytes = 64}), InputError);
 }
 
 /// Between 4000 and 4002 nm alone, and continued over the whole channel.
