@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cube/band_lists.hpp"
@@ -55,12 +56,23 @@ void move_or_drop(Metadata& metadata, Metadata::iterator entry, const std::optio
   metadata.erase(entry);
 }
 
-/// Of the corner in a larger image, from which others link the two: (1, 1) where only the other one is stated.
-void move_start(Metadata& metadata, std::string_view key, uint32_t by, const DiagnosticSink& sink) {
-  if (by == 0) return;
-  auto entry = find_entry(metadata, key);
-  if (entry == metadata.end()) entry = metadata.emplace(key, "1").first;
-  move_or_drop(metadata, entry, moved(entry->second, by), sink);
+/// Of the corner in a larger image, from which others link the two: 1 where only the other one is stated. So none is left without the
+/// other.
+void move_starts(Metadata& metadata, uint32_t x0, uint32_t y0, const DiagnosticSink& sink) {
+  const std::pair<std::string_view, uint32_t> starts[] = {{"x start", x0}, {"y start", y0}};
+  bool understood = true;
+  for (const auto& [key, by] : starts) {
+    auto entry = find_entry(metadata, key);
+    if (entry == metadata.end()) entry = metadata.emplace(key, "1").first;
+    const auto value = moved(entry->second, by);
+    understood = understood && value;
+    move_or_drop(metadata, entry, value, sink);
+  }
+  for (const auto& [key, by] : starts)
+    if (const auto entry = find_entry(metadata, key); !understood && entry != metadata.end()) {
+      note(sink, {}, entry->first + ": " + kLeftOut);
+      metadata.erase(entry);
+    }
 }
 
 }  // namespace
@@ -77,8 +89,7 @@ void crop_georeference(CubeInfo& info, uint32_t x0, uint32_t y0, const Diagnosti
     move_or_drop(metadata, entry, moved_map_info(entry->second, x0, y0), sink);
   if (find_entry(metadata, "x start") == metadata.end() && find_entry(metadata, "y start") == metadata.end())
     return;
-  move_start(metadata, "x start", x0, sink);
-  move_start(metadata, "y start", y0, sink);
+  move_starts(metadata, x0, y0, sink);
 }
 
 }  // namespace kiloband

@@ -301,6 +301,7 @@ TEST_F(Convert, CropsLoseWhatTheyCannotMove) {
   Cube cube = whole_numbers();
   const std::map<std::string, std::string> metadata = {{"map info", "{UTM, one, 1, 5, 6}"},
                                                        {"x start", "left"},
+                                                       {"y start", "3"},
                                                        {"geo points", "{1, 1, 50, 10, 6, 1, 50, 11}"},
                                                        {"RPC Info", "{1, 2, 3}"},
                                                        {"seed", "1"}};
@@ -315,10 +316,10 @@ TEST_F(Convert, CropsLoseWhatTheyCannotMove) {
             (std::map<std::string, std::string>{{"seed", "1"}}));
   std::ranges::sort(notes);
   const std::string dropped = "left out: it is of the image before it was cropped";
-  EXPECT_EQ(notes,
-            (std::vector<std::string>{"RPC Info: " + dropped, "geo points: " + dropped,
-                                      "map info '{UTM, one, 1, 5, 6}': not understood, so it is " + dropped,
-                                      "x start 'left': not understood, so it is " + dropped}));
+  EXPECT_EQ(notes, (std::vector<std::string>{
+                       "RPC Info: " + dropped, "geo points: " + dropped,
+                       "map info '{UTM, one, 1, 5, 6}': not understood, so it is " + dropped,
+                       "x start 'left': not understood, so it is " + dropped, "y start: " + dropped}));
 }
 
 TEST_F(Convert, PixelsAndRegionsAsTables) {
