@@ -40,6 +40,7 @@ bool is_packed(const httplib::Request& request) {
 /// Whether a request may have a body that was not read. A page of another site could have put a request into it, which would come from
 /// no page at all.
 bool leaves_body(const httplib::Request& request, int status) {
+  if (request.get_header_value_count("Content-Length") > 1) return true;  // the first is looked at alone
   const bool has_body =
       request.has_header("Transfer-Encoding") ||
       (request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0");

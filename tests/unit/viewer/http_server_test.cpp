@@ -137,7 +137,9 @@ TEST_F(RunningServer, BodiesThatAreNotReadAreNoRequests) {
         "POST /api/save" + host + "X-Kiloband: 1\r\nContent-Type: image/png\r\n" + length,
         "POST /api/save" + host + kPost + "Content-Encoding: gzip\r\n" + length, "GET /" + host + length,
         "PUT /api/save" + host + length, "POST /elsewhere" + host + length,
-        "GET /" + host + "Transfer-Encoding: chunked\r\n\r\n"}) {
+        "GET /" + host + "Transfer-Encoding: chunked\r\n\r\n",
+        "GET /" + host + "Content-Length: 0\r\n" + length,
+        "POST /api/control" + host + kPost + "Content-Length: 0\r\n" + length}) {
     const std::string answer = ask(head + hidden);
     std::size_t answers = 0;
     for (std::size_t at = answer.find("HTTP/1.1 "); at != std::string::npos;
