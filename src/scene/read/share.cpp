@@ -1,4 +1,8 @@
 // Opacities and weights: one number for all wavelengths.
+#include <span>
+#include <string>
+
+#include "base/text.hpp"
 #include "scene/read/context.hpp"
 #include "spectral/colour/colour.hpp"
 
