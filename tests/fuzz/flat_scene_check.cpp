@@ -29,7 +29,8 @@ void check_geometry(const FlatScene& scene) {
 }
 
 void check_light(const FlatScene& scene) {
-  promise(scene.emitter_cdf.size() == scene.emitters.size() + 1, "emitters without probabilities");
+  const std::size_t trees = scene.first_tree_light.empty() ? 0 : 1;  // whose share comes first
+  promise(scene.emitter_cdf.size() == scene.emitters.size() + 1 + trees, "emitters without probabilities");
   promise(std::ranges::is_sorted(scene.emitter_cdf), "probabilities that descend");
   for (const double scale : scene.channel_scale)
     promise(std::isfinite(scale) && scale > 0, "a channel without a scale");
