@@ -4,33 +4,22 @@
 #include <algorithm>
 #include <vector>
 
-#include "spectral/channels.hpp"
+#include "spectral/channel_density.hpp"
 
 namespace kiloband {
 
-/// Where the density of channels changes: the sum of 1 / width of those that cover a wavelength, 1/nm.
+/// The pieces between edges of channels, and the channels' shares of them.
 class ChannelCover {
  public:
-  explicit ChannelCover(const ChannelList& channels) {
-    for (const Channel& c : channels) edges_.insert(edges_.end(), {c.min_nm, c.max_nm});
-    std::sort(edges_.begin(), edges_.end());
-    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
-    density_.assign(edges_.size(), 0.0);
-    const auto place = [&](double edge_nm) {
-      return static_cast<std::size_t>(std::lower_bound(edges_.begin(), edges_.end(), edge_nm) -
-                                      edges_.begin());
-    };
-    for (const Channel& c : channels)
-      for (std::size_t i = place(c.min_nm); i < place(c.max_nm); ++i) density_[i] += 1 / c.width_nm();
-  }
+  explicit ChannelCover(const ChannelList& channels) : density_(channels) {}
 
   /// action(from_nm, to_nm, density) for the pieces of [min_nm, max_nm]; 0 where no channel is.
   template <class Action>
   void for_pieces(double min_nm, double max_nm, Action action) const {
-    auto i =
-        static_cast<std::size_t>(std::upper_bound(edges_.begin(), edges_.end(), min_nm) - edges_.begin());
+    const std::vector<double>& edges = density_.edges_nm();
+    auto i = static_cast<std::size_t>(std::upper_bound(edges.begin(), edges.end(), min_nm) - edges.begin());
     for (double from = min_nm; from < max_nm; ++i) {
-      const double to = i < edges_.size() ? std::min(edges_[i], max_nm) : max_nm;
+      const double to = i < edges.size() ? std::min(edges[i], max_nm) : max_nm;
       if (from < to) action(from, to, i > 0 ? density_[i - 1] : 0.0);
       from = to;
     }
@@ -41,13 +30,12 @@ class ChannelCover {
   template <class Action>
   void for_shares(const Channel& channel, Action action) const {
     for_pieces(channel.min_nm, channel.max_nm, [&](double from, double to, double density) {
-      action(from, to, 1 / std::max(1.0, channel.width_nm() * density));
+      action(from, to, 1 / channel_divisor(channel, density));
     });
   }
 
  private:
-  std::vector<double> edges_;
-  std::vector<double> density_;
+  ChannelDensity density_;
 };
 
 }  // namespace kiloband

@@ -6,9 +6,8 @@ namespace kiloband::cpu {
 
 DerivedRows::DerivedRows(const FlatScene& scene, const DerivedChannels& derived,
                          const EvaluatorKernels& kernels)
-    : scene_(scene), derived_(derived), kernels_(kernels) {
+    : scene_(scene), derived_(derived), kernels_(kernels), density_(scene.channels) {
   for (const RegularTable& response : derived.responses) rows_.push_back(make_row(response));
-  add_up_channels();
   shares_.assign(pad_channels(scene.channels.size()), 1.0f);
   accumulators_ = aligned_zeros<float>(rows_.size() * kMaxLanes);
   make_plan();
@@ -52,31 +51,9 @@ void DerivedRows::make_plan() {
   plan_ = {rows_.size(), group_first_.data(), entries_.data(), accumulators_.get()};
 }
 
-void DerivedRows::add_up_channels() {
-  for (const Channel& c : scene_.channels) edges_nm_.insert(edges_nm_.end(), {c.min_nm, c.max_nm});
-  std::sort(edges_nm_.begin(), edges_nm_.end());
-  edges_nm_.erase(std::unique(edges_nm_.begin(), edges_nm_.end()), edges_nm_.end());
-  density_.assign(edges_nm_.size(), 0.0);
-  std::vector<uint32_t> covering(edges_nm_.size());
-  const auto place = [&](double edge_nm) {
-    return static_cast<std::size_t>(std::lower_bound(edges_nm_.begin(), edges_nm_.end(), edge_nm) -
-                                    edges_nm_.begin());
-  };
-  for (const Channel& c : scene_.channels) {
-    for (std::size_t i = place(c.min_nm); i < place(c.max_nm); ++i) {
-      density_[i] += 1 / c.width_nm();
-      overlapping_ |= ++covering[i] > 1;
-    }
-  }
-}
-
 void DerivedRows::share_wavelengths(const double* lambda_nm) {
-  for (std::size_t k = 0; k < scene_.channels.size(); ++k) {
-    const auto behind = std::upper_bound(edges_nm_.begin(), edges_nm_.end(), lambda_nm[k]);
-    const double density =
-        behind == edges_nm_.begin() ? 0 : density_[static_cast<std::size_t>(behind - edges_nm_.begin()) - 1];
-    shares_[k] = static_cast<float>(1 / std::max(1.0, scene_.channels[k].width_nm() * density));
-  }
+  for (std::size_t k = 0; k < scene_.channels.size(); ++k)
+    shares_[k] = static_cast<float>(1 / channel_divisor(scene_.channels[k], density_.at(lambda_nm[k])));
 }
 
 void DerivedRows::fill(std::size_t d, const DenseSpectra& spectra) {
@@ -96,7 +73,7 @@ void DerivedRows::fill(std::size_t d, const DenseSpectra& spectra) {
 const DerivedPlan* DerivedRows::plan(const DenseSpectra& spectra) {
   if (rows_.empty()) return nullptr;
   if (generation_ != spectra.generation()) {
-    if (overlapping_) share_wavelengths(spectra.lambda_nm());
+    if (density_.overlapping()) share_wavelengths(spectra.lambda_nm());
     for (std::size_t d = 0; d < rows_.size(); ++d) fill(d, spectra);
     generation_ = spectra.generation();
   }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "spectral/channel_density.hpp"
 #include "src_cpu/evaluate/dense_spectra.hpp"
 
 namespace kiloband::cpu {
@@ -30,7 +31,6 @@ class DerivedRows {
 
   Row make_row(const RegularTable& response) const;
   void make_plan();
-  void add_up_channels();
   void share_wavelengths(const double* lambda_nm);
   void fill(std::size_t d, const DenseSpectra& spectra);
 
@@ -38,10 +38,8 @@ class DerivedRows {
   const DerivedChannels& derived_;
   const EvaluatorKernels& kernels_;
   std::vector<Row> rows_;
-  bool overlapping_ = false;  // else every share is 1
-  std::vector<double> edges_nm_,
-      density_;                // of all channels; from each edge to the next the sum of 1 / width, 1/nm
-  std::vector<float> shares_;  // [channel]
+  ChannelDensity density_;
+  std::vector<float> shares_;  // [channel]; 1 where channels do not overlap
   std::vector<uint32_t> group_first_;
   std::vector<DerivedPlan::Entry> entries_;
   hwy::AlignedFreeUniquePtr<float[]> accumulators_;
