@@ -102,8 +102,8 @@ int sensor(const SensorOptions& o) {
   check_output_files(output_files(o));
   check_holds_radiances(o.cube, open_cube(o.cube)->info());
   const std::vector<NamedResponse> responses = load_responses(o.responses, sink);
-  if (!responses.empty()) apply_responses(open_cube(o.cube, sink), responses);  // errors before warnings
-  if (responses.empty()) open_cube(o.cube, sink);
+  std::unique_ptr<CubeReader> told = open_cube(o.cube, sink);           // says what is to be said of it, once
+  if (!responses.empty()) apply_responses(std::move(told), responses);  // errors before warnings
   report_responses(*open_cube(o.cube), responses, sink);
   const CubeChange change = [&](ReplicatedCube cube) {
     return std::move(cube).transformed(

@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "base/diagnostics.hpp"
+#include "scene/compile/material/materials.hpp"
 #include "scene/compile/place.hpp"
 #include "scene/compile/record_vectors.hpp"
 #include "spectral/planck.hpp"
@@ -155,11 +156,8 @@ uint32_t MediumCompiler::interior(uint32_t shape_index) {
   if (shape.interior) {
     const uint32_t boundary = boundaries.empty() ? KB_NONE : boundaries.front();
     const uint32_t inside = medium(shape.interior, boundary);
-    const auto refracts = [](const KbMaterial& m) {
-      return m.eta != 1 || (m.flags & KB_MATERIAL_DISPERSIVE);
-    };
     const bool hot = out_.media[inside].emit_row != KB_NONE;
-    if (open && hot && boundary != KB_NONE && refracts(out_.materials[boundary]))
+    if (open && hot && boundary != KB_NONE && bends_light(out_.materials[boundary]))
       throw InputError(shape.position,
                        fmt::format("shape '{}': a dielectric in a mask or blended with a pane cannot bound a "
                                    "medium with a temperature: what it emits inside depends on whether light "

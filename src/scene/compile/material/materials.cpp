@@ -65,6 +65,10 @@ bool is_metal(const KbMaterial& material) {
   return material.type == KB_MATERIAL_CONDUCTOR || material.type == KB_MATERIAL_ROUGH_CONDUCTOR;
 }
 
+bool bends_light(const KbMaterial& material) {
+  return material.eta != 1 || (material.flags & KB_MATERIAL_DISPERSIVE);
+}
+
 KbMaterial MaterialCompiler::make(const DiffuseBsdf& model, const std::string& name,
                                   const SourcePosition& position) {
   KbMaterial record = empty_material(KB_MATERIAL_DIFFUSE);

@@ -56,6 +56,8 @@ class MaterialCompiler {
 /// Without references and tables.
 KbMaterial empty_material(uint32_t type);
 bool is_metal(const KbMaterial& material);
+/// Of a dielectric: whether its index differs from that around it.
+bool bends_light(const KbMaterial& material);
 
 /// "bsdf 'wall'", for messages.
 std::string describe(const Bsdf& bsdf);

@@ -95,9 +95,8 @@ bool SurfaceCompiler::refracts(const KbSurface& surface, bool wholly) const {
   }
   if (!(surface.flags & KB_SURFACE_TRANSMISSIVE)) return false;
   const KbMaterial& material = out_.materials[surface.front];
-  const bool bends = material.eta != 1 || (material.flags & KB_MATERIAL_DISPERSIVE);
   const bool open = surface.opacity_ref != KB_NONE || surface.opacity < 1;
-  return bends && !(material.flags & KB_MATERIAL_THIN) && !(wholly && open);
+  return bends_light(material) && !(material.flags & KB_MATERIAL_THIN) && !(wholly && open);
 }
 
 /// Inside glass of index n the radiance of equilibrium is n² B. What is opaque emits B there, an opening lets B in and n² B out.
