@@ -1,45 +1,18 @@
 #include "files/file_set.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
 #include <map>
 #include <memory>
-#include <thread>
 #include <utility>
 
 #include "base/error.hpp"
+#include "files/folder_claim.hpp"
 
 namespace kiloband {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds kPatience{10};
-constexpr std::chrono::milliseconds kPause{2};
-
-/// The lock of a folder; none if it cannot be had.
-class FolderClaim {
- public:
-  FolderClaim(const std::filesystem::path& folder, Clock::time_point give_up)
-      : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      if ((errno != EWOULDBLOCK && errno != EINTR) || Clock::now() > give_up) return;
-      std::this_thread::sleep_for(kPause);
-    }
-  }
-  ~FolderClaim() {
-    if (descriptor_ >= 0) close(descriptor_);  // and with it the lock
-  }
-  FolderClaim(const FolderClaim&) = delete;
-
- private:
-  int descriptor_;
-};
 
 std::filesystem::path folder_of(const AtomicFile& file) {
   const auto folder = file.target().file.parent_path();
@@ -67,7 +40,7 @@ void FileSet::commit() {
   const Folders folders = folders_of(files_);
   std::vector<std::unique_ptr<FolderClaim>> claims;
   const bool special = std::ranges::any_of(files_, [](const AtomicFile* f) { return f->target().special; });
-  const auto give_up = Clock::now() + kPatience;
+  const auto give_up = FolderClaim::Clock::now() + FolderClaim::kPatience;
   for (const auto& [identity, folder] : folders) {
     if (!special) claims.push_back(std::make_unique<FolderClaim>(folder, give_up));
   }

@@ -9,11 +9,9 @@
 namespace kiloband {
 
 /// Two processes that write the same outputs at once must not leave one's header with the other's data. So
-/// the names of a set change under a claim: an exclusive lock (flock) on the folders of all its files. It is
+/// the names of a set change under a claim (FolderClaim) on the folders of all its files. It is
 /// held for the renames alone, not while data are written or reach the disk, and who comes second replaces
-/// all files of the first. The kernel releases it when its holder ends, however that happens; there is no
-/// lock file that could be left over, and reading the folder suffices to lock it. Where folders cannot be
-/// locked (NFS), or somebody holds the lock for 10 s, the set is written without, and whether all files are
+/// all files of the first. Where it cannot be had, the set is written without, and whether all files are
 /// its own is checked afterwards: if not, what is of this set is removed again, last file first, and commit()
 /// fails, so that data never have a header of another render.
 /// Sets with special files (pipes, devices) have no claim.
