@@ -57,9 +57,10 @@ enum class SpectrumUse {
   kIrradiance,   // the same of a directional light
   kIntensity,    // the same of point and spot lights
   kAny,          // of an object that others refer to: what it is used as is not known yet
-  kQuantity,     // numbers flat, colours upsampled, all >= 0: sensor responses
-  kIndex,        // the same, in files without a unit: n and k
-  kAbsorption    // the same in 1/m; files may be in 1/cm
+  kColour,       // numbers flat, colours of at most 1 upsampled as reflectances, all >= 0: `srgb`
+  kQuantity,  // numbers flat, colours upsampled as a multiple of one of at most 0.5, all >= 0: sensor responses
+  kIndex,     // the same, in files without a unit: n and k
+  kAbsorption  // the same in 1/m; files may be in 1/cm
 };
 
 bool is_emission(SpectrumUse use);

@@ -100,8 +100,9 @@ Spectrum from_rgb(const XmlAttribute& value, const std::string& label, SpectrumU
   if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) return from_number(rgb[0], use);
   return load_at(value.value_place, [&] {
     if (is_emission(use)) return rgb_emission(rgb);
-    if (use == SpectrumUse::kReflectance) return rgb_reflectance(rgb);
-    const double scale = 2 * std::max({rgb[0], rgb[1], rgb[2]});
+    const double brightest = std::max({rgb[0], rgb[1], rgb[2]}), scale = 2 * brightest;
+    if (use == SpectrumUse::kReflectance || (use == SpectrumUse::kColour && brightest <= 1))
+      return rgb_reflectance(rgb);
     return rgb_reflectance({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).scaled(scale);
   });
 }

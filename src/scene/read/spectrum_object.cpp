@@ -93,13 +93,13 @@ Spectrum read_file(ReadContext& context, const ObjectReader& object, SpectrumUse
   return extrapolates ? spectrum.extrapolated() : spectrum;
 }
 
-/// A colour as it stands: reflectance in reflectances, times D65 on emitters.
+/// A colour as it stands, the same spectrum wherever it is used: D65 comes from `d65` only.
 Spectrum read_srgb(ReadContext& context, const ObjectReader& object, SpectrumUse use) {
   const Node* color = object.find("color");
   if (!color) object.fail_here("parameter 'color' is missing");
   if (color->tag != "rgb") object.fail_at("color", "color: expected an rgb, found " + describe_kind(*color));
-  const SpectrumUse plain = is_emission(use) ? SpectrumUse::kQuantity : use;  // D65 comes from `d65` only
-  return read_spectrum(context, object, "color", plain, Spectrum());
+  const bool reflectance = use == SpectrumUse::kReflectance;
+  return read_spectrum(context, object, "color", reflectance ? use : SpectrumUse::kColour, Spectrum());
 }
 
 /// The one texture or spectrum nested in d65, by any name.

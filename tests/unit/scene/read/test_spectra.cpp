@@ -96,6 +96,26 @@ TEST(SceneSpectra, D65WithScaleColourAndNestedSpectrum) {
       0.5, 1e-12);
 }
 
+/// Mitsuba's plugin upsamples the colour itself; a multiple of a darker one has another spectrum, by 1 % here.
+TEST(SceneSpectra, SrgbIsTheSameSpectrumEverywhere) {
+  const std::string colour = R"(<rgb name="color" value="0.5, 0.4, 0.6"/></spectrum>)";
+  const Spectrum expected = rgb_reflectance({0.5, 0.4, 0.6});
+  const Spectrum lamp = radiance(R"(<spectrum type="srgb" name="radiance">)" + colour);
+  const Spectrum wall = reflectance(R"(<spectrum type="srgb" name="reflectance">)" + colour);
+  const Spectrum day =
+      radiance(R"(<spectrum type="d65" name="radiance"><spectrum type="srgb" name="nested">)" + colour +
+               "</spectrum>");
+  for (const double lambda : {400.0, 450.0, 550.0, 620.0, 690.0}) {
+    EXPECT_EQ(lamp(lambda), expected(lambda)) << lambda;
+    EXPECT_EQ(wall(lambda), expected(lambda)) << lambda;
+    EXPECT_NEAR(day(lambda), expected(lambda) * illuminant_d65()(lambda), 1e-9) << lambda;
+  }
+  // Brighter than any reflectance (ours): as much of the brightest that one can be.
+  const Spectrum bright =
+      radiance(R"(<spectrum type="srgb" name="radiance"><rgb name="color" value="2, 1, 1"/></spectrum>)");
+  EXPECT_NEAR(bright(620), 4 * rgb_reflectance({0.5, 0.25, 0.25})(620), 1e-9);
+}
+
 TEST(SceneSpectra, FilesAreReadAndMayExtrapolate) {
   const TemporaryFolder folder;
   folder.write("leaf.spd", "# nm value\n400 0.1\n500 0.3\n");
