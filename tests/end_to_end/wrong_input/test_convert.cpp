@@ -3,7 +3,7 @@
 
 #include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_convert {
 namespace {
 
 /// cube.exr and short.hdr of 8 x 8 pixels in 4 channels from 400 to 700 nm.
@@ -88,4 +88,4 @@ TEST(WrongConversion, DamagedCubes) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_convert

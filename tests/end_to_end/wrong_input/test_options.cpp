@@ -3,7 +3,7 @@
 
 #include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_options {
 namespace {
 
 void write_inputs(const TemporaryFolder& folder) {
@@ -219,4 +219,4 @@ TEST(WrongOption, Backends) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_options

@@ -4,7 +4,7 @@
 
 #include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_scenes {
 namespace {
 
 /// A complete scene with a diffuse bsdf 'leaf' in line 2 that holds `parameter`.
@@ -58,4 +58,4 @@ TEST(WrongScene, IsRefusedByRenderAndInfo) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_scenes

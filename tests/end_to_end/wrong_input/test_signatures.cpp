@@ -3,7 +3,7 @@
 
 #include "tests/end_to_end/wrong_input/wrong_input.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_signatures {
 namespace {
 
 /// cube.exr: 8 x 8 pixels, a sphere named 'ball', with auxiliary images; plain.exr without; flat.exr of a
@@ -126,4 +126,4 @@ TEST(WrongSignatures, Sensor) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_signatures

@@ -10,7 +10,7 @@
 #include "cases.hpp"
 #include "reference.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_furnace {
 namespace {
 
 struct Mean {
@@ -129,4 +129,4 @@ TEST(Furnace, RoughPlasticMatchesQuadrature) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_furnace

@@ -8,7 +8,7 @@
 #include "cases.hpp"
 #include "tests/support/principled_numbers.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_hard_cases {
 namespace {
 
 constexpr float kCosines[] = {1e-38f, 1e-20f,    1e-10f, 1e-7f,       1e-4f, 0.02f,
@@ -125,4 +125,4 @@ TEST(HardCases, NotANumberEndsThePath) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_hard_cases

@@ -11,7 +11,7 @@
 #include "shared/principled.h"
 #include "shared/thermal.h"
 
-namespace kiloband::test {
+namespace kiloband::test::test_lanes {
 namespace {
 
 constexpr std::size_t kMaterials = 512, kCount = 9 << 13;
@@ -251,4 +251,4 @@ TEST(BsdfLanes, OneLaneIsTheInterfaceOfSinglePaths) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_lanes

@@ -10,7 +10,7 @@
 #include "src_cpu/bsdf/fresnel-inl.hpp"
 #include "src_cpu/bsdf/microfacet-inl.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_microfacet {
 
 using namespace cpu;
 namespace {
@@ -123,4 +123,4 @@ TEST(Coating, SmoothLimitAndInterpolation) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_microfacet

@@ -7,7 +7,7 @@
 #include "cases.hpp"
 #include "tests/support/principled_numbers.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_principled {
 namespace {
 
 struct Reference {
@@ -195,4 +195,4 @@ TEST(Principled, RatesLeaveValuesAlone) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_principled

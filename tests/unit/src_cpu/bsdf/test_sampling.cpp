@@ -7,7 +7,7 @@
 #include "reference.hpp"
 #include "shared/principled.h"
 
-namespace kiloband::test {
+namespace kiloband::test::test_sampling {
 namespace {
 
 constexpr float kSa = 0.8f, kSb = 0.65f;
@@ -197,4 +197,4 @@ TEST(BsdfSampling, ReflectingMaterialsAreBlackFromBehind) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_sampling

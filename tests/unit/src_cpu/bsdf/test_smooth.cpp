@@ -7,7 +7,7 @@
 #include "cases.hpp"
 #include "reference.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_smooth {
 namespace {
 
 BsdfSample sample(const KbMaterial& m, glm::vec3 wi, float u_lobe, DispersionState dispersion = {}) {
@@ -211,4 +211,4 @@ TEST(Dispersion, MissingContextIsAnError) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_smooth

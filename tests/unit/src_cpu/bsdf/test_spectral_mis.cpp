@@ -7,7 +7,7 @@
 #include "cases.hpp"
 #include "src_cpu/path/path_kernels.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_spectral_mis {
 
 using namespace cpu;
 namespace {
@@ -169,4 +169,4 @@ TEST(SpectralMis, HeroesHaveTheBitsOfTheirOwnBsdf) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_spectral_mis

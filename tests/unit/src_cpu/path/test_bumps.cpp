@@ -10,7 +10,7 @@
 #include "tests/support/scene_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_bumps {
 namespace {
 
 using namespace scene_text;
@@ -142,4 +142,4 @@ TEST_F(Bumps, FurnaceOfATiltedNormal) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_bumps

@@ -7,7 +7,7 @@
 
 #include "src_cpu/path/channel_choice.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_channel_choice {
 
 using namespace cpu;
 namespace {
@@ -90,4 +90,4 @@ TEST(ChannelChoice, FollowsReflectancesOfThePath) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_channel_choice

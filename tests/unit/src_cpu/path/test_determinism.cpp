@@ -9,7 +9,7 @@
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_determinism {
 
 using namespace cpu;
 namespace {
@@ -129,4 +129,4 @@ TEST(Determinism, InstructionSetsAgree) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_determinism

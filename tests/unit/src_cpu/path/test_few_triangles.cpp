@@ -12,7 +12,7 @@
 #include "src_cpu/path/path_kernels.hpp"
 #include "tests/support/zoo/scene_zoo.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_few_triangles {
 namespace {
 
 using namespace cpu;
@@ -290,4 +290,4 @@ TEST(TriangleList, AreThoseOfScenesThatHaveNothingElse) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_few_triangles

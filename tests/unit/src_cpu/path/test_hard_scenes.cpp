@@ -8,7 +8,7 @@
 #include "tests/support/scene_text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_hard_scenes {
 namespace {
 
 using namespace scene_text;
@@ -96,4 +96,4 @@ TEST_F(HardScenes, ColouredOpacityIsItsLuminance) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_hard_scenes

@@ -12,7 +12,7 @@
 #include "tests/support/render_harness.hpp"
 #include "tests/support/scene_text.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_instances {
 
 using namespace cpu;
 namespace {
@@ -186,4 +186,4 @@ TEST(Instances, ConvexBodiesUnderAUniformSky) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_instances

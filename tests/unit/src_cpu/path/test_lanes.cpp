@@ -9,7 +9,7 @@
 #include "tests/support/one_path_lights.hpp"
 #include "tests/support/zoo/scene_zoo.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_lanes {
 namespace {
 
 using namespace cpu;
@@ -156,4 +156,4 @@ INSTANTIATE_TEST_SUITE_P(Zoo, PathsOfLanes, testing::ValuesIn(scene_zoo()),
                          [](const auto& scene) { return scene.param.name; });
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_lanes

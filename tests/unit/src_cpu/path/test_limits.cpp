@@ -9,7 +9,7 @@
 #include "scene/read/reader.hpp"
 #include "src_cpu/cpu_backend.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_limits {
 
 using namespace cpu;
 namespace {
@@ -195,4 +195,4 @@ TEST(AuxiliaryImages, ShowTheNearestSurface) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_limits

@@ -13,7 +13,7 @@
 #include "src_cpu/lanes/isa.hpp"
 #include "tests/support/zoo/scene_zoo.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_packets {
 namespace {
 
 using namespace cpu;
@@ -171,4 +171,4 @@ TEST(RayOrder, PlacesBeyondTheBoxAreAtItsBorder) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_packets

@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "validation/oracle/evaluate_reference.hpp"
 
-namespace kiloband::test {
+namespace kiloband::test::test_paths {
 
 using namespace cpu;
 namespace {
@@ -153,4 +153,4 @@ TEST(Modes, AgreeInTheMean) {
 }
 
 }  // namespace
-}  // namespace kiloband::test
+}  // namespace kiloband::test::test_paths
