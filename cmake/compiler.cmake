@@ -37,13 +37,13 @@ set(KILOBAND_STANDARD_HEADERS <algorithm> <array> <chrono> <cmath> <cstdint> <cs
                               <memory> <numeric> <optional> <random> <set> <span> <sstream> <stdexcept> <string> <string_view> <utility> <vector>)
 kiloband_precompiled(kiloband_headers HEADERS ${KILOBAND_STANDARD_HEADERS})
 
-# kiloband_unity(name [files...]): with KILOBAND_UNITY, files are compiled eight at a time (names of anonymous namespaces must differ
+# kiloband_unity(name [files...]): with KILOBAND_UNITY, files are compiled sixteen at a time (names of anonymous namespaces must differ
 # then; files of tests have a namespace each, so that no overload of one is another's). Files with options of their own, those that
 # are compiled once per instruction set, and `files` stay alone.
 function(kiloband_unity name)
   if(KILOBAND_UNITY)
     set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   endif()
 endfunction()
 
