@@ -3,17 +3,22 @@
 # --quick`, `bench --quick`. OUT gets index.html and JSON files. Goes on after a failure; exit code 1 if there was one.
 # usage: ./run_all.sh OUT [SECONDS]          OCL_ICD_VENDORS, a folder or a file, chooses the OpenCL drivers
 set -uo pipefail
+unset CDPATH  # with it `cd` prints
 
-{ [ $# -eq 1 ] || [ $# -eq 2 ]; } && [[ ${2:-525} =~ ^[0-9]+$ ]] && [ "${2:-525}" -ge 120 ] ||
+{ [ $# -eq 1 ] || [ $# -eq 2 ]; } && [[ ${2:-525} =~ ^[1-9][0-9]*$ ]] && [ "${2:-525}" -ge 120 ] ||
   { echo "usage: $0 OUT [SECONDS, at least 120]" >&2; exit 2; }
-mkdir -p "$1" && out=$(cd "$1" && pwd) || exit 2
+mkdir -p -- "$1" && out=$(cd -- "$1" && pwd) && trial=$(mktemp -p "$out") && rm "$trial" || exit 2
+for name in index.html run.json tests.json; do
+  [ ! -d "$out/$name" ] || { echo "$0: $out/$name is a folder" >&2; exit 2; }
+done
 here=$(cd "$(dirname "$(readlink -f "$0")")" && pwd)
 data=$here/share/kiloband
 work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT  # which the step gets, too: timeout --foreground leaves it in the terminal's group
 export XDG_CACHE_HOME=$work/cache POCL_CACHE_DIR=$work/pocl KILOBAND_SOURCES=$data
 mkdir -p "$XDG_CACHE_HOME" "$POCL_CACHE_DIR"
-seconds_for_all=${2:-525} failures=0 steps=0
+seconds_for_all=${2:-525} failures=0 steps=0 lost=0
 # What is left for `validate` and `bench`, whatever comes before; below, for `bench`.
 reserve=$((seconds_for_all * 65 / 100))
 SECONDS=0
@@ -29,7 +34,7 @@ step() {
   [ "$limit" -le "$left" ] || limit=$left
   begin=$(date +%s.%N)
   if [ "$limit" -ge 5 ]; then
-    (cd "$work" && timeout -s INT -k 15 "$limit" "$@") > "$work/log" 2>&1
+    (cd "$work" && timeout --foreground -s INT -k 15 "$limit" "$@") > "$work/log" 2>&1
     code=$?
   else
     code=124 limit=0
@@ -120,11 +125,11 @@ reserve=0
 step "bench --quick" 240 "$here/kiloband" bench --quick --quiet -o bench
 
 for pair in validate/results.json:validate.json validate/report.html:validate.html bench/bench.json:bench.json bench/report.html:bench.html; do
-  [ ! -r "$work/${pair%:*}" ] || cp "$work/${pair%:*}" "$out/${pair#*:}"
+  [ ! -r "$work/${pair%:*}" ] || cp "$work/${pair%:*}" "$out/${pair#*:}" || lost=1
 done
-{ echo "{"; cat "$work/tests" 2> /dev/null; echo "}"; } > "$out/tests.json"
+{ echo "{"; cat "$work/tests" 2> /dev/null; echo "}"; } > "$out/tests.json" || lost=1
 printf '{"seconds": %s, "failures": %s, "devices": [%s], "steps": [%s]}\n' "$SECONDS" "$failures" "$(json_lines "$work/devices")" \
-  "$(cat "$work/steps")" > "$out/run.json"
+  "$(cat "$work/steps")" > "$out/run.json" || lost=1
 {
   echo '<!DOCTYPE html><meta charset="utf-8"><title>kiloband here</title><style>body { font: 14px sans-serif; margin: 2em }'
   echo 'pre { background: #eee; padding: 0.5em } .FAILED { color: #b00 } table { border-collapse: collapse; font-size: 12px }'
@@ -132,6 +137,7 @@ printf '{"seconds": %s, "failures": %s, "devices": [%s], "steps": [%s]}\n' "$SEC
   echo "<p>$(uname -srm | html), $(nproc) processors, $SECONDS s, $failures of $steps steps failed.</p>"
   cat "$work/body"
   [ ! -r "$work/bench/bench.csv" ] || { echo "<h2>Numbers of bench</h2>"; table "$work/bench/bench.csv"; }
-} > "$out/index.html"
+} > "$out/index.html" || lost=1
+[ "$lost" -eq 0 ] || echo "not all results could be written into $out" >&2
 echo "$failures of $steps steps failed, $SECONDS s; $out/index.html"
-[ "$failures" -eq 0 ]
+[ "$failures" -eq 0 ] && [ "$lost" -eq 0 ]
