@@ -18,6 +18,7 @@ namespace {
 /// Enough paths for the largest rounds, and no more than a processor renders in a second.
 constexpr const char* kGpuSize = "1024x1024";
 constexpr const char* kCpuSize = "256x256";
+constexpr double kLeastSeconds = 0.01, kMostSeconds = 60;
 
 struct TuneCommand {
   SceneOptions scene;
@@ -56,12 +57,23 @@ std::string speed_text(double speed) {
   return speed > 0 ? fmt::format("{:.2f} times as fast", speed) : "does not work";
 }
 
+/// Minutes of measuring must not end with sizes that cannot be kept.
+void check_command(const TuneCommand& command, const opencl::DeviceInfo& device) {
+  if (!(command.seconds >= kLeastSeconds && command.seconds <= kMostSeconds))  // NaN, too
+    throw InputError(
+        fmt::format("--seconds {}: must be in [{}, {}]", command.seconds, kLeastSeconds, kMostSeconds));
+  if (const std::string refusal = opencl::TuningStore::of_user().refusal(device); !refusal.empty())
+    throw DeviceError("sizes cannot be kept: " + refusal);
+}
+
 int tune(TuneCommand command) {
   if (command.forget) return forget(command);
+  const opencl::DeviceInfo device = opencl::select_device(command.device);
+  check_command(command, device);
   if (command.scene.scene.empty())
     command.scene.scene = source_folder() + "/scenes/cornell_box/cornell_box.xml";
   const DiagnosticSink sink = print_diagnostics(true);
-  const auto scene = compiled_scene(command.scene, opencl::select_device(command.device).type, sink);
+  const auto scene = compiled_scene(command.scene, device.type, sink);
   opencl::RenderTimer timer(scene, command.sampling.settings(1), device_options(command, sink));
   catch_stop_signals();
   timer.calibrate(command.seconds, stop_requested);
@@ -109,8 +121,7 @@ Command add_tune(CLI::App& program) {
   command.add_option("--device-memory", o->device_memory, "memory to use at most, such as 4GiB");
   command.add_option("--method", o->method, "how paths are evaluated (default dpept-batch)")
       ->check(CLI::IsMember({"dpept-batch", "dpept-path", "pt"}));
-  command.add_option("--seconds", o->seconds, "of a timed render, at least")
-      ->check(CLI::Range(0.01, 60.0))
+  command.add_option("--seconds", o->seconds, "of a timed render, at least: 0.01 to 60")
       ->capture_default_str();
   command.add_flag("--forget", o->forget, "let the device have its usual sizes again");
   command.add_flag("--quiet", o->quiet, "no line for every size that is tried");

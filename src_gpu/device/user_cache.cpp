@@ -57,9 +57,13 @@ fs::path user_cache(const std::string& name) {
   return {};
 }
 
+std::string make_cache_folder(const fs::path& folder) {
+  if (make_folder(folder)) return {};
+  return "cannot write '" + folder.string() + "': " + std::strerror(errno);
+}
+
 std::string keep_file(const fs::path& file, std::string_view text) {
-  const fs::path folder = file.parent_path();
-  if (!make_folder(folder)) return "cannot write '" + folder.string() + "': " + std::strerror(errno);
+  if (std::string refusal = make_cache_folder(file.parent_path()); !refusal.empty()) return refusal;
   try {
     write_file_atomically(file, text, 0600);
   } catch (const DeviceError& refusal) {

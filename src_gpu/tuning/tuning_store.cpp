@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/error.hpp"
 #include "base/json_dump.hpp"
+#include "files/atomic_file.hpp"
+#include "files/folder_claim.hpp"
+#include "files/input_file.hpp"
 #include "src_gpu/device/user_cache.hpp"
 
 namespace kiloband::opencl {
@@ -18,6 +21,14 @@ using nlohmann::json;
 constexpr int kFormat = 2;
 /// No device has more, or gains from less.
 constexpr uint64_t kFewestKept = 64, kMostPaths = uint64_t{1} << 28, kLargestGroup = 4096;
+
+constexpr uint64_t kLargestFile = uint64_t{1} << 20;  // bytes: hundreds of measurements
+constexpr const char* kNoFolder = "there is no folder for it: neither XDG_CACHE_HOME nor HOME is set";
+
+/// As it comes back from a file: names of devices may be in any encoding.
+json kept_name(const DeviceInfo& device) {
+  return json::parse(dump_json(json(device.name)));
+}
 
 /// A conversion of other numbers is undefined where they are too large.
 uint64_t whole_number(const json& from, const char* name) {
@@ -83,11 +94,13 @@ std::filesystem::path TuningStore::file(const DeviceInfo& device) const {
 std::vector<TunedMethod> TuningStore::load(const DeviceInfo& device) const {
   std::vector<TunedMethod> tuned;
   try {
-    std::ifstream stream(file(device));
-    if (!stream) return {};
-    const json all = json::parse(stream);
-    if (all.at("format") != kFormat || all.at("device").get<std::string>() != device.name) return {};
+    const json all = json::parse(read_small_file(file(device), kLargestFile));
+    if (all.at("format") != kFormat || all.at("device") != kept_name(device)) return {};
     for (const json& one : all.at("tuned")) tuned.push_back(tuned_method(one));
+  } catch (const InputError&) {
+    return {};
+  } catch (const DeviceError&) {
+    return {};
   } catch (const json::exception&) {
     return {};
   } catch (const std::out_of_range&) {
@@ -96,8 +109,22 @@ std::vector<TunedMethod> TuningStore::load(const DeviceInfo& device) const {
   return tuned;
 }
 
+std::string TuningStore::refusal(const DeviceInfo& device) const {
+  if (folder_.empty()) return kNoFolder;
+  if (std::string no_folder = make_cache_folder(folder_); !no_folder.empty()) return no_folder;
+  try {
+    check_writable(file(device));
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return {};
+}
+
 std::string TuningStore::save(const DeviceInfo& device, const TunedMethod& measured) const {
-  if (folder_.empty()) return "there is no folder for it: neither XDG_CACHE_HOME nor HOME is set";
+  if (folder_.empty()) return kNoFolder;
+  if (std::string no_folder = make_cache_folder(folder_); !no_folder.empty()) return no_folder;
+  const FolderClaim claim(
+      folder_);  // or another process's measurement, kept between load() and here, would be lost
   std::vector<TunedMethod> tuned = load(device);
   std::erase_if(tuned, [&](const TunedMethod& one) {
     return one.method == measured.method && one.channels == measured.channels;
@@ -110,8 +137,11 @@ std::string TuningStore::save(const DeviceInfo& device, const TunedMethod& measu
 }
 
 bool TuningStore::forget(const DeviceInfo& device) const {
-  std::error_code ignored;
-  return !folder_.empty() && std::filesystem::remove(file(device), ignored);
+  if (folder_.empty()) return false;
+  std::error_code error;
+  const bool had = std::filesystem::remove(file(device), error);
+  if (error) throw DeviceError("cannot remove '" + file(device).string() + "': " + error.message());
+  return had;
 }
 
 }  // namespace kiloband::opencl

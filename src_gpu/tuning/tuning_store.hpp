@@ -17,14 +17,19 @@ class TuningStore {
   explicit TuningStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// Of this device with this driver. Whatever is wrong with the file (it is not there, damaged, of another version, has
-  /// sizes that no device has) is no error: nothing is tuned then.
+  /// sizes that no device has, cannot be read) is no error: nothing is tuned then.
   std::vector<TunedMethod> load(const DeviceInfo& device) const;
 
-  /// Adds a measurement; it takes the place of an earlier one with the same method and number of channels.
+  /// Why save() could keep nothing, before anything is measured; empty where it could. Makes the folder.
+  std::string refusal(const DeviceInfo& device) const;
+
+  /// Adds a measurement; it takes the place of an earlier one with the same method and number of channels. Others at the same time,
+  /// of other processes, too, are kept as well (FolderClaim).
   /// Returns why it could not be kept; empty if it was.
   std::string save(const DeviceInfo& device, const TunedMethod& measured) const;
 
   /// Forgets all of the device. Returns whether there was anything.
+  /// throws DeviceError  the file cannot be removed
   bool forget(const DeviceInfo& device) const;
 
   /// Empty where there is no store.

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <fstream>
+
 #include "src_gpu/tuning/tuning_store.hpp"
 #include "tests/end_to_end/support/program.hpp"
 
@@ -75,9 +77,18 @@ TEST_F(ProgramTune, RendersUseItWithTheSameBits) {
   EXPECT_GT(usual_slots, 64u);
 }
 
+TEST_F(ProgramTune, SaysBeforeItMeasuresThatNothingCanBeKept) {
+  std::ofstream(folder_.path() / "cache") << "no folder";
+  const Outcome outcome = run({"tune", "--quiet"});
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("sizes cannot be kept: cannot write '"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+}
+
 TEST_F(ProgramTune, RefusesWhatItCannotTime) {
   EXPECT_EQ(run({"tune", "--device", "no such device"}).code, 2);
-  EXPECT_EQ(run({"tune", "--seconds", "0"}).code, 2);
+  for (const char* seconds : {"0", "nan", "-1", "61", "inf"})
+    EXPECT_EQ(run({"tune", "--seconds", seconds}).code, 2) << seconds;
   EXPECT_EQ(run({"tune", "missing.xml"}).code, 2);
 }
 

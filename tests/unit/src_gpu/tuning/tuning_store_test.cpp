@@ -2,9 +2,12 @@
 #include "src_gpu/tuning/tuning_store.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
+#include <thread>
 
+#include "base/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace kiloband::test::tuning_store_test {
@@ -105,6 +108,53 @@ TEST_F(TuningStoreTest, SaysWhyNothingIsKept) {
   std::ofstream(folder_.path() / "file") << "no folder";
   const TuningStore blocked(folder_.path() / "file" / "tuning");
   EXPECT_NE(blocked.save(device_, measured("pt", 8, 512)).find("cannot write"), std::string::npos);
+}
+
+TEST_F(TuningStoreTest, WhatCannotBeReadIsNoError) {
+  const std::filesystem::path file = store_.file(device_);
+  std::filesystem::create_directories(file / "in the file's place");
+  EXPECT_TRUE(store_.load(device_).empty());
+  EXPECT_NE(store_.save(device_, measured("pt", 8, 512)), "");
+  EXPECT_NE(store_.refusal(device_), "");
+  EXPECT_THROW(store_.forget(device_), DeviceError);
+  std::filesystem::remove_all(file);
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  EXPECT_TRUE(store_.load(device_).empty());  // without waiting for somebody who writes
+}
+
+/// What save() would say after minutes of measuring.
+TEST_F(TuningStoreTest, SaysBeforehandWhatCannotBeKept) {
+  EXPECT_EQ(store_.refusal(device_), "");
+  EXPECT_TRUE(store_.load(device_).empty());
+  EXPECT_NE(TuningStore({}).refusal(device_), "");
+  std::ofstream(folder_.path() / "file") << "no folder";
+  EXPECT_NE(TuningStore(folder_.path() / "file" / "tuning").refusal(device_), "");
+}
+
+TEST_F(TuningStoreTest, DevicesMayHaveNamesInAnyEncoding) {
+  for (const char* name : {"Gr\xe4"
+                           "fik",
+                           "Gr\xc3\xa4"
+                           "fik",
+                           "\"quoted\"\n\\"}) {
+    device_.name = name;
+    EXPECT_EQ(store_.save(device_, measured("pt", 8, 512)), "");
+    EXPECT_EQ(store_.save(device_, measured("dpept-batch", 8, 1024)), "");
+    EXPECT_EQ(store_.load(device_).size(), 2u) << name;
+  }
+}
+
+TEST_F(TuningStoreTest, MeasurementsAtTheSameTimeAreAllKept) {
+  constexpr uint32_t kEach = 20;
+  const auto keep = [&](const std::string& method) {
+    for (uint32_t channels = 1; channels <= kEach; ++channels)
+      EXPECT_EQ(store_.save(device_, measured(method, channels, 512)), "");
+  };
+  {
+    const std::jthread other(keep, "pt");
+    keep("dpept-batch");
+  }
+  EXPECT_EQ(store_.load(device_).size(), 2 * kEach);
 }
 
 TEST(Tuning, OfTheNearestNumberOfChannels) {
