@@ -9,6 +9,7 @@
 #include "app/console/messages.hpp"
 #include "app/console/output_files.hpp"
 #include "app/options/render_options.hpp"
+#include "base/utf8.hpp"
 #include "cube/cube_io.hpp"
 #include "files/atomic_file.hpp"
 #include "sky/sky_map.hpp"
@@ -103,6 +104,18 @@ std::string sun_spectrum(const SkyMap& map) {
   return text;
 }
 
+/// A file's name as a comment of XML may have it: no "--", no bytes that are not UTF-8.
+std::string in_comment(const std::string& name) {
+  const bool utf8 = is_utf8(name);
+  std::string text;
+  for (const char c : name) {
+    if (c == '-' && text.ends_with('-')) text += ' ';
+    const auto byte = static_cast<unsigned char>(c);
+    text += byte < 0x20 || byte == 0x7f || (byte > 0x7f && !utf8) ? '?' : c;
+  }
+  return text;
+}
+
 /// A scene to be included: the map's sun as an emitter of its own.
 void write_sun(const SkyOptions& options, const SkyMap& map) {
   const std::string scene = fmt::format(
@@ -120,7 +133,7 @@ void write_sun(const SkyOptions& options, const SkyMap& map) {
   </emitter>
 </scene>
 )",
-      kSunComment, std::filesystem::path(options.out).filename().string(), kSunRadiusDeg,
+      kSunComment, in_comment(std::filesystem::path(options.out).filename().string()), kSunRadiusDeg,
       options.sky.sun_elevation_deg, -options.sky.sun_azimuth_deg, sun_spectrum(map));
   write_file_atomically(*options.sun, scene);
   tell("wrote {}\n", *options.sun);

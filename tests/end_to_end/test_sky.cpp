@@ -70,6 +70,26 @@ TEST_P(SkyTest, LightsAFieldAsTheModelSays) {
   EXPECT_NEAR(mean[1] / (0.5 / std::numbers::pi * 1000 * infrared), 1, 0.02);
 }
 
+/// The sun's scene names the map in a comment, which "--" and stray bytes would spoil.
+TEST(Sky, SunsOfMapsOfAnyNameCanBeRead) {
+  const TemporaryFolder folder;
+  folder.write("scene.xml", complete_scene("<include filename='sun.xml'/>"));
+  for (const char* name : {"my--sky --->.exr",
+                           "m\xe4"
+                           "rz\n.exr",
+                           "m\xc3\xa4"
+                           "rz.exr"}) {
+    const Outcome sky =
+        run_program(folder, {"sky", name, "--sun", "sun.xml", "--size", "8x5", "--bands", "500:600:2"});
+    ASSERT_EQ(sky.code, 0) << sky.err;
+    const Outcome info = run_program(folder, {"info", "scene.xml"});
+    EXPECT_EQ(info.code, 0) << info.err;
+  }
+  EXPECT_NE(folder.read("sun.xml").find("m\xc3\xa4"
+                                        "rz.exr"),
+            std::string::npos);
+}
+
 TEST(Sky, WritesEnviDensities) {
   const TemporaryFolder folder;
   const Outcome sky = run_program(folder, {"sky", "sky.hdr", "--size", "16x9"});
