@@ -180,16 +180,17 @@ Command add_info(CLI::App& program) {
   command->get_option("SCENE")->required(false);
   command->add_flag("--materials", *materials, "list the built-in materials instead")
       ->excludes(command->get_option("SCENE"));
-  command
-      ->add_option(
-          "--check", *folder,
-          "say which scenes below a folder load, and what stops the others; exit code 1 if one does not")
-      ->type_name("FOLDER")
-      ->excludes(command->get_option("SCENE"))
-      ->excludes(command->get_option("--materials"));
-  return [options, materials, folder] {
+  const CLI::Option* check =
+      command
+          ->add_option(
+              "--check", *folder,
+              "say which scenes below a folder load, and what stops the others; exit code 1 if one does not")
+          ->type_name("FOLDER")
+          ->excludes(command->get_option("SCENE"))
+          ->excludes(command->get_option("--materials"));
+  return [options, materials, folder, check] {
     if (*materials) return print_materials();
-    if (!folder->empty()) return int{check_scenes(*folder, *options) ? kDone : kFailed};
+    if (check->count() > 0) return int{check_scenes(*folder, *options) ? kDone : kFailed};
     return info(*options);
   };
 }

@@ -95,5 +95,12 @@ TEST(CheckScenes, FoldersWithoutScenes) {
   expect_text(long_name.err, "x: is not a folder");
 }
 
+TEST(CheckScenes, AnEmptyNameIsNoFolder) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_program(folder, {"info", "--check", ""});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find(": is not a folder"), std::string::npos) << outcome.err;
+}
+
 }  // namespace
 }  // namespace kiloband::test
