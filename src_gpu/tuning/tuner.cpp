@@ -20,12 +20,13 @@ constexpr const char* kPaths = "round_paths";
 constexpr const char* kPathGroup = "path_group";
 constexpr const char* kEvaluationGroup = "evaluation_group";
 
-/// usual, and its multiples by powers of two within [fewest, most].
+/// usual, and its multiples by powers of two within [fewest, most], which may end below the usual size.
 Ladder around(const char* name, uint64_t usual, uint64_t fewest, uint64_t most) {
   Ladder ladder{name, {}, 0};
   uint64_t lowest = usual;
   while (lowest / 2 >= fewest) lowest /= 2;
   for (uint64_t value = lowest; value <= std::max(most, usual); value *= 2) {
+    if (value > most && value != usual) continue;
     if (value == usual) ladder.start = ladder.values.size();
     ladder.values.push_back(value);
   }
@@ -35,8 +36,9 @@ Ladder around(const char* name, uint64_t usual, uint64_t fewest, uint64_t most) 
 Ladder of_paths(const char* name, uint64_t usual, uint64_t paths) {
   constexpr uint64_t kLargest = uint64_t{1} << 40;
   const uint64_t all = std::bit_ceil(std::min(paths, kLargest));
-  return around(name, usual, std::max(usual >> kRungsBelow, kFewestPaths),
-                std::min(usual << kRungsAbove, all));
+  // Where all paths fit the usual size, sizes between come to the same as it.
+  const uint64_t most = all <= usual ? all - 1 : std::min(usual << kRungsAbove, all);
+  return around(name, usual, std::max(usual >> kRungsBelow, kFewestPaths), most);
 }
 
 /// What differs from the usual sizes.

@@ -88,6 +88,16 @@ TEST(Tuner, LaddersEndWhereSizesComeToTheSame) {
   EXPECT_EQ(last(render, 1), 2 * usual);
   render.paths = 1000;  // the usual size stays, as the place where the search begins
   EXPECT_EQ(last(render, 1), usual);
+  // Of those below it, only such as not all paths fit: noise would choose among the others.
+  TuningBounds bounds = gpu_bounds();
+  bounds.pool_slots = bounds.round_paths = 1u << 12;
+  const auto rungs = [&](uint64_t paths) {
+    bounds.paths = paths;
+    return tuning_ladders(bounds)[0].values;
+  };
+  EXPECT_EQ(rungs(600), (std::vector<uint64_t>{256, 512, 1u << 12}));
+  EXPECT_EQ(rungs(1u << 12), (std::vector<uint64_t>{256, 512, 1024, 2048, 1u << 12}));
+  EXPECT_EQ(rungs(64), (std::vector<uint64_t>{1u << 12}));
 }
 
 /// A clock that has its least time with one size of everything.
