@@ -19,7 +19,7 @@ void EmitterCompiler::add_environment_map(KbEmitter& record, const EnvmapEmitter
   bitmap_texture->image = emitter.image;
   bitmap_texture->file = emitter.file;
   bitmap_texture->position = use.position;
-  const uint32_t index = textures_.bitmap(bitmap_texture, BitmapUse::kEmission);
+  const uint32_t index = textures_.bitmap(bitmap_texture, BitmapUse::kEnvironment);
   record.ref = KB_REF_BITMAP | index;
   KbTexture& texture = out_.textures[index];
   texture.flags = KB_TEXTURE_ENVMAP;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/compile/texture/texel_memo.hpp"
 #include "spectral/colour/cie_tables.hpp"
 #include "spectral/colour/colour.hpp"
 #include "spectral/colour/rgb.hpp"
@@ -38,6 +39,10 @@ KbFloat4 picture_texel(const SigmoidTable& table, const float* rgb) {
   KbFloat4 texel = upsampled_texel(table, part, false);
   texel.w *= scale;
   return texel;
+}
+
+bool emits(BitmapUse use) {
+  return use == BitmapUse::kEmission || use == BitmapUse::kEnvironment;
 }
 
 float value_of(const Image& image, std::size_t texel) {
@@ -107,51 +112,64 @@ KbFloat4 TextureCompiler::texel_of(const float* rgb, BitmapUse use, float height
   if (use == BitmapUse::kHeight) return flat_texel(height * luminance_of(rgb));
   if (use == BitmapUse::kNormals) return {2 * rgb[0] - 1, 2 * rgb[1] - 1, 2 * rgb[2] - 1, 1};
   if (use == BitmapUse::kPicture) return picture_texel(kTable, rgb);
-  return upsampled_texel(kTable, rgb, use == BitmapUse::kEmission);
+  return upsampled_texel(kTable, rgb, emits(use));
+}
+
+const TexelBlock& TextureCompiler::texels(const BitmapTexture& texture, BitmapUse use, float height) {
+  const auto [place, is_new] = blocks_.try_emplace({texture.image, use, height, texture.raw});
+  TexelBlock& block = place->second;
+  if (!is_new) return block;
+  const Image& image = *texture.image;
+  const std::size_t count = std::size_t{image.width} * image.height;
+  block.first_texel = static_cast<uint32_t>(out_.texels.size());  // never more of them than of bounds
+  block.first_bound = first_texel_index(out_.texel_bounds.size(), count, texture.position,
+                                        texture.id.empty() ? texture.file.string() : texture.id);
+  const bool geometry =
+      use == BitmapUse::kRoughness || use == BitmapUse::kHeight || use == BitmapUse::kNormals;
+  const bool flat =
+      !geometry && (texture.raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emits(use)));
+  const bool share = use == BitmapUse::kOpacity && image.channels == 3;
+  TexelMemo memo(count);
+  double sum = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float value = share ? luminance_of(&image.pixels[3 * i]) : value_of(image, i);
+    const float grey[3] = {value, value, value};
+    const float* rgb = flat || image.channels == 1 ? grey : &image.pixels[3 * i];
+    const SolvedTexel& solved = memo.find(rgb, [&] {
+      const KbFloat4 texel = flat ? flat_texel(value) : texel_of(rgb, use, height);
+      return SolvedTexel{texel, texel_bound(texel)};
+    });
+    out_.texels.push_back(solved.texel);
+    out_.texel_bounds.push_back(solved.bound);
+    sum += value;
+    block.bound = std::max(block.bound, double{solved.bound});
+    block.peak = std::max(block.peak, double{solved.texel.w});
+  }
+  block.mean = sum / static_cast<double>(count);
+  return block;
 }
 
 uint32_t TextureCompiler::bitmap(const std::shared_ptr<const BitmapTexture>& texture, BitmapUse use,
                                  float height) {
-  const bool emission = use == BitmapUse::kEmission;
   const auto [place, is_new] =
-      bitmaps_.try_emplace({texture.get(), use, height}, static_cast<uint32_t>(out_.textures.size()));
+      bitmaps_.try_emplace({texture, use, height}, static_cast<uint32_t>(out_.textures.size()));
   if (!is_new) return place->second;
+  const bool emission = emits(use);
   out_.features.bitmap = true;
-  const Image& image = *texture->image;
+  const TexelBlock& block = texels(*texture, use, height);
   KbTexture record{};
-  record.width = image.width;
-  record.height = image.height;
-  const std::size_t count = std::size_t{image.width} * image.height;
-  record.first_texel = static_cast<uint32_t>(out_.texels.size());  // never more of them than of bounds
-  record.first_bound = first_texel_index(out_.texel_bounds.size(), count, texture->position,
-                                         texture->id.empty() ? texture->file.string() : texture->id);
+  record.width = texture->image->width;
+  record.height = texture->image->height;
+  record.first_texel = block.first_texel;
+  record.first_bound = block.first_bound;
   record.wrap = static_cast<uint32_t>(texture->wrap);
   record.flags = texture->nearest ? KB_TEXTURE_NEAREST : 0;
   if (use == BitmapUse::kNormals) record.flags |= KB_TEXTURE_NORMALS;
   record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
   store_uv_transform(texture->to_uv, record.to_uv);
-
-  const bool geometry =
-      use == BitmapUse::kRoughness || use == BitmapUse::kHeight || use == BitmapUse::kNormals;
-  const bool flat =
-      !geometry && (texture->raw || use == BitmapUse::kOpacity || (image.channels == 1 && !emission));
-  double sum = 0;
-  double largest = 0;
-  double peak = 0;
-  for (std::size_t texel = 0; texel < count; ++texel) {
-    const bool share = use == BitmapUse::kOpacity && image.channels == 3;
-    const float value = share ? luminance_of(&image.pixels[3 * texel]) : value_of(image, texel);
-    const float grey[3] = {value, value, value};
-    const float* rgb = image.channels == 1 ? grey : &image.pixels[3 * texel];
-    out_.texels.push_back(flat ? flat_texel(value) : texel_of(rgb, use, height));
-    sum += value;
-    out_.texel_bounds.push_back(texel_bound(out_.texels.back()));
-    largest = std::max(largest, double{out_.texel_bounds.back()});
-    peak = std::max(peak, double{out_.texels.back().w});
-  }
-  if (emission)
-    (texture->raw ? peaks_.raw : peaks_.rgb) = std::max(peak, texture->raw ? peaks_.raw : peaks_.rgb);
-  add_record(record, sum / static_cast<double>(count), largest);
+  double& peak = texture->raw ? peaks_.raw : peaks_.rgb;
+  if (emission) peak = std::max(peak, block.peak);
+  add_record(record, block.mean, block.bound);
   return place->second;
 }
 

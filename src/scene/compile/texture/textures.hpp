@@ -11,8 +11,18 @@
 
 namespace kiloband {
 
-/// What a bitmap's values stand for; one image used in two ways is compiled twice.
-enum class BitmapUse { kReflectance, kEmission, kPicture, kOpacity, kRoughness, kHeight, kNormals };
+/// What a bitmap's values stand for; one image used in two ways is compiled twice. An environment's are emission that its compiler
+/// scales: nobody else may have them.
+enum class BitmapUse {
+  kReflectance,
+  kEmission,
+  kEnvironment,
+  kPicture,
+  kOpacity,
+  kRoughness,
+  kHeight,
+  kNormals
+};
 
 /// A sum of spectra.
 using WeightedSpectra = std::vector<std::pair<Spectrum, double>>;
@@ -23,6 +33,12 @@ struct EmissionPeaks {
   uint32_t rgb_row = KB_NONE;              // D65, which those of colours are multiplied by
   std::vector<Spectrum> spectra;           // the largest value of spectral textures that emit
   std::map<uint32_t, double> row_factors;  // largest weight of rows that are endmembers
+};
+
+/// The texels of an image as what they are used for; textures that differ in all else share them.
+struct TexelBlock {
+  uint32_t first_texel = 0, first_bound = 0;
+  double mean = 0, bound = 0, peak = 0;  // of the values, of the texels' bounds, of their scales
 };
 
 /// Textures that several users share are compiled once.
@@ -60,6 +76,7 @@ class TextureCompiler {
   uint32_t checkerboard(const std::shared_ptr<const CheckerboardTexture>& texture, const SpectrumSource& use);
   uint32_t texels_of(const Texture& texture);  // the record of one that has texels, as a reflectance
   uint32_t d65_row();
+  const TexelBlock& texels(const BitmapTexture& texture, BitmapUse use, float height);
   static KbFloat4 texel_of(const float* rgb, BitmapUse use, float height);
   float texel_bound(const KbFloat4& texel) const;
   // attributes.cpp
@@ -75,7 +92,10 @@ class TextureCompiler {
   FlatScene& out_;
   SpectrumTableBuilder& spectra_;
   CurrentMesh& current_;
-  std::map<std::tuple<const void*, BitmapUse, float>, uint32_t> bitmaps_;
+  // Keys hold what they name: another texture must not get its address.
+  std::map<std::tuple<std::shared_ptr<const BitmapTexture>, BitmapUse, float>, uint32_t> bitmaps_;
+  std::map<std::tuple<std::shared_ptr<const Image>, BitmapUse, float, bool>, TexelBlock>
+      blocks_;                                                                      // bool: raw
   std::map<std::tuple<const void*, const void*, BitmapUse>, uint32_t> attributes_;  // by texture and mesh
   std::map<std::pair<const void*, bool>, uint32_t> checkerboards_;     // by texture and whether it emits
   std::map<std::pair<const void*, bool>, uint32_t> spectral_bitmaps_;  // the same
