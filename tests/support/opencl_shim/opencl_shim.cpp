@@ -82,6 +82,11 @@ struct Plan {
   std::vector<std::pair<cl_command_queue, long>> queues;  // and their devices' numbers, from 1
   std::vector<long> buffers_before_finish;                // by its calls
 
+  Plan() {
+    unsetenv(
+        "KILOBAND_SHIM_REPORT");  // or what the process starts, such as a sanitizer's symbolizer, writes it, too
+  }
+
   void note_queue(cl_command_queue queue, cl_device_id its_device) {
     const std::lock_guard lock(mutex);
     long number = 0;
