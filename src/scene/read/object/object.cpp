@@ -138,11 +138,7 @@ glm::dvec3 ObjectReader::get_vector(std::string_view name, const glm::dvec3& fal
   }
   if (node->attributes.size() > 1)
     fail(node->place, context(name) + "<" + node->tag + "> has both 'value' and coordinates");
-  const std::vector<double> numbers = parse_numbers(value->value, value->value_place, context(name));
-  if (numbers.size() != 3) {
-    fail(value->value_place, context(name) + "expected 3 numbers, found " + std::to_string(numbers.size()));
-  }
-  return {numbers[0], numbers[1], numbers[2]};
+  return parse_triple(*value, context(name));
 }
 
 Transform ObjectReader::get_transform(std::string_view name) const {

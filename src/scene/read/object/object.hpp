@@ -85,6 +85,9 @@ Place place_of_value(const Node& node);
 /// "a float", "a string", "a bsdf" ...: what a node is, for messages.
 std::string describe_kind(const Node& node);
 
+/// A point or vector in one attribute: 3 numbers, or one for all of x, y and z, as Mitsuba reads them. `context` stands before messages.
+glm::dvec3 parse_triple(const XmlAttribute& value, const std::string& context = {});
+
 /// Transforms of a <transform>: identity, each step multiplied from the left.
 /// throws InputError  singular, not affine, wrong number of values
 Transform evaluate_transform(const Node& node);

@@ -17,18 +17,14 @@ double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// x, y, z of a step; `value` gives all three, or one number for all where `single`.
-glm::dvec3 read_xyz(const XmlElement& step, double fallback, bool single) {
+/// x, y, z of a step; `value` gives all three, or one number for all.
+glm::dvec3 read_xyz(const XmlElement& step, double fallback) {
   glm::dvec3 result(fallback);
   if (const XmlAttribute* value = step.find("value")) {
     for (const std::string_view axis : {"x", "y", "z"}) {
       if (step.find(axis)) fail(step.place, "<" + step.tag + "> has both 'value' and coordinates");
     }
-    const std::vector<double> n = parse_numbers(value->value, value->value_place);
-    if (single && n.size() == 1) return glm::dvec3(n[0]);
-    if (n.size() == 3) return {n[0], n[1], n[2]};
-    fail(value->value_place,
-         std::string("expected ") + (single ? "1 or " : "") + "3 numbers, found " + std::to_string(n.size()));
+    return parse_triple(*value);
   }
   for (int axis = 0; axis < 3; ++axis) {
     const XmlAttribute* component =
@@ -45,7 +41,7 @@ glm::dvec3 read_triple(const XmlAttribute& attribute) {
 }
 
 Transform rotation(const XmlElement& step) {
-  const glm::dvec3 axis = read_xyz(step, 0, false);
+  const glm::dvec3 axis = read_xyz(step, 0);
   const XmlAttribute& angle = *step.find("angle");
   const double degrees = parse_number(angle.value, angle.value_place);
   const glm::dvec3 unit = unit_vector(axis);
@@ -101,8 +97,8 @@ Transform lookat(const XmlElement& step) {
 
 Transform step_matrix(const XmlElement& step) {
   const Transform identity(1.0);
-  if (step.tag == "translate") return glm::translate(identity, read_xyz(step, 0, false));
-  if (step.tag == "scale") return glm::scale(identity, read_xyz(step, 1, true));
+  if (step.tag == "translate") return glm::translate(identity, read_xyz(step, 0));
+  if (step.tag == "scale") return glm::scale(identity, read_xyz(step, 1));
   if (step.tag == "rotate") return rotation(step);
   if (step.tag == "matrix") return matrix(step);
   return lookat(step);
@@ -160,6 +156,13 @@ void check_regular(bool finite, double determinant, double scale, const Node& no
 }
 
 }  // namespace
+
+glm::dvec3 parse_triple(const XmlAttribute& value, const std::string& context) {
+  const std::vector<double> n = parse_numbers(value.value, value.value_place, context);
+  if (n.size() == 1) return glm::dvec3(n[0]);
+  if (n.size() == 3) return {n[0], n[1], n[2]};
+  fail(value.value_place, context + "expected 1 or 3 numbers, found " + std::to_string(n.size()));
+}
 
 glm::dvec3 unit_vector(const glm::dvec3& v) {
   const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});

@@ -37,6 +37,8 @@ void expect_point(const Transform& m, const glm::dvec3& from, const glm::dvec3& 
 TEST(SceneTransform, StepsActInTheirOrder) {
   expect_point(transform_of(R"(<translate x="1"/><scale value="2"/>)"), {0, 0, 0}, {2, 0, 0});
   expect_point(transform_of(R"(<scale x="2" z="3"/><translate value="1, 1, 1"/>)"), {1, 1, 1}, {3, 2, 4});
+  expect_point(transform_of(R"(<scale x="2" z="3"/><translate value="1"/>)"), {1, 1, 1}, {3, 2, 4});
+  expect_point(transform_of(R"(<rotate value="5" angle="120"/>)"), {1, 2, 3}, {3, 1, 2});
 }
 
 TEST(SceneTransform, RotationIsCounterClockwise) {

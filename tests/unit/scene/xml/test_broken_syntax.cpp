@@ -193,7 +193,7 @@ std::vector<BrokenScene> table() {
        "scene.xml:2:23: error: sphere shape: center: <point> needs 'value' or all of 'x', 'y' and 'z'"},
       {"point with two numbers",
        complete_scene(R"xml(<shape type="sphere"><point name="center" value="1, 2"/></shape>)xml"),
-       "scene.xml:2:50: error: sphere shape: center: expected 3 numbers, found 2"},
+       "scene.xml:2:50: error: sphere shape: center: expected 1 or 3 numbers, found 2"},
       {"point given in two ways",
        complete_scene(R"xml(<shape type="sphere"><point name="center" value="1, 2, 3" x="1"/></shape>)xml"),
        "scene.xml:2:23: error: sphere shape: center: <point> has both 'value' and coordinates"},
