@@ -58,9 +58,9 @@ Transform matrix(const XmlElement& step) {
   }
   const int size = n.size() == 16 ? 4 : 3;
   Transform result(1.0);
+  auto number = n.begin();
   for (int row = 0; row < size; ++row) {
-    for (int column = 0; column < size; ++column)
-      result[column][row] = n[static_cast<std::size_t>(row * size + column)];
+    for (int column = 0; column < size; ++column) result[column][row] = *number++;
   }
   if (result[0][3] != 0 || result[1][3] != 0 || result[2][3] != 0 || result[3][3] != 1) {
     fail(value.value_place, "the last row of the matrix must be 0 0 0 1");
