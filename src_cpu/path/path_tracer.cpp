@@ -36,6 +36,13 @@ void record_shadows(const Wave& wave, const ShadowQueue& rays) {
   wave.recording->shadow_ends.push_back(wave.recording->shadow.size());
 }
 
+/// For scenes whose paths go one after another once they have begun: no camera has a rare feature.
+PathKernels one_lane_after_start(const PathKernels& kernels) {
+  PathKernels mixed = one_lane_path_kernels();
+  mixed.start = kernels.start;
+  return mixed;
+}
+
 /// Copies the linked vertices of a path from `entry` on, up to the last that has light: what lies behind cannot
 /// contribute. Returns the end of the copy. to: has room for all of them
 KbPathVertex* copy_lit_vertices(const WaveEntry* entries, uint32_t entry, KbPathVertex* to) {
@@ -64,7 +71,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
                 ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree, kernels.eval_heroes)
                 : nullptr),
       separates_rare_(rare_ && !rare_->gas()),
-      kernels_(rare_ && !separates_rare_ ? one_lane_path_kernels() : kernels),
+      kernels_(rare_ && !separates_rare_ ? one_lane_after_start(kernels) : kernels),
       sorts_(!scene.few && !rare_ && !flat_.features.thermal && scene.embree->sorting_pays()) {}
 
 PathTracer::~PathTracer() = default;

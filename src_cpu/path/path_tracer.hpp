@@ -87,7 +87,7 @@ class PathTracer {
   SamplingSettings settings_;
   std::unique_ptr<one_lane::RareFeatures> rare_;  // null: the scene has none
   bool separates_rare_;                           // paths from the others, bounce by bounce
-  const PathKernels& kernels_;
+  const PathKernels kernels_;
   bool sorts_;  // secondary and shadow rays
   Wave wave_;
 };
