@@ -95,23 +95,37 @@ MediumStack GasPaths::media_towards(const Shading& s, glm::vec3 direction) const
   return media;
 }
 
+/// Of a path whose ray has been followed: there is nothing that pass_gas(), note_shadow_ray() and follow_ray() would do for it.
+bool GasPaths::is_plain(const GasPath& gas, uint32_t crossings_before, uint32_t shape) const {
+  return gas.media.empty() && gas.crossings == crossings_before &&
+         (shape == KB_NONE || scene_.interiors[shape] == KB_NONE);
+}
+
 void GasPaths::walk_boundaries(Wave& wave) {
   RayQueue& rays = wave.rays();
   segments_.clear();
+  uint32_t kept = 0;
   for (uint32_t i = 0; i < rays.count; ++i) {
-    GasPath& gas = paths_[rays.path[i]];
+    const uint32_t path = rays.path[i];
+    GasPath& gas = paths_[path];
+    const uint32_t crossings = gas.crossings;
     TraceRay ray = ray_of(rays, i);
     gas.first_segment = static_cast<uint32_t>(segments_.size());
     while (ray.shape != KB_NONE) {
       segments_.push_back(
           {gas.media.current(scene_.atmosphere), ray.origin(), ray.direction(), gas.begin, ray.t_max});
       if (!is_boundary(scene_, ray.shape)) break;
-      pass_boundary(wave, wave.paths[rays.path[i]], gas, ray);
+      pass_boundary(wave, wave.paths[path], gas, ray);
     }
     gas.segments = static_cast<uint32_t>(segments_.size()) - gas.first_segment;
     gas.far = kInfinity;
-    put_ray(ray, rays, i);
+    const bool rare = separates() && !is_plain(gas, crossings, ray.shape);
+    RayQueue& to = rare ? wave.rare_rays : rays;
+    uint32_t& at = rare ? wave.rare_rays.count : kept;
+    put_ray(ray, to, at);
+    to.path[at++] = path;
   }
+  rays.count = kept;
 }
 
 void GasPaths::pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay& ray) const {
@@ -199,12 +213,13 @@ void GasPaths::note_shadow_ray(const Shading& s) {
 
 void GasPaths::trace_shadows(Wave& wave) {
   const ShadowQueue& rays = wave.shadow_rays;
+  const auto plain = rays.count - static_cast<uint32_t>(shadow_owners_.size());
   for (uint32_t i = 0; i < rays.count; ++i) {
-    const uint32_t path = shadow_owners_[i].path;
+    const ShadowOwner owner = i < plain ? ShadowOwner{rays.path[i], 0, {}} : shadow_owners_[i - plain];
     const ShadowRay ray = query_of(rays, i);
     Columns columns;
-    if (walk_shadow(wave, shadow_owners_[i], ray, columns))
-      append_columns(wave, path, rays.entry[i], columns);
+    if (walk_shadow(wave, owner, ray, columns))
+      append_columns(wave, owner.path, rays.entry[i], columns);
     else
       wave.entries[rays.entry[i]].vertex.head &= ~KB_VERTEX_NEE;
   }

@@ -25,12 +25,12 @@ KB_INLINE void move_rays(const RayQueue& from, uint32_t first, M chosen, RayQueu
 }
 
 /// Moves the rays that have hit something together, in their order, those that have not to `escaped`, and those that are for one
-/// path at a time to `rare_rays`: so vectors of each are full.
+/// path at a time behind the others of `rare_rays`: so vectors of each are full.
 inline void part_rays(const Bounce& bounce, Wave& wave) {
   RayQueue& rays = wave.rays();
   EscapeQueue& escaped = wave.escaped;
   uint32_t hits = 0;
-  escaped.count = wave.rare_rays.count = 0;
+  escaped.count = 0;
   for (uint32_t first = 0; first < rays.count; first += kLanes) {
     const M active = first_lanes(rays.count - first);
     const U shape = load(rays.shape + first);

@@ -13,7 +13,7 @@ struct PathKernels {
   /// outside of `block` have no pixel.
   void (*start)(const Bounce& bounce, const PixelRect& block, Wave& wave);
   /// Answers of wave.rays -> saved vertices, wave.shadow_rays, wave.next_rays and the states of the paths; what has hit a shape of
-  /// Bounce::rare_shapes is left in wave.rare_rays.
+  /// Bounce::rare_shapes is added to wave.rare_rays.
   void (*shade)(const Bounce& bounce, Wave& wave);
   /// Answer all rays of a queue in scenes that have few triangles.
   void (*closest_of_few)(const FewTriangles& few, RayQueue& rays);
@@ -23,9 +23,9 @@ struct PathKernels {
 
 /// For an instruction set that this machine has (resolve_isa()). All give the same bits for the same answers.
 const PathKernels& path_kernels(Isa isa);
-/// One path after another, by plain numbers: for scenes with rare features, and the oracle of the others.
+/// One path after another, by plain numbers: for scenes in whose gas all paths are, and the oracle of the others.
 const PathKernels& one_lane_path_kernels();
-/// Goes on where PathKernels::shade has left rays, with Bounce::rare.
+/// The paths of wave.rare_rays, with Bounce::rare, after PathKernels::shade.
 void shade_rare_rays(const Bounce& bounce, Wave& wave);
 
 }  // namespace kiloband::cpu

@@ -70,7 +70,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
       rare_(flat_.features.gas || flat_.features.dispersion
                 ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree, kernels.eval_heroes)
                 : nullptr),
-      separates_rare_(rare_ && !rare_->gas()),
+      separates_rare_(rare_ && rare_->separates()),
       kernels_(rare_ && !separates_rare_ ? one_lane_after_start(kernels) : kernels),
       sorts_(!scene.few && !rare_ && !flat_.features.thermal && scene.embree->sorting_pays()) {}
 
@@ -97,6 +97,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
   if (rare_) rare_->start(wave_, mu);
   const bool in_part = block.pixels() < wave_.rays().count;
   for (; wave_.rays().count > 0; ++bounce.number) {
+    wave_.rare_rays.count = 0;
     if (bounce.number >= KB_MAX_VERTICES) {
       const RayQueue& rays = wave_.rays();
       for (uint32_t i = 0; i < rays.count; ++i) wave_.paths[rays.path[i]].flags |= kInvalidPath;

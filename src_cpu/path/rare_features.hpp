@@ -18,14 +18,18 @@ namespace kiloband::cpu::one_lane {
 
 // ---- gas (gas_paths.cpp) -----------------------------------------------------------------------------
 
-/// Gas along the rays of paths: null boundaries are passed, and every segment in a gas becomes a vertex.
+/// Gas along the rays of paths: null boundaries are passed, and every segment in a gas becomes a vertex. Without an atmosphere, paths
+/// that are in no medium and meet none are left to the lanes: nothing is noted of them.
 class GasPaths {
  public:
   GasPaths(const FlatScene& scene, const EmbreeScene& embree) : scene_(scene), embree_(embree) {}
 
   /// The wave's paths begin where the camera is.
   void start(Wave& wave);
-  /// Follows every ray of the queue to the first surface that is one, and notes its segments.
+  /// Whether some paths may be left to the lanes.
+  bool separates() const { return scene_.atmosphere == KB_NONE; }
+  /// Follows every ray of the queue to the first surface that is one, and notes its segments. Where it separates, what is not for the
+  /// lanes goes to rare_rays.
   void walk_boundaries(Wave& wave);
   /// The gas between where the path was and where it is now, or on its way out of the scene.
   void append(Wave& wave, uint32_t path, bool escapes);
@@ -58,10 +62,11 @@ class GasPaths {
   };
   struct ShadowOwner {
     uint32_t path;
-    float begin;
+    float begin;  // ray parameter: on the surface that it left
     MediumStack media;
   };
 
+  bool is_plain(const GasPath& gas, uint32_t crossings_before, uint32_t shape) const;
   void cross(PathState& path, MediumStack& media, uint32_t shape, bool outwards) const;
   MediumStack media_towards(const Shading& s, glm::vec3 direction) const;
   void pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay& ray) const;
@@ -74,7 +79,7 @@ class GasPaths {
   const EmbreeScene& embree_;
   std::vector<GasPath> paths_;
   std::vector<Segment> segments_;
-  std::vector<ShadowOwner> shadow_owners_;
+  std::vector<ShadowOwner> shadow_owners_;  // of the last shadow rays; those before are of paths in no medium
 };
 
 // ---- dispersion (dispersed_paths.cpp) ----------------------------------------------------------------
@@ -131,8 +136,10 @@ class RareFeatures {
     if (dispersion_) dispersion_->start(mu);
   }
   GasPaths* gas() { return gas_ ? &*gas_ : nullptr; }
-  /// What Bounce::rare_shapes is where nothing but dispersion is rare.
-  const uint32_t* dispersive_shapes() const { return dispersion_->shapes().data(); }
+  /// Whether some paths may be left to the lanes; else all are for one at a time.
+  bool separates() const { return !gas_ || gas_->separates(); }
+  /// What Bounce::rare_shapes is where it separates.
+  const uint32_t* dispersive_shapes() const { return dispersion_ ? dispersion_->shapes().data() : nullptr; }
 
   void pass_gas(const Shading& s, bool escapes) {
     if (gas_) gas_->append(s.wave, s.path.v, escapes);

@@ -345,9 +345,8 @@ inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
   note_shadow_rays(wave, lit);
 }
 
-/// All paths of the wave at what their rays have hit: fills the queues of shadow rays and next rays.
-inline void shade_wave(const Bounce& bounce, Wave& wave) {
-  wave.shadow_rays.count = wave.next_rays().count = 0;
+/// The paths of the wave's rays at what these have hit, or on their way out of the scene.
+inline void shade_rays(const Bounce& bounce, Wave& wave) {
   part_rays(bounce, wave);
   if (bounce.scene.environment != KB_NONE || bounce.scene.features.sun || bounce.rare)
     for (uint32_t first = 0; first < wave.escaped.count; first += kLanes) leave_scene(bounce, wave, first);
@@ -362,13 +361,21 @@ inline void shade_wave(const Bounce& bounce, Wave& wave) {
   end_lanes();
 }
 
+/// All paths of the wave but those of rare_rays: fills the queues of shadow rays and next rays.
+inline void shade_wave(const Bounce& bounce, Wave& wave) {
+  wave.shadow_rays.count = wave.next_rays().count = 0;
+  shade_rays(bounce, wave);
+}
+
 /// The paths of rare_rays, in the place of those that are done. They join the queues behind the others.
 inline void shade_rare_rays(const Bounce& bounce, Wave& wave) {
   RayQueue& rays = wave.rays();
   rays.count = wave.rare_rays.count;
   for (uint32_t first = 0; first < rays.count; first += kLanes)
     move_rays(wave.rare_rays, first, first_lanes(rays.count - first), rays, first);
-  for (uint32_t first = 0; first < rays.count; first += kLanes) shade_lanes(bounce, wave, first);
+  Bounce one_by_one = bounce;
+  one_by_one.rare_shapes = nullptr;
+  shade_rays(one_by_one, wave);
 }
 
 }  // namespace kiloband::cpu::KB_LANES

@@ -73,7 +73,8 @@ struct Wave {
   RayQueue queues[2];  // what is traced, and what the next bounce will trace
   uint32_t current = 0;
   EscapeQueue escaped;
-  RayQueue rare_rays;  // that have hit a shape of Bounce::rare_shapes
+  RayQueue
+      rare_rays;  // that are for one path at a time: gas is on their way, or a shape of Bounce::rare_shapes
   ShadowQueue shadow_rays, sorted_shadow_rays;
   uint64_t vertices = 0, traced_rays = 0;
   Recording* recording = nullptr;  // appended to

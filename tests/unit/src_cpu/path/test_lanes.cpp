@@ -4,15 +4,18 @@
 #include <array>
 #include <bit>
 
+#include "scene/read/reader.hpp"
 #include "shared/sobol_table.h"
 #include "src_cpu/path/path_tracer.hpp"
 #include "tests/support/one_path_lights.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/zoo/scene_zoo.hpp"
 
 namespace kiloband::test::test_lanes {
 namespace {
 
 using namespace cpu;
+using namespace scene_text;
 
 constexpr PixelRect kBlock{0, 0, 32, 32};
 
@@ -98,6 +101,46 @@ TEST_P(PathsOfLanes, AreThoseWithRecordsOfTriangles) {
   const Traced without = trace(scene, embree, sampler, kernels);
   expect_same_bits(without, trace(scene, embree, sampler, kernels, records, lights));
   expect_same_bits(without, trace(scene, embree, sampler, one_lane_path_kernels(), records, lights));
+}
+
+/// Gases, and things that no gas concerns: in a null boundary, in glass, behind a second boundary; camera outside and in a gas. One lane
+/// notes media of all paths, the lanes of none.
+TEST(GasOfLanes, PathsThatItDoesNotConcernAreTheSameWithoutIt) {
+  const auto gas = [](const std::string& absorption) {
+    return "<medium name='interior' type='homogeneous'><spectrum name='sigma_t' value='" + absorption +
+           "'/><spectrum name='albedo' value='0'/></medium>";
+  };
+  const auto ball = [](const std::string& centre, double radius, const std::string& inside) {
+    return "<shape type='sphere'><point name='center' value='" + centre + "'/><float name='radius' value='" +
+           std::to_string(radius) + "'/>" + inside + "</shape>";
+  };
+  const std::string things =
+      "<shape type='rectangle'><transform name='to_world'><scale value='8'/><rotate x='1' angle='-90'/></transform>"
+      "<bsdf type='diffuse'><spectrum name='reflectance' value='0.5'/></bsdf></shape>" +
+      ball("-2,1,0", 1, "<bsdf type='null'/>" + gas("0.4")) +
+      ball("-2,1,0.2", 0.5, "<bsdf type='null'/>" + gas("1.5")) +
+      ball("-1.7,1.1,0.2", 0.15, "<bsdf type='diffuse'/>") +
+      ball("2,1,0", 1, "<bsdf type='dielectric'/>" + gas("0.7")) +
+      ball("0,1,-2", 1, "<bsdf type='dielectric'><string name='int_ior' value='bk7'/></bsdf>") +
+      ball("0,1,2", 0.8,
+           "<bsdf type='mask'><float name='opacity' value='0.5'/><bsdf type='roughconductor'/></bsdf>") +
+      ball("-3,0.5,3", 0.5, "<bsdf type='null'/>") +
+      "<shape type='rectangle'><transform name='to_world'><rotate x='1' angle='90'/><translate value='0,6,0'/></transform>"
+      "<emitter type='area'><spectrum name='radiance' value='5'/></emitter></shape>";
+  for (const char* camera : {"0,2,9", "-2.2,1.1,0.2"}) {
+    SCOPED_TRACE(camera);
+    const std::string text =
+        scene(12, perspective(lookat(camera, "0,1,0"), 60, film(32)) + things + sky("0.3"));
+    const ChannelList channels = parse_channels("400:700:3");
+    const auto flat = compile_scene(read_scene_text(text, "gas.xml", ".", {}), {channels, channels, {}});
+    ASSERT_EQ(flat->atmosphere, KB_NONE);
+    const EmbreeScene embree(*flat, Isa::kSse4, 1);
+    const SamplerType sampler = SamplerType::kSobol;
+    const Traced one = trace(*flat, embree, sampler, one_lane_path_kernels());
+    EXPECT_GT(one.paths.paths.size(), 1000u);
+    for (const Isa isa : {Isa::kSse4, Isa::kAvx2, Isa::kAvx512})
+      if (is_available(isa)) expect_same_bits(one, trace(*flat, embree, sampler, path_kernels(isa)));
+  }
 }
 
 TEST(TriangleRecords, AreLeftOutOfScenesWithTooMany) {
