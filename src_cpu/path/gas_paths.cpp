@@ -212,18 +212,33 @@ void GasPaths::note_shadow_ray(const Shading& s) {
 }
 
 void GasPaths::trace_shadows(Wave& wave) {
-  const ShadowQueue& rays = wave.shadow_rays;
+  ShadowQueue& rays = wave.shadow_rays;
+  shadow_ends_.assign(rays.t_max, rays.t_max + rays.count);
+  wave.traced_rays += rays.count;
+  embree_.occlusions(rays, RayPackets::kIncoherent);
   const auto plain = rays.count - static_cast<uint32_t>(shadow_owners_.size());
   for (uint32_t i = 0; i < rays.count; ++i) {
     const ShadowOwner owner = i < plain ? ShadowOwner{rays.path[i], 0, {}} : shadow_owners_[i - plain];
-    const ShadowRay ray = query_of(rays, i);
+    const bool clear = rays.t_max[i] >= 0;
+    ShadowRay ray = query_of(rays, i);
+    ray.t_max = shadow_ends_[i];
     Columns columns;
-    if (walk_shadow(wave, owner, ray, columns))
+    if (clear) columns = clear_columns(wave, owner, ray);
+    if (clear || walk_shadow(wave, owner, ray, columns))
       append_columns(wave, owner.path, rays.entry[i], columns);
     else
       wave.entries[rays.entry[i]].vertex.head &= ~KB_VERTEX_NEE;
   }
   shadow_owners_.clear();
+}
+
+/// Of a shadow ray that meets nothing: the medium where it begins, on all of it; out of the scene none (as in walk_shadow()).
+GasPaths::Columns GasPaths::clear_columns(Wave& wave, const ShadowOwner& at, const ShadowRay& shadow) const {
+  Columns columns;
+  if (shadow.t_max == kInfinity) return columns;
+  const TraceRay ray(shadow.origin(), shadow.direction(), 0, shadow.t_max);
+  add_column(wave.paths[at.path], columns, at.media.current(scene_.atmosphere), ray, at.begin);
+  return columns;
 }
 
 /// Returns whether the light is visible; `columns` are then what lies in between.

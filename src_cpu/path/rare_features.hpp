@@ -37,7 +37,7 @@ class GasPaths {
   void follow_ray(const Shading& s);
   /// The same for the shadow ray that is queued behind the last.
   void note_shadow_ray(const Shading& s);
-  /// Light samples, each along its shadow ray through null boundaries.
+  /// Light samples: what packets find nothing in front of has one medium along its ray, the others go through null boundaries one by one.
   void trace_shadows(Wave& wave);
 
  private:
@@ -71,7 +71,8 @@ class GasPaths {
   MediumStack media_towards(const Shading& s, glm::vec3 direction) const;
   void pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay& ray) const;
   void append_segment(Wave& wave, uint32_t path, const KbMedium& medium, const Segment& segment) const;
-  bool walk_shadow(Wave& wave, ShadowOwner begin, const ShadowRay& shadow, Columns& columns) const;
+  Columns clear_columns(Wave& wave, const ShadowOwner& at, const ShadowRay& shadow) const;
+  bool walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, Columns& columns) const;
   void add_column(PathState& path, Columns& columns, uint32_t medium, const TraceRay& ray, float begin) const;
   void append_columns(Wave& wave, uint32_t path, uint32_t entry, const Columns& columns) const;
 
@@ -79,6 +80,7 @@ class GasPaths {
   const EmbreeScene& embree_;
   std::vector<GasPath> paths_;
   std::vector<Segment> segments_;
+  std::vector<float> shadow_ends_;          // of all shadow rays, ray parameters
   std::vector<ShadowOwner> shadow_owners_;  // of the last shadow rays; those before are of paths in no medium
 };
 
