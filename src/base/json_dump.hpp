@@ -12,4 +12,10 @@ std::string dump_json(const Json& json, int indent = -1, bool ascii = false) {
   return json.dump(indent, ' ', ascii, Json::error_handler_t::replace);
 }
 
+/// The text as it comes back from dump_json(): UTF-8. Json: nlohmann's
+template <class Json>
+std::string json_text(const std::string& text) {
+  return Json::parse(dump_json(Json(text))).template get<std::string>();
+}
+
 }  // namespace kiloband

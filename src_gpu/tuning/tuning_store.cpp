@@ -25,11 +25,6 @@ constexpr uint64_t kFewestKept = 64, kMostPaths = uint64_t{1} << 28, kLargestGro
 constexpr uint64_t kLargestFile = uint64_t{1} << 20;  // bytes: hundreds of measurements
 constexpr const char* kNoFolder = "there is no folder for it: neither XDG_CACHE_HOME nor HOME is set";
 
-/// As it comes back from a file: names of devices may be in any encoding.
-json kept_name(const DeviceInfo& device) {
-  return json::parse(dump_json(json(device.name)));
-}
-
 /// A conversion of other numbers is undefined where they are too large.
 uint64_t whole_number(const json& from, const char* name) {
   if (!from.at(name).is_number_unsigned()) throw std::out_of_range(name);
@@ -95,7 +90,7 @@ std::vector<TunedMethod> TuningStore::load(const DeviceInfo& device) const {
   std::vector<TunedMethod> tuned;
   try {
     const json all = json::parse(read_small_file(file(device), kLargestFile));
-    if (all.at("format") != kFormat || all.at("device") != kept_name(device)) return {};
+    if (all.at("format") != kFormat || all.at("device") != json_text<json>(device.name)) return {};
     for (const json& one : all.at("tuned")) tuned.push_back(tuned_method(one));
   } catch (const InputError&) {
     return {};

@@ -25,11 +25,6 @@ std::string escaped(std::string text) {
   return text;
 }
 
-/// Names of files have any bytes; a file that says it is UTF-8 has no others.
-std::string utf8_text(const std::string& text) {
-  return nlohmann::json::parse(dump_json(nlohmann::json(text))).get<std::string>();
-}
-
 /// One <testcase>; failure: empty if it passed.
 std::string test_case(const std::string& group, const std::string& name, double seconds,
                       const std::string& failure) {
@@ -154,7 +149,8 @@ void prepare_results(const fs::path& directory) {
 
 void write_verdicts(const fs::path& directory, const SuiteResult& result, const RunRecord& record) {
   write_file_atomically(directory / "results.json", dump_json(to_json(result, record), 1) + "\n");
-  write_file_atomically(directory / "junit.xml", utf8_text(to_junit(result)));
+  // Names of files have any bytes; a file that says it is UTF-8 has no others.
+  write_file_atomically(directory / "junit.xml", json_text<nlohmann::json>(to_junit(result)));
 }
 
 void write_results(const fs::path& directory, const SuiteResult& result, const RunRecord& record) {
