@@ -9,6 +9,7 @@
 #include "app/options/whole_numbers.hpp"
 #include "base/error.hpp"
 #include "base/number.hpp"
+#include "cube/channel_cover.hpp"
 #include "cube/cube_text.hpp"
 #include "post/effective_band.hpp"
 #include "post/sensor_cube.hpp"
@@ -129,9 +130,10 @@ DerivedChannels load_responses(const std::vector<std::string>& files, const Load
   DerivedChannels derived;
   std::set<std::string> names;
   const Channel range = hull(scene.channels);
+  const ChannelCover cover(scene.channels);
   for (const auto& [name, response] : responses) {
     if (!names.insert(name).second) throw InputError("response '" + name + "' is given twice");
-    const double missing = uncovered_part(response, scene.channels);
+    const double missing = uncovered_part(response, cover);
     const bool is_dark = response.max_over(range.min_nm, range.max_nm) == 0 &&
                          response.min_over(range.min_nm, range.max_nm) == 0;
     if (missing >= 1 || is_dark) throw InputError("response '" + name + "': is 0 in all channels");
@@ -142,7 +144,7 @@ DerivedChannels load_responses(const std::vector<std::string>& files, const Load
     }
     derived.names.push_back(name);
     derived.responses.push_back(resample(response, range.min_nm, range.max_nm));
-    derived.bands.push_back(effective_band(response, scene.channels));
+    derived.bands.push_back(effective_band(response, cover));
     derived.bands.back().name = name;
   }
   return derived;

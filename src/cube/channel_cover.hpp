@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "spectral/channel_density.hpp"
@@ -11,7 +12,17 @@ namespace kiloband {
 /// The pieces between edges of channels, and the channels' shares of them.
 class ChannelCover {
  public:
-  explicit ChannelCover(const ChannelList& channels) : density_(channels) {}
+  explicit ChannelCover(const ChannelList& channels) : density_(channels) {
+    const std::vector<double>& edges = density_.edges_nm();
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      if (density_[i] == 0) continue;
+      if (i == 0 || density_[i - 1] == 0) covered_nm_.emplace_back(edges[i], edges[i]);
+      covered_nm_.back().second = edges[i + 1];
+    }
+  }
+
+  /// What the channels cover: intervals in ascending order that do not touch.
+  const std::vector<std::pair<double, double>>& covered_nm() const { return covered_nm_; }
 
   /// action(from_nm, to_nm, density) for the pieces of [min_nm, max_nm]; 0 where no channel is.
   template <class Action>
@@ -36,6 +47,7 @@ class ChannelCover {
 
  private:
   ChannelDensity density_;
+  std::vector<std::pair<double, double>> covered_nm_;
 };
 
 }  // namespace kiloband

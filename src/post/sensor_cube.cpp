@@ -7,7 +7,6 @@
 #include <set>
 
 #include "cube/band_lists.hpp"
-#include "cube/channel_cover.hpp"
 #include "cube/cube_layout.hpp"
 #include "cube/cube_text.hpp"
 #include "post/effective_band.hpp"
@@ -32,15 +31,15 @@ class SensorCube : public CubeReader {
   SensorCube(std::unique_ptr<CubeReader> source, const std::vector<NamedResponse>& responses)
       : source_(std::move(source)), info_(source_->info()) {
     const std::vector<Band>& bands = source_->info().bands;
-    const ChannelList channels = channels_of(bands);
+    const ChannelCover cover(channels_of(bands));
     info_.bands.clear();
     bool own = false;
     for (const auto& [name, response] : responses) {
       const auto band = own_band(bands, name);
       own = own || band;
       own_.push_back(band);
-      weights_.push_back(band ? std::vector<double>{} : integral_weights(response, name));
-      Channel range = band ? bands[*band].channel : effective_band(response, channels);
+      weights_.push_back(band ? std::vector<double>{} : integral_weights(response, name, cover));
+      Channel range = band ? bands[*band].channel : effective_band(response, cover);
       range.name = name;
       info_.bands.push_back({range, true});
     }
@@ -77,13 +76,14 @@ class SensorCube : public CubeReader {
 
  private:
   /// Weights for values as they are on disk.
-  std::vector<double> integral_weights(const Spectrum& response, const std::string& name) const {
+  std::vector<double> integral_weights(const Spectrum& response, const std::string& name,
+                                       const ChannelCover& cover) const {
     const CubeInfo& info = source_->info();
-    if (channels_of(info.bands).empty())
+    if (cover.covered_nm().empty())
       throw InputError(
           "response '" + name +
           "': no band of the cube has wavelengths: give them with kiloband convert --wavelengths");
-    std::vector<double> weight = sensor_weights(response, info.bands).weight;
+    std::vector<double> weight = sensor_weights(response, info.bands, cover).weight;
     if (std::all_of(weight.begin(), weight.end(), [](double w) { return w == 0; }))
       throw InputError("response '" + name + "': is 0 in all channels of the cube");
     for (std::size_t k = 0; k < weight.size(); ++k)
@@ -135,21 +135,21 @@ std::vector<NamedResponse> xyz_responses() {
           {"Z", cie_z().scaled(kLumensPerWatt)}};
 }
 
-double uncovered_part(const Spectrum& response, const ChannelList& channels) {
+double uncovered_part(const Spectrum& response, const ChannelCover& cover) {
+  const auto& pieces = cover.covered_nm();
   const auto range = response.data_range();
-  const Channel all = hull(channels);
-  const double from = range ? range->min_nm : all.min_nm, to = range ? range->max_nm : all.max_nm;
+  const double from = range ? range->min_nm : pieces.front().first;
+  const double to = range ? range->max_nm : pieces.back().second;
   const double total = absolute_integral(response, from, to);
   if (!(total > 0)) return 0;
   double covered = 0;
-  ChannelCover(channels).for_pieces(from, to, [&](double a, double b, double density) {
-    if (density > 0) covered += absolute_integral(response, a, b);
-  });
+  for (const auto& [a, b] : pieces)
+    if (a < to && b > from) covered += absolute_integral(response, std::max(a, from), std::min(b, to));
   return 1 - covered / total;
 }
 
-SensorWeights sensor_weights(const Spectrum& response, const std::vector<Band>& bands) {
-  const ChannelCover cover(channels_of(bands));
+SensorWeights sensor_weights(const Spectrum& response, const std::vector<Band>& bands,
+                             const ChannelCover& cover) {
   SensorWeights result{std::vector<double>(bands.size(), 0), std::vector<double>(bands.size(), 0)};
   for (std::size_t k = 0; k < bands.size(); ++k) {
     if (bands[k].derived) continue;
@@ -181,19 +181,19 @@ void report_responses(CubeReader& cube, const std::vector<NamedResponse>& respon
                       const DiagnosticSink& sink) {
   if (responses.empty()) return;  // there are the bands that the render accumulated
   const std::vector<Band>& bands = cube.info().bands;
+  const ChannelCover cover(channels_of(bands));
   const std::vector<double> integrals = image_integrals(cube);
   for (const auto& [name, response] : responses) {
     if (own_band(bands, name)) {
       note(sink, {}, "response '" + name + "': the band that the render accumulated is taken");
       continue;
     }
-    const ChannelList channels = channels_of(bands);
-    if (channels.empty()) continue;  // apply_responses() refuses it
-    const double missing = uncovered_part(response, channels);
+    if (cover.covered_nm().empty()) continue;  // apply_responses() refuses it
+    const double missing = uncovered_part(response, cover);
     if (missing > kWorthAWarning)
       warn(sink, {},
            "response '" + name + "': " + percent(missing) + " of its integral lies outside the channels");
-    const SensorWeights weights = sensor_weights(response, bands);
+    const SensorWeights weights = sensor_weights(response, bands, cover);
     double sum = 0, bound = 0;
     for (std::size_t k = 0; k < bands.size(); ++k) {
       sum += weights.weight[k] * integrals[k];

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "cube/channel_cover.hpp"
 #include "cube/cube_io.hpp"
 #include "spectral/spectrum.hpp"
 
@@ -17,17 +18,19 @@ using NamedResponse = std::pair<std::string, Spectrum>;
 std::vector<NamedResponse> xyz_responses();
 
 /// Part of the integral of |response| that no channel covers, 0 to 1; overlaps count once.
-double uncovered_part(const Spectrum& response, const ChannelList& channels);
+double uncovered_part(const Spectrum& response, const ChannelCover& cover);
 
 /// How a response sees a cube: the integral of response times radiance is the sum over channels of weight
 /// times channel integral, where the weight is the mean of response / number of channels that cover the
 /// wavelength. A response that changes inside a channel makes that an approximation: by however much the
 /// radiance varies inside, the channel's part is off by at most `deviation` times its integral.
+/// `cover` is that of the bands' channels.
 struct SensorWeights {
   std::vector<double> weight;     // by band; 0 for derived bands
   std::vector<double> deviation;  // by band: largest |response - weight| inside
 };
-SensorWeights sensor_weights(const Spectrum& response, const std::vector<Band>& bands);
+SensorWeights sensor_weights(const Spectrum& response, const std::vector<Band>& bands,
+                             const ChannelCover& cover);
 
 /// The cube with one derived band per response, in integrals over its channels, with the effective_band() of
 /// the response as its interval. A band that the render has accumulated under a response's name (--response)

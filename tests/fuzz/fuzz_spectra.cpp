@@ -79,11 +79,12 @@ void responses(std::string_view bytes) {
   accept_or_refuse([&] {
     std::vector<Band> bands;
     for (const Channel& channel : some_channels()) bands.push_back({channel, false});
+    const ChannelCover cover(some_channels());
     for (const auto& [name, response] : read_response_file(file)) {
       promise(!name.empty(), "a response without a name");
       use(response);
-      uncovered_part(response, some_channels());
-      sensor_weights(response, bands);
+      uncovered_part(response, cover);
+      sensor_weights(response, bands, cover);
     }
   });
 }

@@ -9,6 +9,7 @@
 #include "base/number.hpp"
 #include "base/temporary_folder.hpp"
 #include "base/text.hpp"
+#include "cube/channel_cover.hpp"
 #include "cube/cube_layout.hpp"
 #include "spectral/files/spectrum_files.hpp"
 #include "viewer/api/plain_names.hpp"
@@ -87,9 +88,10 @@ void parse_mode(const Request& request, ViewParameters& view) {
 /// The first three responses as red, green, blue; one as grey.
 RgbWeights response_weights(const std::vector<NamedResponse>& responses, const std::vector<Band>& bands) {
   RgbWeights weights(bands.size(), {0, 0, 0});
+  const ChannelCover cover(channels_of(bands));
   for (std::size_t c = 0; c < 3; ++c) {
     const NamedResponse& response = responses[std::min(c, responses.size() - 1)];
-    const SensorWeights sensor = sensor_weights(response.second, bands);
+    const SensorWeights sensor = sensor_weights(response.second, bands, cover);
     for (std::size_t k = 0; k < bands.size(); ++k) weights[k][c] = static_cast<float>(sensor.weight[k]);
   }
   return weights;

@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "cube/channel_cover.hpp"
+#include "cube/cube_layout.hpp"
 #include "post/effective_band.hpp"
 #include "post/picture.hpp"
 #include "post/sensor_cube.hpp"
@@ -43,6 +47,10 @@ class Sensor : public testing::Test {
 const Spectrum kFlat = Spectrum::constant(2);
 const Spectrum kRamp = Spectrum::tabulated({400, 500}, {0, 1});
 
+SensorWeights weights_of(const Spectrum& response, const std::vector<Band>& of) {
+  return sensor_weights(response, of, ChannelCover(channels_of(of)));
+}
+
 /// A radiance of 1 per nm makes the integrals 40, 30, 40; 10 nm are covered twice and count once.
 TEST_F(Sensor, OverlappingChannelsCountOnce) {
   const Cube cube = cube_of({40, 30, 40, 7});
@@ -72,8 +80,16 @@ TEST_F(Sensor, NarrowChannelsHaveMoreOfWhatTheyResolve) {
   EXPECT_NEAR(seen.mean[1], 2 * (302.0 / 300 * (299 + 1 / 301.0) + 3 * 300 / 301.0), 1e-3);
 }
 
+/// In any order, one in another, some that touch and one apart.
+TEST(ChannelCover, CoveredIntervalsDoNotTouch) {
+  using Intervals = std::vector<std::pair<double, double>>;
+  const ChannelCover cover({{700, 701, ""}, {440, 470, ""}, {400, 440, ""}, {450, 455, ""}, {465, 500, ""}});
+  EXPECT_EQ(cover.covered_nm(), (Intervals{{400, 500}, {700, 701}}));
+  EXPECT_EQ(ChannelCover(ChannelList{}).covered_nm(), Intervals{});
+}
+
 void expect_band(const Spectrum& response, const ChannelList& channels, double min_nm, double max_nm) {
-  const Channel band = effective_band(response, channels);
+  const Channel band = effective_band(response, ChannelCover(channels));
   EXPECT_NEAR(band.min_nm, min_nm, 1e-6);
   EXPECT_NEAR(band.max_nm, max_nm, 1e-6);
 }
@@ -81,16 +97,16 @@ void expect_band(const Spectrum& response, const ChannelList& channels, double m
 /// What is negative counts as much as what is positive.
 TEST(UncoveredPart, IsOfTheMagnitude) {
   const Spectrum response = Spectrum::tabulated({400, 500, 500.000001, 600}, {-1, -1, 2, 2});
-  EXPECT_NEAR(uncovered_part(response, {{400, 500, ""}}), 2.0 / 3, 1e-6);
-  EXPECT_NEAR(uncovered_part(response, {{500, 600, ""}}), 1.0 / 3, 1e-6);
-  EXPECT_EQ(uncovered_part(response, {{300, 350, ""}}), 1);
-  EXPECT_EQ(uncovered_part(Spectrum::tabulated({400, 500}, {-1, -1}), {{600, 700, ""}}), 1);
+  EXPECT_NEAR(uncovered_part(response, ChannelCover({{400, 500, ""}})), 2.0 / 3, 1e-6);
+  EXPECT_NEAR(uncovered_part(response, ChannelCover({{500, 600, ""}})), 1.0 / 3, 1e-6);
+  EXPECT_EQ(uncovered_part(response, ChannelCover({{300, 350, ""}})), 1);
+  EXPECT_EQ(uncovered_part(Spectrum::tabulated({400, 500}, {-1, -1}), ChannelCover({{600, 700, ""}})), 1);
 }
 
 /// Centroid and equivalent width by hand.
 TEST(EffectiveBand, IsCentroidAndEquivalentWidth) {
   const ChannelList all{{380, 2540, ""}};
-  const Channel box = effective_band(Spectrum::tabulated({614, 682}, {0.3, 0.3}), all);
+  const Channel box = effective_band(Spectrum::tabulated({614, 682}, {0.3, 0.3}), ChannelCover(all));
   EXPECT_EQ(box.min_nm, 614) << "as it was given";
   EXPECT_EQ(box.max_nm, 682);
   expect_band(Spectrum::tabulated({500, 510, 530}, {0, 4, 0}), all, 540.0 / 3 + 1000.0 / 3 - 7.5,
@@ -106,13 +122,13 @@ TEST(EffectiveBand, IsCentroidAndEquivalentWidth) {
 }
 
 TEST_F(Sensor, WeightsAndTheirDeviationByHand) {
-  const SensorWeights ramp = sensor_weights(kRamp, bands());
+  const SensorWeights ramp = weights_of(kRamp, bands());
   EXPECT_NEAR(ramp.weight[0], 0.2, 1e-12);  // 0 to 0.4
   EXPECT_NEAR(ramp.deviation[0], 0.2, 1e-12);
   EXPECT_NEAR(ramp.weight[1], (20 * 0.5 + 10 * 0.65 * 4 / 7) / 30, 1e-12);  // 0.4 to 0.6, 4/7 of 0.6 to 0.7
   EXPECT_NEAR(ramp.deviation[1], 0.6 - ramp.weight[1], 1e-12);
   EXPECT_EQ(ramp.weight[3], 0);
-  const SensorWeights flat = sensor_weights(Spectrum::tabulated({400, 440}, {3, 3}), bands());
+  const SensorWeights flat = weights_of(Spectrum::tabulated({400, 440}, {3, 3}), bands());
   EXPECT_NEAR(flat.weight[0], 3, 1e-12);
   EXPECT_NEAR(flat.deviation[0], 0, 1e-12);
   EXPECT_EQ(flat.weight[1], 0);
@@ -136,7 +152,7 @@ TEST_F(Sensor, WarningsGiveTheLargestPossibleError) {
 TEST_F(Sensor, JumpsAtTheEdgesOfChannelsAreExact) {
   const Spectrum box = Spectrum::tabulated({440, 460}, {3, 3});
   const SensorWeights weights =
-      sensor_weights(box, {{{400, 440, ""}, false}, {{440, 460, ""}, false}, {{460, 500, ""}, false}});
+      weights_of(box, {{{400, 440, ""}, false}, {{440, 460, ""}, false}, {{460, 500, ""}, false}});
   EXPECT_EQ(weights.weight, (std::vector<double>{0, 3, 0}));
   EXPECT_EQ(weights.deviation, (std::vector<double>{0, 0, 0}));
   Cube cube = make_cube(1, 1, equal_bands(400, 700, 6));
