@@ -25,6 +25,7 @@
 #include "viewer/api/stored_image.hpp"
 #include "viewer/live/live_render.hpp"
 #include "viewer/server/http_server.hpp"
+#include "viewer/server/page_address.hpp"
 
 namespace kiloband {
 namespace {
@@ -83,13 +84,6 @@ bool is_cube(const std::filesystem::path& file) {
   return extension == ".exr" || extension == ".hdr" || extension == ".img";
 }
 
-std::string address_of(const ViewOptions& options, const viewer::ApiSettings& settings, int port) {
-  const std::string host = options.listen.value_or("127.0.0.1");
-  const std::string named = host.find(':') == std::string::npos ? host : "[" + host + "]";
-  return fmt::format("http://{}:{}/{}", named, port,
-                     settings.access.token ? "?token=" + *settings.access.token : "");
-}
-
 /// What a cube has no use for: the options of scenes and renders.
 /// throws InputError  one was given
 void check_options_of_cube(const CLI::App& command, const std::string& cube) {
@@ -115,8 +109,9 @@ void open_browser(const std::string& address) {
 void serve(viewer::ViewedImage& image, const ViewOptions& options) {
   const viewer::ApiSettings settings = api_settings(options);
   viewer::Api api(image, settings);
-  const viewer::HttpServer server(api, options.listen.value_or("127.0.0.1"), options.port);
-  const std::string address = address_of(options, settings, server.port());
+  const std::string bound = options.listen.value_or("127.0.0.1");
+  const viewer::HttpServer server(api, bound, options.port);
+  const std::string address = viewer::page_address(bound, server.port(), settings.access.token);
   answer("{}\n", address);
   finish_standard_output();
   if (options.open) open_browser(address);
