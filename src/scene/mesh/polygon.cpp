@@ -90,7 +90,7 @@ const std::vector<std::array<uint32_t, 3>>& PolygonCutter::cut(std::span<const V
   if (points.size() > 3 && fan_folds(points, normal)) {
     flatten(points, normal, flat_);
     if (cut_ears()) return triangles_;
-    ++folded_;
+    ++(tests_ > kMaxEarTests ? abandoned_ : crossed_);
   }
   triangles_.clear();
   for (uint32_t i = 2; i < points.size(); ++i) triangles_.push_back({0, i - 1, i});
@@ -98,10 +98,13 @@ const std::vector<std::array<uint32_t, 3>>& PolygonCutter::cut(std::span<const V
 }
 
 void PolygonCutter::report(const MeshFile& file, const DiagnosticSink& sink) const {
-  if (folded_ == 0) return;
-  warn(sink, {file.name},
-       std::to_string(folded_) + (folded_ == 1 ? " face is" : " faces are") +
-           " no simple polygon: cut into a fan, whose triangles overlap");
+  const auto count = [&](size_t faces, const char* one, const char* several, const char* what) {
+    if (faces > 0) warn(sink, {file.name}, std::to_string(faces) + (faces == 1 ? one : several) + what);
+  };
+  count(crossed_, " face is", " faces are", " no simple polygon: cut into a fan, whose triangles overlap");
+  count(
+      abandoned_, " concave face is", " concave faces are",
+      " cut into a fan, whose triangles overlap: the file has too many corners of such faces to cut them by ears");
 }
 
 }  // namespace kiloband

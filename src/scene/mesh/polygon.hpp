@@ -28,7 +28,7 @@ class PolygonCutter {
   std::vector<uint32_t> left_;                      // corners that no ear has taken
   std::vector<std::array<uint32_t, 3>> triangles_;  // of the last face
   uint64_t tests_ = 0;                              // of corners in ears, so far
-  size_t folded_ = 0;
+  size_t crossed_ = 0, abandoned_ = 0;              // fans that should not be: no ears left, no time left
 };
 
 }  // namespace kiloband
