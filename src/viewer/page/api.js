@@ -91,19 +91,31 @@ export function load_scene() {
   return loading;
 }
 
+/** The words with which a server that is there refuses this page; '' where it does not. */
+async function words_of_refusal() {
+  try {
+    await get('/api/scene');
+  } catch (error) {
+    if (error instanceof ServerError) return error.message;
+  }
+  return '';
+}
+
 /** Keeps the stream of events open while the page is visible, and opens it again when the server comes back. */
 export function connect() {
   if (source || document.hidden) return;
   source = new EventSource('/api/events');
   source.onopen = () => {
     wait_ms = 500;
-    set({connected: true});
+    set({connected: true, refusal: ''});
     load_scene();
   };
   source.onerror = () => {
+    const answered = source.readyState === EventSource.CLOSED;  // with something else than a stream
     disconnect();
     ++losses;
     set({connected: false});
+    (answered ? words_of_refusal() : Promise.resolve('')).then((refusal) => set({refusal}));
     setTimeout(connect, wait_ms);
     wait_ms = Math.min(2 * wait_ms, 4000);
   };

@@ -7,6 +7,7 @@ export const state = {
   status: null,  // last event `status`
   frame: null,   // header of the frame that is shown
   connected: false,
+  refusal: '',      // the server's words, where it answers and lets this page see nothing
   curves: [],       // [{key, select, pixels, mean, standard_error}] as last received
   pins: [],         // [{key, select: [x, y] | [x0, y0, x1, y1], letter, colour}]
   hover: null,      // [x, y] of the pixel under the mouse or the keyboard's cursor

@@ -14,6 +14,8 @@ const kStates = {
   failed: 'Failed'
 };
 
+const kAbsence = id('offline').textContent;
+
 export const set_tool = (tool) => set({tool});
 
 const tool_choice = choice(
@@ -87,4 +89,5 @@ on('status scene frame', show_status);
 on('hover scene', show_pixel);
 on('tool scene zoom frame', show_tools);
 on('connected', () => (id('offline').hidden = state.connected));
+on('refusal', () => (id('offline').textContent = state.refusal || kAbsence));
 on('scene', () => (document.title = `${state.scene.name} – kiloband`));
