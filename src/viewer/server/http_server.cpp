@@ -72,7 +72,7 @@ struct HttpServer::Impl final : httplib::Server {
       fill_response(api.answer(to_request(request), [this] { return is_over(); }), response);
     });
     set_post_routing_handler([](const httplib::Request& request, httplib::Response& response) {
-      if (!leaves_body(request, response.status)) return;
+      if (!connection->is_last() && !leaves_body(request, response.status)) return;
       connection->end_after_answer();
       response.set_header("Connection", "close");
     });
@@ -84,8 +84,10 @@ struct HttpServer::Impl final : httplib::Server {
     });
   }
 
-  /// Everything but the answers to POST is known before a body is read.
+  /// Everything but the answers to POST is known before a body is read. Requests whose heads the library refuses (too long, none) do not
+  /// come here: of these it is not known whether a body follows.
   HandlerResponse before_body(const httplib::Request& request, httplib::Response& response) {
+    connection->go_on_after_answer();
     const Request asked = to_request(request);
     if (asked.path == "/api/events" && !api.refuse(asked)) {
       stream_events(response);

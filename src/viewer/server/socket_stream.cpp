@@ -34,6 +34,7 @@ bool SocketStream::wait_for_request() {
   read_deadline_ = Clock::now() + limits_.request;
   bytes_left_ = limits_.request_bytes;
   answering_ = endless_ = false;
+  is_last_ = true;  // until its head has been understood
   return !is_gone();
 }
 

@@ -25,8 +25,9 @@ class SocketStream final : public httplib::Stream {
   bool wait_for_request();
   /// From now on every write has a deadline of its own: for a stream of events.
   void answer_without_end() { endless_ = true; }
-  /// No further request is read: what the client has sent is not all read, and might be taken for one.
+  /// Whether a further request may be read: what the client has sent of this one might be taken for it, unless all of it is known to be read.
   void end_after_answer() { is_last_ = true; }
+  void go_on_after_answer() { is_last_ = false; }
   bool is_last() const { return is_last_; }
   /// The client has hung up.
   bool is_gone() const;
@@ -47,7 +48,7 @@ class SocketStream final : public httplib::Stream {
   const std::atomic<bool>& stopping_;
   Limits limits_;
   Clock::time_point read_deadline_, write_deadline_;
-  bool answering_ = false, endless_ = false, is_last_ = false;
+  bool answering_ = false, endless_ = false, is_last_ = true;
   std::size_t bytes_left_ = 0;
   std::string buffer_;
   std::size_t next_ = 0;

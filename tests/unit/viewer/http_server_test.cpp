@@ -139,7 +139,11 @@ TEST_F(RunningServer, BodiesThatAreNotReadAreNoRequests) {
         "PUT /api/save" + host + length, "POST /elsewhere" + host + length,
         "GET /" + host + "Transfer-Encoding: chunked\r\n\r\n",
         "GET /" + host + "Content-Length: 0\r\n" + length,
-        "POST /api/control" + host + kPost + "Content-Length: 0\r\n" + length}) {
+        "POST /api/control" + host + kPost + "Content-Length: 0\r\n" + length,
+        "POST /" + std::string(9000, 'a') + host + "Origin: http://evil.com\r\n" + length,
+        "POST /api/save" + host + "Cookie: a=" + std::string(9000, 'b') + "\r\n" + length,
+        "POST /api/save HTTP/9.9\r\nHost: localhost\r\n" + length, std::string("EVIL / HTTP/1.1\r\n\r\n"),
+        std::string("GET\n"), std::string("\x16\x03\x01\r\n")}) {
     const std::string answer = ask(head + hidden);
     std::size_t answers = 0;
     for (std::size_t at = answer.find("HTTP/1.1 "); at != std::string::npos;
