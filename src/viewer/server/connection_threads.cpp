@@ -37,6 +37,11 @@ bool ConnectionThreads::accept(const std::function<void()>& serve) {
   return true;
 }
 
+bool ConnectionThreads::is_crowded() {
+  const std::lock_guard lock(mutex_);
+  return busy_ > most_ / 2;
+}
+
 void ConnectionThreads::work() {
   std::unique_lock lock(mutex_);
   for (;;) {

@@ -22,6 +22,8 @@ class ConnectionThreads final : public httplib::TaskQueue {
   void enqueue(std::function<void()> serve) override;
   void shutdown() override;
   static bool is_refusing();
+  /// More than half of the connections there may be are open.
+  bool is_crowded();
 
  private:
   bool accept(const std::function<void()>& serve);

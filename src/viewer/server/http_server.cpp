@@ -47,6 +47,16 @@ bool leaves_body(const httplib::Request& request, int status) {
   return has_body && !(request.method == "POST" && status < 400);
 }
 
+const std::string& busy_answer() {
+  static constexpr std::string_view kWords =
+      "Too many pages are open at this viewer. Try again in some seconds.\n";
+  static const std::string answer = fmt::format(
+      "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\nContent-Length: {}\r\nRetry-After: 5\r\n"
+      "Connection: close\r\n\r\n{}",
+      kWords.size(), kWords);
+  return answer;
+}
+
 void fill_response(const Response& from, httplib::Response& to) {
   to.status = from.status;
   for (const auto& [name, value] : from.headers) to.set_header(name, value);
@@ -57,7 +67,7 @@ void fill_response(const Response& from, httplib::Response& to) {
 
 struct HttpServer::Impl final : httplib::Server {
   Impl(Api& served, const ServerLimits& server_limits) : api(served), limits(server_limits) {
-    new_task_queue = [this] { return new ConnectionThreads(limits.connections); };
+    new_task_queue = [this] { return threads = new ConnectionThreads(limits.connections); };
     set_tcp_nodelay(true);
     set_keep_alive_max_count(kMostRequests);  // what answers state; serve() sees to it
     set_keep_alive_timeout(30);
@@ -130,9 +140,7 @@ struct HttpServer::Impl final : httplib::Server {
 
   bool process_and_close_socket(socket_t socket) override {
     if (ConnectionThreads::is_refusing()) {
-      static constexpr std::string_view kBusy =
-          "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
-      send(socket, kBusy.data(), kBusy.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      send(socket, busy_answer().data(), busy_answer().size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     } else {
       serve(socket);
     }
@@ -145,12 +153,15 @@ struct HttpServer::Impl final : httplib::Server {
     SocketStream::Limits stream_limits;
     stream_limits.request = std::chrono::milliseconds(limits.request_ms);
     stream_limits.between_requests = 2 * stream_limits.request;
+    stream_limits.between_if_crowded = std::chrono::milliseconds(limits.idle_if_crowded_ms);
     stream_limits.answer = std::chrono::milliseconds(limits.answer_ms);
     stream_limits.request_bytes = limits.body_bytes + (1u << 16);
     SocketStream stream(socket, stopping, stream_limits);
     connection = &stream;
     bool closed = false;
-    for (int i = 1; i <= kMostRequests && !closed && !stopping && stream.wait_for_request(); ++i) {
+    for (int i = 1; i <= kMostRequests && !closed && !stopping &&
+                    stream.wait_for_request([this] { return threads->is_crowded(); });
+         ++i) {
       const auto forget_ranges = [](httplib::Request& request) { request.ranges.clear(); };
       if (!process_request(stream, i == kMostRequests, closed, forget_ranges) || stream.is_last()) break;
     }
@@ -162,6 +173,7 @@ struct HttpServer::Impl final : httplib::Server {
   int bound_port = 0;
   std::atomic<unsigned> pages{0};
   std::atomic<bool> stopping{false};
+  ConnectionThreads* threads = nullptr;  // the library's, while it listens
   std::thread thread;
 };
 

@@ -13,6 +13,8 @@ struct ServerLimits {
   std::size_t body_bytes = std::size_t{4} << 20;
   /// Milliseconds for a whole request to arrive, and for a whole answer to be taken.
   unsigned request_ms = 15000, answer_ms = 60000;
+  /// Milliseconds that a connection may be idle while more than half of them are open (otherwise twice request_ms): browsers keep six.
+  unsigned idle_if_crowded_ms = 5000;
 };
 
 /// Answers requests on threads of its own, from the constructor to the destructor.

@@ -29,8 +29,12 @@ bool SocketStream::wait_for(short events, Clock::time_point deadline) const {
   return false;
 }
 
-bool SocketStream::wait_for_request() {
-  if (next_ == buffer_.size() && !wait_for(POLLIN, Clock::now() + limits_.between_requests)) return false;
+bool SocketStream::wait_for_request(const std::function<bool()>& is_crowded) {
+  const auto start = Clock::now();
+  while (next_ == buffer_.size() && !wait_for(POLLIN, Clock::now() + kLook)) {
+    const auto limit = is_crowded() ? limits_.between_if_crowded : limits_.between_requests;
+    if (stopping_ || Clock::now() - start > limit) return false;
+  }
   read_deadline_ = Clock::now() + limits_.request;
   bytes_left_ = limits_.request_bytes;
   answering_ = endless_ = false;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <string>
 
 #include "viewer/server/httplib.hpp"
@@ -15,14 +16,15 @@ class SocketStream final : public httplib::Stream {
  public:
   using Clock = std::chrono::steady_clock;
   struct Limits {
-    std::chrono::milliseconds between_requests{30000}, request{15000}, answer{60000};
+    std::chrono::milliseconds between_requests{30000}, between_if_crowded{5000}, request{15000},
+        answer{60000};
     std::size_t request_bytes = std::size_t{5} << 20;
   };
 
   SocketStream(int socket, const std::atomic<bool>& stopping, const Limits& limits);
 
-  /// Waits for the first byte of the next request. False: the client is gone, or had nothing to ask.
-  bool wait_for_request();
+  /// Waits for the first byte of the next request, while is_crowded() not so long. False: the client is gone, or had nothing to ask.
+  bool wait_for_request(const std::function<bool()>& is_crowded);
   /// From now on every write has a deadline of its own: for a stream of events.
   void answer_without_end() { endless_ = true; }
   /// Whether a further request may be read: what the client has sent of this one might be taken for it, unless all of it is known to be read.

@@ -210,12 +210,36 @@ TEST_F(RunningServer, RefusesConnectionsBeyondItsLimit) {
   }
   EXPECT_EQ(server_.pages(), 8u);
   EXPECT_EQ(status(request("GET /")), "503");
+  EXPECT_NE(ask(request("GET /")).find("Too many pages"), std::string::npos);
   listening.clear();
   const auto give_up = Clock::now() + std::chrono::seconds(10);
   while (server_.pages() > 0 && Clock::now() < give_up)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(server_.pages(), 0u) << "pages that have gone are noticed";
   EXPECT_EQ(status(request("GET /")), "200");
+}
+
+/// Browsers keep connections that they may need again: half a minute is long for those who find none.
+TEST_F(RunningServer, IdleConnectionsMakeRoom) {
+  ServerLimits patient;
+  patient.connections = 8;
+  patient.idle_if_crowded_ms = 100;
+  const HttpServer server(cube_.api(), "127.0.0.1", 0, patient);
+  std::vector<std::unique_ptr<Client>> idle;
+  for (int i = 0; i < 8; ++i) {
+    idle.push_back(std::make_unique<Client>(server.port()));
+    idle.back()->send("GET /api/events HTTP/1.1\r\nHost: evil.com\r\n\r\n");
+    EXPECT_NE(idle.back()->receive("}").find("403"), std::string::npos);
+  }
+  const auto start = Clock::now();
+  std::string answer;
+  while (answer.find("200 OK") == std::string::npos && Clock::now() - start < std::chrono::seconds(15)) {
+    const Client late(server.port());
+    late.send(request("GET /"));
+    answer = late.receive();
+  }
+  EXPECT_NE(answer.find("200 OK"), std::string::npos)
+      << "after " << (Clock::now() - start) / std::chrono::seconds(1) << " s";
 }
 
 TEST_F(RunningServer, EventsTellWhatThereIs) {
