@@ -14,6 +14,7 @@
 #include "viewer/api/selections.hpp"
 #include "viewer/display/colour_map.hpp"
 #include "viewer/display/encode.hpp"
+#include "viewer/display/row_range.hpp"
 
 namespace kiloband::viewer {
 namespace {
@@ -61,16 +62,23 @@ bool has_errors(const Curve& curve) {
 }
 
 /// The values of a part of a plane, where the part is given in pixels of the full image.
-json values_of(const Plane& plane, const Selection& part, uint32_t full_width, uint32_t full_height) {
+/// The plane of the rows that have something of a part of the image, and the part's values in it.
+json values_of(const ImageView& seen, const Selection& part,
+               const std::function<Plane(const PixelSource&)>& make) {
+  const auto row_of = [&](uint64_t y) {
+    return static_cast<uint32_t>(y * seen.pixels.height() / seen.full_height);
+  };
+  const uint32_t first = row_of(part.y0);
+  const Plane plane = make(RowRange(seen.pixels, first, row_of(part.y1) - first + 1));
   std::vector<float> values;
   for (uint64_t y = part.y0; y <= part.y1; ++y) {
     for (uint64_t x = part.x0; x <= part.x1; ++x) {
-      const std::size_t at =
-          (y * plane.height / full_height * plane.width + x * plane.width / full_width) * plane.components;
+      const std::size_t column = x * plane.width / seen.full_width;
+      const std::size_t at = (std::size_t{row_of(y) - first} * plane.width + column) * plane.components;
       values.insert(values.end(), &plane.values[at], &plane.values[at] + plane.components);
     }
   }
-  return numbers_json(values);
+  return {{"components", plane.components}, {"values", numbers_json(values)}};
 }
 
 }  // namespace
@@ -189,21 +197,25 @@ Response Api::values(const Request& request) {
     const uint64_t width = part.x1 - part.x0 + 1, height = part.y1 - part.y0 + 1;
     if (width * height > kMostValues)
       throw InputError(fmt::format("values of {} pixels: at most {}", width * height, kMostValues));
-    const Plane plane = make_plane(seen.pixels, view, responses_, image_.threads());
     answer = stamp_json(seen.stamp);
-    answer.update({{"width", width},
-                   {"height", height},
-                   {"components", plane.components},
-                   {"values", values_of(plane, part, seen.full_width, seen.full_height)}});
+    answer.update({{"width", width}, {"height", height}});
+    answer.update(values_of(seen, part, [&](const PixelSource& rows) {
+      return make_plane(rows, view, responses_, image_.threads());
+    }));
   });
   return answer_json(answer);
+}
+
+std::vector<Curve> Api::curves_of(const ImageView& seen, const std::vector<Selection>& places) {
+  if (!image_.controls()) return kept_curves_.read(seen, places, image_.threads());  // a stored cube
+  return read_curves(seen.pixels, places, seen.full_width, seen.full_height, image_.threads());
 }
 
 Response Api::spectra(const Request& request) {
   json answer;
   image_.read([&](const ImageView& seen) {
     const auto places = parse_selections(request.parameter("select"), seen.full_width, seen.full_height);
-    const auto curves = read_curves(seen.pixels, places, seen.full_width, seen.full_height);
+    const auto curves = curves_of(seen, places);
     answer = stamp_json(seen.stamp);
     answer["curves"] = json::array();
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -222,8 +234,7 @@ Response Api::export_csv(const Request& request) {
   Response response{200, "text/csv; charset=utf-8", "", {}};
   image_.read([&](const ImageView& seen) {
     const auto places = parse_selections(request.parameter("select"), seen.full_width, seen.full_height);
-    response.body = curves_csv(seen.pixels.bands(), places,
-                               read_curves(seen.pixels, places, seen.full_width, seen.full_height));
+    response.body = curves_csv(seen.pixels.bands(), places, curves_of(seen, places));
   });
   response.headers = {{"Content-Disposition", "attachment; filename=\"spectra.csv\""}};
   return response;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "viewer/api/access.hpp"
+#include "viewer/api/kept_curves.hpp"
 #include "viewer/api/view_mode.hpp"
 #include "viewer/api/viewed_image.hpp"
 
@@ -45,6 +46,7 @@ class Api {
   Response frame(const Request& request, const std::function<bool()>& gone);
   Response values(const Request& request);
   Response spectra(const Request& request);
+  std::vector<Curve> curves_of(const ImageView& seen, const std::vector<Selection>& places);
   Response export_csv(const Request& request);
   Response save(const nlohmann::json& wanted);
   Response control(const nlohmann::json& wanted);
@@ -53,6 +55,7 @@ class Api {
   ViewedImage& image_;
   ApiSettings settings_;
   Responses responses_;
+  KeptCurves kept_curves_;
   std::mutex saving_;  // one file at a time: a name that is free stays so until it is taken
 };
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "base/deal_ranges.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -41,6 +43,9 @@ Selection parse_selection(std::string_view text, uint32_t width, uint32_t height
 }
 
 struct CurveSums {
+  CurveSums() = default;
+  explicit CurveSums(std::size_t bands) : mean(bands), variance(bands), values(bands) {}
+
   std::vector<double> mean, variance;
   std::vector<uint64_t> values;  // per band, without NaN
   uint64_t pixels = 0;           // with any
@@ -60,25 +65,59 @@ Curve curve_of(const CurveSums& sums, const PixelSource& source) {
   return curve;
 }
 
-void add_row(const std::vector<float>& means, const std::vector<float>& variances, uint32_t x0, uint32_t x1,
-             CurveSums& sums) {
+/// Pixels x0 .. x1 of a row. All bands at once, without branches: rectangles may have as many values as the image.
+void add_row(const float* means, const float* variances, uint32_t x0, uint32_t x1, CurveSums& sums) {
   const std::size_t bands = sums.mean.size();
   for (std::size_t x = x0; x <= x1; ++x) {
-    bool has_values = false;
+    uint64_t known = 0;
     for (std::size_t k = 0; k < bands; ++k) {
-      if (std::isnan(means[x * bands + k])) continue;
-      has_values = true;
-      ++sums.values[k];
-      sums.mean[k] += means[x * bands + k];
-      sums.variance[k] += variances[x * bands + k];
+      const float mean = means[x * bands + k], variance = variances[x * bands + k];
+      const bool is_known = !std::isnan(mean);
+      known |= uint64_t{is_known};
+      sums.values[k] += uint64_t{is_known};
+      sums.mean[k] += is_known ? double{mean} : 0.0;
+      sums.variance[k] += is_known ? double{variance} : 0.0;
     }
-    sums.pixels += has_values;
+    sums.pixels += known;
   }
+}
+
+void add(const CurveSums& part, CurveSums& sums) {
+  for (std::size_t k = 0; k < sums.mean.size(); ++k) {
+    sums.mean[k] += part.mean[k];
+    sums.variance[k] += part.variance[k];
+    sums.values[k] += part.values[k];
+  }
+  sums.pixels += part.pixels;
 }
 
 /// Where a coordinate of the full image lies in one that may be reduced.
 uint32_t reduced(uint32_t at, uint32_t full, uint32_t size) {
   return static_cast<uint32_t>(uint64_t{at} * size / full);
+}
+
+/// The sums of all selections over rows first .. end - 1; those of selections that have none of them stay empty.
+std::vector<CurveSums> sums_of_rows(const PixelSource& pixels, const std::vector<Selection>& selections,
+                                    uint32_t first, uint32_t end) {
+  const std::size_t bands = pixels.bands().size();
+  std::vector<CurveSums> sums(selections.size());
+  std::vector<float> means, variances;
+  for (uint32_t y = first; y < end; ++y) {
+    bool is_read = false;
+    for (std::size_t i = 0; i < selections.size(); ++i) {
+      const Selection& s = selections[i];
+      if (y < s.y0 || y > s.y1) continue;
+      if (!std::exchange(is_read, true)) {
+        means.resize(pixels.width() * bands);
+        variances.resize(means.size());
+        pixels.means(y, means);
+        pixels.variances(y, variances);
+      }
+      if (sums[i].mean.empty()) sums[i] = CurveSums(bands);
+      add_row(means.data(), variances.data(), s.x0, s.x1, sums[i]);
+    }
+  }
+  return sums;
 }
 
 }  // namespace
@@ -92,27 +131,27 @@ std::vector<Selection> parse_selections(std::string_view text, uint32_t width, u
   return selections;
 }
 
-std::vector<Curve> read_curves(const PixelSource& pixels, const std::vector<Selection>& selections,
-                               uint32_t full_width, uint32_t full_height) {
-  const std::size_t bands = pixels.bands().size();
-  std::vector<CurveSums> sums(selections.size(), {std::vector<double>(bands), std::vector<double>(bands),
-                                                  std::vector<uint64_t>(bands), 0});
-  std::vector<float> means(pixels.width() * bands), variances(pixels.width() * bands);
-  for (uint32_t y = 0; y < pixels.height(); ++y) {
-    bool is_read = false;
-    for (std::size_t i = 0; i < selections.size(); ++i) {
-      const Selection& s = selections[i];
-      if (y < reduced(s.y0, full_height, pixels.height()) || y > reduced(s.y1, full_height, pixels.height()))
-        continue;
-      if (!is_read) {
-        pixels.means(y, means);
-        pixels.variances(y, variances);
-        is_read = true;
-      }
-      add_row(means, variances, reduced(s.x0, full_width, pixels.width()),
-              reduced(s.x1, full_width, pixels.width()), sums[i]);
-    }
+/// Parts of kRows rows are added up in their order, whoever has read them: the same bits for any number of threads.
+std::vector<Curve> read_curves(const PixelSource& pixels, std::vector<Selection> selections,
+                               uint32_t full_width, uint32_t full_height, unsigned threads) {
+  constexpr uint32_t kRows = 16;
+  for (Selection& s : selections) {
+    s.x0 = reduced(s.x0, full_width, pixels.width()), s.x1 = reduced(s.x1, full_width, pixels.width());
+    s.y0 = reduced(s.y0, full_height, pixels.height()), s.y1 = reduced(s.y1, full_height, pixels.height());
   }
+  uint32_t top = pixels.height(), bottom = 0;
+  for (const Selection& s : selections)
+    top = std::min(top, s.y0 / kRows * kRows), bottom = std::max(bottom, s.y1 + 1);
+  std::vector<std::vector<CurveSums>> parts(bottom > top ? (bottom - top + kRows - 1) / kRows : 0);
+  deal_ranges(parts.size(), threads, [&](std::size_t first, std::size_t end) {
+    for (auto part = static_cast<uint32_t>(first); part < end; ++part)
+      parts[part] =
+          sums_of_rows(pixels, selections, top + part * kRows, std::min(bottom, top + (part + 1) * kRows));
+  });
+  std::vector<CurveSums> sums(selections.size(), CurveSums(pixels.bands().size()));
+  for (const std::vector<CurveSums>& part : parts)
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      if (!part[i].mean.empty()) add(part[i], sums[i]);
   std::vector<Curve> curves;
   for (const CurveSums& of_selection : sums) curves.push_back(curve_of(of_selection, pixels));
   return curves;

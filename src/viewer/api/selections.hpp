@@ -31,7 +31,8 @@ struct Curve {
 };
 
 /// full_width, full_height: what selections count in; an image that is reduced gives the pixel that covers them
-std::vector<Curve> read_curves(const PixelSource& pixels, const std::vector<Selection>& selections,
-                               uint32_t full_width, uint32_t full_height);
+/// threads: among how many rows are dealt, at least 1
+std::vector<Curve> read_curves(const PixelSource& pixels, std::vector<Selection> selections,
+                               uint32_t full_width, uint32_t full_height, unsigned threads);
 
 }  // namespace kiloband::viewer

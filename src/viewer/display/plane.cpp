@@ -14,18 +14,16 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// A plane of one component whose pixels are functions of their bands' means.
+/// A plane of one component whose pixels are functions of the means of a band.
 template <class Value>
-Plane plane_of_means(const PixelSource& source, unsigned threads, const Value& value) {
+Plane plane_of_band(const PixelSource& source, std::size_t band, unsigned threads, const Value& value) {
   Plane plane{source.width(), source.height(), 1, {}};
   plane.values.resize(std::size_t{plane.width} * plane.height);
-  const std::size_t bands = source.bands().size();
   deal_ranges(plane.height, threads, [&](std::size_t first, std::size_t end) {
-    std::vector<float> row(plane.width * bands);
     for (auto y = static_cast<uint32_t>(first); y < end; ++y) {
-      source.means(y, row);
-      for (uint32_t x = 0; x < plane.width; ++x)
-        plane.values[std::size_t{y} * plane.width + x] = static_cast<float>(value(&row[x * bands]));
+      const std::span<float> row = std::span(plane.values).subspan(std::size_t{y} * plane.width, plane.width);
+      source.band_means(y, band, row);
+      for (float& mean : row) mean = static_cast<float>(value(mean));
     }
   });
   return plane;
@@ -48,6 +46,13 @@ void ThreeSums::operator()(const float* values, float* out) const {
       if (weights_[c][k] != 0) sum += double{weights_[c][k]} * values[k];
     out[c] = static_cast<float>(sum);
   }
+}
+
+void PixelSource::band_means(uint32_t y, std::size_t band, std::span<float> out) const {
+  const std::size_t bands = this->bands().size();
+  std::vector<float> row(width() * bands);
+  means(y, row);
+  for (std::size_t x = 0; x < width(); ++x) out[x] = row[x * bands + band];
 }
 
 void PixelSource::sums(uint32_t y, const ThreeSums& of_row, std::span<float> out) const {
@@ -73,14 +78,13 @@ Plane weighted_plane(const PixelSource& source, const RgbWeights& weights, unsig
 Plane channel_plane(const PixelSource& source, const ChannelOf& channel, unsigned threads) {
   const Band& band = source.bands().at(channel.band);
   const double scale = source.units()[channel.band] / (band.derived ? 1 : band.channel.width_nm());
-  return plane_of_means(source, threads, [&](const float* means) { return means[channel.band] * scale; });
+  return plane_of_band(source, channel.band, threads, [&](float mean) { return mean * scale; });
 }
 
 Plane temperature_plane(const PixelSource& source, const TemperatureOf& channel, unsigned threads) {
   const BrightnessTemperature temperature(source.bands().at(channel.band).channel);
   const double unit = source.units()[channel.band];
-  return plane_of_means(source, threads,
-                        [&](const float* means) { return temperature(means[channel.band] * unit); });
+  return plane_of_band(source, channel.band, threads, [&](float mean) { return temperature(mean * unit); });
 }
 
 Plane error_plane(const PixelSource& source, unsigned threads) {

@@ -63,7 +63,7 @@ std::vector<Curve> curves(ViewedImage& image) {
       const uint32_t x = i % seen.full_width, y = i / seen.full_width;
       pixels.push_back({"", x, y, x, y});
     }
-    all = read_curves(seen.pixels, pixels, seen.full_width, seen.full_height);
+    all = read_curves(seen.pixels, pixels, seen.full_width, seen.full_height, 2);
   });
   return all;
 }

@@ -35,7 +35,7 @@ class LiveWall : public testing::Test {
   Curve middle() {
     Curve curve;
     image_->read([&](const ImageView& seen) {
-      curve = read_curves(seen.pixels, {{"", 8, 8, 31, 27}}, seen.full_width, seen.full_height).front();
+      curve = read_curves(seen.pixels, {{"", 8, 8, 31, 27}}, seen.full_width, seen.full_height, 2).front();
     });
     return curve;
   }

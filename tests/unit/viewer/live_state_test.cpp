@@ -70,7 +70,7 @@ Curve block_of_slopes(WavelengthMode wavelengths, uint64_t seed, const std::stri
   LiveState state(std::move(options), interrupt);
   while (state.work()) {
   }
-  return read_curves(*state.film(), parse_selections(place, 40, 36), 40, 36).front();
+  return read_curves(*state.film(), parse_selections(place, 40, 36), 40, 36, 2).front();
 }
 
 /// Scatter over 10 seeds against the errors: where these are right, more than 2.5 times as much has a chance below 10^-8 per
@@ -146,7 +146,7 @@ TEST_F(LiveStateTest, ResponsesOfAFilmAreShown) {
   ASSERT_EQ(channels.size(), 5u);
   EXPECT_EQ(channels[4]["name"], "box");
   EXPECT_EQ(channels[4]["derived"], true);
-  const Curve curve = read_curves(*state_->film(), {{"", 0, 0, 39, 35}}, 40, 36).front();
+  const Curve curve = read_curves(*state_->film(), {{"", 0, 0, 39, 35}}, 40, 36, 2).front();
   EXPECT_NEAR(curve.mean[0], 0.5, 5 * curve.standard_error[0]);
   EXPECT_NEAR(curve.mean[4], 0.5 * 0.25 * 40, 5 * curve.standard_error[4]);
   EXPECT_LT(curve.standard_error[4], 0.1);
