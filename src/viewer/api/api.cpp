@@ -181,8 +181,9 @@ Response Api::frame(const Request& request, const std::function<bool()>& gone) {
   }
   const Shown shown = show(plane, view);
   facts.update(shown.facts);
-  Response response{200, view.exact ? "image/png" : "image/jpeg", "", {}};
-  response.body = view.exact ? encode_png(shown.picture) : encode_jpeg(shown.picture);
+  const bool exact = view.exact || !fits_jpeg(shown.picture);
+  Response response{200, exact ? "image/png" : "image/jpeg", "", {}};
+  response.body = exact ? encode_png(shown.picture) : encode_jpeg(shown.picture);
   response.headers = {{"X-Kiloband-Frame", dump_json(facts, -1, true)}};
   return response;
 }

@@ -3,6 +3,7 @@
 #include <turbojpeg.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <memory>
 #include <string_view>
 
@@ -52,6 +53,11 @@ std::string packed(const std::string& bytes) {
 }
 
 }  // namespace
+
+bool fits_jpeg(const Picture8& picture) {
+  constexpr uint32_t kMostPixels = 65500;  // JPEG_MAX_DIMENSION of libjpeg-turbo
+  return std::max(picture.width, picture.height) <= kMostPixels;
+}
 
 std::string encode_jpeg(const Picture8& picture) {
   const std::unique_ptr<void, int (*)(tjhandle)> codec(tjInitCompress(), tjDestroy);

@@ -7,8 +7,11 @@
 
 namespace kiloband::viewer {
 
+/// Whether a JPEG file can have so many pixels a side.
+bool fits_jpeg(const Picture8& picture);
+
 /// JPEG by libjpeg-turbo, without chroma subsampling: colour maps have edges of colour alone.
-/// throws DeviceError  the library's message
+/// throws DeviceError  the library's message; the picture does not fit
 std::string encode_jpeg(const Picture8& picture);
 
 /// PNG, the very bytes of the picture, packed fast rather than small.

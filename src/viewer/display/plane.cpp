@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/deal_ranges.hpp"
 #include "base/text.hpp"
@@ -136,7 +137,9 @@ std::string band_range_text(const Channel& range) {
 
 float quantile(const Plane& plane, double p, float fallback) {
   constexpr std::size_t kMost = std::size_t{1} << 16;
-  const std::size_t pixels = plane.values.size() / plane.components, step = pixels / kMost + 1;
+  const std::size_t pixels = plane.values.size() / plane.components;
+  std::size_t step = pixels / kMost + 1;
+  while (std::gcd(step, std::size_t{plane.width}) > 1) ++step;  // in every column
   std::vector<float> finite;
   for (std::size_t i = 0; i < pixels; i += step) {
     const float* const pixel = &plane.values[i * plane.components];

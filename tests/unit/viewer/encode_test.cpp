@@ -44,6 +44,17 @@ TEST(EncodePng, KeepsEveryByte) {
   }
 }
 
+TEST(EncodeJpeg, HasTheSizesThatFit) {
+  for (const uint32_t width : {65500u, 65501u}) {
+    const Picture8 line{width, 1, std::vector<uint8_t>(3 * width)};
+    EXPECT_EQ(fits_jpeg(line), width == 65500);
+    if (fits_jpeg(line))
+      EXPECT_NE(encode_jpeg(line), "");
+    else
+      EXPECT_THROW(encode_jpeg(line), DeviceError);
+  }
+}
+
 TEST(EncodeJpeg, IsNear) {
   const Picture8 picture = gradient(300, 200);
   const std::string bytes = encode_jpeg(picture);

@@ -115,6 +115,11 @@ TEST(Plane, QuantilesLeaveOutWhatIsNoNumber) {
   EXPECT_EQ(quantile(plane, 0.99, -1), 99);
   EXPECT_EQ(quantile(plane, 0.01, -1), 1);
   EXPECT_EQ(quantile({1, 1, 1, {NAN}}, 0.5, -1), -1);
+  Plane striped{1920, 1080, 1, std::vector<float>(1920 * 1080, 1000)};
+  for (std::size_t i = 0; i < striped.values.size(); i += 32)
+    striped.values[i] = 1;  // as far apart as the pixels of 2^16
+  EXPECT_EQ(quantile(striped, 0.5, -1), 1000);
+  EXPECT_EQ(quantile(striped, 0.01, -1), 1);
   EXPECT_EQ(quantile({1, 1, 3, {1, 7, 2}}, 0.5, -1), 7) << "the largest component of a colour";
 }
 
