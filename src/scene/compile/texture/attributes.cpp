@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/compile/texture/texel_memo.hpp"
 #include "scene/compile/texture/textures.hpp"
 #include "spectral/colour/rgb.hpp"
 
@@ -68,14 +69,20 @@ struct Cells {
 
 }  // namespace
 
-/// Of a colour the spectrum of a reflectance, or a multiple of one; of one value, and of a share, a flat one.
-KbFloat4 TextureCompiler::attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
-                                          double unit, bool share) {
-  float values[3];
-  for (std::size_t i = 0; i < 3; ++i)
-    values[i] = static_cast<float>(unit * (*parts[parts.size() == 3 ? i : 0])[at]);
-  if (share) std::fill_n(values, 3, luminance_of(values));
-  return texel_of(values, BitmapUse::kPicture, 1);
+/// Of every vertex or face: of a colour the spectrum of a reflectance, or a multiple of one; of one value, and of a share, a flat one.
+std::vector<KbFloat4> TextureCompiler::attribute_texels(const std::vector<const std::vector<float>*>& parts,
+                                                        double unit, bool share) {
+  std::vector<KbFloat4> texels(parts.front()->size());
+  TexelMemo memo(texels.size());
+  for (std::size_t at = 0; at < texels.size(); ++at) {
+    float values[3];
+    for (std::size_t i = 0; i < 3; ++i)
+      values[i] = static_cast<float>(unit * (*parts[parts.size() == 3 ? i : 0])[at]);
+    if (share) std::fill_n(values, 3, luminance_of(values));
+    texels[at] =
+        memo.find(values, [&] { return SolvedTexel{texel_of(values, BitmapUse::kPicture, 1)}; }).texel;
+  }
+  return texels;
 }
 
 uint32_t TextureCompiler::mesh_attribute(const std::shared_ptr<const MeshAttributeTexture>& texture,
@@ -113,13 +120,13 @@ uint32_t TextureCompiler::mesh_attribute(const std::shared_ptr<const MeshAttribu
   record.first_bound = first_texel_index(out_.texel_bounds.size(), count, texture->position, texture->name);
   out_.texels.resize(out_.texels.size() + count, KbFloat4{0, 0, 0, 0});
   KbFloat4* texels = &out_.texels[record.first_texel];
+  const std::vector<KbFloat4> solved = attribute_texels(attribute.parts, unit, share);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     KbFloat4* cell = texels + cells.size * (t / cells.across * record.width + t % cells.across);
-    const auto texel = [&](std::size_t at) { return attribute_texel(attribute.parts, at, unit, share); };
-    cell[0] = texel(attribute.of_faces ? t : triangles[t][0]);
+    cell[0] = solved[attribute.of_faces ? t : triangles[t][0]];
     if (attribute.of_faces) continue;
-    cell[1] = texel(triangles[t][1]);
-    cell[record.width] = cell[record.width + 1] = texel(triangles[t][2]);
+    cell[1] = solved[triangles[t][1]];
+    cell[record.width] = cell[record.width + 1] = solved[triangles[t][2]];
   }
   finish_attribute(record, count, use.emission);
   return place->second;

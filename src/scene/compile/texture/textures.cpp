@@ -21,22 +21,28 @@ KbFloat4 flat_texel(float value) {
   return {0, 0, kFlatCoefficient, value};
 }
 
+/// Made for the first colour: that takes 0.2 s, which pictures of numbers have no use for.
+const SigmoidTable& sigmoid_table() {
+  static const SigmoidTable table;
+  return table;
+}
+
 /// Reflectance: the sigmoid of the colour. Emission: twice the maximum times the sigmoid
 /// of rgb / (2 max), as Mitsuba.
-KbFloat4 upsampled_texel(const SigmoidTable& table, const float* rgb, bool emission) {
+KbFloat4 upsampled_texel(const float* rgb, bool emission) {
   const float largest = std::max({rgb[0], rgb[1], rgb[2]});
   if (largest <= 0) return flat_texel(0);
   if (!emission && rgb[0] == rgb[1] && rgb[1] == rgb[2]) return flat_texel(rgb[0]);
   const float scale = emission ? 2 * largest : 1;
-  const auto c = table({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
+  const auto c = sigmoid_table()({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale});
   return {c[0], c[1], c[2], scale};
 }
 
 /// As a reflectance; components above 1 as that much of the brightest one.
-KbFloat4 picture_texel(const SigmoidTable& table, const float* rgb) {
+KbFloat4 picture_texel(const float* rgb) {
   const float scale = std::max({1.0f, rgb[0], rgb[1], rgb[2]});
   const float part[3] = {rgb[0] / scale, rgb[1] / scale, rgb[2] / scale};
-  KbFloat4 texel = upsampled_texel(table, part, false);
+  KbFloat4 texel = upsampled_texel(part, false);
   texel.w *= scale;
   return texel;
 }
@@ -107,12 +113,11 @@ uint32_t TextureCompiler::reference(const Texture& texture, const SpectrumSource
 
 /// A texel that is not flat.
 KbFloat4 TextureCompiler::texel_of(const float* rgb, BitmapUse use, float height) {
-  static const SigmoidTable kTable;
   if (use == BitmapUse::kRoughness) return flat_texel(luminance_of(rgb));
   if (use == BitmapUse::kHeight) return flat_texel(height * luminance_of(rgb));
   if (use == BitmapUse::kNormals) return {2 * rgb[0] - 1, 2 * rgb[1] - 1, 2 * rgb[2] - 1, 1};
-  if (use == BitmapUse::kPicture) return picture_texel(kTable, rgb);
-  return upsampled_texel(kTable, rgb, emits(use));
+  if (use == BitmapUse::kPicture) return picture_texel(rgb);
+  return upsampled_texel(rgb, emits(use));
 }
 
 const TexelBlock& TextureCompiler::texels(const BitmapTexture& texture, BitmapUse use, float height) {

@@ -80,8 +80,8 @@ class TextureCompiler {
   static KbFloat4 texel_of(const float* rgb, BitmapUse use, float height);
   float texel_bound(const KbFloat4& texel) const;
   // attributes.cpp
-  static KbFloat4 attribute_texel(const std::vector<const std::vector<float>*>& parts, std::size_t at,
-                                  double unit, bool share);
+  static std::vector<KbFloat4> attribute_texels(const std::vector<const std::vector<float>*>& parts,
+                                                double unit, bool share);
   void finish_attribute(const KbTexture& record, std::size_t count, bool emits);
   // spectral_textures.cpp
   void add_bands(KbTexture& record, const SpectralBitmapTexture& texture, const SpectrumSource& use,
