@@ -21,8 +21,14 @@ SpectralTextures::BandRows SpectralTextures::make_rows(const BandSet& set) const
   }
   for (std::size_t i = 1; i < set.centres_nm.size(); ++i)
     rows.inverse_gap.push_back(1 / (set.centres_nm[i] - set.centres_nm[i - 1]));
+  // Whole vectors, which end where they would if all bands were blended, so that their bits are the same.
+  constexpr std::size_t kWhole = 16;
+  const std::size_t bands = set.centres_nm.size();
+  rows.begin = std::ranges::min(rows.lowest) / kWhole * kWhole;
+  rows.end = std::min(bands, (std::ranges::max(rows.highest) + 2 + kWhole - 1) / kWhole * kWhole);
   const std::size_t padded = pad_channels(scene_.channels.size());
   rows.index = aligned_zeros<int32_t>(padded);
+  std::fill_n(rows.index.get(), padded, static_cast<int32_t>(rows.begin));
   rows.first = aligned_zeros<float>(padded);
   rows.second = aligned_zeros<float>(padded);
   return rows;
@@ -53,6 +59,9 @@ const SpectralTextures::BandRows& SpectralTextures::band_rows(uint32_t number, c
 }
 
 void SpectralTextures::blend(const KbTexture& texture, uint32_t index, const KbTextureSample& sample) {
+  const bool of_bands = texture.flags & KB_TEXTURE_BANDS;
+  const std::size_t begin = of_bands ? rows_.at(texture.first_row).begin : 0;
+  const std::size_t end = of_bands ? rows_.at(texture.first_row).end : texture.values;
   if (index >= scene_.spectral_texels.size() || !scene_.spectral_texels[index])
     throw std::logic_error("saved path: texture without spectral texels");
   const float* values = scene_.spectral_texels[index]->data();
@@ -62,11 +71,11 @@ void SpectralTextures::blend(const KbTexture& texture, uint32_t index, const KbT
   std::size_t count = 0;
   for (int c = 0; c < 4; ++c) {
     if (corners.weight[c] == 0) continue;
-    texels[count] = values + corners.texel[c] * texture.values;
+    texels[count] = values + corners.texel[c] * texture.values + begin;
     weights[count++] = static_cast<float>(corners.weight[c]);
   }
   blended_.resize(std::size_t{texture.values} + 1);
-  kernels_.weighted_sum(texels, weights, count, texture.values, blended_.data());
+  kernels_.weighted_sum(texels, weights, count, end - begin, blended_.data() + begin);
   blended_.back() = 0;
 }
 

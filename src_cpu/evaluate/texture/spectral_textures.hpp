@@ -7,7 +7,8 @@
 
 namespace kiloband::cpu {
 
-/// A lookup blends the values of its four texels once per vertex. Bands: the M blended values are then
+/// A lookup blends the values of its four texels once per vertex. Bands: those of the M values that the
+/// channels meet are blended, and then
 /// interpolated at every channel's wavelength, whose place between the band centres is found once per offset
 /// mu. Weights: the P blended weights sum the dense rows of the endmembers.
 class SpectralTextures {
@@ -22,6 +23,7 @@ class SpectralTextures {
   struct BandRows {
     uint64_t generation = 0;
     std::vector<uint32_t> lowest, highest;  // index at the channel's ends
+    std::size_t begin = 0, end = 0;         // bands that any channel can meet
     std::vector<double> inverse_gap;        // 1 / (distance of centre i + 1 from i), nm^-1
     hwy::AlignedFreeUniquePtr<int32_t[]> index;
     hwy::AlignedFreeUniquePtr<float[]> first, second;  // weights of values index and index + 1
