@@ -169,7 +169,7 @@ void PathTracer::gather(PathBuffer& out, std::vector<uint32_t>& invalid) const {
   out.entries.resize(wave_.entries.size());  // what is there is written over
   KbPathVertex* const begin = out.entries.data();
   KbPathVertex* end = begin;
-  for (const PathState& path : wave_.paths) {
+  for (const PathState& path : std::span(wave_.paths).first(wave_.path_count)) {
     if (path.pixel == KB_NONE) continue;
     if (path.flags & kInvalidPath) {
       invalid.push_back(path.pixel);

@@ -92,7 +92,8 @@ inline void start_wave(const Bounce& bounce, const PixelRect& asked, Wave& wave)
   for (uint32_t first = 0; first < rays.count; first += kLanes)
     start_lanes(bounce, block, common, wave, first);
   end_lanes();
-  std::fill(wave.paths.begin() + rays.count, wave.paths.end(), kNoPath);
+  wave.path_count = rays.count;
+  wave.paths[kWavePaths] = kNoPath;
 }
 
 }  // namespace kiloband::cpu::KB_LANES

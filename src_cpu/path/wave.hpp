@@ -68,7 +68,8 @@ struct Recording {
 };
 
 struct Wave {
-  std::vector<PathState> paths;  // and one behind the last that lanes without a path write to
+  std::vector<PathState> paths;  // kWavePaths, and one behind the last that lanes without a path write to
+  uint32_t path_count = 0;       // of those, the first: a film may be smaller than a block
   std::vector<WaveEntry> entries;
   RayQueue queues[2];  // what is traced, and what the next bounce will trace
   uint32_t current = 0;
