@@ -12,8 +12,18 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586476925;
 constexpr double kPi = 3.141592653589793238463;
 
-/// The linear part of to_world by columns, and what inverts it:
-/// rows of the cofactor matrix over the determinant.
+/// What inverts a linear map: rows of its cofactor matrix over its determinant.
+struct Inverse {
+  glm::dvec3 rows[3];
+  double determinant;
+
+  glm::dvec3 operator()(const glm::dvec3& v) const { return times_determinant(v) / determinant; }
+  glm::dvec3 times_determinant(const glm::dvec3& v) const {
+    return glm::dvec3(glm::dot(rows[0], v), glm::dot(rows[1], v), glm::dot(rows[2], v));
+  }
+};
+
+/// The linear part of to_world by columns.
 struct Placement {
   glm::dvec3 x, y, z, origin;
 
@@ -25,11 +35,7 @@ struct Placement {
 
   double determinant() const { return glm::dot(x, glm::cross(y, z)); }
   glm::dvec3 to_world(const glm::dvec3& v) const { return v.x * x + v.y * y + v.z * z; }
-  glm::dvec3 to_local(const glm::dvec3& v) const {
-    return glm::dvec3(glm::dot(glm::cross(y, z), v), glm::dot(glm::cross(z, x), v),
-                      glm::dot(glm::cross(x, y), v)) /
-           determinant();
-  }
+  Inverse inverse() const { return {{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)}, determinant()}; }
   /// Normals go with the inverse transpose; not normalised.
   glm::dvec3 normal_to_world(const glm::dvec3& n) const {
     const glm::dvec3 v = n.x * glm::cross(y, z) + n.y * glm::cross(z, x) + n.z * glm::cross(x, y);
@@ -51,21 +57,30 @@ bool solve_quadric(double dd, double od, double oo, double nearest2, double radi
   return true;
 }
 
+/// Whether a line misses a circle or sphere about the origin for certain, without a division. Most rays that meet the box of a shape's
+/// bounds and not the shape end here; those that pass by so closely that rounding might tell otherwise are left to solve_quadric().
+/// moment2  the square of o x d
+bool misses(double moment2, double dd, double oo, double radius2) {
+  constexpr double kShare = 1e-6, kRounding = 4e-24;  // of the radius; of the origin's distance, both squared
+  constexpr double kLeast = 1e-280;                   // products of numbers that are not subnormal
+  const double bound = dd * (radius2 * (1 + kShare) + kRounding * oo);
+  return bound > kLeast && moment2 > bound;
+}
+
 bool inside_open(double t, double t_min, double t_max) {
   return t > t_min && t < t_max;
 }
 
 bool intersect_sphere(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
                       double t_min, double t_max, double& t) {
-  const SphereGeometry sphere = sphere_geometry(shape);
-  const glm::dvec3 o = origin - sphere.centre;
-  const double dd = glm::dot(direction, direction), od = glm::dot(o, direction);
+  const glm::dvec3 x = affine_column<double>(shape.to_world, 0);
+  const glm::dvec3 o = origin - affine_column<double>(shape.to_world, 3), moment = glm::cross(o, direction);
+  const double dd = glm::dot(direction, direction), oo = glm::dot(o, o);
+  if (misses(glm::dot(moment, moment), dd, oo, glm::dot(x, x))) return false;
+  const double od = glm::dot(o, direction), radius = glm::length(x);
   const glm::dvec3 nearest = o - (od / dd) * direction;
   double t0, t1;
-  if (!solve_quadric(dd, od, glm::dot(o, o), glm::dot(nearest, nearest), sphere.radius * sphere.radius, t0,
-                     t1)) {
-    return false;
-  }
+  if (!solve_quadric(dd, od, oo, glm::dot(nearest, nearest), radius * radius, t0, t1)) return false;
   const double hit = inside_open(t0, t_min, t_max) ? t0 : t1;
   if (!inside_open(hit, t_min, t_max)) return false;
   t = hit;
@@ -92,8 +107,14 @@ bool intersect_disk(const KbShape& shape, const glm::dvec3& origin, const glm::d
 bool intersect_cylinder(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
                         double t_min, double t_max, double& t) {
   const Placement placement(shape);
-  const glm::dvec3 o = placement.to_local(origin - placement.origin);
-  const glm::dvec3 d = placement.to_local(direction);
+  const Inverse inverse = placement.inverse();
+  const glm::dvec3 scaled_o = inverse.times_determinant(origin - placement.origin);
+  const glm::dvec3 scaled_d = inverse.times_determinant(direction);
+  const double moment = scaled_o.x * scaled_d.y - scaled_o.y * scaled_d.x;
+  if (misses(moment * moment, scaled_d.x * scaled_d.x + scaled_d.y * scaled_d.y,
+             scaled_o.x * scaled_o.x + scaled_o.y * scaled_o.y, inverse.determinant * inverse.determinant))
+    return false;
+  const glm::dvec3 o = scaled_o / inverse.determinant, d = scaled_d / inverse.determinant;
   const glm::dvec2 o2(o.x, o.y), d2(d.x, d.y);
   const double dd = glm::dot(d2, d2), od = glm::dot(o2, d2);
   const glm::dvec2 nearest = o2 - (od / dd) * d2;
@@ -174,7 +195,8 @@ glm::vec2 analytic_uv(uint32_t shape_type, const glm::dvec3& local) {
 
 SurfacePoint analytic_surface(const KbShape& shape, const glm::dvec3& hit_point) {
   const Placement placement(shape);
-  const glm::dvec3 local = project_to_canonical(shape.type, placement.to_local(hit_point - placement.origin));
+  const glm::dvec3 local =
+      project_to_canonical(shape.type, placement.inverse()(hit_point - placement.origin));
   SurfacePoint point;
   point.position = glm::vec3(placement.origin + placement.to_world(local));
   point.normal = glm::vec3(glm::normalize(placement.normal_to_world(canonical_normal(shape.type, local))));
