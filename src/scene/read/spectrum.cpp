@@ -84,7 +84,8 @@ Rgb parse_rgb(const XmlAttribute& value, const std::string& context) {
   return {n[0], n[1], n[2]};
 }
 
-/// A colour. Greys need no upsampling; quantities above 1 are scaled as emission is, without D65.
+/// A colour. Greys need no upsampling; quantities are scaled as emission is, without D65. The colours of a plugin `srgb` are reflectances, and
+/// above 1 as much of the brightest one.
 Spectrum from_rgb(const XmlAttribute& value, const std::string& label, SpectrumUse use) {
   const Rgb rgb = parse_rgb(value, label + ": ");
   for (const double component : rgb) {
@@ -100,9 +101,10 @@ Spectrum from_rgb(const XmlAttribute& value, const std::string& label, SpectrumU
   if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) return from_number(rgb[0], use);
   return load_at(value.value_place, [&] {
     if (is_emission(use)) return rgb_emission(rgb);
-    const double brightest = std::max({rgb[0], rgb[1], rgb[2]}), scale = 2 * brightest;
+    const double brightest = std::max({rgb[0], rgb[1], rgb[2]});
     if (use == SpectrumUse::kReflectance || (use == SpectrumUse::kColour && brightest <= 1))
       return rgb_reflectance(rgb);
+    const double scale = use == SpectrumUse::kColour ? brightest : 2 * brightest;
     return rgb_reflectance({rgb[0] / scale, rgb[1] / scale, rgb[2] / scale}).scaled(scale);
   });
 }

@@ -110,10 +110,14 @@ TEST(SceneSpectra, SrgbIsTheSameSpectrumEverywhere) {
     EXPECT_EQ(wall(lambda), expected(lambda)) << lambda;
     EXPECT_NEAR(day(lambda), expected(lambda) * illuminant_d65()(lambda), 1e-9) << lambda;
   }
-  // Brighter than any reflectance (ours): as much of the brightest that one can be.
-  const Spectrum bright =
-      radiance(R"(<spectrum type="srgb" name="radiance"><rgb name="color" value="2, 1, 1"/></spectrum>)");
-  EXPECT_NEAR(bright(620), 4 * rgb_reflectance({0.5, 0.25, 0.25})(620), 1e-9);
+  // Brighter than any reflectance (ours): as much of the brightest one, so that no colour is far from its neighbours.
+  const auto bright = [](const std::string& rgb) {
+    return radiance(R"(<spectrum type="srgb" name="radiance"><rgb name="color" value=")" + rgb +
+                    R"("/></spectrum>)");
+  };
+  EXPECT_NEAR(bright("2, 1, 1")(620), 2 * rgb_reflectance({1, 0.5, 0.5})(620), 1e-9);
+  for (const double lambda : {400.0, 450.0, 550.0, 620.0, 690.0})
+    EXPECT_NEAR(bright("1, 0.4, 0.6")(lambda), bright("1.0001, 0.4, 0.6")(lambda), 1e-3) << lambda;
 }
 
 TEST(SceneSpectra, FilesAreReadAndMayExtrapolate) {
