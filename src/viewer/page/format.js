@@ -107,6 +107,7 @@ export function linear_ticks(low, high, count) {
  * Powers of ten between low and high > 0; between few of them their multiples, too; `labelled` says which have text.
  */
 export function log_ticks(low, high) {
+  if (!(low > 0) || !Number.isFinite(high)) return linear_ticks(low, high, 4);  // there is no power of ten to begin at
   const first = Math.floor(Math.log10(low));
   const last = Math.ceil(Math.log10(high));
   const decades = Math.log10(high / low);

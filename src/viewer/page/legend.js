@@ -3,7 +3,7 @@ import {get, show_error} from './api.js';
 import {download, element} from './dom.js';
 import {shared_exponent, superscript, unit_text, with_error} from './format.js';
 import {place_text, selections, unpin, unpin_all} from './pins.js';
-import {channel_text, curves_shown, readout_channel, reset_zoom} from './plot.js';
+import {can_log_x, channel_text, curves_shown, readout_channel, reset_zoom} from './plot.js';
 import {export_png} from './plot_picture.js';
 import {on, set, set_plot, state} from './state.js';
 
@@ -112,9 +112,10 @@ id('unpin').onclick = unpin_all;
 id('export-csv').onclick = export_csv;
 id('export-png').onclick = export_png;
 
-on('plot', () => {
+on('plot scene', () => {
   id('plot-log-y').setAttribute('aria-pressed', state.plot.log_y);
-  id('plot-log-x').setAttribute('aria-pressed', state.plot.log_x);
+  id('plot-log-x').setAttribute('aria-pressed', state.plot.log_x && can_log_x());
+  id('plot-log-x').disabled = !can_log_x();
   id('plot-unit').textContent = state.plot.micrometres ? 'µm' : 'nm';
 });
 on('plot_zoomed', () => (id('plot-reset').hidden = !state.plot_zoomed));

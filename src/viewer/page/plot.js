@@ -19,6 +19,10 @@ let order = [];    // channels by rows of the graph
 let asked = false;
 
 export const in_axis_unit = (nm) => (state.plot.micrometres ? nm / 1000 : nm);
+/** Bands without wavelengths stand at 0, where a logarithmic axis has no place. */
+const has_place = (index) => channel_centre(index) > 0;
+export const can_log_x = () => Boolean(state.scene?.channels.some((_, index) => has_place(index)));
+const is_log_x = () => state.plot.log_x && can_log_x();
 export const curves_shown = () => drawn;
 export const the_graph = () => graph;
 const text_size = () => 0.92 * parseFloat(getComputedStyle(document.documentElement).fontSize);
@@ -51,7 +55,7 @@ const has_responses = () => state.scene.channels.some(({derived}) => derived);
 /** A column per curve for its channels; if there are responses, another one for those. */
 function table() {
   const floor = state.plot.log_y ? log_floor(plotted) : 0;
-  order = channels_in_order();
+  order = channels_in_order().filter((index) => !is_log_x() || has_place(index));
   const columns = (index, responses) =>
       plotted.map(({curve}) => (is_response(index) === responses ? bars(curve, index, floor) : null));
   return order.map(
@@ -96,9 +100,10 @@ function draw_errors({drawingContext: context, seriesIndex, points, plotArea, co
 }
 
 function x_ticks(low, high, pixels) {
-  const ticks = state.plot.log_x ? log_ticks(low, high) : linear_ticks(low, high, pixels / (5.5 * text_size()));
+  const logarithmic = is_log_x() && low > 0;
+  const ticks = logarithmic ? log_ticks(low, high) : linear_ticks(low, high, pixels / (5.5 * text_size()));
   const step = ticks.length > 1 ? ticks[1] - ticks[0] : 1;
-  return ticks.map((v) => ({v, label: state.plot.log_x ? log_text(v) : tick_text(v, step)}));
+  return ticks.map((v) => ({v, label: logarithmic ? log_text(v) : tick_text(v, step)}));
 }
 
 let exponent = 0;  // that the labels of the vertical axis share
@@ -198,7 +203,7 @@ function options() {
     gridLineColor: style('--grid'),
     axisLineColor: style('--line'),
     axes: {
-      x: {logscale: state.plot.log_x, ticker: (a, b, pixels) => x_ticks(a, b, pixels), axisLineColor: style('--line')},
+      x: {logscale: is_log_x(), ticker: (a, b, pixels) => x_ticks(a, b, pixels), axisLineColor: style('--line')},
       y: {ticker: (a, b, pixels) => y_ticks(a, b, pixels), axisLabelWidth: 3.6 * size_px},
     },
     axisLabelFontSize: size_px,

@@ -21,13 +21,17 @@ return Array.from({length: graph.numRows()}, (_, row) => {
 
 
 def write_cube(header, bands, value_of, extra=""):
-    """bands: [(lowest, highest)] in nm; value_of(x, y, band): densities."""
+    """bands: [(lowest, highest)] in nm, or names of bands without wavelengths; value_of(x, y, band): densities."""
     def numbers(values):
         return "{" + ", ".join(map(str, values)) + "}"
+    if isinstance(bands[0], str):
+        places = f"band names = {numbers(bands)}\n"
+    else:
+        places = (f"wavelength units = Nanometers\nwavelength = {numbers((low + high) / 2 for low, high in bands)}\n"
+                  f"fwhm = {numbers(high - low for low, high in bands)}\n")
     header.write_text(
         f"ENVI\nsamples = {WIDTH}\nlines = {HEIGHT}\nbands = {len(bands)}\nheader offset = 0\nfile type = ENVI Standard\n"
-        "data type = 4\ninterleave = bsq\nbyte order = 0\nwavelength units = Nanometers\n"
-        f"wavelength = {numbers((low + high) / 2 for low, high in bands)}\nfwhm = {numbers(high - low for low, high in bands)}\n{extra}")
+        f"data type = 4\ninterleave = bsq\nbyte order = 0\n{places}{extra}")
     values = array.array("f", (value_of(x, y, k) for k in range(len(bands)) for y in range(HEIGHT) for x in range(WIDTH)))
     header.with_suffix(".img").write_bytes(values.tobytes())
 
@@ -105,6 +109,19 @@ class OtherCubes(unittest.TestCase):
                         return (await (await fetch(`/api/values?${query}`)).json()).values;""")
                     self.assertNotIn(None, values, mode)
                 self.browser.screenshot(f"dead_{dead}")
+
+    def test_bands_without_wavelengths(self):
+        """A logarithmic axis of wavelengths has no place for them: there is none, whatever was chosen for another cube."""
+        write_cube(self.path / "named.hdr", ["Red", "NIR (far)", "Elevation"], lambda x, y, k: 10 * (k + 1) + x)
+        self.open(self.path / "named.hdr")
+        self.pin_and_draw()
+        self.browser.press("L")
+        self.browser.wait("return state.plot.log_x", "the key's choice")
+        drawn = self.browser.wait(DRAWN, "the drawn curve")
+        self.assertEqual([row[2] for row in drawn], [13, 23, 33])
+        self.assertFalse(self.browser.find("#plot-log-x").is_enabled())
+        self.assertEqual(self.browser.value("return (await import('/format.js')).log_ticks(0, 5)"), [0, 2, 4])
+        self.assertEqual(self.browser.complaints(), [])
 
     def test_responses_are_points_in_units_of_their_own(self):
         (self.path / "red.csv").write_text("wavelength_nm,red,blue\n400,0,1\n500,0,0.5\n600,1,0\n700,0.5,0\n")
