@@ -15,6 +15,9 @@ export class ServerError extends Error {
   }
 }
 
+/** Whether the server has refused a request, as it would again. */
+export const is_refusal = (error) => error instanceof ServerError && error.status >= 400 && error.status < 500;
+
 async function checked(response) {
   if (response.ok) return response;
   let message = `${response.status} ${response.statusText}`;

@@ -3,6 +3,7 @@
 import {load_scene, post} from './api.js';
 import {button, choice, element, number_field, row, select} from './dom.js';
 import {tick_text, unit_text} from './format.js';
+import {notice} from './notices.js';
 import {channel_text} from './plot.js';
 import {channel_count, default_ranges, has_channel, is_scalar, set_view, state} from './state.js';
 
@@ -96,9 +97,15 @@ function map_rows() {
   const map = select(kMaps, state.view.map, (value) => set_view({map: value}));
   const scale =
       choice('Scale', [['linear', 'Linear'], ['log', 'Log']], state.view.scale, (value) => set_view({scale: value}));
-  const bound = (name) => number_field(
-      '', (value) => set_view({[name]: value === null ? '' : String(value / factor())}),
-      {'aria-label': name === 'low' ? 'Lowest value' : 'Highest value'});
+  const bound = (name) => {
+    const field = number_field('', (value) => {
+      set_view({[name]: value === null ? '' : String(value / factor())});
+      if (value === null || state.view[name] !== '') return;
+      field.value = '';
+      notice('The ends of a logarithmic scale are above 0.');
+    }, {'aria-label': name === 'low' ? 'Lowest value' : 'Highest value'});
+    return field;
+  };
   const [low, high] = [bound('low'), bound('high')];
   const factor = () => (state.view.mode === 'error' ? 100 : 1);  // typed in per cent
   const unit = element('span', {class: 'quiet'});

@@ -1,6 +1,6 @@
 // Frames are pulled: the next one is asked for when the last has been painted, so a slow page gets fewer, and none
 // waits for it. While the render goes on fast they are JPEG; paused, finished or slow they are exact.
-import {get, show_error} from './api.js';
+import {get, is_refusal, show_error} from './api.js';
 import {show_bitmap} from './image.js';
 import {frame_parameters, is_rendering, on, set, state} from './state.js';
 
@@ -12,6 +12,7 @@ let wake = () => {};
 let waiting = null;    // AbortController of a request that waits for a frame that is not there yet
 let shown_query = '';  // parameters of the frame that is shown
 let shown_number = 0;
+let refused = '';  // by the server, which would refuse it again
 
 let fast = false;
 function quality() {
@@ -24,9 +25,12 @@ function query_of_view() {
   return {...frame_parameters(), quality: quality()};
 }
 
+/** What the server's answer depends on. */
+const asked_for = () => JSON.stringify([frame_parameters(), state.scene.revision]);
+
 /** What to ask for next; null if there is nothing new to be had. */
 function next_request() {
-  if (document.hidden || !state.connected || !state.scene) return null;
+  if (document.hidden || !state.connected || !state.scene || asked_for() === refused) return null;
   const query = query_of_view();
   const text = JSON.stringify(query);
   if (text !== shown_query) return {query, text, after: 0};
@@ -76,12 +80,16 @@ export async function pull_frames() {
       await until_woken(0);
       continue;
     }
+    const asked = asked_for();
     try {
       await show_next(request);
     } catch (error) {
       if (error.name === 'AbortError') continue;
       show_error(error);
-      await until_woken(1000);
+      if (is_refusal(error))
+        refused = asked;
+      else
+        await until_woken(1000);
     }
   }
 }
@@ -91,6 +99,7 @@ on('view scene status announced connected', () => {
   wake();
 });
 on('connected', () => {
+  refused = '';
   shown_query = '';  // a server that was started anew counts from 1
   shown_number = 0;
   waiting?.abort();

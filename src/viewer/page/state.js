@@ -50,7 +50,32 @@ export function set(changes) {
   }
 }
 
-export const set_view = (changes) => set({view: {...state.view, ...changes}});
+/**
+ * The channel nearest to `wanted` that is no sensor response, which has no temperature; on the way there from `last`
+ * if there is one.
+ */
+function thermal_channel(channels, wanted, last) {
+  const found = [...channels.keys()].filter((index) => !channels[index].derived);
+  const ahead = found.filter((index) => (index - wanted) * (wanted - last) >= 0);
+  const distance = (index) => Math.abs(index - wanted);
+  return (ahead.length ? ahead : found).reduce((best, index) => (distance(index) < distance(best) ? index : best));
+}
+
+/** The view without what the server would refuse for these channels; `last`: the channel before. */
+export function fitting(view, channels, last = view.channel) {
+  const fits = {...view};
+  if (view.mode === 'temperature' && channels[view.channel]?.derived)
+    fits.channel = thermal_channel(channels, view.channel, last);
+  if (view.scale === 'log') {
+    for (const name of ['low', 'high']) {
+      if (!(Number(view[name]) > 0)) fits[name] = '';
+    }
+  }
+  return fits;
+}
+
+export const set_view = (changes) =>
+    set({view: fitting({...state.view, ...changes}, state.scene?.channels ?? [], state.view.channel)});
 export const set_plot = (changes) => set({plot: {...state.plot, ...changes}});
 
 /** Modes that show one number per pixel, by colour map and colour bar. */

@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
-from browser import Browser
+from browser import Browser, Keys
 from program import BOX, Viewer, kiloband
 
 WIDTH, HEIGHT = 8, 6
@@ -122,6 +122,46 @@ class OtherCubes(unittest.TestCase):
         self.assertFalse(self.browser.find("#plot-log-x").is_enabled())
         self.assertEqual(self.browser.value("return (await import('/format.js')).log_ticks(0, 5)"), [0, 2, 4])
         self.assertEqual(self.browser.complaints(), [])
+
+    def test_what_would_be_refused_is_not_asked_for(self):
+        """Temperatures of responses, what was remembered of other channels, a logarithm's bounds below 0; else once."""
+        spectral = [1, 0, 0, 1, 0]
+        write_cube(self.path / "warm.hdr", [(8000 + 1000 * k, 8900 + 1000 * k) for k in range(5)], lambda x, y, k: 1e-3 * (1 + x),
+                   "kiloband band minimum = {8000, 9000, 10000, 11000, 12000}\n"
+                   "kiloband band maximum = {8900, 9900, 10900, 11900, 12900}\n"
+                   "kiloband own names = {, a, b, , c}\n"
+                   f"kiloband derived bands = {{{', '.join(str(1 - one) for one in spectral)}}}\n")
+        self.open(self.path / "warm.hdr")
+        self.assertEqual(self.browser.value("return state.scene.channels.map(({derived}) => derived ? 0 : 1)"), spectral)
+        self.assertEqual(self.browser.value("return [state.view.mode, state.view.channel]"), ["temperature", 3])
+        for key, channel in [("]", "3"), ("[", "0"), ("[", "0"), ("]", "3")]:
+            self.browser.press(key)
+            self.browser.wait("return state.frame.parameters.channel === given", "the next channel with a temperature", channel)
+        self.show("channel")
+        self.browser.value("const {set_view} = await import('/state.js'); set_view({low: '-1'});")
+        self.browser.press("k")
+        self.browser.wait("return state.frame.parameters.scale === 'log' && state.frame.low > 0", "a logarithmic scale")
+        self.assertEqual(self.browser.value("return state.view.low"), "")
+        self.browser.value("""
+            const {memory_key} = await import('/adapt.js');
+            const ranges = {r: [600, 700], g: [500, 600], b: [400, 500]};
+            await new Promise((done) => setTimeout(done, 400));  // until the page has kept its own
+            localStorage.setItem(memory_key(state.scene), JSON.stringify({view: {...state.view, mode: 'false', ranges, channel: 99}}));""")
+        self.browser.open(self.browser.driver.current_url, forget=False)
+        self.assertEqual(self.browser.value("return [state.frame.mode, state.view.channel, state.view.ranges]"), ["false", 2, None])
+        self.assertEqual(self.browser.complaints(), [])
+        asked = self.browser.value("""
+            const {set_view} = await import('/state.js'), asked = [], {fetch} = window;
+            window.fetch = (path, ...rest) => (asked.push(path), fetch(path, ...rest));
+            set_view({ranges: {r: [600, 700], g: [500, 600], b: [400, 500]}});
+            await new Promise((done) => setTimeout(done, 1300));
+            window.fetch = fetch;
+            return asked.filter((path) => path.startsWith('/api/frame'));""")
+        self.assertEqual(len(asked), 1, asked)
+        self.assertIn("overlaps no channel", self.browser.texts(".notice.error")[0])
+        self.browser.noted_errors()  # Chromium notes the refused request
+        self.browser.press(Keys.ESCAPE)
+        self.show("channel")
 
     def test_responses_are_points_in_units_of_their_own(self):
         (self.path / "red.csv").write_text("wavelength_nm,red,blue\n400,0,1\n500,0,0.5\n600,1,0\n700,0.5,0\n")
