@@ -1,7 +1,7 @@
 // Requests to the server. Whatever goes wrong is shown (notices.js) with the server's own words, and thrown.
 import {adapted} from './adapt.js';
 import {notice} from './notices.js';
-import {set, state} from './state.js';
+import {image_mark, set, state} from './state.js';
 
 const kSceneSpacing_ms = 150;  // between two readings of /api/scene
 const kGone_ms = 1000;         // so long the stream of events has to say that the server has gone
@@ -92,6 +92,16 @@ export function load_scene() {
   scene_wanted = true;
   loading ??= load_while_wanted();
   return loading;
+}
+
+/**
+ * After a refusal: whether the image has become another since the request was made, at this image_mark(). The page did
+ * not know yet, and who made the request makes it again.
+ */
+export async function is_outdated(error, mark) {
+  if (!is_refusal(error)) return false;
+  await load_scene();
+  return image_mark() !== mark;
 }
 
 /** The words with which a server that is there refuses this page; '' where it does not. */

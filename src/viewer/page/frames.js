@@ -1,8 +1,8 @@
 // Frames are pulled: the next one is asked for when the last has been painted, so a slow page gets fewer, and none
 // waits for it. While the render goes on fast they are JPEG; paused, finished or slow they are exact.
-import {get, is_refusal, show_error} from './api.js';
+import {get, is_outdated, is_refusal, show_error} from './api.js';
 import {show_bitmap} from './image.js';
-import {frame_parameters, is_rendering, on, set, state} from './state.js';
+import {frame_parameters, image_mark, is_rendering, on, set, state} from './state.js';
 
 const kFast = {
   above: 2.5,
@@ -26,7 +26,7 @@ function query_of_view() {
 }
 
 /** What the server's answer depends on. */
-const asked_for = () => JSON.stringify([frame_parameters(), state.scene.revision]);
+const asked_for = () => JSON.stringify([frame_parameters(), image_mark()]);
 
 /** What to ask for next; null if there is nothing new to be had. */
 function next_request() {
@@ -80,11 +80,11 @@ export async function pull_frames() {
       await until_woken(0);
       continue;
     }
-    const asked = asked_for();
+    const [asked, mark] = [asked_for(), image_mark()];
     try {
       await show_next(request);
     } catch (error) {
-      if (error.name === 'AbortError') continue;
+      if (error.name === 'AbortError' || await is_outdated(error, mark)) continue;
       show_error(error);
       if (is_refusal(error))
         refused = asked;

@@ -1,7 +1,7 @@
 // Pinned pixels and rectangles, and the spectra of what is pinned or under the mouse.
-import {get_json, show_error} from './api.js';
+import {get_json, is_outdated, is_refusal, show_error} from './api.js';
 import {notice} from './notices.js';
-import {channel_count, is_rendering, on, set, state} from './state.js';
+import {channel_count, image_mark, is_between_images, is_rendering, on, set, state} from './state.js';
 
 const kMaxPins = 15;  // with the pixel under the mouse as many as the server answers at once
 const kRefresh_ms = 300;
@@ -9,6 +9,7 @@ const kRefresh_ms = 300;
 const kColours = ['#e69f00', '#56b4e9', '#009e73', '#d55e00', '#cc79a7', '#0072b2'];
 let busy = false;
 let stale = false;  // something has changed since the last request was made
+let refused = '';   // by the server, which would refuse it again
 let last_ms = 0;
 let timer = 0;
 
@@ -55,6 +56,9 @@ async function refresh() {
     if (wanted.length === 0 && state.curves.length) set({curves: []});
     return;
   }
+  const mark = image_mark();
+  const asked = [mark, state.frame?.frame, ...wanted].join(';');
+  if (asked === refused) return;
   busy = true;
   stale = false;
   last_ms = performance.now();
@@ -63,7 +67,8 @@ async function refresh() {
     const curves = answer.curves.filter((curve) => curve.mean.length === channel_count());
     set({curves, curves_of: {frame: answer.frame, revision: answer.revision, samples: answer.samples}});
   } catch (error) {
-    show_error(error);
+    if (is_refusal(error)) refused = asked;
+    if (!await is_outdated(error, mark) && !is_between_images()) show_error(error);
   } finally {
     busy = false;
     if (stale) schedule(40);
@@ -80,9 +85,11 @@ function schedule(delay_ms) {
 on('pins hover connected', () => schedule(0));
 on('scene', () => {
   const {width, height} = state.scene;
-  const inside = state.pins.filter(
-      ({select}) => Math.max(select[0], select[2] ?? 0) < width && Math.max(select[1], select[3] ?? 0) < height);
+  const is_inside = (select) =>
+      Math.max(select[0], select[2] ?? 0) < width && Math.max(select[1], select[3] ?? 0) < height;
+  const inside = state.pins.filter(({select}) => is_inside(select));
   if (inside.length < state.pins.length) set({pins: inside});
+  if (state.hover && !is_inside(state.hover)) set({hover: null, hover_by_keys: false, selecting: null});
   schedule(0);
 });
 on('frame', () => {

@@ -85,6 +85,15 @@ export const has_channel = (mode) => mode === 'channel' || mode === 'temperature
 
 export const is_rendering = () => state.status?.state === 'rendering' || state.status?.state === 'loading';
 
+/** What the server's answers about the image depend on, as far as this page knows. */
+export function image_mark() {
+  const {name, revision, width, height, channels} = state.scene;
+  return [name, revision, width, height, channels.length].join();
+}
+
+/** Until there is a frame of the scene that was read last, the server may still have the image before. */
+export const is_between_images = () => state.frame?.revision !== state.scene.revision;
+
 export const channel_count = () => state.scene?.channels.length ?? 0;
 export const channel_centre = (index) => {
   const channel = state.scene.channels[index];

@@ -1,8 +1,8 @@
 // Numbers in the pixels at high zoom: what the mode shows before exposure and tone, from the server, never read off the
 // colours.
-import {get_json, ServerError, show_error} from './api.js';
+import {get_json, is_outdated, is_refusal, ServerError, show_error} from './api.js';
 import {number} from './format.js';
-import {frame_parameters, set, state} from './state.js';
+import {frame_parameters, image_mark, is_between_images, set, state} from './state.js';
 
 const kMinScale = 46;  // CSS pixels per film pixel
 const kMaxPixels = 1024;
@@ -10,6 +10,7 @@ const kSpacing_ms = 200;
 let held = null;     // {x0, y0, x1, y1, width, components, values, text of the request}
 let offered = true;  // false once the server has said that it has no such request
 let busy = false;
+let refused = '';  // by the server, which would refuse it again
 let wanted = null;
 
 export function values_fit({x0, y0, x1, y1}, scale) {
@@ -18,20 +19,22 @@ export function values_fit({x0, y0, x1, y1}, scale) {
 
 function ask(sight) {
   wanted = {...frame_parameters(), ...sight};
-  const text = JSON.stringify([wanted, state.frame?.frame]);
-  if (!busy && held?.text !== text) fetch_values(text);
+  const text = JSON.stringify([wanted, state.frame?.frame, image_mark()]);
+  if (!busy && held?.text !== text && refused !== text) fetch_values(text);
 }
 
 async function fetch_values(text) {
   busy = true;
+  const mark = image_mark();
   try {
     const given = wanted;
     held = {...given, ...(await get_json('/api/values', given)), text};
     set({values: held.frame});
   } catch (error) {
+    if (is_refusal(error)) refused = text;
     if (error instanceof ServerError && error.status === 404)
       offered = false;
-    else
+    else if (!await is_outdated(error, mark) && !is_between_images())
       show_error(error);
   }
   setTimeout(() => {

@@ -3,8 +3,9 @@ import pathlib
 import tempfile
 import unittest
 
-from browser import Browser
+from browser import Browser, Keys
 from program import BOX, Viewer, kiloband, wait_until
+from test_other_cubes import write_cube
 
 SIZES = {"1280x800": (1280, 800), "2560x1440": (2560, 1440), "3840x2160": (3840, 2160)}
 # Elements whose text does not fit into them, or that reach beyond the window. What may be cut says so by an ellipsis.
@@ -177,6 +178,12 @@ class Pages(unittest.TestCase):
             self.browser.wait("return state.connected", "the page has found the server")
             self.browser.choose("channel")
             self.assertFalse(self.browser.find("#offline").is_displayed())
+            self.browser.press(Keys.ARROW_LEFT)
+            self.assertEqual(viewer.stop(), 0)
+            write_cube(self.cube.with_name("small.hdr"), [(500, 510), (600, 610)], lambda x, y, k: 1 + x)
+            viewer = Viewer(self.cube.with_name("small.hdr"), port=viewer.port)
+            self.browser.wait("return state.scene.width === 8 && state.frame.full_width === 8", "a smaller image")
+            self.assertIsNone(self.browser.value("return state.hover"), "a cursor that is outside")
             self.assertEqual(self.browser.texts(".notice"), [])
         finally:
             viewer.stop()

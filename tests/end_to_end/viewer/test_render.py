@@ -93,6 +93,17 @@ class Render(RenderedPage):
         self.browser.wait("return !Object.values(state.edited).some(Boolean)", "the scene file's reflectance")
 
     def test_other_channels(self):
+        """Until the page has read of them it asks for what there is no more, as it tells nobody."""
+        self.browser.choose("channel")
+        self.browser.click(30, 40)
+        self.browser.value("""
+            const {set_view} = await import('/state.js'), {fetch} = window;
+            set_view({channel: given});
+            window.fetch = async (path, ...rest) => {
+              if (path === '/api/scene') await new Promise((done) => setTimeout(done, 400));
+              return fetch(path, ...rest);
+            };""", CHANNELS - 1)
+        self.browser.wait("return state.frame.parameters.channel === String(given)", "the last channel", CHANNELS - 1)
         revision = self.revision()
         self.open_tab("render")
         fields = self.browser.driver.find_elements("css selector", "#tab input.number")
@@ -106,6 +117,8 @@ class Render(RenderedPage):
         self.browser.value("const {post} = await import('/api.js'); await post('/api/settings', {bands: given});", f"400:700:{CHANNELS}")
         self.wait_for_revision_after(revision)
         self.browser.wait("return state.scene.channels.length === given", "all channels", CHANNELS)
+        self.assertEqual(self.browser.texts(".notice"), [])
+        self.browser.noted_errors()  # Chromium notes what was refused
 
     def test_other_backends_show_the_same(self):
         """The page's choice of a device and each of its methods; the status says which."""
