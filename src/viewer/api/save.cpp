@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/text.hpp"
+#include "cube/csv_fields.hpp"
 #include "files/atomic_file.hpp"
 #include "viewer/api/plain_names.hpp"
 
@@ -107,7 +108,8 @@ void save_picture(const std::filesystem::path& file, const std::string& png) {
 
 std::string curves_csv(const std::vector<Band>& bands, const std::vector<Selection>& places,
                        const std::vector<Curve>& curves) {
-  std::string csv = "min_nm,max_nm";
+  const bool named = std::ranges::any_of(bands, [](const Band& band) { return !band.channel.name.empty(); });
+  std::string csv = named ? "name,min_nm,max_nm" : "min_nm,max_nm";
   for (const Selection& place : places) {
     std::string name = place.text;
     replace_all(name, ",", "_");
@@ -115,8 +117,9 @@ std::string curves_csv(const std::vector<Band>& bands, const std::vector<Selecti
   }
   csv += '\n';
   for (std::size_t k = 0; k < bands.size(); ++k) {
-    csv +=
-        fmt::format("{},{}", format_number(bands[k].channel.min_nm), format_number(bands[k].channel.max_nm));
+    const Channel& channel = bands[k].channel;
+    if (named) csv += csv_text(channel.name) + ",";
+    csv += csv_bound(channel, channel.min_nm) + "," + csv_bound(channel, channel.max_nm);
     for (const Curve& curve : curves)
       csv += fmt::format(",{},{}", format_number(curve.mean[k]), format_number(curve.standard_error[k]));
     csv += '\n';

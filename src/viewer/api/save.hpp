@@ -23,7 +23,7 @@ std::vector<std::string> files_of(const std::filesystem::path& file);
 void save_cube(const std::filesystem::path& file, const ImageView& seen);
 void save_picture(const std::filesystem::path& file, const std::string& png);
 
-/// A line per band: its interval, then mean and standard error of every curve.
+/// A line per band: its name if any has one, its interval, then mean and standard error of every curve.
 std::string curves_csv(const std::vector<Band>& bands, const std::vector<Selection>& places,
                        const std::vector<Curve>& curves);
 

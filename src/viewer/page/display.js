@@ -84,10 +84,12 @@ function channel_rows() {
   const slider = element(
       'input',
       {type: 'range', min: 0, max: channel_count() - 1, step: 1, oninput: () => set_channel(Number(slider.value))});
-  const shown = element('output', {class: 'amount'});
+  const shown = element('output', {class: 'amount channel'});
+  // As wide for every channel: the slider stays as it is under the mouse.
+  shown.style.width = `${Math.max(...state.scene.channels.map((_, index) => channel_text(index).length))}ch`;
   const sync = () => {
     slider.value = state.view.channel;
-    shown.textContent = channel_text(state.view.channel);
+    shown.textContent = shown.title = channel_text(state.view.channel);
     slider.setAttribute('aria-valuetext', shown.textContent);
   };
   return {rows: [row('Channel', slider, shown)], sync};

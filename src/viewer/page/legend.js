@@ -77,7 +77,7 @@ function show() {
   const unit = [
     exponent ? `10${superscript(exponent)}` : '', unit_text(state.scene.channels[channel]?.unit)
   ].filter(Boolean).join(' ');
-  id('legend-channel').textContent =
+  id('legend-channel').textContent = id('legend-channel').title =
       channel === null ? '' : [`at ${channel_text(channel)}`, unit].filter(Boolean).join(', ');
   put_rows(rows);
   rows.forEach((shown, i) => fill_row(body.rows[i], shown, channel, 10 ** exponent));

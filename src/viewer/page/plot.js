@@ -277,4 +277,11 @@ export function readout_channel() {
   if (state.pointed !== null && state.pointed !== undefined) return state.pointed;
   return has_channel(state.view.mode) ? state.view.channel : null;
 }
-export const channel_text = (index) => wavelength(channel_centre(index), state.plot.micrometres);
+/** Its wavelength and its name, of which it may lack either. */
+export function channel_text(index) {
+  const {name} = state.scene.channels[index];
+  const own_name = /^[\d.e+]+-[\d.e+]+ nm$/.test(name) ? '' : name;  // else the server's, from the bounds
+  if (!has_place(index)) return own_name || `channel ${index}`;
+  const place = wavelength(channel_centre(index), state.plot.micrometres);
+  return own_name ? `${own_name} (${place})` : place;
+}

@@ -59,6 +59,11 @@ class OtherCubes(unittest.TestCase):
         self.browser.choose(mode)
         self.assertEqual(self.browser.complaints(), [])
 
+    def channel_texts(self):
+        """Of the slider and of the legend."""
+        legend = self.browser.wait("return document.getElementById('legend-channel').textContent", "the legend")
+        return [self.browser.find("#tab .amount.channel").text, legend.removeprefix("at ")]
+
     def test_bands_in_any_order(self):
         """The plot has all of them, along rising wavelengths; what it points at is the band of the file."""
         orders = {"descending": [(k, k + 20) for k in range(880, 380, -20)],
@@ -121,6 +126,11 @@ class OtherCubes(unittest.TestCase):
         self.assertEqual([row[2] for row in drawn], [13, 23, 33])
         self.assertFalse(self.browser.find("#plot-log-x").is_enabled())
         self.assertEqual(self.browser.value("return (await import('/format.js')).log_ticks(0, 5)"), [0, 2, 4])
+        self.assertEqual(self.channel_texts(), ["NIR (far)"] * 2)
+        self.browser.press("]")
+        self.browser.wait("return state.frame.parameters.channel === '2' && state.drawn", "the next band")
+        self.assertEqual(self.channel_texts(), ["Elevation"] * 2)
+        self.browser.screenshot("named")
         self.assertEqual(self.browser.complaints(), [])
 
     def test_what_would_be_refused_is_not_asked_for(self):
@@ -173,7 +183,7 @@ class OtherCubes(unittest.TestCase):
         self.assertEqual([row[1] for row in drawn], [None] * 2, "no line of channels")
         self.assertNotIn(None, [row[2] for row in drawn])
         self.show("channel")
-        self.browser.wait("return document.getElementById('legend-channel').textContent.includes('at ')", "the legend")
+        self.assertEqual(self.channel_texts(), ["blue (466.67 nm)"] * 2)
         self.assertNotIn("nm⁻¹", self.browser.find("#legend-channel").text + self.browser.find("#plot-y").text)
 
 
