@@ -42,9 +42,13 @@ const backend_text = ({backend, method}) => (backend === 'opencl' ? `OpenCL, ${m
 /** While the camera moves. */
 const is_reduced = () => Boolean(state.frame && state.frame.width < state.frame.full_width);
 
+/** A paused render that has been changed has no picture yet: the one before stays. */
+const is_outdated = (status) => status.state === 'paused' && state.frame?.revision < status.revision;
+
 function parts_of(status) {
   const live = status.state === 'rendering';
   const parts = [];
+  if (is_outdated(status)) parts.push(['outdated', 'the picture is from before the change']);
   if (is_reduced()) parts.push(['reduced', `reduced to ${state.frame.width} × ${state.frame.height}`]);
   if (state.scene?.kind === 'scene') {
     parts.push(['samples', samples_text(status)], ['time', duration(status.seconds)]);

@@ -189,6 +189,19 @@ class Render(RenderedPage):
         self.browser.press(Keys.SPACE)
         self.browser.wait("return state.status.samples > given", "more samples", samples)
 
+    def test_a_change_of_a_paused_render_is_told(self):
+        """Nothing is rendered of it: the picture before stays."""
+        self.pause()
+        told = lambda: self.browser.texts("#status .outdated")
+        self.assertEqual(told(), [])
+        self.browser.press("o", Keys.ARROW_RIGHT)
+        wait_until(lambda: told() == ["the picture is from before the change"], "word of the picture's age")
+        self.browser.screenshot("outdated")
+        line = self.browser.value("const {scrollWidth, clientWidth} = document.getElementById('status'); return [scrollWidth, clientWidth]")
+        self.assertLessEqual(*line)
+        self.browser.press(Keys.SPACE)
+        wait_until(lambda: not told(), "the new picture")
+
 
 if __name__ == "__main__":
     unittest.main()
