@@ -217,5 +217,6 @@ function draw_pins(context) {
   }
 }
 
-new ResizeObserver(() => (place.fit ? fit() : changed())).observe(canvas);
+// In the next frame: the zoom is text below the image, which may change the image's size again.
+new ResizeObserver(() => requestAnimationFrame(() => (place.fit ? fit() : changed()))).observe(canvas);
 on('pins hover marked selecting view values', redraw);

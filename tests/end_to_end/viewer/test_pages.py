@@ -16,7 +16,7 @@ const found = [];
 for (const element of document.querySelectorAll('#panel *, #foot *, dialog[open] *')) {
   const box = element.getBoundingClientRect();
   if (box.width === 0 || box.height === 0 || element.closest('[hidden]')) continue;
-  const scrolled = element.closest('#tab, #legend-box, dialog');
+  const scrolled = element.closest(innerWidth < 700 ? '#panel, dialog' : '#tab, #legend-box, dialog');
   const outside = box.left < -1 || box.right > innerWidth + 1 || (!scrolled && (box.top < -1 || box.bottom > innerHeight + 1));
   if (outside || (element.children.length === 0 && element.clientWidth > 0 && cut(element))) {
     found.push(`${element.tagName} ${element.className} '${element.textContent.slice(0, 40)}'`);
@@ -109,6 +109,21 @@ class Pages(unittest.TestCase):
             box = self.browser.value("const {width, height} = document.getElementById('image').getBoundingClientRect(); return [width, height]")
             self.assertGreaterEqual(box[0] / width, 0.65)
             self.assertGreaterEqual(box[1] / height, 0.95)
+
+    def test_a_narrow_window(self):
+        """As of a telephone: the image is as wide as the window, above the panel."""
+        self.browser.resize(360, 640)
+        self.addCleanup(self.browser.resize, 1280, 800)
+        self.browser.open(self.viewer.address)
+        self.pin_some()
+        width, height, bottom, top = self.browser.value("""
+            const [image, panel] = ['image', 'panel'].map((id) => document.getElementById(id).getBoundingClientRect());
+            return [image.width, image.height, image.bottom, panel.top];""")
+        self.assertEqual(width, 360)
+        self.assertGreaterEqual(height, 0.4 * 640)
+        self.assertLessEqual(bottom, top)
+        self.look_at_everything("360x640")
+        self.assertEqual(self.browser.complaints(), [])
 
     def test_two_pages_look_at_different_things(self):
         second = Browser()
