@@ -106,7 +106,7 @@ TEST_P(DegradationTest, RoughBall) {
   const TemporaryFolder folder;
   folder.write("glass.txt", index_columns());
   expect_channels_as_alone(ball_scene(glass("roughdielectric", real("alpha", 0.2))), GetParam(),
-                           folder.path(), 1, ways);
+                           folder.path(), shared && !thorough() ? 2 : 1, ways);
 }
 
 /// A rough ball of glass with gas in it, in an atmosphere: what every hero's ray passes follows its light.
