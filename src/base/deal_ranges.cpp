@@ -11,11 +11,14 @@ namespace {
 
 constexpr uint64_t kBytesOfThread = uint64_t{1} << 20;
 
+unsigned processors() {
+  return std::max(std::thread::hardware_concurrency(), 1u);
+}
+
 }  // namespace
 
 unsigned threads_for(uint64_t bytes) {
-  const unsigned processors = std::max(std::thread::hardware_concurrency(), 1u);
-  return static_cast<unsigned>(std::clamp<uint64_t>(bytes / kBytesOfThread, 1, processors));
+  return static_cast<unsigned>(std::clamp<uint64_t>(bytes / kBytesOfThread, 1, processors()));
 }
 
 void deal_ranges(std::size_t items, unsigned threads,
@@ -46,6 +49,14 @@ void deal_ranges(std::size_t items, unsigned threads,
   }
   const auto failed = std::ranges::find_if(failures, [](const auto& failure) { return failure != nullptr; });
   if (failed != failures.end()) std::rethrow_exception(*failed);
+}
+
+void deal_items(std::size_t items, const std::function<void(std::size_t)>& work) {
+  const std::size_t parts = std::min<std::size_t>(processors(), items);
+  deal_ranges(parts, static_cast<unsigned>(parts), [&](std::size_t first, std::size_t end) {
+    for (std::size_t part = first; part < end; ++part)
+      for (std::size_t item = part; item < items; item += parts) work(item);
+  });
 }
 
 }  // namespace kiloband

@@ -16,4 +16,8 @@ unsigned threads_for(uint64_t bytes);
 void deal_ranges(std::size_t items, unsigned threads,
                  const std::function<void(std::size_t first, std::size_t end)>& work);
 
+/// The same one by one, on all of the processor's threads: work(item). Neighbours are different threads', so that none of them gets all
+/// that take long.
+void deal_items(std::size_t items, const std::function<void(std::size_t item)>& work);
+
 }  // namespace kiloband

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
-#include <thread>
 
 #include "base/deal_ranges.hpp"
 #include "scene/optics/facet_quadrature.hpp"
@@ -26,19 +24,11 @@ Node node_of(const Facets& facets, double eta, std::size_t i) {
 
 }  // namespace
 
-/// A coating takes 60 to 100 ms of one thread. Neighbours take about as long as each other: none of the parts gets them all.
+/// That takes 60 to 100 ms of one thread.
 Coating make_coating(const KbMaterial& material) {
-  constexpr std::size_t kStride = 37;  // no divisor in common with their number
-  static_assert(std::gcd(kStride, KB_COAT_NODES) == 1);
   const Facets facets(material);
   std::array<Node, KB_COAT_NODES> nodes;
-  const unsigned threads = std::max(std::thread::hardware_concurrency(), 1u);
-  deal_ranges(nodes.size(), threads, [&](std::size_t first, std::size_t end) {
-    for (std::size_t at = first; at < end; ++at) {
-      const std::size_t i = at * kStride % nodes.size();
-      nodes[i] = node_of(facets, material.eta, i);
-    }
-  });
+  deal_items(nodes.size(), [&](std::size_t i) { nodes[i] = node_of(facets, material.eta, i); });
   Coating coating;
   double internal = 0;
   for (const Node& node : nodes) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/deal_ranges.hpp"
 #include "scene/optics/facet_quadrature.hpp"
 #include "shared/material_tables.h"
 #include "shared/thermal.h"
@@ -19,16 +20,16 @@ bool transmits(const KbMaterial& material) {
 
 using DirectionFunction = std::function<double(const glm::dvec3&)>;
 
-/// Appends f over the grid of (x, s) whose directions are direction(x, s).
+/// Appends f over the grid of (x, s) whose directions are direction(x, s). Each node takes about a millisecond.
 void append_nodes(uint32_t nodes_s, const std::function<glm::dvec3(double, double)>& direction,
                   const DirectionFunction& f, std::vector<float>& out) {
-  for (uint32_t j = 0; j < nodes_s; ++j) {
-    const double s = nodes_s > 1 ? static_cast<double>(j) / (nodes_s - 1) : 0;
-    for (int i = 0; i < KB_COMPENSATION_NODES; ++i) {
-      const double x = static_cast<double>(i) / (KB_COMPENSATION_NODES - 1);
-      out.push_back(static_cast<float>(f(direction(x, s))));
-    }
-  }
+  const std::size_t before = out.size();
+  out.resize(before + std::size_t{nodes_s} * KB_COMPENSATION_NODES);
+  deal_items(out.size() - before, [&](std::size_t node) {
+    const double s = nodes_s > 1 ? static_cast<double>(node / KB_COMPENSATION_NODES) / (nodes_s - 1) : 0;
+    const double x = static_cast<double>(node % KB_COMPENSATION_NODES) / (KB_COMPENSATION_NODES - 1);
+    out[before + node] = static_cast<float>(f(direction(x, s)));
+  });
 }
 
 /// Of energy compensation.

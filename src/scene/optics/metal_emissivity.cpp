@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
+
+#include "base/deal_ranges.hpp"
 
 namespace kiloband {
 namespace {
@@ -68,6 +71,19 @@ class MetalEmissivity::Directions {
 
   bool rough() const { return facets_.has_value(); }
   bool anisotropic() const { return facets_ && facets_->alpha_u != facets_->alpha_v; }
+
+  /// Computes the weights of directions that are not known, on all threads: some milliseconds each.
+  void prepare(const std::vector<double>& cosines, const std::vector<double>& places) {
+    std::vector<std::pair<std::pair<double, double>, std::vector<double>*>> missing;
+    for (const double s : places)
+      for (const double cosine : cosines) {
+        const auto [place, is_new] = known_.try_emplace({cosine, s});
+        if (is_new) missing.emplace_back(place->first, &place->second);
+      }
+    deal_items(missing.size(), [&](std::size_t i) {
+      *missing[i].second = integrate(missing[i].first.first, missing[i].first.second);
+    });
+  }
 
   /// Weights of the cell cosines; their sum is E. Refinement asks for the same directions again and again: all are kept.
   const std::vector<double>& weights(double cosine, double s) {
@@ -171,8 +187,10 @@ bool MetalEmissivity::refine(double from, double to, int depth) {
   if (depth >= kDeepest || to <= kSmallest) return false;
   bool good = true;
   const double middle = 0.5 * (from + to), quarters[] = {0.5 * (from + middle), middle, 0.5 * (middle + to)};
-  for (const double s : {0.0, 0.5, 1.0}) {
-    if (s > 0 && !directions_->anisotropic()) break;
+  const std::vector<double> places =
+      directions_->anisotropic() ? std::vector<double>{0.0, 0.5, 1.0} : std::vector<double>{0.0};
+  if (directions_->rough()) directions_->prepare({from, quarters[0], quarters[1], quarters[2], to}, places);
+  for (const double s : places) {
     const std::vector<double> low = at(from, s), high = at(to, s);
     for (int quarter = 1; quarter <= 3; ++quarter) {
       const double t = 0.25 * quarter;
@@ -194,7 +212,12 @@ void MetalEmissivity::choose_nodes_s() {
   for (nodes_s_ = 3; nodes_s_ < kMost; nodes_s_ = 2 * nodes_s_ - 1) {
     bool good = true;
     const double step = 1.0 / (nodes_s_ - 1);
-    for (const double cosine : {0.05, 0.1, 0.25, 0.5, 0.8}) {
+    const std::vector<double> cosines{0.05, 0.1, 0.25, 0.5, 0.8};
+    std::vector<double> places;
+    for (uint32_t j = 0; j + 1 < nodes_s_; ++j) places.insert(places.end(), {j * step, (j + 0.5) * step});
+    places.push_back((nodes_s_ - 1) * step);
+    directions_->prepare(cosines, places);
+    for (const double cosine : cosines) {
       for (uint32_t j = 0; j + 1 < nodes_s_; ++j) {
         const std::vector<double> low = at(cosine, j * step), high = at(cosine, (j + 1) * step);
         const std::vector<double> exact = at(cosine, (j + 0.5) * step);
@@ -218,8 +241,11 @@ RegularTable MetalEmissivity::tabulate(const std::vector<double>& values) const 
 /// By s, then cosine.
 std::vector<const std::vector<double>*> MetalEmissivity::weights_of_rows() const {
   std::vector<const std::vector<double>*> weights;
-  for (uint32_t j = 0; j < nodes_s_; ++j) {
-    const double s = nodes_s_ > 1 ? static_cast<double>(j) / (nodes_s_ - 1) : 0;
+  std::vector<double> places;
+  for (uint32_t j = 0; j < nodes_s_; ++j)
+    places.push_back(nodes_s_ > 1 ? static_cast<double>(j) / (nodes_s_ - 1) : 0);
+  directions_->prepare(cosines_, places);
+  for (const double s : places) {
     for (const double cosine : cosines_) weights.push_back(&directions_->weights(cosine, s));
   }
   return weights;
@@ -239,13 +265,13 @@ std::vector<std::vector<double>> MetalEmissivity::rough_rows() const {
     for (std::size_t c = 0; c < cells.size(); ++c)
       for (std::size_t j = 0; j < count; ++j) albedos[j] += cells[c][j] = (*weights[first + j])[c];
     values.resize(first + count, std::vector<double>(wavelengths));
-    for (std::size_t i = 0; i < wavelengths; ++i) {
+    deal_items(wavelengths, [&](std::size_t i) {
       std::array<double, kAbreast> absorbed{};
       for (std::size_t c = 0; c < cells.size(); ++c)
         for (std::size_t j = 0; j < kAbreast; ++j) absorbed[j] += cells[c][j] * absorptances[i][c];
       for (std::size_t j = 0; j < count; ++j)
         values[first + j][i] = Directions::emissivity(albedos[j], absorbed[j], absorptances[i][kCells]);
-    }
+    });
   }
   return values;
 }

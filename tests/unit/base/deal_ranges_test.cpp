@@ -49,6 +49,26 @@ TEST(DealRanges, ThrowsWhatTheFirstPartThrewThatDid) {
   EXPECT_EQ(done, 4);
 }
 
+TEST(DealItems, EachOnceByTheProcessorsThreads) {
+  for (const std::size_t items : {0u, 1u, 3u, 1000u}) {
+    std::vector<std::atomic<int>> times(items);
+    std::vector<std::thread::id> by(items);
+    deal_items(items, [&](std::size_t i) {
+      ++times[i];
+      by[i] = std::this_thread::get_id();
+    });
+    for (std::size_t i = 0; i < items; ++i) EXPECT_EQ(times[i], 1) << items << " items, " << i;
+    if (items > 1 && std::thread::hardware_concurrency() > 1) {
+      EXPECT_NE(by[0], by[1]) << "neighbours";
+    }
+  }
+  EXPECT_THROW(deal_items(5,
+                          [](std::size_t i) {
+                            if (i == 3) throw std::runtime_error("3");
+                          }),
+               std::runtime_error);
+}
+
 TEST(DealRanges, LittleMemoryIsWorthOneThread) {
   EXPECT_EQ(threads_for(0), 1u);
   EXPECT_EQ(threads_for(1 << 20), 1u);
