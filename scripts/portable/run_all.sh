@@ -8,7 +8,7 @@ unset CDPATH  # with it `cd` prints
 { [ $# -eq 1 ] || [ $# -eq 2 ]; } && [[ ${2:-525} =~ ^[1-9][0-9]*$ ]] && [ "${2:-525}" -ge 120 ] ||
   { echo "usage: $0 OUT [SECONDS, at least 120]" >&2; exit 2; }
 mkdir -p -- "$1" && out=$(cd -- "$1" && pwd) && trial=$(mktemp -p "$out") && rm "$trial" || exit 2
-for name in index.html run.json tests.json; do
+for name in index.html run.json tests.json validate.json validate.html bench.json bench.html; do
   [ ! -d "$out/$name" ] || { echo "$0: $out/$name is a folder" >&2; exit 2; }
 done
 here=$(cd "$(dirname "$(readlink -f "$0")")" && pwd)
@@ -137,7 +137,8 @@ printf '{"seconds": %s, "failures": %s, "devices": [%s], "steps": [%s]}\n' "$SEC
   echo "<p>$(uname -srm | html), $(nproc) processors, $SECONDS s, $failures of $steps steps failed.</p>"
   cat "$work/body"
   [ ! -r "$work/bench/bench.csv" ] || { echo "<h2>Numbers of bench</h2>"; table "$work/bench/bench.csv"; }
-} > "$out/index.html" || lost=1
+} > "$work/index.html"
+cp "$work/index.html" "$out/index.html" || lost=1
 [ "$lost" -eq 0 ] || echo "not all results could be written into $out" >&2
 echo "$failures of $steps steps failed, $SECONDS s; $out/index.html"
 [ "$failures" -eq 0 ] && [ "$lost" -eq 0 ]
