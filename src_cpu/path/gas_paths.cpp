@@ -248,7 +248,7 @@ bool GasPaths::walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, 
   const bool infinite = shadow.t_max == kInfinity;
   TraceRay ray(origin, direction, 0, shadow.t_max);
   for (uint32_t crossings = 0;; ++crossings) {
-    ++wave.traced_rays;
+    wave.traced_rays += crossings > 0;  // the first is the shadow ray, which trace_shadows() has counted
     embree_.closest_hits(std::span(&ray, 1));
     const bool arrives = ray.shape == KB_NONE;
     if (!arrives && !is_boundary(scene_, ray.shape)) return false;

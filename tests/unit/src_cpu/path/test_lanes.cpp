@@ -143,6 +143,32 @@ TEST(GasOfLanes, PathsThatItDoesNotConcernAreTheSameWithoutIt) {
   }
 }
 
+/// A floor whose lamp a roof hides half, without gas and with some far off: as many rays.
+TEST(GasOfLanes, HiddenShadowRaysAreCountedOnce) {
+  const std::string room =
+      "<shape type='rectangle'><transform name='to_world'><scale value='8'/><rotate x='1' angle='-90'/></transform>"
+      "<bsdf type='diffuse'/></shape><shape type='disk'><transform name='to_world'><rotate x='1' angle='-90'/>"
+      "<translate value='1,2,0'/></transform><bsdf type='diffuse'/></shape>"
+      "<shape type='rectangle'><transform name='to_world'><rotate x='1' angle='90'/><translate value='0,6,0'/></transform>"
+      "<emitter type='area'><spectrum name='radiance' value='5'/></emitter></shape>";
+  const std::string far_off =
+      "<shape type='sphere'><point name='center' value='0,500,0'/><bsdf type='null'/>"
+      "<medium name='interior' type='homogeneous'><spectrum name='sigma_t' value='1'/><spectrum name='albedo' value='0'/>"
+      "</medium></shape>";
+  const ChannelList channels = parse_channels("400:700:3");
+  std::vector<uint64_t> rays;
+  for (const std::string& more : {std::string(), far_off}) {
+    const auto flat = compile_scene(
+        read_scene_text(scene(3, perspective(lookat("0,9,9", "0,1,0"), 30, film(32)) + room + more),
+                        "roof.xml", ".", {}),
+        {channels, channels, {}});
+    ASSERT_EQ(flat->features.gas, !more.empty());
+    const EmbreeScene embree(*flat, Isa::kSse4, 1);
+    rays.push_back(trace(*flat, embree, SamplerType::kSobol, path_kernels(resolve_isa(Isa::kAuto))).rays);
+  }
+  EXPECT_EQ(rays[1], rays[0]);
+}
+
 TEST(TriangleRecords, AreLeftOutOfScenesWithTooMany) {
   const ZooFolder folder;
   const FlatScene scene = folder.flatten(zoo_scene("diffuse_room"));
