@@ -57,19 +57,22 @@ std::string speed_text(double speed) {
   return speed > 0 ? fmt::format("{:.2f} times as fast", speed) : "does not work";
 }
 
+void check_seconds(double seconds) {
+  if (!(seconds >= kLeastSeconds && seconds <= kMostSeconds))  // NaN, too
+    throw InputError(fmt::format("--seconds {}: must be in [{}, {}]", seconds, kLeastSeconds, kMostSeconds));
+}
+
 /// Minutes of measuring must not end with sizes that cannot be kept.
-void check_command(const TuneCommand& command, const opencl::DeviceInfo& device) {
-  if (!(command.seconds >= kLeastSeconds && command.seconds <= kMostSeconds))  // NaN, too
-    throw InputError(
-        fmt::format("--seconds {}: must be in [{}, {}]", command.seconds, kLeastSeconds, kMostSeconds));
+void check_keeping(const opencl::DeviceInfo& device) {
   if (const std::string refusal = opencl::TuningStore::of_user().refusal(device); !refusal.empty())
     throw DeviceError("sizes cannot be kept: " + refusal);
 }
 
 int tune(TuneCommand command) {
+  check_seconds(command.seconds);
   if (command.forget) return forget(command);
   const opencl::DeviceInfo device = opencl::select_device(command.device);
-  check_command(command, device);
+  check_keeping(device);
   if (command.scene.scene.empty())
     command.scene.scene = source_folder() + "/scenes/cornell_box/cornell_box.xml";
   const DiagnosticSink sink = print_diagnostics(true);

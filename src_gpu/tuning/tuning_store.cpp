@@ -135,6 +135,7 @@ bool TuningStore::forget(const DeviceInfo& device) const {
   if (folder_.empty()) return false;
   std::error_code error;
   const bool had = std::filesystem::remove(file(device), error);
+  if (error == std::errc::not_a_directory) return false;  // as without the folder
   if (error) throw DeviceError("cannot remove '" + file(device).string() + "': " + error.message());
   return had;
 }

@@ -89,6 +89,7 @@ TEST_F(ProgramTune, RefusesWhatItCannotTime) {
   EXPECT_EQ(run({"tune", "--device", "no such device"}).code, 2);
   for (const char* seconds : {"0", "nan", "-1", "61", "inf"})
     EXPECT_EQ(run({"tune", "--seconds", seconds}).code, 2) << seconds;
+  EXPECT_EQ(run({"tune", "--forget", "--seconds", "0"}).code, 2);
   EXPECT_EQ(run({"tune", "missing.xml"}).code, 2);
 }
 

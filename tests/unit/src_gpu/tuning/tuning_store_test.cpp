@@ -108,6 +108,7 @@ TEST_F(TuningStoreTest, SaysWhyNothingIsKept) {
   std::ofstream(folder_.path() / "file") << "no folder";
   const TuningStore blocked(folder_.path() / "file" / "tuning");
   EXPECT_NE(blocked.save(device_, measured("pt", 8, 512)).find("cannot write"), std::string::npos);
+  EXPECT_FALSE(blocked.forget(device_));
 }
 
 TEST_F(TuningStoreTest, WhatCannotBeReadIsNoError) {
