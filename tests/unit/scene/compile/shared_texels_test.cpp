@@ -47,16 +47,19 @@ TEST_F(SharedTexels, OfOneImageStandOnceForEveryUse) {
   const std::string once = sphere(bitmap("reflectance", "a.ppm"));
   const std::string clamped =
       sphere(bitmap("reflectance", "a.ppm", "<string name='wrap_mode' value='clamp'/>"));
-  const std::string numbers = sphere(bitmap("reflectance", "a.ppm", "<boolean name='raw' value='false'/>"));
+  const std::string shades = "<shape type='sphere'><bsdf type='roughconductor'>" +
+                             bitmap("alpha", "a.ppm", "<boolean name='raw' value='true'/>") +
+                             "</bsdf></shape>";
   const std::string lamp =
       "<shape type='rectangle'><emitter type='area'>" + bitmap("radiance", "a.ppm") + "</emitter></shape>";
   const std::string light = "<emitter type='constant'/>";
-  const auto scene = compiled(once + once + clamped + numbers + lamp + light);
+  const auto scene = compiled(once + once + clamped + shades + lamp + light);
   ASSERT_EQ(scene->textures.size(), 5u);
-  EXPECT_EQ(scene->texels.size(), 6u);  // as reflectances and as emission
-  EXPECT_EQ(scene->texel_bounds.size(), 6u);
-  for (int i : {1, 2, 3}) EXPECT_EQ(scene->textures[i].first_texel, scene->textures[0].first_texel);
+  EXPECT_EQ(scene->texels.size(), 9u);  // as reflectances, as roughnesses and as emission
+  EXPECT_EQ(scene->texel_bounds.size(), 9u);
+  for (int i : {1, 2}) EXPECT_EQ(scene->textures[i].first_texel, scene->textures[0].first_texel);
   EXPECT_NE(scene->textures[2].wrap, scene->textures[0].wrap);
+  EXPECT_NE(scene->textures[3].first_texel, scene->textures[0].first_texel);
   EXPECT_NE(scene->textures[4].first_texel, scene->textures[0].first_texel);
 }
 
@@ -80,7 +83,7 @@ TEST_F(SharedTexels, OfAnEnvironmentAreItsOwn) {
   }
 }
 
-/// More colours than places are kept for, many of them again: each texel and bound has the bits of an image of it alone.
+/// Colours of which some are kept in the same places, and many come again: each texel and bound has the bits of an image of it alone.
 TEST_F(SharedTexels, HaveTheBitsOfTexelsByThemselves) {
   const std::string light = "<emitter type='constant'/>";
   std::mt19937 random(7);
