@@ -37,7 +37,7 @@ class StoredPixels final : public PixelSource {
   const std::vector<double>& units() const override { return units_; }
   bool has_variances() const override { return info_.variance; }
   void means(uint32_t y, std::span<float> out) const override { copy_row(means_, y, out); }
-  void band_means(uint32_t y, std::size_t band, std::span<float> out) const override {
+  void band_means(uint32_t y, std::size_t band, std::span<float> out, std::vector<float>&) const override {
     const std::size_t bands = info_.bands.size(), first = y * (info_.width * bands) + band;
     for (std::size_t x = 0; x < info_.width; ++x) out[x] = means_.values()[first + x * bands];
   }

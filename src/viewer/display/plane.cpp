@@ -21,10 +21,12 @@ Plane plane_of_band(const PixelSource& source, std::size_t band, unsigned thread
   Plane plane{source.width(), source.height(), 1, {}};
   plane.values.resize(std::size_t{plane.width} * plane.height);
   deal_ranges(plane.height, threads, [&](std::size_t first, std::size_t end) {
+    std::vector<float> row;
     for (auto y = static_cast<uint32_t>(first); y < end; ++y) {
-      const std::span<float> row = std::span(plane.values).subspan(std::size_t{y} * plane.width, plane.width);
-      source.band_means(y, band, row);
-      for (float& mean : row) mean = static_cast<float>(value(mean));
+      const std::span<float> means =
+          std::span(plane.values).subspan(std::size_t{y} * plane.width, plane.width);
+      source.band_means(y, band, means, row);
+      for (float& mean : means) mean = static_cast<float>(value(mean));
     }
   });
   return plane;
@@ -49,9 +51,10 @@ void ThreeSums::operator()(const float* values, float* out) const {
   }
 }
 
-void PixelSource::band_means(uint32_t y, std::size_t band, std::span<float> out) const {
+void PixelSource::band_means(uint32_t y, std::size_t band, std::span<float> out,
+                             std::vector<float>& row) const {
   const std::size_t bands = this->bands().size();
-  std::vector<float> row(width() * bands);
+  row.resize(width() * bands);
   means(y, row);
   for (std::size_t x = 0; x < width(); ++x) out[x] = row[x * bands + band];
 }

@@ -39,8 +39,8 @@ class PixelSource {
   virtual const std::vector<double>& units() const = 0;
   /// Means of row y, [x][band]; NaN where a pixel has no sample. Thread-safe.
   virtual void means(uint32_t y, std::span<float> out) const = 0;
-  /// Means of one band in row y, [x]. Thread-safe.
-  virtual void band_means(uint32_t y, std::size_t band, std::span<float> out) const;
+  /// Means of one band in row y, [x]. row: memory that the caller keeps for the next. Thread-safe.
+  virtual void band_means(uint32_t y, std::size_t band, std::span<float> out, std::vector<float>& row) const;
   /// Whether variances() has any but NaN.
   virtual bool has_variances() const = 0;
   /// Variances of the means, [x][band]; NaN where they are not known. Thread-safe.

@@ -16,8 +16,9 @@ class RowRange final : public PixelSource {
   const std::vector<Band>& bands() const override { return image_.bands(); }
   const std::vector<double>& units() const override { return image_.units(); }
   void means(uint32_t y, std::span<float> out) const override { image_.means(first_ + y, out); }
-  void band_means(uint32_t y, std::size_t band, std::span<float> out) const override {
-    image_.band_means(first_ + y, band, out);
+  void band_means(uint32_t y, std::size_t band, std::span<float> out,
+                  std::vector<float>& row) const override {
+    image_.band_means(first_ + y, band, out, row);
   }
   bool has_variances() const override { return image_.has_variances(); }
   void variances(uint32_t y, std::span<float> out) const override { image_.variances(first_ + y, out); }
