@@ -72,7 +72,8 @@ class MetalEmissivity::Directions {
   bool rough() const { return facets_.has_value(); }
   bool anisotropic() const { return facets_ && facets_->alpha_u != facets_->alpha_v; }
 
-  /// Computes the weights of directions that are not known, on all threads: some milliseconds each.
+  /// Computes the weights of directions that are not known, on all threads: some milliseconds each. Refinement asks for the same ones again
+  /// and again: all are kept.
   void prepare(const std::vector<double>& cosines, const std::vector<double>& places) {
     std::vector<std::pair<std::pair<double, double>, std::vector<double>*>> missing;
     for (const double s : places)
@@ -85,12 +86,8 @@ class MetalEmissivity::Directions {
     });
   }
 
-  /// Weights of the cell cosines; their sum is E. Refinement asks for the same directions again and again: all are kept.
-  const std::vector<double>& weights(double cosine, double s) {
-    const auto [place, is_new] = known_.try_emplace({cosine, s});
-    if (is_new) place->second = integrate(cosine, s);
-    return place->second;
-  }
+  /// Weights of the cell cosines, of a direction that was prepared; their sum is E.
+  const std::vector<double>& weights(double cosine, double s) const { return known_.at({cosine, s}); }
 
   static std::vector<double> absorptances(double n, double k) {
     std::vector<double> a;
