@@ -24,6 +24,16 @@ class ChannelCover {
   /// What the channels cover: intervals in ascending order that do not touch.
   const std::vector<std::pair<double, double>>& covered_nm() const { return covered_nm_; }
 
+  /// action(from_nm, to_nm, share) for the pieces of one of the channels: its part of what lies there, from 0 to 1. The narrower a channel, the more of its
+  /// light comes from there, so that shares go by 1 / width as those of responses that are rendered (DerivedChannels).
+  template <class Action>
+  void for_shares(const Channel& channel, Action action) const {
+    for_pieces(channel.min_nm, channel.max_nm, [&](double from, double to, double density) {
+      action(from, to, 1 / channel_divisor(channel, density));
+    });
+  }
+
+ private:
   /// action(from_nm, to_nm, density) for the pieces of [min_nm, max_nm]; 0 where no channel is.
   template <class Action>
   void for_pieces(double min_nm, double max_nm, Action action) const {
@@ -36,16 +46,6 @@ class ChannelCover {
     }
   }
 
-  /// action(from_nm, to_nm, share) for the pieces of one of the channels: its part of what lies there, from 0 to 1. The narrower a channel, the more of its
-  /// light comes from there, so that shares go by 1 / width as those of responses that are rendered (DerivedChannels).
-  template <class Action>
-  void for_shares(const Channel& channel, Action action) const {
-    for_pieces(channel.min_nm, channel.max_nm, [&](double from, double to, double density) {
-      action(from, to, 1 / channel_divisor(channel, density));
-    });
-  }
-
- private:
   ChannelDensity density_;
   std::vector<std::pair<double, double>> covered_nm_;
 };
