@@ -61,19 +61,16 @@ bool has_errors(const Curve& curve) {
   return std::ranges::any_of(curve.standard_error, [](float error) { return !std::isnan(error); });
 }
 
-/// The values of a part of a plane, where the part is given in pixels of the full image.
-/// The plane of the rows that have something of a part of the image, and the part's values in it.
+/// The values of a part of the image, given in pixels of the full one, from a plane of the rows that have something of it.
 json values_of(const ImageView& seen, const Selection& part,
                const std::function<Plane(const PixelSource&)>& make) {
-  const auto row_of = [&](uint64_t y) {
-    return static_cast<uint32_t>(y * seen.pixels.height() / seen.full_height);
-  };
+  const auto row_of = [&](uint32_t y) { return reduced(y, seen.full_height, seen.pixels.height()); };
   const uint32_t first = row_of(part.y0);
   const Plane plane = make(RowRange(seen.pixels, first, row_of(part.y1) - first + 1));
   std::vector<float> values;
-  for (uint64_t y = part.y0; y <= part.y1; ++y) {
-    for (uint64_t x = part.x0; x <= part.x1; ++x) {
-      const std::size_t column = x * plane.width / seen.full_width;
+  for (uint32_t y = part.y0; y <= part.y1; ++y) {
+    for (uint32_t x = part.x0; x <= part.x1; ++x) {
+      const std::size_t column = reduced(x, seen.full_width, plane.width);
       const std::size_t at = (std::size_t{row_of(y) - first} * plane.width + column) * plane.components;
       values.insert(values.end(), &plane.values[at], &plane.values[at] + plane.components);
     }

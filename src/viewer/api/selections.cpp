@@ -91,11 +91,6 @@ void add(const CurveSums& part, CurveSums& sums) {
   sums.pixels += part.pixels;
 }
 
-/// Where a coordinate of the full image lies in one that may be reduced.
-uint32_t reduced(uint32_t at, uint32_t full, uint32_t size) {
-  return static_cast<uint32_t>(uint64_t{at} * size / full);
-}
-
 /// The sums of all selections over rows first .. end - 1; those of selections that have none of them stay empty.
 std::vector<CurveSums> sums_of_rows(const PixelSource& pixels, const std::vector<Selection>& selections,
                                     uint32_t first, uint32_t end) {
@@ -121,6 +116,10 @@ std::vector<CurveSums> sums_of_rows(const PixelSource& pixels, const std::vector
 }
 
 }  // namespace
+
+uint32_t reduced(uint32_t at, uint32_t full, uint32_t size) {
+  return static_cast<uint32_t>(uint64_t{at} * size / full);
+}
 
 std::vector<Selection> parse_selections(std::string_view text, uint32_t width, uint32_t height) {
   const std::vector<std::string_view> parts = parts_of(text, ';');

@@ -15,6 +15,9 @@ struct Selection {
   uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
+/// Where a coordinate of the full image, of `full` pixels, lies in one of `size` that may be reduced.
+uint32_t reduced(uint32_t at, uint32_t full, uint32_t size);
+
 inline constexpr std::size_t kMostSelections = 16;
 
 /// "120,88;10,10,40,32": points and rectangles.
