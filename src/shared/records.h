@@ -66,7 +66,7 @@ KB_STATIC_ASSERT(sizeof(KbMaterial) == 64, material_size);
 #define KB_BUMP_SHADOW 2u  /* light that arrives at a flat angle is shadowed by what is not in the geometry */
 #define KB_BUMP_OUTSIDE 4u /* around a two-sided bsdf: a bump seen from behind is a dent */
 
-/* What turns the shading normal of a material; src_cpu/geometry/bump.hpp derives it. */
+/* What turns the shading normal of a material; src_cpu/geometry/bump-inl.hpp derives it. */
 typedef struct {
   kb_u32 texture; /* KB_TEXTURE_NORMALS, or heights in m; KB_NONE: nothing */
   kb_u32 flags;   /* KB_BUMP_* */

@@ -170,7 +170,22 @@ glm::vec3 canonical_area_point(uint32_t type, glm::vec2 u) {
   return {std::cos(phi), std::sin(phi), u.y};
 }
 
+AnalyticTangents canonical_tangents(uint32_t type, glm::vec2 uv) {
+  constexpr float kTurn = 2 * KB_PI;
+  const float phi = kTurn * (type == KB_SHAPE_DISK ? uv.y : uv.x);
+  const glm::vec3 outwards(std::cos(phi), std::sin(phi), 0), around(-outwards.y, outwards.x, 0);
+  if (type == KB_SHAPE_DISK) return {outwards, kTurn * uv.x * around};
+  if (type == KB_SHAPE_CYLINDER) return {kTurn * around, {0, 0, 1}};
+  const float sine = std::sin(KB_PI * uv.y), cosine = std::cos(KB_PI * uv.y);
+  return {kTurn * sine * around, KB_PI * glm::vec3(cosine * outwards.x, cosine * outwards.y, -sine)};
+}
+
 }  // namespace
+
+AnalyticTangents analytic_tangents(const KbShape& shape, glm::vec2 uv) {
+  const AnalyticTangents own = canonical_tangents(shape.type, uv);
+  return {transform_vector(shape.to_world, own.du), transform_vector(shape.to_world, own.dv)};
+}
 
 SphereGeometry sphere_geometry(const KbShape& shape) {
   return {affine_column<double>(shape.to_world, 3), glm::length(affine_column<double>(shape.to_world, 0))};

@@ -32,6 +32,12 @@ bool intersect_analytic(const KbShape& shape, const glm::dvec3& origin, const gl
 /// the point is projected onto the surface.
 SurfacePoint analytic_surface(const KbShape& shape, const glm::dvec3& hit_point);
 
+/// dp/du and dp/dv there, world.
+struct AnalyticTangents {
+  glm::vec3 du, dv;
+};
+AnalyticTangents analytic_tangents(const KbShape& shape, glm::vec2 uv);
+
 /// A uniformly distributed point: density 1 / area. `local` is the point in the shape's own coordinates.
 struct AreaPoint {
   glm::vec3 position;  // world, m

@@ -10,6 +10,7 @@
 #include "src_cpu/lanes/one_lane_glm.hpp"
 // After the lanes that they are to be compiled for.
 #include "src_cpu/bsdf/fresnel-inl.hpp"
+#include "src_cpu/geometry/texture/texture-inl.hpp"
 #include "src_cpu/light/area-inl.hpp"
 
 namespace kiloband::cpu {
@@ -114,7 +115,9 @@ Source choose_source(const FlatScene& scene, const KbThermal& thermal, const Asp
 
 float temperature_at(const FlatScene& scene, const KbThermal& thermal, const SurfaceHit& hit) {
   if (thermal.field != KB_FIELD_VERTEX)
-    return bitmap_value(scene, sample_bitmap(scene.textures[thermal.field], thermal.field, hit.uv));
+    return one_lane::number_at(scene, {KB_REF_BITMAP | thermal.field}, one_lane::place_at(to_lane(hit.uv)),
+                               {0}, {true})
+        .v;
   const KbShape& shape = scene.shapes[hit.shape];
   const uint32_t* vertex = &scene.triangles[3 * (std::size_t{shape.first_triangle} + hit.triangle)];
   const auto value = [&](int i) { return scene.tables[uint32_t(thermal.field_offset + vertex[i])]; };
@@ -145,7 +148,12 @@ ResolvedSpectrum with_temperature(const ResolvedSpectrum& emissivity, float temp
 ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, glm::vec3 towards,
                                  glm::vec2 u) {
   const TexturePoint at(hit.uv, hit.triangle, hit.barycentric);
-  const KbSurface& surface = chosen_surface(scene, scene.shapes[hit.shape].surface, at, u.x);
+  const one_lane::TexturePlace place{to_lane(hit.uv), {hit.triangle}, to_lane(hit.barycentric)};
+  one_lane::F left = u.x;
+  const one_lane::U chosen =
+      one_lane::chosen_surface(scene, scene.shapes[hit.shape].surface, place, left, {true});
+  u.x = left.v;
+  const KbSurface& surface = scene.surfaces[chosen.v];
   const one_lane::V3 normal = to_lane(hit.shading_normal), away = to_lane(towards);
   const uint32_t index = one_lane::on_front(normal, away).v ? surface.front_thermal : surface.back_thermal;
   if (index == KB_NONE) return {};
@@ -156,7 +164,7 @@ ThermalRadiance thermal_radiance(const FlatScene& scene, const SurfaceHit& hit, 
   const Source source = choose_source(scene, thermal, aspect_of(thermal, to_glm(frame.to_local(away))), u);
   if (!(source.weight > 0)) return {};
   ThermalRadiance emitted;
-  emitted.weight = source.weight * opacity_at(scene, surface, at);
+  emitted.weight = source.weight * one_lane::opacity_at(scene, chosen, place, {true}).v;
   emitted.radiance = resolve_spectrum(scene, source.ref, at);
   if (thermal.field != KB_NONE)
     emitted.radiance = with_temperature(emitted.radiance, temperature_at(scene, thermal, hit));

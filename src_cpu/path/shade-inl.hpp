@@ -79,84 +79,51 @@ KB_INLINE void add_emission(Shading& s, M hit) {
 /// Returns the surfaces.
 inline U choose_surfaces(Shading& s, U surface, M hit) {
   const FlatScene& scene = s.scene();
-  const KbSurface* surfaces = scene.surfaces.data();
-  WordArray chosen(surface);
-  FloatArray u(s.u.x), opacity(KB_GATHER_FLOAT(surfaces, KbSurface, opacity, surface));
-  const M varies = hit & (has_bits(KB_GATHER_WORD(surfaces, KbSurface, flags, surface), KB_SURFACE_BLEND) |
-                          (KB_GATHER_WORD(surfaces, KbSurface, opacity_ref, surface) != U(KB_NONE)));
-  if (any(varies)) {
-    const TexturePoints points(texture_place(s));
-    each_lane(varies, [&](uint32_t i) KB_LAMBDA {
-      const KbSurface& one = chosen_surface(scene, chosen[i], points[i], u[i]);
-      chosen[i] = static_cast<uint32_t>(&one - surfaces);
-      opacity[i] = opacity_at(scene, one, points[i]);
-    });
-  }
-  s.opacity = opacity;
-  const F x = u;
+  const TexturePlace place = texture_place(s);
+  F x = s.u.x;
+  if (scene.features.blend) surface = chosen_surface(scene, surface, place, x, hit);
+  s.opacity = opacity_at(scene, surface, place, hit);
   const M masked = s.opacity < F(1);
   s.passes = hit & masked & (x >= s.opacity);
   const F again = select(s.passes, (x - s.opacity) / (F(1) - s.opacity), x / s.opacity);
   s.u.x = select(masked, min(again, F(KB_ONE_MINUS_EPSILON)), x);
-  return chosen;
+  return surface;
 }
 
 /// Normals that bump and normal maps turn, and the tangents that they leave.
 inline V3 bump_normals(Shading& s, M seen, M turned, V3& tangent) {
-  const FlatScene& scene = s.scene();
-  const RayQueue& rays = s.wave.rays();
-  const WordArray side(s.side), shape(s.hit.shape);
-  const V3Array unbumped(s.hit.shading_normal), along(s.direction);
-  const FloatArray u(s.hit.uv.x), v(s.hit.uv.y);
-  V3Array normal(s.hit.shading_normal), tangents(tangent);
-  FloatArray alpha2{F(kNotBumped)};
-  const uint32_t behind = bits_of(turned);
-  each_lane(seen, [&](uint32_t i) KB_LAMBDA {
-    if (scene.bumps[side[i]].texture == KB_NONE) return;
-    const BumpPoint at{shape[i],  rays.primitive[s.first + i], {u[i], v[i]}, unbumped[i],
-                       -along[i], (behind >> i & 1) != 0};
-    const BumpedNormal bumped = bumped_normal(scene, scene.bumps[side[i]], at);
-    normal.put(i, bumped.normal);
-    alpha2[i] = bumped.alpha2;
-    if (bumped.mapped) tangents.put(i, tangents[i] - unbumped[i] * glm::dot(unbumped[i], tangents[i]));
-  });
-  s.alpha2 = alpha2;
-  tangent = tangents;
-  return normal;
+  const V3 n = s.hit.shading_normal;
+  const U triangle = load(s.wave.rays().primitive + s.first);
+  const BumpedNormal bumped =
+      bumped_normals(s.scene(), s.side, {s.hit.shape, triangle, s.hit.uv, n, -s.direction, turned}, seen);
+  tangent = select(bumped.mapped, tangent - n * dot(n, tangent), tangent);
+  s.alpha2 = bumped.alpha2;
+  return bumped.normal;
 }
 
-/// Roughness that varies over surfaces, one path at a time.
-inline void look_up_roughness(Shading& s, M seen) {
+/// Roughness that varies over surfaces, mostly alike in both directions.
+KB_INLINE void look_up_roughness(Shading& s, const TexturePlace& place, M seen) {
   const FlatScene& scene = s.scene();
-  const WordArray side(s.side);
-  const TexturePoints points(texture_place(s));
-  FloatArray alpha_u(s.material.alpha_u), alpha_v(s.material.alpha_v);
-  each_lane(seen, [&](uint32_t i) KB_LAMBDA {
-    const KbRoughness& maps = scene.roughness[side[i]];
-    alpha_u[i] = number_at(scene, maps.alpha_u_ref, alpha_u[i], points[i]);
-    alpha_v[i] = number_at(scene, maps.alpha_v_ref, alpha_v[i], points[i]);
-  });
-  s.material.alpha_u = alpha_u;
-  s.material.alpha_v = alpha_v;
+  const U u = KB_GATHER_WORD(scene.roughness.data(), KbRoughness, alpha_u_ref, s.side),
+          v = KB_GATHER_WORD(scene.roughness.data(), KbRoughness, alpha_v_ref, s.side);
+  s.material.alpha_u = number_at(scene, u, place, s.material.alpha_u, seen);
+  const M alike = (u == v) & (u != U(KB_NONE));
+  s.material.alpha_v = number_at(scene, v, place, s.material.alpha_v, seen & !alike);
+  s.material.alpha_v = select(seen & alike, s.material.alpha_u, s.material.alpha_v);
 }
 
 /// The numbers of principled materials, of the numbers' maps the values here.
-inline void look_up_principled(Shading& s, M seen) {
+inline void look_up_principled(Shading& s, const TexturePlace& place, M seen) {
   const FlatScene& scene = s.scene();
   const M lanes = seen & is_type(s.material.type, KB_MATERIAL_PRINCIPLED);
   if (!any(lanes)) return;
   s.principled = gather_principled(scene.tables.data(), select(lanes, s.material.table, U(0u)), lanes);
   s.material.principled = &s.principled;
   if (scene.features.principled_map) {
-    const WordArray side(s.side);
-    const TexturePoints points(texture_place(s));
+    const U first = s.side * U(KB_PRINCIPLED_MAPPED);
     for (uint32_t n = 0; n < KB_PRINCIPLED_MAPPED; ++n) {
-      FloatArray number(s.principled.number[n]);
-      each_lane(lanes, [&](uint32_t i) KB_LAMBDA {
-        const uint32_t ref = scene.principled_maps[std::size_t{side[i]} * KB_PRINCIPLED_MAPPED + n];
-        number[i] = number_at(scene, ref, number[i], points[i]);
-      });
-      s.principled.number[n] = number;
+      F& number = s.principled.number[n];
+      number = number_at(scene, gather(scene.principled_maps.data(), first + U(n)), place, number, lanes);
     }
   }
   set_principled_alpha(s.material, lanes);
@@ -201,8 +168,8 @@ KB_INLINE M find_material(Shading& s, U surface, M hit) {
   s.vertex.b = resolve(scene, ref_b, place, seen & (ref_b != U(KB_NONE)));
   s.material.bound_a = bound_at(scene, ref_a, s.vertex.a, s.material.bound_a, seen & (ref_a != U(KB_NONE)));
   s.material.bound_b = bound_at(scene, ref_b, s.vertex.b, s.material.bound_b, seen & (ref_b != U(KB_NONE)));
-  if (scene.features.roughness_map) look_up_roughness(s, seen);
-  if (scene.features.principled) look_up_principled(s, seen);
+  if (scene.features.roughness_map) look_up_roughness(s, place, seen);
+  if (scene.features.principled) look_up_principled(s, place, seen);
   V3 tangent = s.hit.tangent;
   const V3 normal = scene.features.bump ? bump_normals(s, seen, turned, tangent) : s.hit.shading_normal;
   s.frame = make_frame(normal);

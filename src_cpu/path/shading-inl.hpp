@@ -9,7 +9,7 @@
 #endif
 
 #include "src_cpu/bsdf/bsdf-inl.hpp"
-#include "src_cpu/geometry/bump.hpp"
+#include "src_cpu/geometry/bump-inl.hpp"
 #include "src_cpu/light/light-inl.hpp"
 #include "src_cpu/path/vertex-inl.hpp"
 
@@ -88,7 +88,7 @@ struct Shading {
   }
 };
 
-/// What of light from or into `direction` a bump map leaves (src_cpu/geometry/bump.hpp); 1 without one.
+/// What of light from or into `direction` a bump map leaves (src_cpu/geometry/bump-inl.hpp); 1 without one.
 KB_INLINE F bump_share(const Shading& s, V3 direction) {
   const F c = dot(direction, s.unbumped), bumped = dot(direction, s.frame.z), c2 = c * c;
   const M same = ((c > F(0)) & (bumped > F(0))) | ((c < F(0)) & (bumped < F(0)));

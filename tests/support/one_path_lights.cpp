@@ -91,7 +91,16 @@ KbTextureSample sample_envmap_texture(const KbTexture& texture, uint32_t index, 
 
 float spectrum_bound(const FlatScene& scene, const cpu::ResolvedSpectrum& spectrum) {
   if (!spectrum.textured) return scene.spectra[spectrum.row].bound;
-  return one_lane::texel_bounds(scene, spectrum.texture.texture, spectrum.texture.xy).v;
+  return one_lane::texel_bounds(scene, spectrum.texture.texture, spectrum.texture.xy, {true}).v;
+}
+
+KbTextureSample sample_bitmap(const KbTexture& texture, uint32_t index, glm::vec2 uv) {
+  return sample_of(one_lane::sample_bitmaps(one_lane::Textures(texture), index, to_lane(uv), {true}));
+}
+
+float bitmap_value(const FlatScene& scene, const KbTextureSample& sample) {
+  const one_lane::Textures textures(scene.textures[sample.texture]);
+  return one_lane::bitmap_value(scene, textures, {sample.texture, sample.xy, sample.fx, sample.fy}, {true}).v;
 }
 
 cpu::CameraRay sample_camera_ray(const KbCamera& camera, uint32_t x, uint32_t y, const KbFloat4& u,

@@ -49,6 +49,11 @@ KbTextureSample sample_envmap_texture(const KbTexture& texture, uint32_t index, 
 
 /// Upper bound of a resolved spectrum over guide bands and rendered channels (of a lookup: of its four texels).
 float spectrum_bound(const FlatScene& scene, const cpu::ResolvedSpectrum& spectrum);
+/// The bilinear (or nearest: fx = fy = 0) sample of a bitmap at uv; v = 0 is the first row, pixel centres at
+/// (i + 0.5) / n, wrapped as the texture says. Exact at the borders of all wrap modes.
+KbTextureSample sample_bitmap(const KbTexture& texture, uint32_t index, glm::vec2 uv);
+/// The bilinear value of a bitmap of numbers: of its texels' bounds.
+float bitmap_value(const FlatScene& scene, const KbTextureSample& sample);
 
 /// sample_camera_rays() of camera-inl.hpp.
 /// u  x, y: film position; z, w: lens; uniform in [0,1)

@@ -32,47 +32,41 @@ KB_INLINE TexturePlace place_at(V2 uv) {
   return {uv, U(0u), {F(0), F(0)}};
 }
 
-/// The places lane by lane.
-class TexturePoints {
- public:
-  explicit TexturePoints(const TexturePlace& at)
-      : u_(at.uv.x), v_(at.uv.y), b1_(at.barycentric.x), b2_(at.barycentric.y), triangle_(at.triangle) {}
-  TexturePoint operator[](uint32_t lane) const {
-    return {{u_[lane], v_[lane]}, triangle_[lane], {b1_[lane], b2_[lane]}};
-  }
-
- private:
-  FloatArray u_, v_, b1_, b2_;
-  WordArray triangle_;
-};
-
 KB_INLINE Resolved resolved_row(U row) {
   return {row, no_lanes(), {U(0u), U(0u), F(0), F(0)}};
 }
 
+KB_INLINE TextureSample select(M m, const TextureSample& yes, const TextureSample& no) {
+  return {select(m, yes.texture, no.texture), select(m, yes.xy, no.xy), select(m, yes.fx, no.fx),
+          select(m, yes.fy, no.fy)};
+}
 KB_INLINE Resolved select(M m, const Resolved& yes, const Resolved& no) {
-  return {select(m, yes.row, no.row),
-          select(m, yes.textured, no.textured),
-          {select(m, yes.sample.texture, no.sample.texture), select(m, yes.sample.xy, no.sample.xy),
-           select(m, yes.sample.fx, no.sample.fx), select(m, yes.sample.fy, no.sample.fy)}};
+  return {select(m, yes.row, no.row), select(m, yes.textured, no.textured), select(m, yes.sample, no.sample)};
+}
+
+/// Lookups in bitmaps.
+KB_INLINE TextureSample sample_textures(const FlatScene& scene, const Textures& textures, U index,
+                                        const TexturePlace& at, M active) {
+  const TextureSample sample = sample_bitmaps(textures, index, at.uv, active);
+  if (!scene.features.mesh_attribute) return sample;
+  const M by_triangle = has_bits(textures.flags, KB_TEXTURE_TRIANGLES);
+  return select(by_triangle, sample_triangles(textures, index, at.triangle, at.barycentric), sample);
 }
 
 /// Bitmaps and checkerboards.
 inline Resolved resolve_textures(const FlatScene& scene, U ref, const TexturePlace& at, U row, M active) {
   Resolved resolved = resolved_row(row);
-  each_distinct(active, ref, [&](uint32_t one, M lanes) KB_LAMBDA {
-    const uint32_t index = one & KB_REF_INDEX_MASK;
-    if ((one & KB_REF_KIND_MASK) == KB_REF_CHECKERBOARD) {
-      resolved.row = select(lanes, checkerboard_row(scene.checkerboards[index], at.uv), resolved.row);
-    } else {
-      const KbTexture& texture = scene.textures[index];
-      const bool by_triangle = (texture.flags & KB_TEXTURE_TRIANGLES) != 0;
-      const Resolved lookup{U(0u), lanes,
-                            by_triangle ? sample_triangles(texture, index, at.triangle, at.barycentric)
-                                        : sample_bitmap(texture, index, at.uv)};
-      resolved = select(lanes, lookup, resolved);
-    }
-  });
+  const M board = active & ((ref & U(KB_REF_KIND_MASK)) == U(KB_REF_CHECKERBOARD));
+  if (any(board)) {
+    const U index = select(board, ref & U(KB_REF_INDEX_MASK), U(0u));
+    resolved.row = select(board, checkerboard_row(scene.checkerboards.data(), index, at.uv), row);
+  }
+  const M bitmap = active & !board;
+  if (any(bitmap)) {
+    const Textures textures = textures_of(scene, ref, bitmap);
+    const U index = ref & U(KB_REF_INDEX_MASK);
+    resolved = select(bitmap, {U(0u), bitmap, sample_textures(scene, textures, index, at, bitmap)}, resolved);
+  }
   return resolved;
 }
 
@@ -91,14 +85,58 @@ KB_INLINE F bound_at(const FlatScene& scene, U ref, const Resolved& spectrum, F 
   const M local = active & has_bits(ref, KB_REF_KIND_MASK);
   if (!any(local)) return bound;
   F local_bound = bound;
-  each_distinct(local & spectrum.textured, spectrum.sample.texture, [&](uint32_t texture, M lanes) KB_LAMBDA {
-    const U xy = select(lanes, spectrum.sample.xy, U(0u));
-    local_bound = select(lanes, texel_bounds(scene, texture, xy), local_bound);
-  });
+  if (const M textured = local & spectrum.textured; any(textured)) {
+    const TextureSample& sample = spectrum.sample;
+    local_bound = select(textured, texel_bounds(scene, sample.texture, sample.xy, textured), bound);
+  }
   each_distinct(local & !spectrum.textured, spectrum.row, [&](uint32_t row, M lanes) KB_LAMBDA {
     local_bound = select(lanes, F(scene.spectra[row].bound), local_bound);
   });
   return local_bound;
+}
+
+// ---- numbers -----------------------------------------------------------------------------------------
+
+/// Numbers by reference: the values of bitmaps; `number` of lanes without (KB_NONE) and of those that are not active.
+inline F number_at(const FlatScene& scene, U ref, const TexturePlace& at, F number, M active) {
+  const M mapped = active & (ref != U(KB_NONE));
+  if (!any(mapped)) return number;
+  const Textures textures = textures_of(scene, ref, mapped);
+  const TextureSample sample = sample_textures(scene, textures, ref & U(KB_REF_INDEX_MASK), at, mapped);
+  return select(mapped, bitmap_value(scene, textures, sample, mapped), number);
+}
+
+/// The same of numbers that bitmaps give from 0 to 1.
+KB_INLINE F share_at(const FlatScene& scene, U ref, const TexturePlace& at, F share, M active) {
+  const F value = number_at(scene, ref, at, share, active);
+  return select(ref == U(KB_NONE), share, min(max(value, F(0)), F(1)));
+}
+
+/// The surfaces that rays find where they hit these: themselves, or what a blend chooses with u, which is uniform again
+/// afterwards.
+inline U chosen_surface(const FlatScene& scene, U surface, const TexturePlace& at, F& u, M active) {
+  const KbSurface* surfaces = scene.surfaces.data();
+  const auto blends = [&] KB_LAMBDA {
+    return active & has_bits(KB_GATHER_WORD(surfaces, KbSurface, flags, surface), KB_SURFACE_BLEND);
+  };
+  for (M left = blends(); any(left); left = blends()) {
+    const F weight = share_at(scene, KB_GATHER_WORD(surfaces, KbSurface, weight_ref, surface), at,
+                              KB_GATHER_FLOAT(surfaces, KbSurface, weight, surface), left);
+    const M second = u < weight;
+    const F again = select(second, u / weight, (u - weight) / (F(1) - weight));
+    u = select(left, min(again, F(KB_ONE_MINUS_EPSILON)), u);
+    const U one = select(second, KB_GATHER_WORD(surfaces, KbSurface, second, surface),
+                         KB_GATHER_WORD(surfaces, KbSurface, first, surface));
+    surface = select(left, one, surface);
+  }
+  return surface;
+}
+
+/// A mask's opacity; 1 of other surfaces.
+KB_INLINE F opacity_at(const FlatScene& scene, U surface, const TexturePlace& at, M active) {
+  const KbSurface* surfaces = scene.surfaces.data();
+  return share_at(scene, KB_GATHER_WORD(surfaces, KbSurface, opacity_ref, surface), at,
+                  KB_GATHER_FLOAT(surfaces, KbSurface, opacity, surface), active);
 }
 
 }  // namespace kiloband::cpu::KB_LANES

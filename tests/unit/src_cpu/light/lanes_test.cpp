@@ -225,6 +225,46 @@ TEST(TextureLanes, MixedInOneVectorAndAlone) {
   }
 }
 
+/// Bitmaps of numbers, in some lanes none.
+TEST(NumberLanes, MixedInOneVectorAndAlone) {
+  FlatScene scene;
+  std::vector<uint32_t> refs = add_textures(scene);
+  std::erase_if(refs, [](uint32_t ref) { return (ref & KB_REF_KIND_MASK) != KB_REF_BITMAP; });
+  refs.push_back(KB_NONE);
+  for (const bool mixed : {true, false}) {
+    Uniform uniform(8);
+    Arrays in{numbers(1, 0, 1), numbers(2, -3, 4), numbers(3, -3, 4), numbers(4, 0, 1)};
+    for (std::size_t i = 0; i < kCount; ++i)
+      in[0][i] = kb_as_f32(refs[mixed ? static_cast<std::size_t>(uniform() * static_cast<double>(refs.size()))
+                                      : i / 64 % refs.size()]);
+    expect_bits_of_one_lane("number", scene, in);
+  }
+}
+
+/// Blends of blends and of masks, with constants and bitmaps.
+TEST(SurfaceLanes, BlendsAndMasks) {
+  FlatScene scene;
+  add_textures(scene);
+  Uniform uniform(9);
+  constexpr uint32_t kPlain = 10, kBlends = 12;
+  for (uint32_t i = 0; i < kPlain + kBlends; ++i) {
+    KbSurface surface{};
+    const auto share = static_cast<float>(uniform());
+    const uint32_t ref = i % 3 ? KB_NONE : KB_REF_BITMAP | i % static_cast<uint32_t>(scene.textures.size());
+    surface.opacity = surface.weight = share;
+    surface.opacity_ref = surface.weight_ref = ref;
+    if (i >= kPlain) {
+      surface.flags = KB_SURFACE_BLEND;
+      surface.first = i - 5;
+      surface.second = i - 7;
+    }
+    scene.surfaces.push_back(surface);
+  }
+  Arrays in{numbers(1, 0, 1), numbers(2, -3, 4), numbers(3, -3, 4), numbers(4, 0, KB_ONE_MINUS_EPSILON)};
+  for (float& surface : in[0]) surface = kb_as_f32(static_cast<uint32_t>(surface * (kPlain + kBlends - 1)));
+  expect_bits_of_one_lane("surface", scene, in);
+}
+
 TEST(CameraLanes, EveryProjectionAndFilter) {
   Arrays in{numbers(1, 0, 1), numbers(2, 0, 1)};
   for (float& x : in[0]) x = std::floor(x * 45000);

@@ -83,13 +83,26 @@ KB_SCENE_FUNCTION(texture, {
   put_lookup(0, spectrum);
   put(4, bound_at(scene, ref, spectrum, F(7), first_lanes(kLanes)));
 })
+KB_SCENE_FUNCTION(number, {
+  const M active = a(3) > F(0.1f);
+  put(0, number_at(scene, as_words(a(0)), {a(1), a(2)}, a(3), active));
+  put(1, share_at(scene, as_words(a(0)), {a(1), a(2)}, a(3), active));
+})
+KB_SCENE_FUNCTION(surface, {
+  const M active = a(3) > F(0.1f);
+  F u = a(3);
+  const TexturePlace at = place_at({a(1), a(2)});
+  const U chosen = chosen_surface(scene, as_words(a(0)), at, u, active);
+  put(0, as_floats(chosen));
+  put(1, u);
+  put(2, opacity_at(scene, chosen, at, active));
+})
 
 inline std::vector<test::SceneFunction> scene_functions() {
-  return {{"lights", 7, 13, lights_of_arrays},
-          {"escape", 3, 5, escape_of_arrays},
-          {"suns", 3, 2, suns_of_arrays},
-          {"camera", 6, 9, camera_of_arrays},
-          {"texture", 3, 5, texture_of_arrays}};
+  return {{"lights", 7, 13, lights_of_arrays},  {"escape", 3, 5, escape_of_arrays},
+          {"suns", 3, 2, suns_of_arrays},       {"camera", 6, 9, camera_of_arrays},
+          {"texture", 3, 5, texture_of_arrays}, {"number", 4, 2, number_of_arrays},
+          {"surface", 4, 3, surface_of_arrays}};
 }
 
 }  // namespace kiloband::cpu::KB_LANES

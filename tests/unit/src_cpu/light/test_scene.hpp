@@ -195,6 +195,7 @@ inline FlatScene envmap_scene(uint32_t width, uint32_t height, const std::vector
   texture.flags = KB_TEXTURE_ENVMAP;
   scene.textures = {texture};
   for (const float t : texels) scene.texels.push_back({0, 0, 1e10f, t});
+  scene.texel_bounds = texels;
   scene.envmap = build_envmap_sampling(width, height, texels);
   return scene;
 }

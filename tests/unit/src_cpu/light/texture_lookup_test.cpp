@@ -32,10 +32,9 @@ FlatScene texture_scene(int width, int height, uint32_t wrap, uint32_t flags) {
   texture.flags = flags;
   texture.to_uv[0] = texture.to_uv[4] = 1;
   // The texture does not begin at texel 0.
-  texture.first_texel = 2;
-  scene.texels.assign(2, {0, 0, 0, -1000});
-  for (int i = 0; i < width * height; ++i)
-    scene.texels.push_back({0, 0, 1e10f, static_cast<float>((i * 7) % 19)});
+  texture.first_bound = 2;
+  scene.texel_bounds.assign(2, -1000);
+  for (int i = 0; i < width * height; ++i) scene.texel_bounds.push_back(static_cast<float>((i * 7) % 19));
   scene.textures = {texture};
   return scene;
 }
@@ -45,7 +44,7 @@ double reference(const FlatScene& scene, double u, double v) {
   const int width = t.width, height = t.height;
   const auto at = [&](double x, double y) -> double {
     const int i = wrapped(std::llround(x), width, t.wrap), j = wrapped(std::llround(y), height, t.wrap);
-    return scene.texels[t.first_texel + j * width + i].w;
+    return scene.texel_bounds[t.first_bound + j * width + i];
   };
   if (t.flags & KB_TEXTURE_NEAREST) return at(std::floor(u * width), std::floor(v * height));
   const double x = u * width - 0.5, y = v * height - 0.5, x0 = std::floor(x), y0 = std::floor(y);
@@ -135,8 +134,7 @@ TEST(EnvironmentMap, AxesAndBorders) {
   texture.height = 5;
   texture.flags = KB_TEXTURE_ENVMAP;
   scene.textures = {texture};
-  for (int i = 0; i < 40; ++i)
-    scene.texels.push_back({0, 0, 1e10f, static_cast<float>(100 * (i / 8) + i % 8)});
+  for (int i = 0; i < 40; ++i) scene.texel_bounds.push_back(static_cast<float>(100 * (i / 8) + i % 8));
   const auto value = [&](glm::vec3 d) { return bitmap_value(scene, environment_radiance(scene, d).texture); };
   EXPECT_NEAR(value({1, 0, 0}), 200 + 1.5, 1e-4);  // x = 8/4 - 0.5
   EXPECT_NEAR(value({0, 0, 1}), 200 + 3.5, 1e-4);
