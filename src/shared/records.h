@@ -118,6 +118,7 @@ KB_STATIC_ASSERT(sizeof(KbSurface) == 48, surface_size);
 #define KB_TEXTURE_ENVMAP 2u /* columns repeat, rows clamp, rows align-corners */
 #define KB_TEXTURE_BANDS 4u
 #define KB_TEXTURE_WEIGHTS 8u
+#define KB_TEXTURE_NUMBERS 16u /* no spectra: numbers, which are the bounds; no texels */
 #define KB_TEXTURE_NORMALS 32u /* texels are normals: (x, y, z, 1) */
 /* Values at the vertices of a mesh: two texels for each row of a triangle, (v0, v1) and (v2, v2), which the weights (1 - fx) (1 - fy) ...
    of a lookup interpolate with fy = b2, fx = b1 / (b0 + b1); with KB_TEXTURE_NEAREST one texel per triangle. */
@@ -128,7 +129,7 @@ KB_STATIC_ASSERT(sizeof(KbSurface) == 48, surface_size);
 
 typedef struct {
   kb_u32 width, height;
-  kb_u32 first_texel;    /* into the texel array, row 0 = v 0 = top; 0 of spectral texels */
+  kb_u32 first_texel;    /* into the texel array, row 0 = v 0 = top; 0 of spectral texels and numbers */
   kb_u32 wrap;           /* KB_WRAP_* */
   kb_u32 flags;          /* KB_TEXTURE_* */
   kb_u32 illuminant_row; /* spectrum multiplied on top (D65 for RGB emission), or KB_NONE */

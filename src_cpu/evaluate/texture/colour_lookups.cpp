@@ -61,7 +61,8 @@ ColourLookups::ColourLookups(const FlatScene& scene, const EvaluatorKernels& ker
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     const KbTexture& t = scene.textures[i];
     const std::size_t texels = std::size_t{t.width} * t.height, first = row_of_.size();
-    if ((t.flags & (KB_TEXTURE_SPECTRAL | KB_TEXTURE_NORMALS)) || texels > kMostTexels) continue;
+    constexpr uint32_t kNoColours = KB_TEXTURE_SPECTRAL | KB_TEXTURE_NORMALS | KB_TEXTURE_NUMBERS;
+    if ((t.flags & kNoColours) || texels > kMostTexels) continue;
     if (number_colours(std::span(scene.texels).subspan(t.first_texel, texels), kMostRows, colours_, row_of_))
       first_[i] = first;
   }

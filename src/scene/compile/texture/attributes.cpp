@@ -129,6 +129,11 @@ uint32_t TextureCompiler::mesh_attribute(const std::shared_ptr<const MeshAttribu
     cell[record.width] = cell[record.width + 1] = solved[triangles[t][2]];
   }
   finish_attribute(record, count, use.emission);
+  if (share) {
+    out_.texels.resize(record.first_texel);
+    out_.textures.back().first_texel = 0;
+    out_.textures.back().flags |= KB_TEXTURE_NUMBERS;
+  }
   return place->second;
 }
 

@@ -51,6 +51,11 @@ bool emits(BitmapUse use) {
   return use == BitmapUse::kEmission || use == BitmapUse::kEnvironment;
 }
 
+/// Opacities, weights, temperatures, roughness, heights.
+bool are_numbers(BitmapUse use) {
+  return use == BitmapUse::kOpacity || use == BitmapUse::kRoughness || use == BitmapUse::kHeight;
+}
+
 float value_of(const Image& image, std::size_t texel) {
   if (image.channels == 1) return image.pixels[texel];
   return (image.pixels[3 * texel] + image.pixels[3 * texel + 1] + image.pixels[3 * texel + 2]) / 3;
@@ -126,7 +131,8 @@ const TexelBlock& TextureCompiler::texels(const BitmapTexture& texture, BitmapUs
   if (!is_new) return block;
   const Image& image = *texture.image;
   const std::size_t count = std::size_t{image.width} * image.height;
-  block.first_texel = static_cast<uint32_t>(out_.texels.size());  // never more of them than of bounds
+  const bool numbers = are_numbers(use);
+  if (!numbers) block.first_texel = static_cast<uint32_t>(out_.texels.size());  // never more than bounds
   block.first_bound = first_texel_index(out_.texel_bounds.size(), count, texture.position,
                                         texture.id.empty() ? texture.file.string() : texture.id);
   const bool geometry =
@@ -144,7 +150,7 @@ const TexelBlock& TextureCompiler::texels(const BitmapTexture& texture, BitmapUs
       const KbFloat4 texel = flat ? flat_texel(value) : texel_of(rgb, use, height);
       return SolvedTexel{texel, texel_bound(texel)};
     });
-    out_.texels.push_back(solved.texel);
+    if (!numbers) out_.texels.push_back(solved.texel);
     out_.texel_bounds.push_back(solved.bound);
     sum += value;
     block.bound = std::max(block.bound, double{solved.bound});
@@ -170,6 +176,7 @@ uint32_t TextureCompiler::bitmap(const std::shared_ptr<const BitmapTexture>& tex
   record.wrap = static_cast<uint32_t>(texture->wrap);
   record.flags = texture->nearest ? KB_TEXTURE_NEAREST : 0;
   if (use == BitmapUse::kNormals) record.flags |= KB_TEXTURE_NORMALS;
+  if (are_numbers(use)) record.flags |= KB_TEXTURE_NUMBERS;
   record.illuminant_row = emission && !texture->raw ? d65_row() : KB_NONE;
   store_uv_transform(texture->to_uv, record.to_uv);
   double& peak = texture->raw ? peaks_.raw : peaks_.rgb;

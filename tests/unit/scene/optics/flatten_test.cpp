@@ -61,8 +61,9 @@ TEST(Flatten, ColoursAsOpacities) {
       kSensor + "</scene>";
   const auto scene = compile_scene(read_scene_text(text, "scene.xml", folder.path(), {}),
                                    {parse_channels("400-500"), {}, {}});
-  ASSERT_EQ(scene->texels.size(), 1u);
-  EXPECT_NEAR(scene->texels[0].w, 0.2126, 1e-3);
+  EXPECT_TRUE(scene->texels.empty());
+  ASSERT_EQ(scene->texel_bounds.size(), 1u);
+  EXPECT_NEAR(scene->texel_bounds[0], 0.2126, 1e-3);
 }
 
 TEST(FlattenThermal, DiffuseSurfacesAreOneRow) {
