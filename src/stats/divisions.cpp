@@ -7,8 +7,6 @@
 namespace kiloband::stats {
 namespace {
 
-constexpr std::size_t kBlockUnits = 32;  // whose values stay in the first cache
-
 /// 1 / (n (n - 1)), 0 for a side that is not there.
 double per_side(std::size_t n) {
   return n == 0 ? 0 : 1 / (static_cast<double>(n) * (static_cast<double>(n) - 1));
@@ -21,12 +19,15 @@ double inverse(std::size_t n) {
 }  // namespace
 
 DividedUnits::DividedUnits(std::size_t first, std::size_t second)
-    : first_(first), second_(second), count_(first + second), half_(second == 0 ? 1.0f : 0.5f) {
+    : first_(first), second_(second), count_(first + second) {
   const double a = per_side(first), b = per_side(second);
-  of_difference_ = static_cast<float>(inverse(first) + inverse(second));
-  of_one_ = static_cast<float>(second == 0 ? a : 0.5 * (a + b));
-  of_q_ = static_cast<float>(second == 0 ? 0 : 0.5 * (a - b));
-  of_squares_ = static_cast<float>(a * inverse(first) + b * inverse(second));
+  forms_.half = second == 0 ? 1.0f : 0.5f;
+  forms_.of_difference = static_cast<float>(inverse(first) + inverse(second));
+  forms_.of_one = static_cast<float>(second == 0 ? a : 0.5 * (a + b));
+  forms_.of_q = static_cast<float>(second == 0 ? 0 : 0.5 * (a - b));
+  forms_.of_squares = static_cast<float>(a * inverse(first) + b * inverse(second));
+  forms_.replicates = count_;
+  forms_.needs_q = second != 0 && first != second;
 }
 
 void DividedUnits::add(std::vector<double> values, double slack) {
@@ -39,33 +40,23 @@ void DividedUnits::add(std::vector<double> values, double slack) {
   for (double& x : values) squares += (x / largest) * (x / largest);
   const double unit = largest * std::sqrt(squares > 0 ? squares : 1);
   const std::size_t lane = size() % kBlockUnits, block = size() / kBlockUnits;
-  if (lane == 0) values_.resize((block + 1) * count_ * kBlockUnits);
+  if (lane == 0) {
+    values_.resize((block + 1) * count_ * kBlockUnits);
+    slack_.resize((block + 1) * kBlockUnits);
+  }
   for (std::size_t r = 0; r < count_; ++r)
     values_[(block * count_ + r) * kBlockUnits + lane] = static_cast<float>(values[r] / unit);
-  slack_.push_back(static_cast<float>(slack / unit));
-}
-
-std::size_t DividedUnits::cell_of(float s, float q, float slack) const {
-  const float a = half_ * s;
-  const float d = std::max(0.0f, of_difference_ * std::abs(a) - slack);
-  const float v = std::max(0.0f, of_one_ + of_q_ * q - of_squares_ * a * a);
-  const float all = d * d + 4 * v;
-  if (!(all > 0)) return 0;
-  return std::min(kCells - 1, static_cast<std::size_t>(static_cast<float>(kCells) * (d * d / all)));
+  slack_[count_of_units_++] = static_cast<float>(slack / unit);
 }
 
 void DividedUnits::add_block(std::size_t block, const Division& division, bool with_slack,
                              Cells& cells) const {
-  float s[kBlockUnits] = {}, q[kBlockUnits] = {};
-  const float* x = &values_[block * count_ * kBlockUnits];
-  for (std::size_t r = 0; r < count_; ++r, x += kBlockUnits) {
-    const float w = division[r];
-    for (std::size_t i = 0; i < kBlockUnits; ++i) s[i] += w * x[i];
-    if (first_ == second_ || second_ == 0) continue;
-    for (std::size_t i = 0; i < kBlockUnits; ++i) q[i] += w * x[i] * x[i];
-  }
-  const std::size_t begin = block * kBlockUnits, units = std::min(kBlockUnits, size() - begin);
-  for (std::size_t i = 0; i < units; ++i) ++cells[cell_of(s[i], q[i], with_slack ? slack_[begin + i] : 0.0f)];
+  static constexpr float kNone[kBlockUnits] = {};
+  const std::size_t begin = block * kBlockUnits, units = std::min(kBlockUnits, count_of_units_ - begin);
+  uint32_t cell[kBlockUnits];
+  find_cells(forms_, &values_[begin * count_], division.data(), with_slack ? &slack_[begin] : kNone, kCells,
+             cell);
+  for (std::size_t i = 0; i < units; ++i) ++cells[cell[i]];
 }
 
 Cells DividedUnits::observed() const {

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "stats/division_kernels.hpp"
 #include "stats/random.hpp"
 
 namespace kiloband::stats {
@@ -35,7 +36,7 @@ class DividedUnits {
   /// values: of A's replicates, then of B's; or differences from the truth. They vary. slack: a difference of
   /// the sides that counts as none as they are observed.
   void add(std::vector<double> values, double slack);
-  std::size_t size() const { return slack_.size(); }
+  std::size_t size() const { return count_of_units_; }
 
   /// Cells of the units as they are: (|D| - slack) / sqrt(V).
   Cells observed() const;
@@ -47,12 +48,12 @@ class DividedUnits {
 
  private:
   void add_block(std::size_t block, const Division& division, bool with_slack, Cells& cells) const;
-  std::size_t cell_of(float s, float q, float slack) const;
 
   std::size_t first_, second_, count_;
-  float half_, of_difference_, of_one_, of_q_, of_squares_;  // D and V as linear forms
-  std::vector<float> values_;                                // [block of units][replicate][unit of the block]
-  std::vector<float> slack_;                                 // [unit]
+  DividedForms forms_;
+  std::size_t count_of_units_ = 0;
+  std::vector<float> values_;  // [block of units][replicate][unit of the block]
+  std::vector<float> slack_;   // [unit], whole blocks
 };
 
 }  // namespace kiloband::stats
