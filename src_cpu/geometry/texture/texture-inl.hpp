@@ -58,8 +58,8 @@ inline Resolved resolve_textures(const FlatScene& scene, U ref, const TexturePla
   Resolved resolved = resolved_row(row);
   const M board = active & ((ref & U(KB_REF_KIND_MASK)) == U(KB_REF_CHECKERBOARD));
   if (any(board)) {
-    const U index = select(board, ref & U(KB_REF_INDEX_MASK), U(0u));
-    resolved.row = select(board, checkerboard_row(scene.checkerboards.data(), index, at.uv), row);
+    const Boards boards = records_of<Boards>(scene.checkerboards, ref, board);
+    resolved.row = select(board, checkerboard_row(boards, at.uv), row);
   }
   const M bitmap = active & !board;
   if (any(bitmap)) {

@@ -56,12 +56,34 @@ struct Textures {
     first_bound = KB_GATHER_WORD(textures, KbTexture, first_bound, index);
   }
 };
-/// By reference; other lanes have one of the textures. At least one is active.
-inline Textures textures_of(const FlatScene& scene, U ref, M active) {
+/// Of checkerboards.
+struct Boards {
+  U ref0, ref1;
+  F to_uv[6];
+
+  KB_INLINE explicit Boards(const KbCheckerboard& one) : ref0(one.ref0), ref1(one.ref1) {
+    for (uint32_t i = 0; i < 6; ++i) to_uv[i] = F(one.to_uv[i]);
+  }
+  KB_INLINE Boards(const KbCheckerboard* boards, U index) {
+    static_assert(offsetof(KbCheckerboard, to_uv) == 8 && sizeof(KbCheckerboard) == 32);
+    const Addresses records(boards, index);
+    U words[2][4];
+    for (uint32_t i = 0; i < 2; ++i) records.load(16 * i, words[i]);
+    ref0 = words[0][0], ref1 = words[0][1];
+    for (uint32_t i = 0; i < 6; ++i) to_uv[i] = as_floats(words[(i + 2) / 4][(i + 2) % 4]);
+  }
+};
+
+/// Records by reference: mostly one, else gathered. Lanes that are not active have one of the others'. At least one is active.
+template <class Records, class Record>
+inline Records records_of(const std::vector<Record>& records, U ref, M active) {
   const WordArray refs(ref);
   const uint32_t one = refs[static_cast<uint32_t>(std::countr_zero(bits_of(active)))];
-  if (!any(active & (ref != U(one)))) return Textures(scene.textures[one & KB_REF_INDEX_MASK]);
-  return Textures(scene.textures.data(), select(active, ref, U(one)) & U(KB_REF_INDEX_MASK));
+  if (!any(active & (ref != U(one)))) return Records(records[one & KB_REF_INDEX_MASK]);
+  return Records(records.data(), select(active, ref, U(one)) & U(KB_REF_INDEX_MASK));
+}
+KB_INLINE Textures textures_of(const FlatScene& scene, U ref, M active) {
+  return records_of<Textures>(scene.textures, ref, active);
 }
 
 /// One axis of a lookup: first texel, a whole number, and weight of the second.
@@ -162,21 +184,14 @@ KB_INLINE TextureSample sample_triangles(const Textures& textures, U index, U tr
 }
 
 /// The row of ref0 where both coordinates are in the same half of their period, that of ref1 elsewhere (Mitsuba's order).
-KB_INLINE U checkerboard_row(const KbCheckerboard* boards, U index, V2 uv) {
-  static_assert(offsetof(KbCheckerboard, to_uv) == 8 && sizeof(KbCheckerboard) == 32);
-  const Addresses records(boards, index);
-  U low[4], high[4];
-  records.load(0, low);
-  records.load(16, high);
-  const F to_uv[6] = {as_floats(low[2]),  as_floats(low[3]),  as_floats(high[0]),
-                      as_floats(high[1]), as_floats(high[2]), as_floats(high[3])};
+KB_INLINE U checkerboard_row(const Boards& boards, V2 uv) {
   const auto second_half = [&](const F* m) KB_LAMBDA {
     const D x = row_of_uv(m, uv);
     return to_floats(x - floor(x) - to_doubles(0.5)) > F(0);
   };
-  const M second = second_half(to_uv + 3);
-  const M same = select(second_half(to_uv), second, !second);
-  return select(same, low[0], low[1]) & U(KB_REF_INDEX_MASK);
+  const M second = second_half(boards.to_uv + 3);
+  const M same = select(second_half(boards.to_uv), second, !second);
+  return select(same, boards.ref0, boards.ref1) & U(KB_REF_INDEX_MASK);
 }
 
 /// The four texels of a lookup: (x0, y0) (x1, y0) (x0, y1) (x1, y1), from `first` on. A second texel
