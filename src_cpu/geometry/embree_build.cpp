@@ -13,31 +13,36 @@
 namespace kiloband::cpu {
 namespace {
 
+const AnalyticShapes& shapes_of(void* geometry) {
+  return *static_cast<const AnalyticShapes*>(geometry);
+}
+
 void analytic_bounds(const RTCBoundsFunctionArguments* args) {
-  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  const KbShape& shape = shapes_of(args->geometryUserPtr).shape(args->primID);
   std::tie(args->bounds_o->lower_x, args->bounds_o->upper_x) = analytic_interval(shape, 0);
   std::tie(args->bounds_o->lower_y, args->bounds_o->upper_y) = analytic_interval(shape, 1);
   std::tie(args->bounds_o->lower_z, args->bounds_o->upper_z) = analytic_interval(shape, 2);
 }
 
-bool hit_shape(const KbShape& shape, RTCRayN* rays, unsigned count, unsigned lane, double& t) {
+bool hit_form(const ShapeForm& form, RTCRayN* rays, unsigned count, unsigned lane, double& t) {
   const glm::dvec3 origin(RTCRayN_org_x(rays, count, lane), RTCRayN_org_y(rays, count, lane),
                           RTCRayN_org_z(rays, count, lane));
   const glm::dvec3 direction(RTCRayN_dir_x(rays, count, lane), RTCRayN_dir_y(rays, count, lane),
                              RTCRayN_dir_z(rays, count, lane));
-  return intersect_analytic(shape, origin, direction, RTCRayN_tnear(rays, count, lane),
-                            RTCRayN_tfar(rays, count, lane), t);
+  return intersect_form(form, origin, direction, RTCRayN_tnear(rays, count, lane),
+                        RTCRayN_tfar(rays, count, lane), t);
 }
 
+/// The hit's id is the shape's.
 void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
-  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  const AnalyticShapes& shapes = shapes_of(args->geometryUserPtr);
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
   for (unsigned lane = 0; lane < args->N; ++lane) {
     double t = 0;
-    if (args->valid[lane] != -1 || !hit_shape(shape, rays, args->N, lane, t)) continue;
+    if (args->valid[lane] != -1 || !hit_form(shapes.forms[args->primID], rays, args->N, lane, t)) continue;
     RTCRayN_tfar(rays, args->N, lane) = static_cast<float>(t);
-    RTCHitN_geomID(hits, args->N, lane) = args->geomID;
+    RTCHitN_geomID(hits, args->N, lane) = shapes.ids[args->primID];
     RTCHitN_primID(hits, args->N, lane) = 0;
     RTCHitN_instID(hits, args->N, lane, 0) = RTC_INVALID_GEOMETRY_ID;
     RTCHitN_u(hits, args->N, lane) = 0;
@@ -46,10 +51,10 @@ void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
 }
 
 void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
-  const auto& shape = *static_cast<const KbShape*>(args->geometryUserPtr);
+  const ShapeForm& form = shapes_of(args->geometryUserPtr).forms[args->primID];
   for (unsigned lane = 0; lane < args->N; ++lane) {
     double t = 0;
-    if (args->valid[lane] != -1 || !hit_shape(shape, args->ray, args->N, lane, t)) continue;
+    if (args->valid[lane] != -1 || !hit_form(form, args->ray, args->N, lane, t)) continue;
     RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
   }
 }
@@ -65,7 +70,7 @@ struct SceneBuilder {
   const FlatScene& flat;
 
   void add_mesh(const KbShape& shape, unsigned id) const;
-  void add_analytic(const KbShape& shape, unsigned id) const;
+  void add_analytic(const AnalyticShapes& shapes) const;
   void add_instance(RTCScene group, const KbShape& shape, unsigned id) const;
 };
 
@@ -84,16 +89,17 @@ void SceneBuilder::add_mesh(const KbShape& shape, unsigned id) const {
   rtcReleaseGeometry(geometry);
 }
 
-void SceneBuilder::add_analytic(const KbShape& shape, unsigned id) const {
+void SceneBuilder::add_analytic(const AnalyticShapes& shapes) const {
+  if (shapes.ids.empty()) return;
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   if (!geometry) fail(device, "rtcNewGeometry");
-  rtcSetGeometryUserPrimitiveCount(geometry, 1);
-  rtcSetGeometryUserData(geometry, const_cast<KbShape*>(&shape));
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(shapes.ids.size()));
+  rtcSetGeometryUserData(geometry, const_cast<AnalyticShapes*>(&shapes));
   rtcSetGeometryBoundsFunction(geometry, analytic_bounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry, analytic_intersect);
   rtcSetGeometryOccludedFunction(geometry, analytic_occluded);
   rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(scene, geometry, id);
+  rtcAttachGeometryByID(scene, geometry, shapes.ids.front());
   rtcReleaseGeometry(geometry);
 }
 
@@ -137,13 +143,21 @@ void add_instances(const SceneBuilder& builder) {
 
 }  // namespace
 
-RTCScene build_embree_scene(RTCDevice device, const FlatScene& flat) {
+AnalyticShapes::AnalyticShapes(const FlatScene& scene) : flat(scene) {
+  for (uint32_t id = 0; id < flat.shapes.size(); ++id) {
+    if (flat.shapes[id].type == KB_SHAPE_MESH) continue;
+    ids.push_back(id);
+    forms.push_back(shape_form(flat.shapes[id]));
+  }
+}
+
+RTCScene build_embree_scene(RTCDevice device, const FlatScene& flat, const AnalyticShapes& analytic) {
   const SceneBuilder builder{device, new_scene(device), flat};
   for (unsigned id = 0; id < flat.shapes.size(); ++id) {
     const KbShape& shape = flat.shapes[id];
-    if (shape.flags & KB_SHAPE_INSTANCED) continue;
-    shape.type == KB_SHAPE_MESH ? builder.add_mesh(shape, id) : builder.add_analytic(shape, id);
+    if (shape.type == KB_SHAPE_MESH && !(shape.flags & KB_SHAPE_INSTANCED)) builder.add_mesh(shape, id);
   }
+  builder.add_analytic(analytic);
   add_instances(builder);
   rtcCommitScene(builder.scene);
   return builder.scene;

@@ -38,7 +38,10 @@ RTCIntersectContext query_context(RTCIntersectContextFlags flags) {
 }  // namespace
 
 struct EmbreeScene::Impl {
-  const FlatScene* flat = nullptr;
+  explicit Impl(const FlatScene& of) : flat(&of), analytic(of) {}
+
+  const FlatScene* flat;
+  AnalyticShapes analytic;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   RayGrid grid;  // of the geometry
@@ -64,12 +67,12 @@ struct EmbreeScene::Impl {
   }
 };
 
-EmbreeScene::EmbreeScene(const FlatScene& scene, Isa isa, int threads) : impl_(std::make_unique<Impl>()) {
-  impl_->flat = &scene;
+EmbreeScene::EmbreeScene(const FlatScene& scene, Isa isa, int threads)
+    : impl_(std::make_unique<Impl>(scene)) {
   const std::string config = fmt::format("isa={},threads={}", embree_name(isa), threads);
   impl_->device = rtcNewDevice(config.c_str());
   if (!impl_->device) throw DeviceError("Embree: cannot create a device with " + config);
-  impl_->scene = build_embree_scene(impl_->device, scene);
+  impl_->scene = build_embree_scene(impl_->device, scene, impl_->analytic);
   RTCBounds bounds;
   rtcGetSceneBounds(impl_->scene, &bounds);
   impl_->grid = RayGrid({bounds.lower_x, bounds.lower_y, bounds.lower_z},

@@ -12,17 +12,6 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586476925;
 constexpr double kPi = 3.141592653589793238463;
 
-/// What inverts a linear map: rows of its cofactor matrix over its determinant.
-struct Inverse {
-  glm::dvec3 rows[3];
-  double determinant;
-
-  glm::dvec3 operator()(const glm::dvec3& v) const { return times_determinant(v) / determinant; }
-  glm::dvec3 times_determinant(const glm::dvec3& v) const {
-    return glm::dvec3(glm::dot(rows[0], v), glm::dot(rows[1], v), glm::dot(rows[2], v));
-  }
-};
-
 /// The linear part of to_world by columns.
 struct Placement {
   glm::dvec3 x, y, z, origin;
@@ -35,7 +24,9 @@ struct Placement {
 
   double determinant() const { return glm::dot(x, glm::cross(y, z)); }
   glm::dvec3 to_world(const glm::dvec3& v) const { return v.x * x + v.y * y + v.z * z; }
-  Inverse inverse() const { return {{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)}, determinant()}; }
+  InverseMap inverse() const {
+    return {{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)}, determinant()};
+  }
   /// Normals go with the inverse transpose; not normalised.
   glm::dvec3 normal_to_world(const glm::dvec3& n) const {
     const glm::dvec3 v = n.x * glm::cross(y, z) + n.y * glm::cross(z, x) + n.z * glm::cross(x, y);
@@ -71,44 +62,40 @@ bool inside_open(double t, double t_min, double t_max) {
   return t > t_min && t < t_max;
 }
 
-bool intersect_sphere(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
-                      double t_min, double t_max, double& t) {
-  const glm::dvec3 x = affine_column<double>(shape.to_world, 0);
-  const glm::dvec3 o = origin - affine_column<double>(shape.to_world, 3), moment = glm::cross(o, direction);
+bool intersect(const SphereForm& sphere, const glm::dvec3& origin, const glm::dvec3& direction, double t_min,
+               double t_max, double& t) {
+  const glm::dvec3 o = origin - sphere.centre, moment = glm::cross(o, direction);
   const double dd = glm::dot(direction, direction), oo = glm::dot(o, o);
-  if (misses(glm::dot(moment, moment), dd, oo, glm::dot(x, x))) return false;
-  const double od = glm::dot(o, direction), radius = glm::length(x);
+  if (misses(glm::dot(moment, moment), dd, oo, sphere.square)) return false;
+  const double od = glm::dot(o, direction);
   const glm::dvec3 nearest = o - (od / dd) * direction;
   double t0, t1;
-  if (!solve_quadric(dd, od, oo, glm::dot(nearest, nearest), radius * radius, t0, t1)) return false;
+  if (!solve_quadric(dd, od, oo, glm::dot(nearest, nearest), sphere.radius * sphere.radius, t0, t1))
+    return false;
   const double hit = inside_open(t0, t_min, t_max) ? t0 : t1;
   if (!inside_open(hit, t_min, t_max)) return false;
   t = hit;
   return true;
 }
 
-bool intersect_disk(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction, double t_min,
-                    double t_max, double& t) {
-  const Placement placement(shape);
-  const glm::dvec3 n = glm::cross(placement.x, placement.y);
-  const glm::dvec3 o = origin - placement.origin;
+bool intersect(const DiskForm& disk, const glm::dvec3& origin, const glm::dvec3& direction, double t_min,
+               double t_max, double& t) {
+  const glm::dvec3 o = origin - disk.centre, &n = disk.normal;
   const double hit = -glm::dot(n, o) / glm::dot(n, direction);  // parallel: infinite or NaN, a miss
   if (!inside_open(hit, t_min, t_max) || std::isinf(hit)) return false;
   // p lies in the plane spanned by x and y: its coordinates there are ratios of areas.
   const glm::dvec3 p = o + hit * direction;
   const double nn = glm::dot(n, n);
-  const double a = glm::dot(glm::cross(p, placement.y), n) / nn,
-               b = glm::dot(glm::cross(placement.x, p), n) / nn;
+  const double a = glm::dot(glm::cross(p, disk.y), n) / nn, b = glm::dot(glm::cross(disk.x, p), n) / nn;
   if (!(a * a + b * b <= 1)) return false;
   t = hit;
   return true;
 }
 
-bool intersect_cylinder(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
-                        double t_min, double t_max, double& t) {
-  const Placement placement(shape);
-  const Inverse inverse = placement.inverse();
-  const glm::dvec3 scaled_o = inverse.times_determinant(origin - placement.origin);
+bool intersect(const CylinderForm& cylinder, const glm::dvec3& origin, const glm::dvec3& direction,
+               double t_min, double t_max, double& t) {
+  const InverseMap& inverse = cylinder.inverse;
+  const glm::dvec3 scaled_o = inverse.times_determinant(origin - cylinder.origin);
   const glm::dvec3 scaled_d = inverse.times_determinant(direction);
   const double moment = scaled_o.x * scaled_d.y - scaled_o.y * scaled_d.x;
   if (misses(moment * moment, scaled_d.x * scaled_d.x + scaled_d.y * scaled_d.y,
@@ -131,6 +118,11 @@ bool intersect_cylinder(const KbShape& shape, const glm::dvec3& origin, const gl
   return false;
 }
 
+/// Of points near shapes of size 1: squares stay in range.
+double from_axis(const glm::dvec3& p) {
+  return std::sqrt(p.x * p.x + p.y * p.y);
+}
+
 /// The nearest point of the canonical shape, sideways: radially for sphere and cylinder,
 /// vertically for the disk.
 glm::dvec3 project_to_canonical(uint32_t type, const glm::dvec3& p) {
@@ -139,7 +131,7 @@ glm::dvec3 project_to_canonical(uint32_t type, const glm::dvec3& p) {
     const double length = glm::length(p);
     return length > 0 ? p / length : glm::dvec3(0, 0, 1);
   }
-  const double radius = std::hypot(p.x, p.y);
+  const double radius = from_axis(p);
   if (!(radius > 0)) return {1, 0, std::clamp(p.z, 0.0, 1.0)};
   return {p.x / radius, p.y / radius, std::clamp(p.z, 0.0, 1.0)};
 }
@@ -151,7 +143,7 @@ glm::dvec3 canonical_normal(uint32_t type, const glm::dvec3& p) {
 
 /// Direction of dp/du; +X or +Y where it vanishes (poles, the disk's centre).
 glm::dvec3 canonical_tangent(uint32_t type, const glm::dvec3& p) {
-  const double radius = std::hypot(p.x, p.y);
+  const double radius = from_axis(p);
   if (type == KB_SHAPE_DISK)
     return radius > 0 ? glm::dvec3(p.x / radius, p.y / radius, 0) : glm::dvec3(1, 0, 0);
   return radius > 0 ? glm::dvec3(-p.y / radius, p.x / radius, 0) : glm::dvec3(0, 1, 0);
@@ -191,18 +183,34 @@ SphereGeometry sphere_geometry(const KbShape& shape) {
   return {affine_column<double>(shape.to_world, 3), glm::length(affine_column<double>(shape.to_world, 0))};
 }
 
+ShapeForm shape_form(const KbShape& shape) {
+  const Placement placement(shape);
+  if (shape.type == KB_SHAPE_SPHERE)
+    return SphereForm{placement.origin, glm::dot(placement.x, placement.x), glm::length(placement.x)};
+  if (shape.type == KB_SHAPE_DISK)
+    return DiskForm{placement.origin, placement.x, placement.y, glm::cross(placement.x, placement.y)};
+  return CylinderForm{placement.origin, placement.inverse()};
+}
+
+bool intersect_form(const ShapeForm& form, const glm::dvec3& origin, const glm::dvec3& direction,
+                    double t_min, double t_max, double& t) {
+  if (const auto* sphere = std::get_if<SphereForm>(&form))
+    return intersect(*sphere, origin, direction, t_min, t_max, t);
+  if (const auto* cylinder = std::get_if<CylinderForm>(&form))
+    return intersect(*cylinder, origin, direction, t_min, t_max, t);
+  return intersect(*std::get_if<DiskForm>(&form), origin, direction, t_min, t_max, t);
+}
+
 bool intersect_analytic(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
                         double t_min, double t_max, double& t) {
-  if (shape.type == KB_SHAPE_SPHERE) return intersect_sphere(shape, origin, direction, t_min, t_max, t);
-  if (shape.type == KB_SHAPE_DISK) return intersect_disk(shape, origin, direction, t_min, t_max, t);
-  return shape.type == KB_SHAPE_CYLINDER && intersect_cylinder(shape, origin, direction, t_min, t_max, t);
+  return shape.type != KB_SHAPE_MESH && intersect_form(shape_form(shape), origin, direction, t_min, t_max, t);
 }
 
 glm::vec2 analytic_uv(uint32_t shape_type, const glm::dvec3& local) {
   const double turn = std::atan2(local.y, local.x) / kTwoPi;
   const float wrapped = static_cast<float>(turn < 0 ? turn + 1 : turn);
   const float phi = wrapped < 1 ? wrapped : 0;
-  const double radius = std::hypot(local.x, local.y);
+  const double radius = from_axis(local);
   if (shape_type == KB_SHAPE_SPHERE) return {phi, static_cast<float>(std::atan2(radius, local.z) / kPi)};
   if (shape_type == KB_SHAPE_DISK) return {static_cast<float>(radius), phi};
   return {phi, static_cast<float>(local.z)};

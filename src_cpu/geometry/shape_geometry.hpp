@@ -8,6 +8,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <variant>
 
 #include "shared/records.h"
 
@@ -22,9 +23,39 @@ struct SurfacePoint {
   glm::vec2 uv;
 };
 
+/// What inverts a linear map: rows of its cofactor matrix over its determinant.
+struct InverseMap {
+  glm::dvec3 rows[3];
+  double determinant;
+
+  glm::dvec3 operator()(const glm::dvec3& v) const { return times_determinant(v) / determinant; }
+  glm::dvec3 times_determinant(const glm::dvec3& v) const {
+    return glm::dvec3(glm::dot(rows[0], v), glm::dot(rows[1], v), glm::dot(rows[2], v));
+  }
+};
+
+/// What rays ask of a shape.
+struct SphereForm {
+  glm::dvec3 centre;
+  double square, radius;  // of the radius
+};
+struct DiskForm {
+  glm::dvec3 centre, x, y, normal;  // x and y: from the centre to the rim; normal: their cross product
+};
+struct CylinderForm {
+  glm::dvec3 origin;
+  InverseMap inverse;  // to radius and height 1
+};
+using ShapeForm = std::variant<SphereForm, DiskForm, CylinderForm>;
+/// shape  no mesh
+ShapeForm shape_form(const KbShape& shape);
+
 /// Nearest hit in the open interval (t_min, t_max); `direction` need not be a unit vector. t is untouched on
 /// a miss. Roots are computed without cancellation: an origin on the surface finds itself at |t| of rounding
 /// size, and the other crossing to full precision. NaN or infinite input is a miss.
+bool intersect_form(const ShapeForm& form, const glm::dvec3& origin, const glm::dvec3& direction,
+                    double t_min, double t_max, double& t);
+/// The same of a shape; a mesh is a miss.
 bool intersect_analytic(const KbShape& shape, const glm::dvec3& origin, const glm::dvec3& direction,
                         double t_min, double t_max, double& t);
 
