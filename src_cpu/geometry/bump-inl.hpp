@@ -74,16 +74,11 @@ KB_INLINE LaneTangents mesh_tangents(const FlatScene& scene, const BumpPlace& at
   }
   const M has_uvs = active & has_bits(shape.flags, KB_SHAPE_HAS_UVS);
   if (!any(has_uvs)) return {e1, e2};
-  const auto corner = [&](int k) KB_LAMBDA {
-    return gather_pair(scene.uvs.data(), select(has_uvs, index[k], U(0u)));
-  };
-  const V2 uv0 = corner(0), uv1 = corner(1), uv2 = corner(2);
-  const F du1 = uv1.x - uv0.x, dv1 = uv1.y - uv0.y, du2 = uv2.x - uv0.x, dv2 = uv2.y - uv0.y;
-  const F determinant = du1 * dv2 - dv1 * du2;
-  const M degenerate = determinant == F(0);
+  const TriangleUvs uvs = gather_uvs(scene, index, has_uvs);
+  const M degenerate = uvs.determinant == F(0);
   const V3 zero{F(0), F(0), F(0)};
-  return {select(has_uvs, select(degenerate, zero, (e1 * dv2 - e2 * dv1) / determinant), e1),
-          select(has_uvs, select(degenerate, zero, (e2 * du1 - e1 * du2) / determinant), e2)};
+  return {select(has_uvs, select(degenerate, zero, uvs.along_u(e1, e2)), e1),
+          select(has_uvs, select(degenerate, zero, uvs.along_v(e1, e2)), e2)};
 }
 
 inline LaneTangents surface_tangents(const FlatScene& scene, const BumpPlace& at, M active) {

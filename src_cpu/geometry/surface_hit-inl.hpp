@@ -113,18 +113,33 @@ KB_INLINE V3 triangle_shading_normal(const FlatScene& scene, U shape_flags, cons
   return select(has_normals & (n2 > F(0)), n * (turn / sqrt(n2)), geometric_normal);
 }
 
-/// dp/du of triangles with texture coordinates, zero where they are degenerate; and the texture coordinates.
-KB_INLINE void triangle_uv(const FlatScene& scene, const Triangle& t, const U (&index)[3], V3 weights,
-                           M has_uvs, V2& uv, V3& tangent) {
+/// Texture coordinates of a triangle's corners, and what the edges' are from the first one on.
+struct TriangleUvs {
+  V2 uv0, uv1, uv2;
+  F du1, dv1, du2, dv2, determinant;
+
+  /// dp/du and dp/dv; infinite or NaN where the determinant is 0
+  KB_INLINE V3 along_u(V3 e1, V3 e2) const { return (e1 * dv2 - e2 * dv1) / determinant; }
+  KB_INLINE V3 along_v(V3 e1, V3 e2) const { return (e2 * du1 - e1 * du2) / determinant; }
+};
+KB_INLINE TriangleUvs gather_uvs(const FlatScene& scene, const U (&index)[3], M has_uvs) {
   const auto corner = [&](int k) KB_LAMBDA {
     return gather_pair(scene.uvs.data(), select(has_uvs, index[k], U(0u)));
   };
-  const V2 uv0 = corner(0), uv1 = corner(1), uv2 = corner(2);
-  uv.x = select(has_uvs, weights.x * uv0.x + weights.y * uv1.x + weights.z * uv2.x, uv.x);
-  uv.y = select(has_uvs, weights.x * uv0.y + weights.y * uv1.y + weights.z * uv2.y, uv.y);
-  const F du1 = uv1.x - uv0.x, dv1 = uv1.y - uv0.y, du2 = uv2.x - uv0.x, dv2 = uv2.y - uv0.y;
-  const F determinant = du1 * dv2 - dv1 * du2;
-  tangent = select(has_uvs & (determinant != F(0)), (t.e1 * dv2 - t.e2 * dv1) / determinant, tangent);
+  TriangleUvs t;
+  t.uv0 = corner(0), t.uv1 = corner(1), t.uv2 = corner(2);
+  t.du1 = t.uv1.x - t.uv0.x, t.dv1 = t.uv1.y - t.uv0.y, t.du2 = t.uv2.x - t.uv0.x, t.dv2 = t.uv2.y - t.uv0.y;
+  t.determinant = t.du1 * t.dv2 - t.dv1 * t.du2;
+  return t;
+}
+
+/// dp/du of triangles with texture coordinates, zero where they are degenerate; and the texture coordinates.
+KB_INLINE void triangle_uv(const FlatScene& scene, const Triangle& t, const U (&index)[3], V3 weights,
+                           M has_uvs, V2& uv, V3& tangent) {
+  const TriangleUvs uvs = gather_uvs(scene, index, has_uvs);
+  uv.x = select(has_uvs, weights.x * uvs.uv0.x + weights.y * uvs.uv1.x + weights.z * uvs.uv2.x, uv.x);
+  uv.y = select(has_uvs, weights.x * uvs.uv0.y + weights.y * uvs.uv1.y + weights.z * uvs.uv2.y, uv.y);
+  tangent = select(has_uvs & (uvs.determinant != F(0)), uvs.along_u(t.e1, t.e2), tangent);
 }
 
 /// The members of KbShape before its matrices.

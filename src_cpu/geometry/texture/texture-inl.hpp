@@ -9,7 +9,6 @@
 #endif
 
 #include "src_cpu/geometry/texture/texture_lookup-inl.hpp"
-#include "src_cpu/geometry/texture/texture_lookup.hpp"
 
 KB_BEFORE_LANES;
 namespace kiloband::cpu::KB_LANES {
