@@ -62,16 +62,16 @@ bool inside_open(double t, double t_min, double t_max) {
   return t > t_min && t < t_max;
 }
 
-bool intersect(const SphereForm& sphere, const glm::dvec3& origin, const glm::dvec3& direction, double t_min,
-               double t_max, double& t) {
+bool intersect(const SphereGeometry& sphere, const glm::dvec3& origin, const glm::dvec3& direction,
+               double t_min, double t_max, double& t) {
   const glm::dvec3 o = origin - sphere.centre, moment = glm::cross(o, direction);
   const double dd = glm::dot(direction, direction), oo = glm::dot(o, o);
-  if (misses(glm::dot(moment, moment), dd, oo, sphere.square)) return false;
+  const double radius2 = sphere.radius * sphere.radius;
+  if (misses(glm::dot(moment, moment), dd, oo, radius2)) return false;
   const double od = glm::dot(o, direction);
   const glm::dvec3 nearest = o - (od / dd) * direction;
   double t0, t1;
-  if (!solve_quadric(dd, od, oo, glm::dot(nearest, nearest), sphere.radius * sphere.radius, t0, t1))
-    return false;
+  if (!solve_quadric(dd, od, oo, glm::dot(nearest, nearest), radius2, t0, t1)) return false;
   const double hit = inside_open(t0, t_min, t_max) ? t0 : t1;
   if (!inside_open(hit, t_min, t_max)) return false;
   t = hit;
@@ -184,9 +184,8 @@ SphereGeometry sphere_geometry(const KbShape& shape) {
 }
 
 ShapeForm shape_form(const KbShape& shape) {
+  if (shape.type == KB_SHAPE_SPHERE) return sphere_geometry(shape);
   const Placement placement(shape);
-  if (shape.type == KB_SHAPE_SPHERE)
-    return SphereForm{placement.origin, glm::dot(placement.x, placement.x), glm::length(placement.x)};
   if (shape.type == KB_SHAPE_DISK)
     return DiskForm{placement.origin, placement.x, placement.y, glm::cross(placement.x, placement.y)};
   return CylinderForm{placement.origin, placement.inverse()};
@@ -194,7 +193,7 @@ ShapeForm shape_form(const KbShape& shape) {
 
 bool intersect_form(const ShapeForm& form, const glm::dvec3& origin, const glm::dvec3& direction,
                     double t_min, double t_max, double& t) {
-  if (const auto* sphere = std::get_if<SphereForm>(&form))
+  if (const auto* sphere = std::get_if<SphereGeometry>(&form))
     return intersect(*sphere, origin, direction, t_min, t_max, t);
   if (const auto* cylinder = std::get_if<CylinderForm>(&form))
     return intersect(*cylinder, origin, direction, t_min, t_max, t);

@@ -35,9 +35,9 @@ struct InverseMap {
 };
 
 /// What rays ask of a shape.
-struct SphereForm {
+struct SphereGeometry {
   glm::dvec3 centre;
-  double square, radius;  // of the radius
+  double radius;
 };
 struct DiskForm {
   glm::dvec3 centre, x, y, normal;  // x and y: from the centre to the rim; normal: their cross product
@@ -46,7 +46,7 @@ struct CylinderForm {
   glm::dvec3 origin;
   InverseMap inverse;  // to radius and height 1
 };
-using ShapeForm = std::variant<SphereForm, DiskForm, CylinderForm>;
+using ShapeForm = std::variant<SphereGeometry, DiskForm, CylinderForm>;
 /// shape  no mesh
 ShapeForm shape_form(const KbShape& shape);
 
@@ -80,11 +80,6 @@ AreaPoint sample_analytic_area(const KbShape& shape, glm::vec2 u);
 /// uv of a point given in the shape's own coordinates.
 glm::vec2 analytic_uv(uint32_t shape_type, const glm::dvec3& local);
 
-/// Centre and radius of a sphere.
-struct SphereGeometry {
-  glm::dvec3 centre;
-  double radius;
-};
 SphereGeometry sphere_geometry(const KbShape& shape);
 
 }  // namespace kiloband::cpu
