@@ -112,7 +112,8 @@ uint32_t TextureCompiler::mesh_attribute(const std::shared_ptr<const MeshAttribu
   record.width = cells.width();
   record.height = cells.height(triangles.size());
   record.wrap = KB_WRAP_CLAMP;
-  record.flags = KB_TEXTURE_TRIANGLES | (attribute.of_faces ? KB_TEXTURE_NEAREST : 0);
+  record.flags =
+      KB_TEXTURE_TRIANGLES | (attribute.of_faces ? KB_TEXTURE_NEAREST : 0) | (share ? KB_TEXTURE_NUMBERS : 0);
   record.illuminant_row = KB_NONE;
   store_uv_transform(glm::dmat3(1.0), record.to_uv);
   const std::size_t count = std::size_t{record.width} * record.height;
@@ -129,16 +130,11 @@ uint32_t TextureCompiler::mesh_attribute(const std::shared_ptr<const MeshAttribu
     cell[record.width] = cell[record.width + 1] = solved[triangles[t][2]];
   }
   finish_attribute(record, count, use.emission);
-  if (share) {
-    out_.texels.resize(record.first_texel);
-    out_.textures.back().first_texel = 0;
-    out_.textures.back().flags |= KB_TEXTURE_NUMBERS;
-  }
   return place->second;
 }
 
-/// Bounds, mean and largest of the texels that were added last.
-void TextureCompiler::finish_attribute(const KbTexture& record, std::size_t count, bool emits) {
+/// Bounds, mean and largest of the texels that were added last, of which numbers keep their bounds alone.
+void TextureCompiler::finish_attribute(KbTexture record, std::size_t count, bool emits) {
   double sum = 0, largest = 0, peak = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const KbFloat4& texel = out_.texels[record.first_texel + i];
@@ -149,6 +145,10 @@ void TextureCompiler::finish_attribute(const KbTexture& record, std::size_t coun
     peak = std::max(peak, double{texel.w});
   }
   if (emits) peaks_.raw = std::max(peaks_.raw, peak);
+  if (record.flags & KB_TEXTURE_NUMBERS) {
+    out_.texels.resize(record.first_texel);
+    record.first_texel = 0;
+  }
   add_record(record, sum / static_cast<double>(count), largest);
 }
 

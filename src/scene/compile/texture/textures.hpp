@@ -82,7 +82,7 @@ class TextureCompiler {
   // attributes.cpp
   static std::vector<KbFloat4> attribute_texels(const std::vector<const std::vector<float>*>& parts,
                                                 double unit, bool share);
-  void finish_attribute(const KbTexture& record, std::size_t count, bool emits);
+  void finish_attribute(KbTexture record, std::size_t count, bool emits);
   // spectral_textures.cpp
   void add_bands(KbTexture& record, const SpectralBitmapTexture& texture, const SpectrumSource& use,
                  double scale);
