@@ -1,10 +1,9 @@
-// Boundaries whose index depends on wavelength: degradation to one channel, spectral MIS for all.
+#include "src_cpu/path/dispersed_paths.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "shared/sampler.h"
-#include "src_cpu/path/rare_features.hpp"
-// After the lanes that it is to be compiled for.
 #include "src_cpu/path/thermal-inl.hpp"
 
 namespace kiloband::cpu::one_lane {
@@ -60,7 +59,7 @@ void DispersedPaths::start(std::span<const float> mu) {
   hero_weights_.assign(kWavePaths, even);
 }
 
-bool DispersedPaths::shade(Shading& s, RareFeatures& rare) {
+bool DispersedPaths::shade(Shading& s) {
   if (!is_dispersive(scene_, s.side.v)) return false;
   const KbMaterial material = material_of(s);
   PathState& path = s.wave.paths[s.path.v];
@@ -72,10 +71,11 @@ bool DispersedPaths::shade(Shading& s, RareFeatures& rare) {
                                : HeroSet{};
     if (heroes.count > 0) {
       const Boundary at{material, to_glm(s.wi)};
-      add_hero_light(s, at, heroes, rare);
-      const bool scattered = !s.passes.v && scatter_heroes(s, at, heroes);
-      if (s.passes.v) continue_paths(s, s.direction, F(path.bound), F(0), {true}, {true});
-      if (scattered || s.passes.v) rare.follow_ray(s);
+      add_hero_light(s, at, heroes);
+      if (s.passes.v)
+        continue_paths(s, s.direction, F(path.bound), F(0), {true}, {true});
+      else
+        scatter_heroes(s, at, heroes);
       return true;
     }
     degrade(s);
@@ -186,8 +186,7 @@ void DispersedPaths::append_pair(Shading& s, const Boundary& at, const BoundaryP
 }
 
 /// Next-event estimation at a rough dispersive boundary: a vertex of its own.
-void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSet& heroes,
-                                    RareFeatures& rare) {
+void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSet& heroes) {
   if (scene_.emitters.empty()) return;
   const Light light = sample_lights(s, {true});
   if (!(light.pdf.v > 0) || !(light.factor.v > 0)) return;
@@ -206,12 +205,11 @@ void DispersedPaths::add_hero_light(Shading& s, const Boundary& at, const HeroSe
   v.scale = density.value / pair.weight.v;
   append_pair(s, at, pair, wo, v);
   queue_shadow_rays(s, light, {true});
-  rare.note_shadow_ray(s);
   note_shadow_rays(s.wave, {true});
 }
 
-/// Samples a direction for all channels. Returns whether the path goes on.
-bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSet& heroes) {
+/// Samples a direction for all channels.
+void DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSet& heroes) {
   const PathState& path = s.wave.paths[s.path.v];
   const KbFloat4 h =
       kb_hero_sample(s.bounce.settings.seed, path.film_pixel, s.bounce.id.sample, s.bounce.number);
@@ -220,22 +218,21 @@ bool DispersedPaths::scatter_heroes(Shading& s, const Boundary& at, const HeroSe
   const HeroDensity density = hero_density(eval_heroes_, at.material, heroes, at.wi, wo);
   const V3 direction = s.frame.to_world(to_lane(wo));
   const float share = scene_.features.bump ? bump_share(s, direction).v : 1;
-  if (!(density.pdf > 0) || !(pair.weight.v > 0) || !(share > 0)) return false;
+  if (!(density.pdf > 0) || !(pair.weight.v > 0) || !(share > 0)) return;
   // Channels between the heroes may carry a little more, or all where no hero has anything: never below
   // delta, so that roulette does not stop them all.
   F bound = path.bound * (std::max(density.bound / density.pdf, KB_NO_HERO) *
                           (pair.transmission.v ? at.material.bound_b : at.material.bound_a));
-  if (!(bound.v > 0)) return false;
+  if (!(bound.v > 0)) return;
   for (uint32_t c = 0; c < heroes.count; ++c)
     hero_weights_[s.path.v][c] = heroes.q[c] * density.hero[c] / density.pdf;
   s.vertex.head = U(KB_VERTEX_SCATTER);
   s.vertex.emit_weight = s.vertex.nee0 = s.vertex.nee1 = s.vertex.scatter1 = F(0);
   s.vertex.scatter0 = F(pair.weight.v / density.pdf * share);
   s.vertex.scale = F(density.value / pair.weight.v);
-  if (!roulette(s, bound, {true}).v) return false;
+  if (!roulette(s, bound, {true}).v) return;
   append_pair(s, at, pair, wo, s.vertex);
   continue_paths(s, direction, bound, F(density.pdf * s.opacity.v), {false}, {true});
-  return true;
 }
 
 }  // namespace kiloband::cpu::one_lane

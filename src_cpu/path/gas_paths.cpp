@@ -11,15 +11,26 @@
 // are multiplied by the transmittance of the shadow ray. A ray that leaves the scene is not attenuated by the
 // atmosphere: what the environment shows is as seen in the scene; what interiors emit on the way is
 // attenuated by the atmosphere in front of them.
+#include "src_cpu/path/gas_paths.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "shared/plume.h"
 #include "src_cpu/geometry/boundary.hpp"
-#include "src_cpu/path/rare_features.hpp"
+#include "src_cpu/lanes/one_lane.hpp"
+// After the lanes that it is to be compiled for.
+#include "src_cpu/path/vertex-inl.hpp"
 
-namespace kiloband::cpu::one_lane {
+namespace kiloband::cpu {
 namespace {
+
+using one_lane::U;
+using one_lane::Vertex;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 KbFloat3 to_record(glm::vec3 v) {
   return {v.x, v.y, v.z};
@@ -34,7 +45,7 @@ bool is_plume(const KbMedium& medium) {
 }
 
 Vertex medium_vertex(const KbMedium& medium, uint32_t flags) {
-  Vertex vertex = empty_vertex();
+  Vertex vertex = one_lane::empty_vertex();
   vertex.head = KB_KIND_MEDIUM | flags;
   vertex.a.row = medium.row;
   return vertex;
@@ -61,7 +72,7 @@ float column_of(const FlatScene& scene, const KbMedium& medium, const Straight& 
 
 /// A vertex of gas behind what the path has saved, and the cells that follow it.
 void append_medium(Wave& wave, uint32_t path, const Vertex& medium, std::span<const KbPlumeCell> cells) {
-  append(wave, path, medium, {true});
+  one_lane::append(wave, U(path), medium, {true});
   for (std::size_t i = 0; i < cells.size(); i += 4)
     wave.entries.emplace_back(&cells[i], std::min<std::size_t>(4, cells.size() - i) * sizeof cells[i]);
 }
@@ -86,46 +97,38 @@ void GasPaths::cross(PathState& path, MediumStack& media, uint32_t shape, bool o
 }
 
 /// The media on the side of the surface that `direction` goes to, of a path that arrived there.
-MediumStack GasPaths::media_towards(const Shading& s, glm::vec3 direction) const {
-  MediumStack media = paths_[s.path.v].media;
-  const glm::vec3 normal = to_glm(s.hit.geometric_normal);
-  const bool from_front = glm::dot(normal, to_glm(s.direction)) < 0;
-  const bool to_front = glm::dot(normal, direction) >= 0;
-  if (from_front != to_front) cross(s.wave.paths[s.path.v], media, s.hit.shape.v, to_front);
+MediumStack GasPaths::media_towards(Wave& wave, const Departure& from, glm::vec3 direction) const {
+  MediumStack media = paths_[from.path].media;
+  const bool from_front = glm::dot(from.normal, from.arrival) < 0;
+  const bool to_front = glm::dot(from.normal, direction) >= 0;
+  if (from_front != to_front) cross(wave.paths[from.path], media, from.shape, to_front);
   return media;
 }
 
-/// Of a path whose ray has been followed: there is nothing that pass_gas(), note_shadow_ray() and follow_ray() would do for it.
-bool GasPaths::is_plain(const GasPath& gas, uint32_t crossings_before, uint32_t shape) const {
-  return gas.media.empty() && gas.crossings == crossings_before &&
-         (shape == KB_NONE || scene_.interiors[shape] == KB_NONE);
+/// Of the ray at hand, which a path has followed: what of it is in gas.
+void GasPaths::note_segment(const GasPath& gas, const TraceRay& ray) {
+  const uint32_t medium = gas.media.current(scene_.atmosphere);
+  if (has_gas(scene_, medium))
+    segments_.push_back({medium, ray.origin(), ray.direction(), gas.begin, ray.t_max});
 }
 
 void GasPaths::walk_boundaries(Wave& wave) {
   RayQueue& rays = wave.rays();
   segments_.clear();
-  uint32_t kept = 0;
   for (uint32_t i = 0; i < rays.count; ++i) {
     const uint32_t path = rays.path[i];
     GasPath& gas = paths_[path];
-    const uint32_t crossings = gas.crossings;
-    TraceRay ray = ray_of(rays, i);
     gas.first_segment = static_cast<uint32_t>(segments_.size());
-    while (ray.shape != KB_NONE) {
-      segments_.push_back(
-          {gas.media.current(scene_.atmosphere), ray.origin(), ray.direction(), gas.begin, ray.t_max});
-      if (!is_boundary(scene_, ray.shape)) break;
+    TraceRay ray = ray_of(rays, i);
+    if (ray.shape != KB_NONE) note_segment(gas, ray);
+    while (is_boundary(scene_, ray.shape)) {
       pass_boundary(wave, wave.paths[path], gas, ray);
+      if (ray.shape != KB_NONE) note_segment(gas, ray);
+      put_ray(ray, rays, i);
     }
     gas.segments = static_cast<uint32_t>(segments_.size()) - gas.first_segment;
     gas.far = kInfinity;
-    const bool rare = separates() && !is_plain(gas, crossings, ray.shape);
-    RayQueue& to = rare ? wave.rare_rays : rays;
-    uint32_t& at = rare ? wave.rare_rays.count : kept;
-    put_ray(ray, to, at);
-    to.path[at++] = path;
   }
-  rays.count = kept;
 }
 
 void GasPaths::pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay& ray) const {
@@ -154,7 +157,6 @@ void GasPaths::append(Wave& wave, uint32_t path, bool escapes) {
   float in_front = 0;  // atmosphere that a ray out of the scene has passed, m
   for (uint32_t i = gas.first_segment; i < gas.first_segment + gas.segments; ++i) {
     const Segment& segment = segments_[i];
-    if (!has_gas(scene_, segment.medium)) continue;
     const KbMedium& medium = scene_.media[segment.medium];
     if (escapes && segment.medium == scene_.atmosphere) {
       in_front += column_of(scene_, medium,
@@ -197,18 +199,17 @@ void GasPaths::append_segment(Wave& wave, uint32_t path, const KbMedium& medium,
   append_medium(wave, path, vertex, std::span(cells).first(count));
 }
 
-void GasPaths::follow_ray(const Shading& s) {
-  const RayQueue& next = s.wave.next_rays();
-  const TraceRay ray = query_of(next, next.count - 1);
-  GasPath& gas = paths_[s.path.v];
-  gas.media = media_towards(s, ray.direction());
-  gas.begin = begin_at(to_glm(s.hit.point), ray.origin(), ray.direction());
+void GasPaths::follow_ray(Wave& wave, const Departure& from, uint32_t ray) {
+  const TraceRay next = query_of(wave.next_rays(), ray);
+  GasPath& gas = paths_[from.path];
+  gas.media = media_towards(wave, from, next.direction());
+  gas.begin = begin_at(from.point, next.origin(), next.direction());
 }
 
-void GasPaths::note_shadow_ray(const Shading& s) {
-  const ShadowRay ray = query_of(s.wave.shadow_rays, s.wave.shadow_rays.count);  // not counted yet
-  shadow_owners_.push_back({s.path.v, begin_at(to_glm(s.hit.point), ray.origin(), ray.direction()),
-                            media_towards(s, ray.direction())});
+void GasPaths::note_shadow_ray(Wave& wave, const Departure& from, uint32_t ray) {
+  const ShadowRay shadow = query_of(wave.shadow_rays, ray);
+  shadow_owners_.push_back({from.path, begin_at(from.point, shadow.origin(), shadow.direction()),
+                            media_towards(wave, from, shadow.direction())});
 }
 
 void GasPaths::trace_shadows(Wave& wave) {
@@ -216,9 +217,8 @@ void GasPaths::trace_shadows(Wave& wave) {
   shadow_ends_.assign(rays.t_max, rays.t_max + rays.count);
   wave.traced_rays += rays.count;
   embree_.occlusions(rays, RayPackets::kIncoherent);
-  const auto plain = rays.count - static_cast<uint32_t>(shadow_owners_.size());
   for (uint32_t i = 0; i < rays.count; ++i) {
-    const ShadowOwner owner = i < plain ? ShadowOwner{rays.path[i], 0, {}} : shadow_owners_[i - plain];
+    const ShadowOwner& owner = shadow_owners_[i];
     const bool clear = rays.t_max[i] >= 0;
     ShadowRay ray = query_of(rays, i);
     ray.t_max = shadow_ends_[i];
@@ -298,4 +298,4 @@ void GasPaths::append_columns(Wave& wave, uint32_t path, uint32_t entry, const C
   }
 }
 
-}  // namespace kiloband::cpu::one_lane
+}  // namespace kiloband::cpu

@@ -23,9 +23,9 @@ struct PathKernels {
 
 /// For an instruction set that this machine has (resolve_isa()). All give the same bits for the same answers.
 const PathKernels& path_kernels(Isa isa);
-/// One path after another, by plain numbers: for scenes in whose gas all paths are, and the oracle of the others.
+/// One path after another, by plain numbers: the oracle of the others.
 const PathKernels& one_lane_path_kernels();
-/// The paths of wave.rare_rays, with Bounce::rare, after PathKernels::shade.
+/// The paths of wave.rare_rays, with Bounce::dispersion, after PathKernels::shade.
 void shade_rare_rays(const Bounce& bounce, Wave& wave);
 
 }  // namespace kiloband::cpu

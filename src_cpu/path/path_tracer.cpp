@@ -1,7 +1,7 @@
 #include "src_cpu/path/path_tracer.hpp"
 
 #include "shared/estimator.h"
-#include "src_cpu/path/rare_features.hpp"
+#include "src_cpu/path/dispersed_paths.hpp"
 
 namespace kiloband::cpu {
 namespace {
@@ -36,13 +36,6 @@ void record_shadows(const Wave& wave, const ShadowQueue& rays) {
   wave.recording->shadow_ends.push_back(wave.recording->shadow.size());
 }
 
-/// For scenes whose paths go one after another once they have begun: no camera has a rare feature.
-PathKernels one_lane_after_start(const PathKernels& kernels) {
-  PathKernels mixed = one_lane_path_kernels();
-  mixed.start = kernels.start;
-  return mixed;
-}
-
 /// Copies the linked vertices of a path from `entry` on, up to the last that has light: what lies behind cannot
 /// contribute. Returns the end of the copy. to: has room for all of them
 KbPathVertex* copy_lit_vertices(const WaveEntry* entries, uint32_t entry, KbPathVertex* to) {
@@ -67,12 +60,13 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
     : scene_(scene),
       flat_(*scene.flat),
       settings_(settings),
-      rare_(flat_.features.gas || flat_.features.dispersion
-                ? std::make_unique<one_lane::RareFeatures>(flat_, *scene.embree, kernels.eval_heroes)
-                : nullptr),
-      separates_rare_(rare_ && rare_->separates()),
-      kernels_(rare_ && !separates_rare_ ? one_lane_after_start(kernels) : kernels),
-      sorts_(!scene.few && !rare_ && !flat_.features.thermal && scene.embree->sorting_pays()) {}
+      kernels_(kernels),
+      sorts_(!scene.few && !flat_.features.gas && !flat_.features.dispersion && !flat_.features.thermal &&
+             scene.embree->sorting_pays()) {
+  if (flat_.features.gas) gas_.emplace(flat_, *scene.embree);
+  if (flat_.features.dispersion)
+    dispersion_ = std::make_unique<one_lane::DispersedPaths>(flat_, kernels.eval_heroes);
+}
 
 PathTracer::~PathTracer() = default;
 
@@ -86,15 +80,17 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
                 settings_,
                 id,
                 0,
-                rare_.get(),
+                gas_ ? &*gas_ : nullptr,
+                dispersion_.get(),
                 records.empty() ? nullptr : records.data(),
                 scene_.lights.empty() ? nullptr : scene_.lights.data(),
                 records.size() > kMostCachedRecords,
-                separates_rare_ ? rare_->dispersive_shapes() : nullptr};
+                dispersion_ ? dispersion_->shapes().data() : nullptr};
   wave_.paths.resize(kWavePaths + 1);
   wave_.entries.clear();
   kernels_.start(bounce, block, wave_);
-  if (rare_) rare_->start(wave_, mu);
+  if (gas_) gas_->start(wave_);
+  if (dispersion_) dispersion_->start(mu);
   const bool in_part = block.pixels() < wave_.rays().count;
   for (; wave_.rays().count > 0; ++bounce.number) {
     wave_.rare_rays.count = 0;
@@ -105,7 +101,7 @@ void PathTracer::trace(const PixelRect& block, const SampleId& id, std::span<con
     }
     trace_closest(bounce.number, in_part);
     kernels_.shade(bounce, wave_);
-    if (separates_rare_) shade_rare_rays(bounce, wave_);
+    if (dispersion_) shade_rare_rays(bounce, wave_);
     trace_shadows();
     wave_.current = 1 - wave_.current;
   }
@@ -141,7 +137,7 @@ void PathTracer::trace_closest(uint32_t bounce, bool in_part) {
                                 sorted || bounce == 0 ? RayPackets::kCoherent : RayPackets::kIncoherent);
   if (wave_.recording) record_answers(wave_, rays);
   if (bounce == 0 && !sorts_ && in_part) drop_paths_outside();
-  if (rare_ && rare_->gas()) rare_->gas()->walk_boundaries(wave_);
+  if (gas_) gas_->walk_boundaries(wave_);
 }
 
 /// Traces the wave's shadow rays. Returns where their answers are.
@@ -158,7 +154,7 @@ const ShadowQueue& PathTracer::answered_shadows() {
 }
 
 void PathTracer::trace_shadows() {
-  if (rare_ && rare_->gas()) return rare_->gas()->trace_shadows(wave_);
+  if (gas_) return gas_->trace_shadows(wave_);
   const ShadowQueue& rays = answered_shadows();
   for (uint32_t i = 0; i < rays.count; ++i)  // without a branch: nobody foresees what is hidden
     wave_.entries[rays.entry[i]].vertex.head &= rays.t_max[i] < 0 ? ~KB_VERTEX_NEE : ~0u;

@@ -7,8 +7,7 @@
 //
 // A block of 32 x 32 pixels is a wave: its paths advance together, bounce by bounce. Their rays are traced in packets
 // (embree_scene.hpp), or tried against all triangles where there are few (few_triangles.hpp); what they have hit is shaded a vector of paths at a time (shade-inl.hpp), paths that have ended
-// leave the queues. Scenes with gas are shaded one path after another, by the same code compiled for one lane; so is, in others,
-// what has hit a dispersive surface.
+// leave the queues. What has hit a dispersive surface is shaded one path after another, by the same code compiled for one lane.
 //
 // Which primitive a ray hits on an edge may depend on the rays that share a coherent packet. Packets are therefore those
 // of the whole block, whatever part of it is asked for: crops have the bits of the whole image.
@@ -23,6 +22,7 @@
 #include "film/spectral_film.hpp"
 #include "render/backend.hpp"
 #include "src_cpu/geometry/embree_scene.hpp"
+#include "src_cpu/path/gas_paths.hpp"
 #include "src_cpu/path/path_buffer.hpp"
 #include "src_cpu/path/path_kernels.hpp"
 #include "src_cpu/path/wave.hpp"
@@ -85,8 +85,8 @@ class PathTracer {
   const TracerScene& scene_;
   const FlatScene& flat_;
   SamplingSettings settings_;
-  std::unique_ptr<one_lane::RareFeatures> rare_;  // null: the scene has none
-  bool separates_rare_;                           // paths from the others, bounce by bounce
+  std::optional<GasPaths> gas_;                           // none: the scene has none
+  std::unique_ptr<one_lane::DispersedPaths> dispersion_;  // the same
   const PathKernels kernels_;
   bool sorts_;  // secondary and shadow rays
   Wave wave_;

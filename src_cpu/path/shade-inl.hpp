@@ -1,7 +1,8 @@
 // One bounce of a wave: emission, next-event estimation, scattering, roulette.
 //
-// Estimator: path_tracer.hpp. The stages stand in the order in which kernels/path has them; what few scenes have (gas,
-// dispersion) is code for one path at a time (RareFeatures), which one lane alone calls. Thermal emission: thermal-inl.hpp.
+// Estimator: path_tracer.hpp. The stages stand in the order in which kernels/path has them; what few scenes have is code for
+// one path at a time: gas (GasPaths), told lane by lane, and dispersion (DispersedPaths), which one lane alone calls. Thermal
+// emission: thermal-inl.hpp.
 //
 // For one lane or a vector of them: see src_cpu/lanes/one_lane.hpp and highway_lanes-inl.hpp, one of which comes first.
 #if defined(KILOBAND_SHADE_INL) == defined(HWY_TARGET_TOGGLE)
@@ -15,7 +16,7 @@
 #include "src_cpu/path/shading-inl.hpp"
 #include "src_cpu/path/thermal-inl.hpp"
 #ifdef KB_ONE_LANE
-#include "src_cpu/path/rare_features.hpp"
+#include "src_cpu/path/dispersed_paths.hpp"
 #endif
 
 KB_BEFORE_LANES;
@@ -216,9 +217,6 @@ KB_INLINE M add_light(Shading& s, M scatters) {
   s.vertex.light.row = select(lit, light.radiance.row, U(0u));
   s.vertex.set(lit & light.radiance.textured, KB_VERTEX_TEX_NEE);
   queue_shadow_rays(s, light, lit);
-#ifdef KB_ONE_LANE
-  if (s.bounce.rare && lit.v) s.bounce.rare->note_shadow_ray(s);
-#endif
   return lit;
 }
 
@@ -238,7 +236,7 @@ KB_INLINE void scatter(Shading& s, M hit, M scatters, M lit) {
   const M sampled = scatters & !s.passes;
   BsdfSample sample = sample_bsdf(s.material, s.wi, s.u.x, {s.u.y, s.u.z}, sampled);
 #ifdef KB_ONE_LANE
-  if (sample.needs_channel.v) s.bounce.rare->refract_one_channel(s, sample);
+  if (sample.needs_channel.v) s.bounce.dispersion->refract_one_channel(s, sample);
 #endif
   const M conductor = sampled & (sample.kind == U(KB_KIND_CONDUCTOR));
   if (any(conductor)) sample.bound = sample.bound * conductor_bound(s.material, sample.w1, conductor);
@@ -263,17 +261,19 @@ KB_INLINE void scatter(Shading& s, M hit, M scatters, M lit) {
   if (!any(goes_on)) return;
   continue_paths(s, select(s.passes, s.direction, direction), bound,
                  select(s.passes, F(0), sample.pdf * s.opacity), s.passes | delta, goes_on & hit);
-#ifdef KB_ONE_LANE
-  if (s.bounce.rare) s.bounce.rare->follow_ray(s);
-#endif
+}
+
+/// The gas that paths have come through, or that they leave the scene through.
+KB_INLINE void pass_gas(Shading& s, bool escapes) {
+  if (!s.bounce.gas) return;
+  const WordArray paths(s.path);
+  each_lane(s.active, [&](uint32_t i) KB_LAMBDA { s.bounce.gas->append(s.wave, paths[i], escapes); });
 }
 
 /// Lanes `first` .. of the rays that have hit nothing.
 inline void leave_scene(const Bounce& bounce, Wave& wave, uint32_t first) {
   Shading s(bounce, wave, wave.escaped, first);
-#ifdef KB_ONE_LANE
-  if (bounce.rare) bounce.rare->pass_gas(s, true);
-#endif
+  pass_gas(s, true);
   add_escaped(s);
 }
 
@@ -282,9 +282,7 @@ inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
   const RayQueue& rays = wave.rays();
   Shading s(bounce, wave, rays, first);
   const M hit = s.active;
-#ifdef KB_ONE_LANE
-  if (bounce.rare) bounce.rare->pass_gas(s, false);
-#endif
+  pass_gas(s, false);
   const V3 origin{load(rays.ox + first), load(rays.oy + first), load(rays.oz + first)};
   make_hit({bounce.scene, bounce.records}, load(rays.shape + first), load(rays.primitive + first),
            load(rays.u + first), load(rays.v + first), origin, s.direction, load(rays.t_max + first), hit,
@@ -300,7 +298,7 @@ inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
   const M scatters = find_material(s, surface, hit);
   if (bounce.scene.features.compensation) choose_compensation(s, scatters);
 #ifdef KB_ONE_LANE
-  if (bounce.rare && scatters.v && bounce.rare->shade_dispersive(s)) return;
+  if (bounce.dispersion && scatters.v && bounce.dispersion->shade(s)) return;
 #endif
   s.vertex.head = select(scatters,
                          s.vertex.head | eval_kind(s.material.type, s.material.flags) |
@@ -315,7 +313,7 @@ inline void shade_lanes(const Bounce& bounce, Wave& wave, uint32_t first) {
 /// The paths of the wave's rays at what these have hit, or on their way out of the scene.
 inline void shade_rays(const Bounce& bounce, Wave& wave) {
   part_rays(bounce, wave);
-  if (bounce.scene.environment != KB_NONE || bounce.scene.features.sun || bounce.rare)
+  if (bounce.scene.environment != KB_NONE || bounce.scene.features.sun || bounce.gas)
     for (uint32_t first = 0; first < wave.escaped.count; first += kLanes) leave_scene(bounce, wave, first);
   const RayQueue& rays = wave.rays();
   for (uint32_t first = 0; first < rays.count; first += kLanes) {

@@ -11,6 +11,7 @@
 #include "src_cpu/bsdf/bsdf-inl.hpp"
 #include "src_cpu/geometry/bump-inl.hpp"
 #include "src_cpu/light/light-inl.hpp"
+#include "src_cpu/path/gas_paths.hpp"
 #include "src_cpu/path/vertex-inl.hpp"
 
 KB_BEFORE_LANES;
@@ -97,6 +98,16 @@ KB_INLINE F bump_share(const Shading& s, V3 direction) {
   return select(s.alpha2 < F(0), F(1), share);
 }
 
+/// Gas is told of the rays that lanes m send off: in their queue from place `ray` on.
+inline void tell_gas(Shading& s, M m, uint32_t ray,
+                     void (GasPaths::*tell)(Wave&, const Departure&, uint32_t)) {
+  const V3Array points(s.hit.point), normals(s.hit.geometric_normal), arrivals(s.direction);
+  const WordArray paths(s.path), shapes(s.hit.shape);
+  each_lane(m, [&](uint32_t i) KB_LAMBDA {
+    (s.bounce.gas->*tell)(s.wave, {paths[i], shapes[i], points[i], normals[i], arrivals[i]}, ray++);
+  });
+}
+
 /// Queues the shadow rays of light samples; the vertices that they belong to are noted by note_shadow_rays().
 KB_INLINE void queue_shadow_rays(Shading& s, const Light& light, M lit) {
   ShadowQueue& queue = s.wave.shadow_rays;
@@ -107,6 +118,7 @@ KB_INLINE void queue_shadow_rays(Shading& s, const Light& light, M lit) {
   store_chosen(way, lit, queue.dx + n, queue.dy + n, queue.dz + n);
   store_chosen(select(light.infinite, F(kInfinity), F(1)), lit, queue.t_max + n);
   store_chosen(s.path, lit, queue.path + n);
+  if (s.bounce.gas) tell_gas(s, lit, n, &GasPaths::note_shadow_ray);
 }
 
 /// The shadow rays that add_light() has queued belong to the vertices that their paths have saved last.
@@ -140,6 +152,7 @@ KB_INLINE void continue_paths(Shading& s, V3 direction, F bound, F pdf, M delta,
   store(F(0), next.t_min + n);
   store(F(kInfinity), next.t_max + n);
   next.count += count(goes_on);
+  if (s.bounce.gas) tell_gas(s, goes_on, n, &GasPaths::follow_ray);
   const V3Array point(s.hit.point);
   const FloatArray bounds(bound), pdfs(pdf);
   const uint32_t deltas = bits_of(delta);

@@ -74,8 +74,7 @@ struct Wave {
   RayQueue queues[2];  // what is traced, and what the next bounce will trace
   uint32_t current = 0;
   EscapeQueue escaped;
-  RayQueue
-      rare_rays;  // that are for one path at a time: gas is on their way, or a shape of Bounce::rare_shapes
+  RayQueue rare_rays;  // that are for one path at a time: they have hit a shape of Bounce::rare_shapes
   ShadowQueue shadow_rays, sorted_shadow_rays;
   uint64_t vertices = 0, traced_rays = 0;
   Recording* recording = nullptr;  // appended to
@@ -84,8 +83,9 @@ struct Wave {
   RayQueue& next_rays() { return queues[1 - current]; }
 };
 
+class GasPaths;
 namespace one_lane {
-class RareFeatures;
+class DispersedPaths;
 }
 
 /// What is the same for all paths of a bounce.
@@ -93,11 +93,12 @@ struct Bounce {
   const FlatScene& scene;
   const SamplingSettings& settings;
   SampleId id;
-  uint32_t number = 0;                      // 0: what camera rays hit
-  one_lane::RareFeatures* rare = nullptr;   // what few scenes have: one lane alone uses it
-  const TriangleRecord* records = nullptr;  // null: hits are made from the arrays of the scene
-  const LightTriangle* lights = nullptr;    // null: so are light samples
-  bool prefetches = false;                  // records, which are more than the caches hold
+  uint32_t number = 0;                             // 0: what camera rays hit
+  GasPaths* gas = nullptr;                         // null: the scene has none
+  one_lane::DispersedPaths* dispersion = nullptr;  // the same; one lane alone uses it
+  const TriangleRecord* records = nullptr;         // null: hits are made from the arrays of the scene
+  const LightTriangle* lights = nullptr;           // null: so are light samples
+  bool prefetches = false;                         // records, which are more than the caches hold
   const uint32_t* rare_shapes =
       nullptr;  // not 0: what hits the shape is for one path at a time; null: there is none
 

@@ -103,11 +103,11 @@ TEST_P(PathsOfLanes, AreThoseWithRecordsOfTriangles) {
   expect_same_bits(without, trace(scene, embree, sampler, one_lane_path_kernels(), records, lights));
 }
 
-/// Gases, and things that no gas concerns: in a null boundary, in glass, behind a second boundary; camera outside and in a gas. One lane
-/// notes media of all paths, the lanes of none.
-TEST(GasOfLanes, PathsThatItDoesNotConcernAreTheSameWithoutIt) {
-  const auto gas = [](const std::string& absorption) {
-    return "<medium name='interior' type='homogeneous'><spectrum name='sigma_t' value='" + absorption +
+/// Gases, and things that no gas concerns: in a null boundary, in glass, behind a second boundary; camera outside and in a gas, with and
+/// without an atmosphere. Lanes tell it of several rays at a time what one lane tells of each.
+TEST(GasOfLanes, PathsAreThoseOfOneLane) {
+  const auto gas = [](const std::string& absorption, const std::string& name = "interior") {
+    return "<medium name='" + name + "' type='homogeneous'><spectrum name='sigma_t' value='" + absorption +
            "'/><spectrum name='albedo' value='0'/></medium>";
   };
   const auto ball = [](const std::string& centre, double radius, const std::string& inside) {
@@ -127,13 +127,15 @@ TEST(GasOfLanes, PathsThatItDoesNotConcernAreTheSameWithoutIt) {
       ball("-3,0.5,3", 0.5, "<bsdf type='null'/>") +
       "<shape type='rectangle'><transform name='to_world'><rotate x='1' angle='90'/><translate value='0,6,0'/></transform>"
       "<emitter type='area'><spectrum name='radiance' value='5'/></emitter></shape>";
-  for (const char* camera : {"0,2,9", "-2.2,1.1,0.2"}) {
-    SCOPED_TRACE(camera);
+  const std::pair<std::string, std::string> views[] = {
+      {"0,2,9", ""}, {"-2.2,1.1,0.2", ""}, {"0,2,9", gas("0.05", "atmosphere")}};
+  for (const auto& [camera, atmosphere] : views) {
+    SCOPED_TRACE(camera + atmosphere);
     const std::string text =
-        scene(12, perspective(lookat(camera, "0,1,0"), 60, film(32)) + things + sky("0.3"));
+        scene(12, perspective(lookat(camera, "0,1,0"), 60, film(32)) + things + atmosphere + sky("0.3"));
     const ChannelList channels = parse_channels("400:700:3");
     const auto flat = compile_scene(read_scene_text(text, "gas.xml", ".", {}), {channels, channels, {}});
-    ASSERT_EQ(flat->atmosphere, KB_NONE);
+    ASSERT_EQ(flat->atmosphere == KB_NONE, atmosphere.empty());
     const EmbreeScene embree(*flat, Isa::kSse4, 1);
     const SamplerType sampler = SamplerType::kSobol;
     const Traced one = trace(*flat, embree, sampler, one_lane_path_kernels());
