@@ -105,10 +105,10 @@ MediumStack GasPaths::media_towards(Wave& wave, const Departure& from, glm::vec3
   return media;
 }
 
-/// Of the ray at hand, which a path has followed: what of it is in gas.
+/// Of the ray at hand, up to the surface that it has hit: the gas there.
 void GasPaths::note_segment(const GasPath& gas, const TraceRay& ray) {
   const uint32_t medium = gas.media.current(scene_.atmosphere);
-  if (has_gas(scene_, medium))
+  if (ray.shape != KB_NONE && has_gas(scene_, medium))
     segments_.push_back({medium, ray.origin(), ray.direction(), gas.begin, ray.t_max});
 }
 
@@ -120,10 +120,10 @@ void GasPaths::walk_boundaries(Wave& wave) {
     GasPath& gas = paths_[path];
     gas.first_segment = static_cast<uint32_t>(segments_.size());
     TraceRay ray = ray_of(rays, i);
-    if (ray.shape != KB_NONE) note_segment(gas, ray);
+    note_segment(gas, ray);
     while (is_boundary(scene_, ray.shape)) {
       pass_boundary(wave, wave.paths[path], gas, ray);
-      if (ray.shape != KB_NONE) note_segment(gas, ray);
+      note_segment(gas, ray);
       put_ray(ray, rays, i);
     }
     gas.segments = static_cast<uint32_t>(segments_.size()) - gas.first_segment;

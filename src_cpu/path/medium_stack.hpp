@@ -25,9 +25,6 @@ class MediumStack {
     return medium;
   }
 
-  /// Whether the path is in no interior.
-  bool empty() const { return inside_[0] == 0; }
-
   /// Returns false where the path is in too many media at a time.
   bool enter(uint32_t medium) {
     const auto entry = static_cast<uint16_t>(medium + 1);
