@@ -7,11 +7,14 @@
 #include <memory>
 #include <numeric>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/ray_order.hpp"
 #include "src_cpu/lanes/isa.hpp"
 #include "tests/support/zoo/scene_zoo.hpp"
+#include "validation/suite/scene_text.hpp"
 
 namespace kiloband::test::test_packets {
 namespace {
@@ -124,6 +127,42 @@ TEST_P(Packets, FindWhatIsInBetween) {
   EXPECT_EQ(count_wrong(*shadows), 0u);
   embree.occlusions(*sorted, RayPackets::kCoherent);
   EXPECT_LE(count_wrong(*sorted), 2u);
+}
+
+/// 64 squares of 2 to 8 m on the ground, side by side.
+std::string squares_of_all_sizes() {
+  using namespace scene_text;
+  std::string shapes;
+  for (int i = 0; i < 64; ++i) {
+    const double half = 1 + 3.0 * i / 63;
+    shapes += shape("rectangle", to_world(scale(half, half, 1) + translate(10.0 * i, 0, 0)) + diffuse(0.5));
+  }
+  return scene(2, perspective(lookat("0, 0, 9", "0, 0, 0"), 40, film(8)) + sky(1) + shapes);
+}
+
+TEST_P(Packets, DistancesAreAsExactAsStated) {
+  if (!is_available(GetParam())) GTEST_SKIP() << "this processor has no " << to_string(GetParam());
+  const ZooFolder folder;
+  const FlatScene scene = folder.flatten({"squares", squares_of_all_sizes()});
+  const EmbreeScene embree(scene, GetParam(), 1);
+  const auto rays = std::make_unique<RayQueue>();
+  std::mt19937 random(13);
+  std::uniform_real_distribution<float> place(-0.9f, 0.9f);
+  rays->count = kRays;
+  for (uint32_t i = 0; i < kRays; ++i) {
+    rays->ox[i] = 10.0f * static_cast<float>(i % 64) + place(random), rays->oy[i] = place(random);
+    rays->oz[i] = 1, rays->dx[i] = rays->dy[i] = 0, rays->dz[i] = -1;
+    rays->t_min[i] = 0, rays->t_max[i] = 100, rays->path[i] = i;
+  }
+  const std::vector<TraceRay> one_by_one = traced_one_by_one(embree, *rays);
+  embree.closest_hits(*rays, RayPackets::kCoherent);
+  double worst = 0;
+  for (uint32_t i = 0; i < kRays; ++i) {
+    ASSERT_NE(rays->shape[i], KB_NONE);
+    worst = std::max({worst, std::abs(rays->t_max[i] - 1.0), std::abs(one_by_one[i].t_max - 1.0)});
+  }
+  RecordProperty("largest_error", std::to_string(worst / kEmbreeDistanceError));
+  EXPECT_LE(worst, kEmbreeDistanceError);
 }
 
 INSTANTIATE_TEST_SUITE_P(InstructionSets, Packets, testing::Values(Isa::kSse4, Isa::kAvx2, Isa::kAvx512),
