@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "src_cpu/evaluate/dense_spectra.hpp"
-#include "src_cpu/geometry/texture/texel_corners.hpp"
+#include "src_cpu/evaluate/texture/texel_corners.hpp"
 
 namespace kiloband::cpu {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "scene/compile/spectra/band_set.hpp"
-#include "src_cpu/geometry/texture/texel_corners.hpp"
+#include "src_cpu/evaluate/texture/texel_corners.hpp"
 
 namespace kiloband::cpu {
 
