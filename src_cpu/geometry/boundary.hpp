@@ -1,11 +1,18 @@
 // Rays that pass null surfaces.
 #pragma once
 
+#include <algorithm>
+
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/ray_offset.hpp"
 #include "src_cpu/geometry/surface_hit.hpp"
 
 namespace kiloband::cpu {
+
+/// Whether rays pass any shape.
+inline bool has_boundaries(const FlatScene& scene) {
+  return std::ranges::any_of(scene.shapes, [](const KbShape& s) { return (s.flags & KB_SHAPE_NULL) != 0; });
+}
 
 inline bool is_boundary(const FlatScene& scene, uint32_t shape) {
   return shape != KB_NONE && (scene.shapes[shape].flags & KB_SHAPE_NULL);

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "scene/compile/record_vectors.hpp"
+#include "src_cpu/geometry/boundary.hpp"
 
 namespace kiloband::cpu {
 namespace {
@@ -40,7 +41,7 @@ void add_triangle(FewTriangles& few, const FlatScene& scene, uint32_t shape, uin
 std::optional<FewTriangles> find_few_triangles(const FlatScene& scene, std::size_t most) {
   const SceneFeatures& has = scene.features;
   if (scene.triangles.size() / 3 > std::min(most, kMostFewTriangles) || has.instances ||
-      has.analytic_shapes || has.gas)
+      has.analytic_shapes || has_boundaries(scene))
     return {};
   FewTriangles few;
   for (uint32_t shape = 0; shape < scene.shapes.size(); ++shape)

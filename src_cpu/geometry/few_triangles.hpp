@@ -28,7 +28,8 @@ struct FewTriangles {
   std::vector<Triangle> triangles;  // without those that have no area
 };
 
-/// Nothing for scenes that have more triangles than `most`, or none, or something else to be hit, or gas, whose rays go their own ways.
+/// Nothing for scenes that have more triangles than `most`, or none, or something else to be hit, or null boundaries, behind which rays go
+/// their own ways.
 std::optional<FewTriangles> find_few_triangles(const FlatScene& scene, std::size_t most = kMostFewTriangles);
 
 }  // namespace kiloband::cpu

@@ -79,6 +79,9 @@ void append_medium(Wave& wave, uint32_t path, const Vertex& medium, std::span<co
 
 }  // namespace
 
+GasPaths::GasPaths(const FlatScene& scene, const EmbreeScene& embree)
+    : scene_(scene), embree_(embree), has_boundaries_(has_boundaries(scene)) {}
+
 void GasPaths::start(Wave& wave) {
   const RayQueue& rays = wave.rays();
   paths_.clear();
@@ -212,19 +215,21 @@ void GasPaths::note_shadow_ray(Wave& wave, const Departure& from, uint32_t ray) 
                             media_towards(wave, from, shadow.direction())});
 }
 
-void GasPaths::trace_shadows(Wave& wave) {
-  ShadowQueue& rays = wave.shadow_rays;
-  shadow_ends_.assign(rays.t_max, rays.t_max + rays.count);
-  wave.traced_rays += rays.count;
-  embree_.occlusions(rays, RayPackets::kIncoherent);
+void GasPaths::note_shadow_ends(const Wave& wave) {
+  const ShadowQueue& rays = wave.shadow_rays;
+  if (has_boundaries_) shadow_ends_.assign(rays.t_max, rays.t_max + rays.count);
+}
+
+void GasPaths::finish_shadows(Wave& wave) {
+  const ShadowQueue& rays = wave.shadow_rays;
   for (uint32_t i = 0; i < rays.count; ++i) {
     const ShadowOwner& owner = shadow_owners_[i];
     const bool clear = rays.t_max[i] >= 0;
     ShadowRay ray = query_of(rays, i);
-    ray.t_max = shadow_ends_[i];
+    if (!clear && has_boundaries_) ray.t_max = shadow_ends_[i];
     Columns columns;
     if (clear) columns = clear_columns(wave, owner, ray);
-    if (clear || walk_shadow(wave, owner, ray, columns))
+    if (clear || (has_boundaries_ && walk_shadow(wave, owner, ray, columns)))
       append_columns(wave, owner.path, rays.entry[i], columns);
     else
       wave.entries[rays.entry[i]].vertex.head &= ~KB_VERTEX_NEE;
@@ -248,7 +253,7 @@ bool GasPaths::walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, 
   const bool infinite = shadow.t_max == kInfinity;
   TraceRay ray(origin, direction, 0, shadow.t_max);
   for (uint32_t crossings = 0;; ++crossings) {
-    wave.traced_rays += crossings > 0;  // the first is the shadow ray, which trace_shadows() has counted
+    wave.traced_rays += crossings > 0;  // the first is the shadow ray, which has been counted
     embree_.closest_hits(std::span(&ray, 1));
     const bool arrives = ray.shape == KB_NONE;
     if (!arrives && !is_boundary(scene_, ray.shape)) return false;

@@ -21,7 +21,7 @@ struct Departure {
 /// what the paths have hit (shade-inl.hpp). Scenes without gas have none.
 class GasPaths {
  public:
-  GasPaths(const FlatScene& scene, const EmbreeScene& embree) : scene_(scene), embree_(embree) {}
+  GasPaths(const FlatScene& scene, const EmbreeScene& embree);
 
   /// The wave's paths begin where the camera is.
   void start(Wave& wave);
@@ -33,8 +33,11 @@ class GasPaths {
   void follow_ray(Wave& wave, const Departure& from, uint32_t ray);
   /// The same for shadow rays, in their queue's order.
   void note_shadow_ray(Wave& wave, const Departure& from, uint32_t ray);
-  /// Light samples: what packets find nothing in front of has one medium along its ray, the others go through null boundaries one by one.
-  void trace_shadows(Wave& wave);
+  /// To be called before the shadow rays are traced in packets.
+  void note_shadow_ends(const Wave& wave);
+  /// And after: what packets have found nothing in front of has one medium along its ray, the others may go through null boundaries,
+  /// one by one.
+  void finish_shadows(Wave& wave);
 
  private:
   /// Where a path is, and the segments of the ray at hand.
@@ -74,9 +77,10 @@ class GasPaths {
 
   const FlatScene& scene_;
   const EmbreeScene& embree_;
+  const bool has_boundaries_;
   std::vector<GasPath> paths_;
   std::vector<Segment> segments_;
-  std::vector<float> shadow_ends_;  // of the shadow rays, ray parameters
+  std::vector<float> shadow_ends_;  // of the shadow rays, ray parameters; none where there are no boundaries
   std::vector<ShadowOwner> shadow_owners_;
 };
 

@@ -154,8 +154,9 @@ const ShadowQueue& PathTracer::answered_shadows() {
 }
 
 void PathTracer::trace_shadows() {
-  if (gas_) return gas_->trace_shadows(wave_);
+  if (gas_) gas_->note_shadow_ends(wave_);
   const ShadowQueue& rays = answered_shadows();
+  if (gas_) return gas_->finish_shadows(wave_);
   for (uint32_t i = 0; i < rays.count; ++i)  // without a branch: nobody foresees what is hidden
     wave_.entries[rays.entry[i]].vertex.head &= rays.t_max[i] < 0 ? ~KB_VERTEX_NEE : ~0u;
 }

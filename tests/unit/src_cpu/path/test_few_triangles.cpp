@@ -282,6 +282,15 @@ TEST(TriangleList, AreThoseOfScenesThatHaveNothingElse) {
   EXPECT_FALSE(find_few_triangles(room, count - 1));
   for (const char* name : {"analytic_shapes", "instances", "gases"})
     EXPECT_FALSE(find_few_triangles(folder.flatten(zoo_scene(name)))) << name;
+  const auto with = [&](const std::string& more) {
+    std::string text = zoo_scene("diffuse_room").xml;
+    return folder.flatten({"room", text.insert(text.rfind("</scene>"), more)});
+  };
+  const std::string gas = " type='absorbing'><spectrum name='absorption' value='0.1'/></medium>";
+  const FlatScene filled = with("<medium name='atmosphere'" + gas);
+  EXPECT_TRUE(filled.features.gas);
+  EXPECT_TRUE(find_few_triangles(filled));
+  EXPECT_FALSE(find_few_triangles(with("<shape type='cube'><bsdf type='null'/></shape>")));
   EXPECT_FALSE(find_few_triangles(scene_of({})));
   std::vector<Triangle> many = sphere(glm::vec3(0), 1);
   many.push_back(many.front());

@@ -19,6 +19,11 @@ using namespace scene_text;
 
 constexpr PixelRect kBlock{0, 0, 32, 32};
 
+/// per_metre: what it absorbs
+std::string absorbing(double per_metre, const std::string& name = "interior") {
+  return "<medium name='" + name + "' type='absorbing'>" + spectrum("absorption", per_metre) + "</medium>";
+}
+
 struct Traced {
   PathBuffer paths;
   std::vector<uint32_t> invalid;
@@ -145,7 +150,36 @@ TEST(GasOfLanes, PathsAreThoseOfOneLane) {
   }
 }
 
-/// A floor whose lamp a roof hides half, without gas and with some far off: as many rays.
+/// A room in an atmosphere, with a body of absorbing glass: nothing there is passed, so that few triangles are its rays', too.
+TEST(GasOfLanes, WithoutBoundariesPathsAreThoseOfOneLane) {
+  const std::string text =
+      scene(12, perspective(lookat("0,1.5,6", "0,1,0"), 60, film(32)) +
+                    shape("rectangle", to_world(scale(5, 5, 1) + turn("x", -90)) + diffuse(0.5)) +
+                    shape("cube", to_world(scale(0.6, 0.6, 0.6) + translate(1, 1, 0)) + bsdf("dielectric") +
+                                      absorbing(0.7)) +
+                    shape("cube", to_world(scale(0.6, 0.6, 0.6) + translate(-1, 1, 0)) + diffuse(0.8)) +
+                    shape("rectangle", to_world(turn("x", 90) + translate(0, 5, 0)) + lamp(5)) +
+                    absorbing(0.05, "atmosphere") + sky(0.3));
+  const ChannelList channels = parse_channels("400:700:3");
+  const auto flat = compile_scene(read_scene_text(text, "gas.xml", ".", {}), {channels, channels, {}});
+  const EmbreeScene embree(*flat, Isa::kSse4, 1);
+  const std::optional<FewTriangles> few = find_few_triangles(*flat);
+  ASSERT_TRUE(few);
+  const SamplerType sampler = SamplerType::kSobol;
+  const Traced of_embree = trace(*flat, embree, sampler, one_lane_path_kernels());
+  const Traced one = trace(*flat, embree, sampler, one_lane_path_kernels(), {}, {}, &*few);
+  EXPECT_GT(one.paths.paths.size(), 1000u);
+  EXPECT_NEAR(static_cast<double>(one.vertices), static_cast<double>(of_embree.vertices),
+              1e-3 * static_cast<double>(of_embree.vertices));  // hits differ in last places
+  for (const Isa isa : {Isa::kSse4, Isa::kAvx2, Isa::kAvx512}) {
+    if (!is_available(isa)) continue;
+    expect_same_bits(of_embree, trace(*flat, embree, sampler, path_kernels(isa)));
+    expect_same_bits(one, trace(*flat, embree, sampler, path_kernels(isa), {}, {}, &*few));
+  }
+}
+
+/// A floor whose lamp a roof hides half, without gas, with some far off, in an atmosphere and with both: as many rays, and in an atmosphere
+/// as many vertices.
 TEST(GasOfLanes, HiddenShadowRaysAreCountedOnce) {
   const std::string room =
       "<shape type='rectangle'><transform name='to_world'><scale value='8'/><rotate x='1' angle='-90'/></transform>"
@@ -158,17 +192,22 @@ TEST(GasOfLanes, HiddenShadowRaysAreCountedOnce) {
       "<medium name='interior' type='homogeneous'><spectrum name='sigma_t' value='1'/><spectrum name='albedo' value='0'/>"
       "</medium></shape>";
   const ChannelList channels = parse_channels("400:700:3");
-  std::vector<uint64_t> rays;
-  for (const std::string& more : {std::string(), far_off}) {
+  const std::string atmosphere = absorbing(0.01, "atmosphere");
+  std::vector<uint64_t> rays, vertices;
+  for (const std::string& more : {std::string(), far_off, atmosphere, atmosphere + far_off}) {
     const auto flat = compile_scene(
         read_scene_text(scene(3, perspective(lookat("0,9,9", "0,1,0"), 30, film(32)) + room + more),
                         "roof.xml", ".", {}),
         {channels, channels, {}});
     ASSERT_EQ(flat->features.gas, !more.empty());
     const EmbreeScene embree(*flat, Isa::kSse4, 1);
-    rays.push_back(trace(*flat, embree, SamplerType::kSobol, path_kernels(resolve_isa(Isa::kAuto))).rays);
+    const Traced traced = trace(*flat, embree, SamplerType::kSobol, path_kernels(resolve_isa(Isa::kAuto)));
+    rays.push_back(traced.rays), vertices.push_back(traced.vertices);
   }
-  EXPECT_EQ(rays[1], rays[0]);
+  EXPECT_EQ(rays, std::vector<uint64_t>(4, rays[0]));
+  EXPECT_EQ(vertices[1], vertices[0]);
+  EXPECT_GT(vertices[2], 2 * vertices[0]);
+  EXPECT_EQ(vertices[3], vertices[2]);
 }
 
 TEST(TriangleRecords, AreLeftOutOfScenesWithTooMany) {
