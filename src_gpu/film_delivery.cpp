@@ -128,7 +128,7 @@ void FilmDelivery::finish_block(const GroupResult& result, std::size_t first, ui
   }
   const std::size_t pixels = film_.blocks()[block].pixels();
   const auto means = std::span(result.means).subspan(first * channels_, pixels * channels_);
-  film_.add({block, range_.replicate, std::span(result.counts).subspan(first, pixels), means, channels_});
+  film_.add({block, range_.replicate, std::span(result.counts).subspan(first, pixels), means, channels_, {}});
 }
 
 void deliver_replicates(SpectralFilm& film, DeviceReplicates& replicates) {

@@ -35,7 +35,8 @@ class BufferRef {
 #define KB_HOST_COUNT(group, kind, type, name) 1
 
 // XArguments::Of<Buffer>: an aggregate with a member per argument, Buffer<type> or the scalar, in the order of the list.
-// Designated initialisers fill it: one that is forgotten is a warning, which CI takes for an error.
+// Designated initialisers fill it: one that is forgotten is a warning in src_gpu (KILOBAND_ALL_MEMBERS), which CI takes
+// for an error.
 #define KB_HOST_GROUP(GROUP, Name)                                               \
   struct Name##Arguments {                                                       \
     static constexpr uint32_t kCount = KB_##GROUP##_ARGUMENTS(KB_HOST_COUNT, +); \

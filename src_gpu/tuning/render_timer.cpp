@@ -34,7 +34,7 @@ std::unique_ptr<Backend> RenderTimer::make(const Tuning& tuning) const {
 }
 
 double RenderTimer::render(Backend& backend, uint32_t samples, const std::atomic<bool>& stop) const {
-  SpectralFilm film(film_rect(*scene_), {backend.film_scale().size(), 1, false, false});
+  SpectralFilm film(film_rect(*scene_), {.channels = backend.film_scale().size(), .sums = {}});
   const std::vector<uint32_t> blocks = film.all_blocks();
   const auto start = std::chrono::steady_clock::now();
   backend.render(film, {0, 0, samples}, blocks, stop, {});
