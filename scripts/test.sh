@@ -17,7 +17,7 @@ cmake --build --preset "$preset"
 if [ "$preset" = release ]; then
   scripts/tidy.sh
   # Which takes a tenth of all this time to build. Without a commit before (a shallow clone) git has an error, and all is fuzzed.
-  git diff --quiet HEAD~1 -- src tests/fuzz cmake scripts/fuzz.sh || scripts/fuzz.sh 60
+  git diff --quiet HEAD~1 -- src app/options tests/fuzz tests/support cmake CMakeLists.txt CMakePresets.json scripts/fuzz.sh || scripts/fuzz.sh 60
 fi
 # More than there are processors, since some wait for browsers, devices and time limits; threads that wait leave theirs to other tests.
 OMP_WAIT_POLICY=passive ctest --preset "$preset" --parallel "$(($(nproc) + 1))"

@@ -25,7 +25,7 @@ KB_INLINE void move_rays(const RayQueue& from, uint32_t first, M chosen, RayQueu
 }
 
 /// Moves the rays that have hit something together, in their order, those that have not to `escaped`, and those that are for one
-/// path at a time behind the others of `rare_rays`: so vectors of each are full.
+/// path at a time to `rare_rays`: so vectors of each are full.
 inline void part_rays(const Bounce& bounce, Wave& wave) {
   RayQueue& rays = wave.rays();
   EscapeQueue& escaped = wave.escaped;

@@ -12,8 +12,8 @@ struct PathKernels {
   /// Camera rays of the whole block of the film in which `block` lies -> wave.rays() and the states of the paths, which
   /// outside of `block` have no pixel.
   void (*start)(const Bounce& bounce, const PixelRect& block, Wave& wave);
-  /// Answers of wave.rays -> saved vertices, wave.shadow_rays, wave.next_rays and the states of the paths; what has hit a shape of
-  /// Bounce::rare_shapes is added to wave.rare_rays.
+  /// Answers of wave.rays -> saved vertices, wave.shadow_rays, wave.next_rays, the states of the paths and what Bounce::gas knows of them;
+  /// what has hit a shape of Bounce::rare_shapes is added to wave.rare_rays.
   void (*shade)(const Bounce& bounce, Wave& wave);
   /// Answer all rays of a queue in scenes that have few triangles.
   void (*closest_of_few)(const FewTriangles& few, RayQueue& rays);
