@@ -10,6 +10,7 @@
 
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/path/path_kernels.hpp"
+#include "tests/support/scene_text.hpp"
 #include "tests/support/zoo/scene_zoo.hpp"
 
 namespace kiloband::test::test_few_triangles {
@@ -286,11 +287,10 @@ TEST(TriangleList, AreThoseOfScenesThatHaveNothingElse) {
     std::string text = zoo_scene("diffuse_room").xml;
     return folder.flatten({"room", text.insert(text.rfind("</scene>"), more)});
   };
-  const std::string gas = " type='absorbing'><spectrum name='absorption' value='0.1'/></medium>";
-  const FlatScene filled = with("<medium name='atmosphere'" + gas);
+  const FlatScene filled = with(scene_text::gas("atmosphere", "0.1"));
   EXPECT_TRUE(filled.features.gas);
   EXPECT_TRUE(find_few_triangles(filled));
-  EXPECT_FALSE(find_few_triangles(with("<shape type='cube'><bsdf type='null'/></shape>")));
+  EXPECT_FALSE(find_few_triangles(with(scene_text::shape("cube", scene_text::bsdf("null")))));
   EXPECT_FALSE(find_few_triangles(scene_of({})));
   std::vector<Triangle> many = sphere(glm::vec3(0), 1);
   many.push_back(many.front());

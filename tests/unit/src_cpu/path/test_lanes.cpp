@@ -19,11 +19,6 @@ using namespace scene_text;
 
 constexpr PixelRect kBlock{0, 0, 32, 32};
 
-/// per_metre: what it absorbs
-std::string absorbing(double per_metre, const std::string& name = "interior") {
-  return "<medium name='" + name + "' type='absorbing'>" + spectrum("absorption", per_metre) + "</medium>";
-}
-
 struct Traced {
   PathBuffer paths;
   std::vector<uint32_t> invalid;
@@ -156,10 +151,10 @@ TEST(GasOfLanes, WithoutBoundariesPathsAreThoseOfOneLane) {
       scene(12, perspective(lookat("0,1.5,6", "0,1,0"), 60, film(32)) +
                     shape("rectangle", to_world(scale(5, 5, 1) + turn("x", -90)) + diffuse(0.5)) +
                     shape("cube", to_world(scale(0.6, 0.6, 0.6) + translate(1, 1, 0)) + bsdf("dielectric") +
-                                      absorbing(0.7)) +
+                                      gas("interior", "0.7")) +
                     shape("cube", to_world(scale(0.6, 0.6, 0.6) + translate(-1, 1, 0)) + diffuse(0.8)) +
                     shape("rectangle", to_world(turn("x", 90) + translate(0, 5, 0)) + lamp(5)) +
-                    absorbing(0.05, "atmosphere") + sky(0.3));
+                    gas("atmosphere", "0.05") + sky(0.3));
   const ChannelList channels = parse_channels("400:700:3");
   const auto flat = compile_scene(read_scene_text(text, "gas.xml", ".", {}), {channels, channels, {}});
   const EmbreeScene embree(*flat, Isa::kSse4, 1);
@@ -192,7 +187,7 @@ TEST(GasOfLanes, HiddenShadowRaysAreCountedOnce) {
       "<medium name='interior' type='homogeneous'><spectrum name='sigma_t' value='1'/><spectrum name='albedo' value='0'/>"
       "</medium></shape>";
   const ChannelList channels = parse_channels("400:700:3");
-  const std::string atmosphere = absorbing(0.01, "atmosphere");
+  const std::string atmosphere = gas("atmosphere", "0.01");
   std::vector<uint64_t> rays, vertices;
   for (const std::string& more : {std::string(), far_off, atmosphere, atmosphere + far_off}) {
     const auto flat = compile_scene(
