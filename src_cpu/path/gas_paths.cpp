@@ -224,12 +224,16 @@ void GasPaths::finish_shadows(Wave& wave) {
   const ShadowQueue& rays = wave.shadow_rays;
   for (uint32_t i = 0; i < rays.count; ++i) {
     const ShadowOwner& owner = shadow_owners_[i];
-    const bool clear = rays.t_max[i] >= 0;
     ShadowRay ray = query_of(rays, i);
-    if (!clear && has_boundaries_) ray.t_max = shadow_ends_[i];
     Columns columns;
-    if (clear) columns = clear_columns(wave, owner, ray);
-    if (clear || (has_boundaries_ && walk_shadow(wave, owner, ray, columns)))
+    bool visible = ray.t_max >= 0;
+    if (visible) {
+      columns = clear_columns(wave, owner, ray);
+    } else if (has_boundaries_) {
+      ray.t_max = shadow_ends_[i];
+      visible = walk_shadow(wave, owner, ray, columns);
+    }
+    if (visible)
       append_columns(wave, owner.path, rays.entry[i], columns);
     else
       wave.entries[rays.entry[i]].vertex.head &= ~KB_VERTEX_NEE;
