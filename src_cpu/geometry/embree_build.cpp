@@ -50,12 +50,32 @@ void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
   }
 }
 
+/// The ray of an occlusion query meets a null boundary.
+void note_boundary(RTCIntersectContext* context, RTCRayN* rays, unsigned count, unsigned lane) {
+  uint32_t* const passes = reinterpret_cast<OcclusionContext*>(context)->passes;
+  if (passes) passes[RTCRayN_id(rays, count, lane)] = 1;
+}
+
 void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
-  const ShapeForm& form = shapes_of(args->geometryUserPtr).forms[args->primID];
+  const AnalyticShapes& shapes = shapes_of(args->geometryUserPtr);
+  const bool boundary = shapes.shape(args->primID).flags & KB_SHAPE_NULL;
   for (unsigned lane = 0; lane < args->N; ++lane) {
     double t = 0;
-    if (args->valid[lane] != -1 || !hit_form(form, args->ray, args->N, lane, t)) continue;
-    RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
+    if (args->valid[lane] != -1 || !hit_form(shapes.forms[args->primID], args->ray, args->N, lane, t))
+      continue;
+    if (boundary)
+      note_boundary(args->context, args->ray, args->N, lane);
+    else
+      RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
+  }
+}
+
+/// Of a mesh that is a null boundary: what it hides is nothing.
+void pass_boundary(const RTCFilterFunctionNArguments* args) {
+  for (unsigned lane = 0; lane < args->N; ++lane) {
+    if (args->valid[lane] != -1) continue;
+    note_boundary(args->context, args->ray, args->N, lane);
+    args->valid[lane] = 0;
   }
 }
 
@@ -84,6 +104,7 @@ void SceneBuilder::add_mesh(const KbShape& shape, unsigned id) const {
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, flat.triangles.data(),
                              std::size_t{shape.first_triangle} * 3 * sizeof(uint32_t), 3 * sizeof(uint32_t),
                              shape.triangle_count);
+  if (shape.flags & KB_SHAPE_NULL) rtcSetGeometryOccludedFilterFunction(geometry, pass_boundary);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);

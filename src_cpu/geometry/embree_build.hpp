@@ -21,6 +21,12 @@ struct AnalyticShapes {
   std::vector<ShapeForm> forms;
 };
 
+/// What occlusion queries are asked with: null boundaries hide nothing, and note that they were met.
+struct OcclusionContext {
+  RTCIntersectContext embree;  // what Embree hands on: a pointer to this is one to the whole
+  uint32_t* passes;            // by the rays' ids, or null: 1 where one was met
+};
+
 /// Geometry ids are indices of shapes (of the analytic ones, of the first; their hits have their own); instances have that of their first shape, and the meshes in them count from 0, so
 /// that both ids add up to the shape. The scene's arrays and the analytic shapes must outlive what is returned, which the caller releases.
 /// throws DeviceError naming Embree's error

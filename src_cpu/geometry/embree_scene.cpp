@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <numeric>
 #include <string>
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "src_cpu/geometry/boundary.hpp"
 #include "src_cpu/geometry/embree_build.hpp"
 
 namespace kiloband::cpu {
@@ -45,6 +47,7 @@ struct EmbreeScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   RayGrid grid;  // of the geometry
+  bool boundaries = has_boundaries(*flat);
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -100,8 +103,8 @@ void EmbreeScene::closest_hits(std::span<TraceRay> rays) const {
 }
 
 void EmbreeScene::occlusions(std::span<ShadowRay> rays) const {
-  RTCIntersectContext context = query_context(kIncoherent);
-  for (ShadowRay& ray : rays) rtcOccluded1(impl_->scene, &context, reinterpret_cast<RTCRay*>(&ray));
+  OcclusionContext context{query_context(kIncoherent), nullptr};
+  for (ShadowRay& ray : rays) rtcOccluded1(impl_->scene, &context.embree, reinterpret_cast<RTCRay*>(&ray));
 }
 
 // ---- the rays of a wave ------------------------------------------------------------------------------
@@ -209,14 +212,17 @@ void EmbreeScene::closest_hits(RayQueue& rays, RayPackets packets) const {
 
 void EmbreeScene::occlusions(ShadowQueue& rays, RayPackets packets) const {
   const bool coherent = packets == RayPackets::kCoherent && impl_->coherent_packets();
-  RTCIntersectContext context = query_context(coherent ? kCoherent : kIncoherent);
+  OcclusionContext context{query_context(coherent ? kCoherent : kIncoherent), nullptr};
   alignas(64) RTCRay16 packet;
   alignas(64) int valid[16];
   fill_last_packet(rays, 16);
   prepare<16>(packet);
+  std::iota(packet.id, packet.id + 16, 0);
+  if (impl_->boundaries) std::fill_n(rays.passes, rays.count, 0);
   for (uint32_t first = 0; first < rays.count; first += 16) {
     load_rays(rays, first, packet, valid);
-    rtcOccluded16(valid, impl_->scene, &context, &packet);
+    if (impl_->boundaries) context.passes = rays.passes + first;
+    rtcOccluded16(valid, impl_->scene, &context.embree, &packet);
     std::memcpy(rays.t_max + first, packet.tfar, sizeof packet.tfar);
   }
 }

@@ -39,7 +39,8 @@ struct alignas(16) TraceRay {
   glm::vec3 direction() const { return {dx, dy, dz}; }
 };
 
-/// An occlusion query, laid out as Embree's RTCRay; t_max < 0 afterwards: something is in between.
+/// An occlusion query, laid out as Embree's RTCRay; t_max < 0 afterwards: something is in between, null
+/// boundaries aside.
 struct alignas(16) ShadowRay {
   float ox, oy, oz, t_min;
   float dx, dy, dz, time = 0;

@@ -22,13 +22,15 @@ struct alignas(64) RayQueue {
   uint32_t count = 0;
 };
 
-/// Occlusion queries from t_min 0.
+/// Occlusion queries from t_min 0. Null boundaries hide nothing.
 struct alignas(64) ShadowQueue {
   float ox[kQueueCapacity], oy[kQueueCapacity], oz[kQueueCapacity];
   float dx[kQueueCapacity], dy[kQueueCapacity], dz[kQueueCapacity];
   float t_max[kQueueCapacity];     // in: far end; out: negative where something is in between
   uint32_t entry[kQueueCapacity];  // the vertex that has the light sample
-  uint32_t path[kQueueCapacity];
+  uint32_t path[kQueueCapacity];   // whose ray it is; a path has one at most
+  /// Out, only in scenes with null boundaries: 1 where a visible light is behind one.
+  uint32_t passes[kQueueCapacity];
   uint32_t count = 0;
 };
 

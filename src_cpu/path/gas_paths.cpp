@@ -80,7 +80,7 @@ void append_medium(Wave& wave, uint32_t path, const Vertex& medium, std::span<co
 }  // namespace
 
 GasPaths::GasPaths(const FlatScene& scene, const EmbreeScene& embree)
-    : scene_(scene), embree_(embree), has_boundaries_(has_boundaries(scene)) {}
+    : scene_(scene), embree_(embree), has_boundaries_(has_boundaries(scene)), shadows_(kWavePaths) {}
 
 void GasPaths::start(Wave& wave) {
   const RayQueue& rays = wave.rays();
@@ -145,13 +145,14 @@ void GasPaths::pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay
     path.flags |= kInvalidPath;
     return;  // as if it left the scene
   }
-  if (wave.recording) {
+  const bool recorded = wave.recording && path.pixel != KB_NONE;
+  if (recorded) {
     wave.recording->closest.push_back(ray);
     wave.recording->closest_path.push_back(path.pixel);
   }
   ++wave.traced_rays;
   embree_.closest_hits(std::span(&ray, 1));
-  if (wave.recording) wave.recording->answers.push_back(ray);
+  if (recorded) wave.recording->answers.push_back(ray);
 }
 
 /// The gas between where the path was and where it is now, or on its way out of the scene.
@@ -211,53 +212,45 @@ void GasPaths::follow_ray(Wave& wave, const Departure& from, uint32_t ray) {
 
 void GasPaths::note_shadow_ray(Wave& wave, const Departure& from, uint32_t ray) {
   const ShadowRay shadow = query_of(wave.shadow_rays, ray);
-  shadow_owners_.push_back({from.path, begin_at(from.point, shadow.origin(), shadow.direction()),
-                            media_towards(wave, from, shadow.direction())});
+  shadows_[from.path] = {begin_at(from.point, shadow.origin(), shadow.direction()),
+                         media_towards(wave, from, shadow.direction())};
 }
 
-void GasPaths::note_shadow_ends(const Wave& wave) {
-  const ShadowQueue& rays = wave.shadow_rays;
-  if (has_boundaries_) shadow_ends_.assign(rays.t_max, rays.t_max + rays.count);
-}
-
-void GasPaths::finish_shadows(Wave& wave) {
-  const ShadowQueue& rays = wave.shadow_rays;
+void GasPaths::finish_shadows(Wave& wave, const ShadowQueue& rays) {
   for (uint32_t i = 0; i < rays.count; ++i) {
-    const ShadowOwner& owner = shadow_owners_[i];
-    ShadowRay ray = query_of(rays, i);
+    const uint32_t path = rays.path[i];
+    const ShadowRay ray = query_of(rays, i);
     Columns columns;
-    bool visible = ray.t_max >= 0;
-    if (visible) {
-      columns = clear_columns(wave, owner, ray);
-    } else if (has_boundaries_) {
-      ray.t_max = shadow_ends_[i];
-      visible = walk_shadow(wave, owner, ray, columns);
-    }
+    bool visible = !ray.occluded();
+    if (visible && has_boundaries_ && rays.passes[i])
+      visible = walk_shadow(wave, wave.paths[path], shadows_[path], ray, columns);
+    else if (visible)
+      columns = clear_columns(wave.paths[path], shadows_[path], ray);
     if (visible)
-      append_columns(wave, owner.path, rays.entry[i], columns);
+      append_columns(wave, path, rays.entry[i], columns);
     else
       wave.entries[rays.entry[i]].vertex.head &= ~KB_VERTEX_NEE;
   }
-  shadow_owners_.clear();
 }
 
 /// Of a shadow ray that meets nothing: the medium where it begins, on all of it; out of the scene none (as in walk_shadow()).
-GasPaths::Columns GasPaths::clear_columns(Wave& wave, const ShadowOwner& at, const ShadowRay& shadow) const {
+GasPaths::Columns GasPaths::clear_columns(PathState& path, const ShadowStart& at,
+                                          const ShadowRay& shadow) const {
   Columns columns;
   if (shadow.t_max == kInfinity) return columns;
   const TraceRay ray(shadow.origin(), shadow.direction(), 0, shadow.t_max);
-  add_column(wave.paths[at.path], columns, at.media.current(scene_.atmosphere), ray, at.begin);
+  add_column(path, columns, at.media.current(scene_.atmosphere), ray, at.begin);
   return columns;
 }
 
 /// Returns whether the light is visible; `columns` are then what lies in between.
-bool GasPaths::walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, Columns& columns) const {
-  PathState& path = wave.paths[at.path];
+bool GasPaths::walk_shadow(Wave& wave, PathState& path, ShadowStart at, const ShadowRay& shadow,
+                           Columns& columns) const {
   const glm::vec3 origin = shadow.origin(), direction = shadow.direction();
   const bool infinite = shadow.t_max == kInfinity;
   TraceRay ray(origin, direction, 0, shadow.t_max);
   for (uint32_t crossings = 0;; ++crossings) {
-    wave.traced_rays += crossings > 0;  // the first is the shadow ray, which has been counted
+    ++wave.traced_rays;
     embree_.closest_hits(std::span(&ray, 1));
     const bool arrives = ray.shape == KB_NONE;
     if (!arrives && !is_boundary(scene_, ray.shape)) return false;

@@ -31,13 +31,11 @@ class GasPaths {
   void append(Wave& wave, uint32_t path, bool escapes);
   /// The path goes on with number `ray` of the next rays.
   void follow_ray(Wave& wave, const Departure& from, uint32_t ray);
-  /// The same for shadow rays, in their queue's order.
+  /// The same for shadow rays. A path has one at most.
   void note_shadow_ray(Wave& wave, const Departure& from, uint32_t ray);
-  /// To be called before the shadow rays are traced in packets.
-  void note_shadow_ends(const Wave& wave);
-  /// And after: what packets have found nothing in front of has one medium along its ray, the others may go through null boundaries,
-  /// one by one.
-  void finish_shadows(Wave& wave);
+  /// rays: with their answers, in any order. What meets nothing has one medium along its ray; null boundaries are walked through, ray by
+  /// ray.
+  void finish_shadows(Wave& wave, const ShadowQueue& rays);
 
  private:
   /// Where a path is, and the segments of the ray at hand.
@@ -59,8 +57,8 @@ class GasPaths {
     uint32_t medium[KB_SHADOW_MEDIA];
     float column[KB_SHADOW_MEDIA];  // m
   };
-  struct ShadowOwner {
-    uint32_t path;
+  /// Where a path's shadow ray begins.
+  struct ShadowStart {
     float begin;  // ray parameter: on the surface that it left
     MediumStack media;
   };
@@ -70,8 +68,9 @@ class GasPaths {
   void note_segment(const GasPath& gas, const TraceRay& ray);
   void pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay& ray) const;
   void append_segment(Wave& wave, uint32_t path, const KbMedium& medium, const Segment& segment) const;
-  Columns clear_columns(Wave& wave, const ShadowOwner& at, const ShadowRay& shadow) const;
-  bool walk_shadow(Wave& wave, ShadowOwner at, const ShadowRay& shadow, Columns& columns) const;
+  Columns clear_columns(PathState& path, const ShadowStart& at, const ShadowRay& shadow) const;
+  bool walk_shadow(Wave& wave, PathState& path, ShadowStart at, const ShadowRay& shadow,
+                   Columns& columns) const;
   void add_column(PathState& path, Columns& columns, uint32_t medium, const TraceRay& ray, float begin) const;
   void append_columns(Wave& wave, uint32_t path, uint32_t entry, const Columns& columns) const;
 
@@ -80,8 +79,7 @@ class GasPaths {
   const bool has_boundaries_;
   std::vector<GasPath> paths_;
   std::vector<Segment> segments_;
-  std::vector<float> shadow_ends_;  // of the shadow rays, ray parameters; none where there are no boundaries
-  std::vector<ShadowOwner> shadow_owners_;
+  std::vector<ShadowStart> shadows_;  // by path
 };
 
 }  // namespace kiloband::cpu

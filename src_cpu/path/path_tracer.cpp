@@ -61,7 +61,7 @@ PathTracer::PathTracer(const TracerScene& scene, const SamplingSettings& setting
       flat_(*scene.flat),
       settings_(settings),
       kernels_(kernels),
-      sorts_(!scene.few && !flat_.features.gas && !flat_.features.dispersion && !flat_.features.thermal &&
+      sorts_(!scene.few && !flat_.features.dispersion && !flat_.features.thermal &&
              scene.embree->sorting_pays()) {
   if (flat_.features.gas) gas_.emplace(flat_, *scene.embree);
   if (flat_.features.dispersion)
@@ -154,9 +154,8 @@ const ShadowQueue& PathTracer::answered_shadows() {
 }
 
 void PathTracer::trace_shadows() {
-  if (gas_) gas_->note_shadow_ends(wave_);
   const ShadowQueue& rays = answered_shadows();
-  if (gas_) return gas_->finish_shadows(wave_);
+  if (gas_) return gas_->finish_shadows(wave_, rays);
   for (uint32_t i = 0; i < rays.count; ++i)  // without a branch: nobody foresees what is hidden
     wave_.entries[rays.entry[i]].vertex.head &= rays.t_max[i] < 0 ? ~KB_VERTEX_NEE : ~0u;
 }

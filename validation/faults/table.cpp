@@ -146,6 +146,7 @@ constexpr PlantedFault kFaults[] = {
     {KB_PLANTED_GAS_SHADOW, "gas-shadow", kBoth, "light samples are not attenuated by gas", "gas and lights", "gases", kMeans},
     {KB_PLANTED_GAS_FIRST, "gas-first", kBoth, "gas does not emit between the camera and the first surface", "hot gas, no plume",
      "gases", kMeans},
+    {KB_PLANTED_GAS_HIDDEN, "gas-hidden", kBoth, "null boundaries hide light samples", "lights behind null boundaries", "gases", kMeans},
 };
 // clang-format on
 static_assert(std::size(kFaults) + 1 == KB_PLANTED_COUNT, "every fault is in the table");

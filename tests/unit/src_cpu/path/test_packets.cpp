@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "src_cpu/geometry/boundary.hpp"
 #include "src_cpu/geometry/embree_scene.hpp"
 #include "src_cpu/geometry/ray_order.hpp"
 #include "src_cpu/lanes/isa.hpp"
@@ -69,6 +70,24 @@ Differences compare(const RayQueue& rays, const std::vector<TraceRay>& expected)
   return d;
 }
 
+/// Of such rays the first part; `entry` is their number. Returns the same queries.
+std::vector<ShadowRay> fill_shadows(ShadowQueue& shadows, const FlatScene& scene, std::mt19937& random) {
+  const auto rays = std::make_unique<RayQueue>();
+  fill(*rays, scene, random);
+  std::vector<ShadowRay> queries;
+  shadows.count = kRays;
+  for (uint32_t i = 0; i < kRays; ++i) {
+    rays->t_max[i] = 0.7f * scene.scene_radius;
+    const TraceRay ray = query_of(*rays, i);
+    queries.emplace_back(ray.origin(), ray.direction(), ray.t_max);
+    shadows.ox[i] = ray.ox, shadows.oy[i] = ray.oy, shadows.oz[i] = ray.oz;
+    shadows.dx[i] = ray.dx, shadows.dy[i] = ray.dy, shadows.dz[i] = ray.dz;
+    shadows.t_max[i] = ray.t_max;
+    shadows.entry[i] = shadows.path[i] = i;
+  }
+  return queries;
+}
+
 class Packets : public testing::TestWithParam<Isa> {};
 
 TEST_P(Packets, GiveTheAnswersOfSingleRays) {
@@ -99,20 +118,9 @@ TEST_P(Packets, FindWhatIsInBetween) {
   const FlatScene scene = folder.flatten(zoo_scene("analytic_shapes"));
   const EmbreeScene embree(scene, GetParam(), 1);
   std::mt19937 random(9);
-  const auto rays = std::make_unique<RayQueue>();
-  fill(*rays, scene, random);
   const auto shadows = std::make_unique<ShadowQueue>(), sorted = std::make_unique<ShadowQueue>();
-  std::vector<ShadowRay> expected;
-  shadows->count = kRays;
-  for (uint32_t i = 0; i < kRays; ++i) {
-    shadows->ox[i] = rays->ox[i], shadows->oy[i] = rays->oy[i], shadows->oz[i] = rays->oz[i];
-    shadows->dx[i] = rays->dx[i], shadows->dy[i] = rays->dy[i], shadows->dz[i] = rays->dz[i];
-    shadows->t_max[i] = 0.7f * scene.scene_radius;
-    expected.emplace_back(glm::vec3(rays->ox[i], rays->oy[i], rays->oz[i]),
-                          glm::vec3(rays->dx[i], rays->dy[i], rays->dz[i]), shadows->t_max[i]);
-  }
+  std::vector<ShadowRay> expected = fill_shadows(*shadows, scene, random);
   embree.occlusions(expected);
-  for (uint32_t i = 0; i < kRays; ++i) shadows->entry[i] = i;
   sort_rays(*shadows, embree.grid(), *sorted);
   const auto count_wrong = [&](const ShadowQueue& traced) {
     uint32_t wrong = 0;
@@ -123,6 +131,67 @@ TEST_P(Packets, FindWhatIsInBetween) {
   const auto occluded = std::ranges::count_if(expected, &ShadowRay::occluded);
   EXPECT_GT(occluded, kRays / 10);
   EXPECT_LT(occluded, kRays * 9 / 10);
+  embree.occlusions(*shadows, RayPackets::kIncoherent);
+  EXPECT_EQ(count_wrong(*shadows), 0u);
+  embree.occlusions(*sorted, RayPackets::kCoherent);
+  EXPECT_LE(count_wrong(*sorted), 2u);
+}
+
+/// Balls and cubes in each other, of which every second is a null boundary.
+std::string bodies_and_boundaries() {
+  using namespace scene_text;
+  std::mt19937 random(15);
+  std::uniform_real_distribution<double> place(-3, 3), size(0.3, 0.9);
+  std::string shapes;
+  for (int i = 0; i < 24; ++i) {
+    const double s = size(random);
+    const std::string steps = scale(s, s, s) + translate(place(random), place(random), place(random));
+    shapes += shape(i % 4 < 2 ? "sphere" : "cube", to_world(steps) + (i % 2 ? bsdf("null") : diffuse(0.5)));
+  }
+  return scene(2, perspective(lookat("0, 0, 9", "0, 0, 0"), 40, film(8)) + sky(1) + shapes);
+}
+
+/// A ray's way to t_max, closest hit by closest hit.
+struct Way {
+  bool hidden = false, passes = false;
+};
+Way way_of(const EmbreeScene& embree, const FlatScene& scene, const ShadowRay& asked) {
+  Way way;
+  for (float near = 0;;) {
+    TraceRay ray(asked.origin(), asked.direction(), near, asked.t_max);
+    embree.closest_hits({&ray, 1});
+    if (ray.shape == KB_NONE) return way;
+    if (!is_boundary(scene, ray.shape)) return {true, way.passes};
+    way.passes = true;
+    near = std::nextafter(ray.t_max, asked.t_max);
+  }
+}
+
+TEST_P(Packets, NullBoundariesHideNothingAndAreNoted) {
+  if (!is_available(GetParam())) GTEST_SKIP() << "this processor has no " << to_string(GetParam());
+  const ZooFolder folder;
+  const FlatScene scene = folder.flatten({"boundaries", bodies_and_boundaries()});
+  const EmbreeScene embree(scene, GetParam(), 1);
+  std::mt19937 random(17);
+  const auto shadows = std::make_unique<ShadowQueue>(), sorted = std::make_unique<ShadowQueue>();
+  const std::vector<ShadowRay> queries = fill_shadows(*shadows, scene, random);
+  sort_rays(*shadows, embree.grid(), *sorted);
+  std::vector<Way> ways;
+  for (const ShadowRay& query : queries) ways.push_back(way_of(embree, scene, query));
+  const auto hidden = std::ranges::count_if(ways, &Way::hidden),
+             passing = std::ranges::count_if(ways, [](const Way&w) { return w.passes && !w.hidden; });
+  EXPECT_GT(hidden, kRays / 10);
+  EXPECT_GT(passing, kRays / 10);
+  EXPECT_LT(hidden + passing, kRays * 9 / 10);
+  const auto count_wrong = [&](const ShadowQueue& traced) {
+    uint32_t wrong = 0;
+    for (uint32_t i = 0; i < kRays; ++i) {
+      const Way& way = ways[traced.entry[i]];
+      const bool answered_hidden = traced.t_max[i] < 0;
+      wrong += answered_hidden != way.hidden || (!way.hidden && (traced.passes[i] == 1) != way.passes);
+    }
+    return wrong;
+  };
   embree.occlusions(*shadows, RayPackets::kIncoherent);
   EXPECT_EQ(count_wrong(*shadows), 0u);
   embree.occlusions(*sorted, RayPackets::kCoherent);
