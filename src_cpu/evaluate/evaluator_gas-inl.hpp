@@ -9,7 +9,7 @@
 #define KILOBAND_EVALUATOR_GAS_INL
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
+#include <numbers>
 
 #include "src_cpu/evaluate/evaluator_optics-inl.hpp"
 
@@ -17,39 +17,62 @@ HWY_BEFORE_NAMESPACE();
 namespace kiloband::cpu {
 namespace HWY_NAMESPACE {
 
-/// B(T) / B(T_r) with y = hc / (k lambda) in kelvin and a reference T_r:
-///   (e^(y/T_r) - 1) / (e^(y/T) - 1) = exp(-y (1/T - 1/T_r)) (1 - e^(-y/T_r)) / (1 - e^(-y/T)).
+/// exp(-x) and 1 - exp(-x), which keeps its relative accuracy for thin gas. Of x = n ln 2 - r, |r| <= ln 2 / 2, both are
+///   e^-x = 2^-n (1 + p),  1 - e^-x = (1 - 2^-n) - 2^-n p
+/// with one p = e^r - 1, Taylor's polynomial of degree 7 (the next term is 1.5e-8 of p there).
+struct Absorbed {
+  Floats passes, stays;
+};
+/// x: >= 0, no NaN
+HWY_INLINE Absorbed absorbed(Floats x) {
+  const hn::RebindToSigned<Tag> words;
+  const Floats depth = hn::Min(x, constant(104));  // beyond which floats have no e^-x
+  const Floats turns = hn::Round(hn::Mul(depth, constant(std::numbers::log2e_v<float>)));
+  constexpr float kHigh = 0.693359375f;  // few bits, so that its product is exact
+  constexpr auto kLow = static_cast<float>(std::numbers::ln2 - kHigh);
+  const Floats r = hn::MulAdd(turns, constant(kLow), hn::MulSub(turns, constant(kHigh), depth));
+  Floats p = hn::MulAdd(r, constant(1.0f / 5040), constant(1.0f / 720));
+  p = hn::MulAdd(r, p, constant(1.0f / 120));
+  p = hn::MulAdd(r, p, constant(1.0f / 24));
+  p = hn::MulAdd(r, p, constant(1.0f / 6));
+  p = hn::MulAdd(r, p, constant(0.5f));
+  p = hn::MulAdd(hn::Mul(r, r), p, r);
+  // Floats have no 2^-150: two factors.
+  const auto n = hn::ConvertTo(words, turns), half = hn::ShiftRight<1>(n), bias = hn::Set(words, 127);
+  const Floats first = hn::BitCast(kTag, hn::ShiftLeft<23>(hn::Sub(bias, half)));
+  const Floats second = hn::BitCast(kTag, hn::ShiftLeft<23>(hn::Sub(bias, hn::Sub(n, half))));
+  const Floats power = hn::Mul(first, second);
+  return {hn::Mul(hn::MulAdd(first, p, first), second), hn::NegMulAdd(power, p, hn::Sub(constant(1), power))};
+}
+
+/// B(T) / B(T_r) at T <= T_r with y = hc / (k lambda) in kelvin:
+///   (e^(y/T_r) - 1) / (e^(y/T) - 1) = p (1 - e^(-y/T_r)) / (1 - e^(-y/T)),  p = exp(-y (1/T - 1/T_r)).
 /// What the float range holds of it has y (1/T - 1/T_r) < 104, however large y / T is: the exponent is formed
 /// from the difference of the reciprocals (taken in double), so its relative rounding, 3 * 2^-25 at most (y,
 /// the product's two parts), comes to 1e-5 of the ratio at the bottom of the range and to 1e-6 where the
-/// ratio is above 1e-4.
+/// ratio is above 1e-4. In the denominator e^(-y/T) is p e^(-y/T_r) where y / T > 0.5: p's own rounding counts
+/// e^(-y/T) / (1 - e^(-y/T)) times more, 1.54 at most there, which adds 4e-7.
 struct PlanckReference {
-  double reciprocal;  // 1 / T_r
-  Floats y;           // K
-  Floats numerator;
+  double reciprocal;      // 1 / T_r
+  Floats y;               // K
+  Absorbed at_reference;  // of y / T_r
 };
 
 HWY_INLINE PlanckReference planck_reference(Floats y, double reference_k) {
   const double reciprocal = 1 / reference_k;
-  return {reciprocal, y, hn::Expm1(kTag, hn::Mul(y, constant(static_cast<float>(-reciprocal))))};
+  return {reciprocal, y, absorbed(hn::Mul(y, constant(static_cast<float>(reciprocal))))};
 }
 
 HWY_INLINE Floats planck_ratio(const PlanckReference& r, double temperature_k) {
-  const double reciprocal = 1 / temperature_k, difference = r.reciprocal - reciprocal;
-  const Floats power = hn::Exp(kTag, hn::Mul(r.y, constant(static_cast<float>(difference))));
+  const double reciprocal = 1 / temperature_k, difference = reciprocal - r.reciprocal;
+  const Floats power = absorbed(hn::Mul(r.y, constant(static_cast<float>(difference)))).passes;
   // The rounding of `difference` to float, put back.
   const Floats rest = hn::Mul(r.y, constant(static_cast<float>(difference - static_cast<float>(difference))));
-  const Floats denominator = hn::Expm1(kTag, hn::Mul(r.y, constant(static_cast<float>(-reciprocal))));
-  return hn::Div(hn::Mul(hn::MulAdd(rest, power, power), r.numerator), denominator);
-}
-
-/// exp(-x) and 1 - exp(-x), which keeps its relative accuracy for thin gas.
-struct Absorbed {
-  Floats passes, stays;
-};
-HWY_INLINE Absorbed absorbed(Floats x) {
-  const Floats minus = hn::Neg(x);
-  return {hn::Exp(kTag, minus), hn::Neg(hn::Expm1(kTag, minus))};
+  const Floats p = hn::NegMulAdd(rest, power, power);
+  const Floats exponent = hn::Mul(r.y, constant(static_cast<float>(reciprocal)));
+  Floats denominator = hn::NegMulAdd(p, r.at_reference.passes, constant(1));
+  if (!hn::AllTrue(kTag, hn::Gt(exponent, constant(0.5f)))) denominator = absorbed(exponent).stays;
+  return hn::Div(hn::Mul(p, r.at_reference.stays), denominator);
 }
 
 /// (1 - e^-x (1 + x)) / x, what the far end of a cell contributes. Below 0.5, where the closed form cancels,
@@ -91,13 +114,13 @@ HWY_INLINE void medium_vector(const GasVertex& v, std::size_t k, float* tau, flo
   const Floats kappa = hn::LoadU(kTag, v.a + k);
   Floats t = hn::Load(kTag, tau), l = hn::Load(kTag, radiance), q = hn::Load(kTag, aside);
   if (v.flags & KB_VERTEX_NEE) {
-    q = hn::Mul(q, hn::Exp(kTag, hn::Neg(hn::Mul(kappa, constant(v.nee0)))));
+    q = hn::Mul(q, absorbed(hn::Mul(kappa, constant(v.nee0))).passes);
     if (!(v.flags & KB_VERTEX_DEFER)) {
       l = hn::Add(l, q);
       q = constant(1);
     }
   } else if (v.flags & KB_VERTEX_DEFER) {
-    q = hn::Exp(kTag, hn::Neg(hn::Mul(kappa, constant(v.scatter0))));
+    q = absorbed(hn::Mul(kappa, constant(v.scatter0))).passes;
   } else if (!v.cells.empty()) {
     const Floats scale = hn::Mul(hn::Mul(t, q), constant(v.emit_weight));
     l = hn::Add(l, plume_radiance(v, scale, k, t));
