@@ -18,6 +18,7 @@ typedef ushort kb_u16;
 #else
 #define KB_REVERSAL_FN KB_FN
 #endif
+#define KB_ROLLED
 #define KB_GLOBAL __global
 #define KB_TABLE __constant /* an array of constants at file scope */
 #define KB_STATIC_ASSERT(condition, name) typedef char kb_assert_##name[(condition) ? 1 : -1]
@@ -53,6 +54,8 @@ typedef int32_t kb_i32;
 typedef uint16_t kb_u16;
 #define KB_FN static inline
 #define KB_REVERSAL_FN KB_FN
+/* Before a loop of four: compilers make one vector of it, unless they unroll it first. */
+#define KB_ROLLED _Pragma("GCC unroll 1")
 #define KB_GLOBAL
 #define KB_TABLE alignas(64) inline constexpr
 #define KB_STATIC_ASSERT(condition, name) static_assert(condition, #name)

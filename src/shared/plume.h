@@ -50,6 +50,7 @@ typedef struct {
   float column;               /* m, of the cell so far */
   float start[KB_PLUME_LADDER], last[KB_PLUME_LADDER]; /* B / B_hot at the cell's first and last point */
   float low[KB_PLUME_LADDER], high[KB_PLUME_LADDER]; /* slopes that keep within the tolerance of all points */
+  float hot[KB_PLUME_LADDER];                        /* e^-x of kb_planck_below() */
   kb_u32 count;                                      /* cells given out */
 } KbPlumeWalk;
 
@@ -60,8 +61,8 @@ KB_FN void kb_plume_clip(KbPlumeWalk* w, float origin, float direction, float lo
     return;
   }
   const float a = (low - origin) / direction, b = (high - origin) / direction;
-  w->at = kb_fmax(w->at, kb_fmin(a, b));
-  w->end = kb_fmin(w->end, kb_fmax(a, b));
+  w->at = kb_larger(w->at, kb_smaller(a, b));
+  w->end = kb_smaller(w->end, kb_larger(a, b));
 }
 
 KB_FN float kb_next_plane(float position, float direction) {
@@ -109,8 +110,8 @@ KB_FN void kb_plume_enter_jet(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
   kb_plume_clip_jet(w, KB_JET_WIDTHS * (m->radius + m->spread * m->length));
   kb_plume_clip(w, w->origin.z, w->direction.z, 0.0f, m->length);
   const float z0 = kb_plume_position(w, w->at).z, z1 = kb_plume_position(w, w->end).z;
-  kb_plume_clip_jet(w, KB_JET_WIDTHS * (m->radius + m->spread * kb_fmax(kb_fmax(z0, z1), 0.0f)));
-  const float narrowest = m->radius + m->spread * kb_fmax(kb_fmin(z0, z1), 0.0f);
+  kb_plume_clip_jet(w, KB_JET_WIDTHS * (m->radius + m->spread * kb_larger(kb_larger(z0, z1), 0.0f)));
+  const float narrowest = m->radius + m->spread * kb_larger(kb_smaller(z0, z1), 0.0f);
   const KbFloat3 d = w->direction;
   w->longest = KB_JET_STEP * narrowest / kb_sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
   const float way = w->end - w->at;
@@ -122,9 +123,9 @@ KB_FN void kb_plume_enter_jet(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
 
 /* m, of the step from `at` in a jet whose steps grow with its width. */
 KB_FN float kb_plume_widening_step(const KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
-  const float width = m->radius + m->spread * kb_fmax(kb_plume_position(w, w->at).z, 0.0f);
+  const float width = m->radius + m->spread * kb_larger(kb_plume_position(w, w->at).z, 0.0f);
   const float least = KB_SMALLEST_WIDENING_STEP / KB_SMALLEST_STEP * w->shortest;
-  return kb_fmax(KB_WIDENING_STEP * width / w->rate, least);
+  return kb_larger(KB_WIDENING_STEP * width / w->rate, least);
 }
 
 /* The cell begins anew where the walk is. */
@@ -138,9 +139,11 @@ KB_FN void kb_plume_open(KbPlumeWalk* w, float temperature_k, const float* below
   }
 }
 
-KB_FN void kb_plume_ladder(KB_GLOBAL const KbMedium* m, float temperature_k, float* below) {
-  for (int j = 0; j < KB_PLUME_LADDER; ++j)
-    below[j] = kb_planck_below(m->second[j], m->reference_k, temperature_k);
+KB_FN void kb_plume_ladder(const KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, float temperature_k,
+                           float* below) {
+  const float ratio = m->reference_k / temperature_k;
+  KB_ROLLED
+  for (int j = 0; j < KB_PLUME_LADDER; ++j) below[j] = kb_planck_below(m->second[j], w->hot[j], ratio);
 }
 
 /* The segment from t_min to t_max of origin + t direction (world); direction is a unit vector. Returns 0
@@ -160,9 +163,10 @@ KB_FN kb_u32 kb_plume_begin(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_GLOB
     kb_plume_enter_jet(w, m);
   if (!(w->at < w->end)) return 0u;
   w->shortest = KB_SMALLEST_STEP * (w->end - w->at);
-  w->stride = w->longest = kb_fmax(w->longest, w->shortest);
+  w->stride = w->longest = kb_larger(w->longest, w->shortest);
   const KbGasPoint gas = kb_plume_at(w, m, nodes, w->at);
-  kb_plume_ladder(m, gas.temperature_k, below);
+  for (int j = 0; j < KB_PLUME_LADDER; ++j) w->hot[j] = kb_plume_exp(-m->second[j]);
+  kb_plume_ladder(w, m, gas.temperature_k, below);
   kb_plume_open(w, gas.temperature_k, below);
   w->last_scale = gas.scale;
   return 1u;
@@ -170,10 +174,10 @@ KB_FN kb_u32 kb_plume_begin(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_GLOB
 
 /* Where the step from `at` ends. */
 KB_FN float kb_plume_stop(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
-  float stop = kb_fmin(w->at + w->stride, w->end);
+  float stop = kb_smaller(w->at + w->stride, w->end);
   if (w->rate > 0.0f) {
     const float near = w->at + kb_plume_widening_step(w, m);
-    if (near > w->at) stop = kb_fmin(stop, near);
+    if (near > w->at) stop = kb_smaller(stop, near);
   }
   if (m->type != KB_MEDIUM_GRID) return stop > w->at ? stop : w->end;
   const float origin[3] = {w->origin.x, w->origin.y, w->origin.z};
@@ -185,7 +189,7 @@ KB_FN float kb_plume_stop(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m) {
       w->plane[axis] += direction[axis] > 0.0f ? 1.0f : -1.0f;
       crossing = (w->plane[axis] - origin[axis]) / direction[axis];
     }
-    if (crossing > w->at) stop = kb_fmin(stop, crossing);
+    if (crossing > w->at) stop = kb_smaller(stop, crossing);
   }
   return stop > w->at ? stop : w->end; /* steps below the resolution of floats: the rest at once */
 }
@@ -227,9 +231,11 @@ KB_FN float kb_plume_bend(const KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, con
                           const float* below) {
   float middle[KB_PLUME_LADDER], largest = 0.0f;
   const float share = s->column > 0.0f ? s->first_half / s->column : 0.5f;
-  kb_plume_ladder(m, s->middle.temperature_k, middle);
+  kb_plume_ladder(w, m, s->middle.temperature_k, middle);
+  KB_ROLLED
   for (int j = 0; j < KB_PLUME_LADDER; ++j)
-    largest = kb_fmax(largest, kb_fabs(middle[j] - kb_plume_mix(w->last[j], below[j], share)));
+    middle[j] = kb_fabs(middle[j] - kb_plume_mix(w->last[j], below[j], share));
+  for (int j = 0; j < KB_PLUME_LADDER; ++j) largest = kb_larger(largest, middle[j]);
   return largest;
 }
 
@@ -238,13 +244,13 @@ KB_FN float kb_plume_step(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_GLOBAL
                           float* below, float* temperature_k) {
   for (;;) {
     const KbPlumeStep s = kb_plume_try(w, m, nodes);
-    kb_plume_ladder(m, s.end.temperature_k, below);
+    kb_plume_ladder(w, m, s.end.temperature_k, below);
     const float bend = s.column > 0.0f ? kb_plume_bend(w, m, &s, below) : 0.0f;
     if (bend > 0.5f * KB_PLUME_TOLERANCE && w->stride > w->shortest) {
-      w->stride = kb_fmax(0.5f * (s.stop - w->at), w->shortest);
+      w->stride = kb_larger(0.5f * (s.stop - w->at), w->shortest);
       continue;
     }
-    if (bend < 0.0625f * KB_PLUME_TOLERANCE) w->stride = kb_fmin(2.0f * w->stride, w->longest);
+    if (bend < 0.0625f * KB_PLUME_TOLERANCE) w->stride = kb_smaller(2.0f * w->stride, w->longest);
     w->at = s.stop;
     w->last_scale = s.end.scale;
     *temperature_k = s.end.temperature_k;
@@ -254,11 +260,13 @@ KB_FN float kb_plume_step(KbPlumeWalk* w, KB_GLOBAL const KbMedium* m, KB_GLOBAL
 
 /* Does the chord to the point (column, below) keep within the tolerance of the cell's points? */
 KB_FN kb_u32 kb_plume_fits(const KbPlumeWalk* w, float column, const float* below) {
+  kb_u32 fits = 1u;
+  KB_ROLLED
   for (int j = 0; j < KB_PLUME_LADDER; ++j) {
     const float slope = (below[j] - w->start[j]) / column;
-    if (slope < w->low[j] || slope > w->high[j]) return 0u;
+    fits &= (kb_u32)(slope >= w->low[j]) & (kb_u32)(slope <= w->high[j]);
   }
-  return 1u;
+  return fits;
 }
 
 /* The cell reaches to the point. */
@@ -266,10 +274,11 @@ KB_FN void kb_plume_extend(KbPlumeWalk* w, float column, float temperature_k, co
   const float tolerance = (w->count < KB_PLUME_FINE_CELLS ? 0.5f : 8.0f) * KB_PLUME_TOLERANCE;
   w->column = column;
   w->end_k = temperature_k;
+  KB_ROLLED
   for (int j = 0; j < KB_PLUME_LADDER; ++j) {
     w->last[j] = below[j];
-    w->low[j] = kb_fmax(w->low[j], (below[j] - tolerance - w->start[j]) / column);
-    w->high[j] = kb_fmin(w->high[j], (below[j] + tolerance - w->start[j]) / column);
+    w->low[j] = kb_larger(w->low[j], (below[j] - tolerance - w->start[j]) / column);
+    w->high[j] = kb_smaller(w->high[j], (below[j] + tolerance - w->start[j]) / column);
   }
 }
 

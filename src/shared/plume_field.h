@@ -9,19 +9,29 @@ typedef struct {
   float temperature_k, scale;
 } KbGasPoint;
 
-/* exp(x) for x <= 0 to 2e-7, 0 below -87: the same bits on host and device, so that both cut a ray into the
-   same cells. x = n ln 2 + r, |r| <= ln 2 / 2, and the series of exp(r) to the sixth power. */
+/* fmax and fmin but where a is NaN; host compilers make calls of those. */
+KB_FN float kb_larger(float a, float b) {
+  return b > a ? b : a;
+}
+KB_FN float kb_smaller(float a, float b) {
+  return b < a ? b : a;
+}
+
+/* exp(x) for x <= 0 to 2e-7, 0 below -87.7: the same bits on host and device, so that both cut a ray into the
+   same cells; without branches, so that compilers can work on several at a time. x = n ln 2 + r, |r| <= ln 2 / 2, and the
+   series of exp(r) to the sixth power; -88 has n = -127, whose power of two has no bits set. */
 KB_FN float kb_plume_exp(float x) {
-  if (!(x > -87.0f)) return 0.0f;
-  const float n = kb_floor(x * 1.44269504f + 0.5f);
-  const float r = (x - n * 0.693359375f) + n * 2.12194440e-4f; /* ln 2 in two parts */
+  const float within = x > -88.0f ? x : -88.0f;
+  const kb_i32 whole = (kb_i32)(within * 1.44269504f - 0.5f);
+  const float n = (float)whole;
+  const float r = (within - n * 0.693359375f) + n * 2.12194440e-4f; /* ln 2 in two parts */
   float sum = 1.0f / 720.0f;
   sum = sum * r + 1.0f / 120.0f;
   sum = sum * r + 1.0f / 24.0f;
   sum = sum * r + 1.0f / 6.0f;
   sum = sum * r + 0.5f;
   sum = (sum * r + 1.0f) * r + 1.0f;
-  return sum * kb_as_f32((kb_u32)((kb_i32)n + 127) << 23);
+  return sum * kb_as_f32((kb_u32)(whole + 127) << 23);
 }
 
 KB_FN float kb_plume_mix(float a, float b, float t) {
@@ -41,9 +51,9 @@ KB_FN KbFloat2 kb_grid_plane(KB_GLOBAL const KbMedium* m, KB_GLOBAL const KbFloa
 
 /* p: node numbers, clamped to the lattice. */
 KB_FN KbGasPoint kb_grid_at(KB_GLOBAL const KbMedium* m, KB_GLOBAL const KbFloat2* nodes, KbFloat3 p) {
-  const float x = kb_fmin(kb_fmax(p.x, 0.0f), (float)(m->nodes[0] - 1u));
-  const float y = kb_fmin(kb_fmax(p.y, 0.0f), (float)(m->nodes[1] - 1u));
-  const float z = kb_fmin(kb_fmax(p.z, 0.0f), (float)(m->nodes[2] - 1u));
+  const float x = kb_smaller(kb_larger(0.0f, p.x), (float)(m->nodes[0] - 1u));
+  const float y = kb_smaller(kb_larger(0.0f, p.y), (float)(m->nodes[1] - 1u));
+  const float z = kb_smaller(kb_larger(0.0f, p.z), (float)(m->nodes[2] - 1u));
   kb_u32 i = (kb_u32)x, j = (kb_u32)y, k = (kb_u32)z;
   if (i > m->nodes[0] - 2u) i = m->nodes[0] - 2u;
   if (j > m->nodes[1] - 2u) j = m->nodes[1] - 2u;
@@ -67,10 +77,12 @@ KB_FN KbGasPoint kb_jet_at(KB_GLOBAL const KbMedium* m, KbFloat3 p) {
   return gas;
 }
 
-/* Planck's law at temperature_k <= reference_k over that at reference_k; x: hc / (k lambda reference_k). */
-KB_FN float kb_planck_below(float x, float reference_k, float temperature_k) {
-  const float ratio = reference_k / temperature_k;
-  return kb_plume_exp(-x * (ratio - 1.0f)) * (1.0f - kb_plume_exp(-x)) / (1.0f - kb_plume_exp(-x * ratio));
+/* Planck's law at T <= T_r over that at T_r, with x = hc / (k lambda T_r):
+     (e^x - 1) / (e^(x T_r / T) - 1) = p (1 - e^-x) / (1 - p e^-x),  p = exp(-x (T_r / T - 1)).
+   ratio: T_r / T; hot: kb_plume_exp(-x) */
+KB_FN float kb_planck_below(float x, float hot, float ratio) {
+  const float p = kb_plume_exp(-x * (ratio - 1.0f));
+  return p * (1.0f - hot) / (1.0f - p * hot);
 }
 
 /* Row-major 3x4 matrices. */
