@@ -20,15 +20,9 @@
 
 #include "shared/plume.h"
 #include "src_cpu/geometry/boundary.hpp"
-#include "src_cpu/lanes/one_lane.hpp"
-// After the lanes that it is to be compiled for.
-#include "src_cpu/path/vertex-inl.hpp"
 
 namespace kiloband::cpu {
 namespace {
-
-using one_lane::U;
-using one_lane::Vertex;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -44,10 +38,10 @@ bool is_plume(const KbMedium& medium) {
   return medium.type == KB_MEDIUM_GRID || medium.type == KB_MEDIUM_JET;
 }
 
-Vertex medium_vertex(const KbMedium& medium, uint32_t flags) {
-  Vertex vertex = one_lane::empty_vertex();
+KbPathVertex medium_vertex(const KbMedium& medium, uint32_t flags) {
+  KbPathVertex vertex{};
   vertex.head = KB_KIND_MEDIUM | flags;
-  vertex.a.row = medium.row;
+  vertex.row_a = static_cast<uint16_t>(medium.row);
   return vertex;
 }
 
@@ -62,19 +56,30 @@ Straight straight(glm::vec3 origin, glm::vec3 direction, float t_min, float t_ma
   return {to_record(origin), to_record(direction / length), t_min * length, t_max * length};
 }
 
-float column_of(const FlatScene& scene, const KbMedium& medium, const Straight& s) {
-  if (!is_plume(medium)) return medium.scale * (s.end - s.begin);
+float plume_column(const FlatScene& scene, const KbMedium& medium, const Straight& s) {
   KbPlumeWalk walk;
   const KbFloat2* nodes = scene.plume_nodes.data();
   if (!kb_plume_begin(&walk, &medium, nodes, s.origin, s.direction, s.begin, s.end)) return 0;
   return kb_plume_column(&walk, &medium, nodes);
 }
 
-/// A vertex of gas behind what the path has saved, and the cells that follow it.
-void append_medium(Wave& wave, uint32_t path, const Vertex& medium, std::span<const KbPlumeCell> cells) {
-  one_lane::append(wave, U(path), medium, {true});
+/// Of a part of a ray, in m.
+float column_of(const FlatScene& scene, const KbMedium& medium, const glm::vec3& origin,
+                const glm::vec3& direction, float t_min, float t_max) {
+  if (is_plume(medium)) return plume_column(scene, medium, straight(origin, direction, t_min, t_max));
+  const float length = glm::length(direction);
+  return medium.scale * (t_max * length - t_min * length);
+}
+
+/// A vertex of gas behind what the path has saved, and the cells that follow it. The sample is invalid where a column is not finite.
+void append_medium(Wave& wave, uint32_t path, const KbPathVertex& medium,
+                   std::span<const KbPlumeCell> cells) {
+  PathState& state = wave.paths[path];
+  if (!std::isfinite(medium.nee0) || !std::isfinite(medium.scatter0)) state.flags |= kInvalidPath;
+  add_entry(wave, state).vertex = medium;
   for (std::size_t i = 0; i < cells.size(); i += 4)
     wave.entries.emplace_back(&cells[i], std::min<std::size_t>(4, cells.size() - i) * sizeof cells[i]);
+  ++wave.vertices;
 }
 
 }  // namespace
@@ -163,12 +168,11 @@ void GasPaths::append(Wave& wave, uint32_t path, bool escapes) {
     const Segment& segment = segments_[i];
     const KbMedium& medium = scene_.media[segment.medium];
     if (escapes && segment.medium == scene_.atmosphere) {
-      in_front += column_of(scene_, medium,
-                            straight(segment.origin, segment.direction, segment.t_min, segment.t_max));
+      in_front += column_of(scene_, medium, segment.origin, segment.direction, segment.t_min, segment.t_max);
       continue;
     }
     if (in_front > 0 && medium.emit_row != KB_NONE) {
-      Vertex aside = medium_vertex(scene_.media[scene_.atmosphere], KB_VERTEX_DEFER);
+      KbPathVertex aside = medium_vertex(scene_.media[scene_.atmosphere], KB_VERTEX_DEFER);
       aside.scatter0 = in_front;
       append_medium(wave, path, aside, {});
     }
@@ -178,17 +182,19 @@ void GasPaths::append(Wave& wave, uint32_t path, bool escapes) {
 
 void GasPaths::append_segment(Wave& wave, uint32_t path, const KbMedium& medium,
                               const Segment& segment) const {
-  const Straight s = straight(segment.origin, segment.direction, segment.t_min, segment.t_max);
   const bool emits = medium.emit_row != KB_NONE;
-  Vertex vertex = medium_vertex(medium, KB_VERTEX_SCATTER | (emits ? KB_VERTEX_EMIT : 0));
+  KbPathVertex vertex = medium_vertex(medium, KB_VERTEX_SCATTER | (emits ? KB_VERTEX_EMIT : 0));
   vertex.emit_weight = 1;
-  if (emits) vertex.emission.row = medium.emit_row;
-  if (!is_plume(medium)) {
-    const float column = column_of(scene_, medium, s);
-    vertex.scatter0 = column;
-    if (column != 0) append_medium(wave, path, vertex, {});
-    return;
-  }
+  if (emits) vertex.emit_row = static_cast<uint16_t>(medium.emit_row);
+  if (is_plume(medium)) return append_plume(wave, path, medium, segment, vertex);
+  vertex.scatter0 =
+      column_of(scene_, medium, segment.origin, segment.direction, segment.t_min, segment.t_max);
+  if (vertex.scatter0 != 0) append_medium(wave, path, vertex, {});
+}
+
+void GasPaths::append_plume(Wave& wave, uint32_t path, const KbMedium& medium, const Segment& segment,
+                            KbPathVertex vertex) const {
+  const Straight s = straight(segment.origin, segment.direction, segment.t_min, segment.t_max);
   KbPlumeWalk walk;
   KbPlumeCell cells[KB_PLUME_CELLS];
   const KbFloat2* nodes = scene_.plume_nodes.data();
@@ -196,8 +202,8 @@ void GasPaths::append_segment(Wave& wave, uint32_t path, const KbMedium& medium,
   uint32_t count = 0;
   while (const uint32_t more = kb_plume_next(&walk, &medium, nodes, &cells[count])) count += more;
   if (count == 0) return;
-  for (uint32_t i = 0; i < count; ++i) vertex.scatter0.v += cells[i].column;
-  vertex.head.v |= count << KB_VERTEX_MATERIAL_SHIFT;
+  for (uint32_t i = 0; i < count; ++i) vertex.scatter0 += cells[i].column;
+  vertex.head |= count << KB_VERTEX_MATERIAL_SHIFT;
   vertex.nee0 = walk.first_k;
   vertex.nee1 = medium.reference_k;
   append_medium(wave, path, vertex, std::span(cells).first(count));
@@ -272,7 +278,7 @@ void GasPaths::add_column(PathState& path, Columns& columns, uint32_t medium, co
                           float begin) const {
   if (!has_gas(scene_, medium)) return;
   const float column =
-      column_of(scene_, scene_.media[medium], straight(ray.origin(), ray.direction(), begin, ray.t_max));
+      column_of(scene_, scene_.media[medium], ray.origin(), ray.direction(), begin, ray.t_max);
   if (column == 0) return;
   uint32_t i = 0;
   while (i < columns.count && columns.medium[i] != medium) ++i;
@@ -293,7 +299,7 @@ void GasPaths::append_columns(Wave& wave, uint32_t path, uint32_t entry, const C
   wave.entries[entry].vertex.head |= KB_VERTEX_DEFER;
   for (uint32_t i = 0; i < columns.count; ++i) {
     const bool last = i + 1 == columns.count;
-    Vertex vertex =
+    KbPathVertex vertex =
         medium_vertex(scene_.media[columns.medium[i]], KB_VERTEX_NEE | (last ? 0 : KB_VERTEX_DEFER));
     vertex.nee0 = columns.column[i];
     append_medium(wave, path, vertex, {});

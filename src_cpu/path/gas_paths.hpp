@@ -68,6 +68,8 @@ class GasPaths {
   void note_segment(const GasPath& gas, const TraceRay& ray);
   void pass_boundary(Wave& wave, PathState& path, GasPath& gas, TraceRay& ray) const;
   void append_segment(Wave& wave, uint32_t path, const KbMedium& medium, const Segment& segment) const;
+  void append_plume(Wave& wave, uint32_t path, const KbMedium& medium, const Segment& segment,
+                    KbPathVertex vertex) const;
   Columns clear_columns(PathState& path, const ShadowStart& at, const ShadowRay& shadow) const;
   bool walk_shadow(Wave& wave, PathState& path, ShadowStart at, const ShadowRay& shadow,
                    Columns& columns) const;

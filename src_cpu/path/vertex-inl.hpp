@@ -9,7 +9,6 @@
 #endif
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "shared/estimator.h"
@@ -46,10 +45,6 @@ KB_INLINE Vertex empty_vertex() {
 /// Multiplies magnitudes by the vertices' scatter weights; false where a contribution could leave the range of
 /// floats or is NaN already.
 KB_INLINE M stays_finite(const Vertex& v, F& magnitude) {
-#ifdef KB_ONE_LANE
-  if (v.kind().v == KB_KIND_MEDIUM)
-    return {std::isfinite(v.nee0.v) && std::isfinite(v.scatter0.v)};  // columns
-#endif
   const M two = v.has_two_weights();
   const F emitted = select(v.has(KB_VERTEX_EMIT), v.emit_weight, F(0));
   const F lit = select(v.has(KB_VERTEX_NEE), abs(v.nee0) + select(two, abs(v.nee1), F(0)), F(0));
@@ -115,12 +110,7 @@ inline void append(Wave& wave, U path, const Vertex& v, M m) {
     PathState& state = wave.paths[paths[i]];
     state.magnitude = magnitudes[i];
     if (!(fits >> i & 1)) state.flags |= kInvalidPath;
-    const auto index = static_cast<uint32_t>(wave.entries.size());
-    (state.last_entry == KB_NONE ? state.first_entry : wave.entries[state.last_entry].next) = index;
-    state.last_entry = index;
-    WaveEntry& entry = wave.entries.emplace_back();
-    arrays.copy(i, entry.vertex);
-    entry.next = KB_NONE;
+    arrays.copy(i, add_entry(wave, state).vertex);
     if (arrays.head[i] & KB_VERTEX_TEX_MASK) append_lookups(wave, arrays.head[i], i, lookups);
   });
   wave.vertices += count(m);

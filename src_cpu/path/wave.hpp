@@ -83,6 +83,16 @@ struct Wave {
   RayQueue& next_rays() { return queues[1 - current]; }
 };
 
+/// An entry for a vertex behind what the path has saved; who asks for it fills in the vertex.
+inline WaveEntry& add_entry(Wave& wave, PathState& state) {
+  const auto index = static_cast<uint32_t>(wave.entries.size());
+  (state.last_entry == KB_NONE ? state.first_entry : wave.entries[state.last_entry].next) = index;
+  state.last_entry = index;
+  WaveEntry& entry = wave.entries.emplace_back();
+  entry.next = KB_NONE;
+  return entry;
+}
+
 class GasPaths;
 namespace one_lane {
 class DispersedPaths;
