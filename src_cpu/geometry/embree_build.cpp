@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/foreign_order.hpp"
 #include "scene/compile/shape_bounds.hpp"
 #include "src_cpu/geometry/shape_geometry.hpp"
 
@@ -17,7 +18,11 @@ const AnalyticShapes& shapes_of(void* geometry) {
   return *static_cast<const AnalyticShapes*>(geometry);
 }
 
+/// The callbacks run on threads of TBB's, after what the scene is built from has been written.
+char build_order;
+
 void analytic_bounds(const RTCBoundsFunctionArguments* args) {
+  const ForeignOrder order(build_order);
   const KbShape& shape = shapes_of(args->geometryUserPtr).shape(args->primID);
   std::tie(args->bounds_o->lower_x, args->bounds_o->upper_x) = analytic_interval(shape, 0);
   std::tie(args->bounds_o->lower_y, args->bounds_o->upper_y) = analytic_interval(shape, 1);
@@ -180,6 +185,8 @@ RTCScene build_embree_scene(RTCDevice device, const FlatScene& flat, const Analy
   }
   builder.add_analytic(analytic);
   add_instances(builder);
+  const ForeignOrder order(build_order);
+  order.pass();
   rtcCommitScene(builder.scene);
   return builder.scene;
 }
