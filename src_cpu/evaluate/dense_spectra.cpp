@@ -95,7 +95,8 @@ ColourOffsets DenseSpectra::texture_offsets() {
 const float* DenseSpectra::planck_second() {
   if (!planck_second_) planck_second_ = aligned_zeros<float>(padded_);
   if (planck_second_generation_ != generation_) {
-    std::fill_n(planck_second_.get(), padded_, 1.0f);
+    std::fill_n(planck_second_.get(), padded_,
+                1e6f);  // as short waves have it: long ones take longer
     for (std::size_t k = 0; k < channels_; ++k)
       planck_second_[k] = static_cast<float>(kPlanckSecond_nm_k / lambda_[k]);
     planck_second_generation_ = generation_;

@@ -23,7 +23,7 @@ namespace HWY_NAMESPACE {
 struct Absorbed {
   Floats passes, stays;
 };
-/// x: >= 0, no NaN
+/// x: no NaN; >= 0, or negative by rounding
 HWY_INLINE Absorbed absorbed(Floats x) {
   const hn::RebindToSigned<Tag> words;
   const Floats depth = hn::Min(x, constant(104));  // beyond which floats have no e^-x
@@ -71,7 +71,9 @@ HWY_INLINE Floats planck_ratio(const PlanckReference& r, double temperature_k) {
   const Floats p = hn::NegMulAdd(rest, power, power);
   const Floats exponent = hn::Mul(r.y, constant(static_cast<float>(reciprocal)));
   Floats denominator = hn::NegMulAdd(p, r.at_reference.passes, constant(1));
-  if (!hn::AllTrue(kTag, hn::Gt(exponent, constant(0.5f)))) denominator = absorbed(exponent).stays;
+  // Each channel by itself: its bits do not depend on the others.
+  const auto apart = hn::Gt(exponent, constant(0.5f));
+  if (!hn::AllTrue(kTag, apart)) denominator = hn::IfThenElse(apart, denominator, absorbed(exponent).stays);
   return hn::Div(hn::Mul(p, r.at_reference.stays), denominator);
 }
 

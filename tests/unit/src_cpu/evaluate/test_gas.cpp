@@ -103,5 +103,41 @@ TEST_P(GasOracle, PlanckRatioOverTheFloatRange) {
   EXPECT_GT(largest, 0);
 }
 
+/// A plume of three cells up to 3000 K in these channels.
+std::vector<float> plume_values(const ChannelList& channels, Isa isa) {
+  constexpr float kTop = 3000;
+  std::mt19937 random(24);
+  FlatScene scene = make_scene(channels, random);
+  add_gas(scene, random);
+  scene.spectra.back().temperature_k = kTop;
+  scene.spectra.push_back(row(table(1000, 30000, {0.5, 2})));
+  scene.channel_scale.assign(channels.size(), 1);
+  constexpr KbPlumeCell kCells[] = {{0.3f, 2500}, {0.5f, 2000}, {0.2f, 1500}};
+  KbPathVertex v{};
+  v.head = KB_KIND_MEDIUM | KB_VERTEX_EMIT | 3u << KB_VERTEX_MATERIAL_SHIFT;
+  v.row_a = static_cast<uint16_t>(scene.spectra.size() - 1);
+  v.emit_row = static_cast<uint16_t>(scene.spectra.size() - 2);
+  v.emit_weight = 1;
+  v.nee0 = 0.97f * kTop;
+  v.nee1 = kTop;
+  PathBuffer paths{{v, KbPathVertex{}}, {{0, 2, 0}}};
+  std::memcpy(static_cast<void*>(&paths.entries[1]), kCells, sizeof kCells);
+  std::vector<float> values = evaluate(scene, {}, paths, isa, 0.25);
+  values.resize(channels.size());
+  return values;
+}
+
+/// hc / (k lambda T) from 0.25 to 5: Planck's ratio is taken in both of its ways, for each channel by itself.
+TEST_P(GasOracle, ChannelsDoNotDependOnTheirNeighbours) {
+  ChannelList channels;
+  for (const double nm : {2000, 4000, 8000, 9000, 10000, 15000, 20000})
+    channels.push_back({nm, nm + 100, {}});
+  const std::vector<float> together = plume_values(channels, GetParam());
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    EXPECT_GT(together[k], 0) << k;
+    EXPECT_EQ(plume_values({channels[k]}, GetParam())[0], together[k]) << k;
+  }
+}
+
 }  // namespace
 }  // namespace kiloband::test::test_gas
