@@ -17,11 +17,12 @@ KB_FN float kb_smaller(float a, float b) {
   return b < a ? b : a;
 }
 
-/* exp(x) for x <= 0 to 2e-7, 0 below -87.7: the same bits on host and device, so that both cut a ray into the
-   same cells; without branches, so that compilers can work on several at a time. x = n ln 2 + r, |r| <= ln 2 / 2, and the
-   series of exp(r) to the sixth power; -88 has n = -127, whose power of two has no bits set. */
+/* exp(x) for x <= 0 to 2.5e-7, 0 from -87 on: what is subnormal, devices treat in their own ways. The same bits on host
+   and device, so that both cut a ray into the same cells; without branches, so that compilers can work on several at a
+   time. x = n ln 2 + r, |r| <= ln 2 / 2, and the series of exp(r) to the sixth power; -88 has n = -127, whose power of
+   two has no bits set. */
 KB_FN float kb_plume_exp(float x) {
-  const float within = x > -88.0f ? x : -88.0f;
+  const float within = x > -87.0f ? x : -88.0f;
   const kb_i32 whole = (kb_i32)(within * 1.44269504f - 0.5f);
   const float n = (float)whole;
   const float r = (within - n * 0.693359375f) + n * 2.12194440e-4f; /* ln 2 in two parts */
