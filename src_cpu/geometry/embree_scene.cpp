@@ -75,6 +75,9 @@ EmbreeScene::EmbreeScene(const FlatScene& scene, Isa isa, int threads)
   const std::string config = fmt::format("isa={},threads={}", embree_name(isa), threads);
   impl_->device = rtcNewDevice(config.c_str());
   if (!impl_->device) throw DeviceError("Embree: cannot create a device with " + config);
+  if (impl_->boundaries &&
+      !rtcGetDeviceProperty(impl_->device, RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED))
+    throw DeviceError("Embree was built without filter functions, which null boundaries need");
   impl_->scene = build_embree_scene(impl_->device, scene, impl_->analytic);
   RTCBounds bounds;
   rtcGetSceneBounds(impl_->scene, &bounds);

@@ -29,7 +29,7 @@ struct alignas(64) ShadowQueue {
   float t_max[kQueueCapacity];     // in: far end; out: negative where something is in between
   uint32_t entry[kQueueCapacity];  // the vertex that has the light sample
   uint32_t path[kQueueCapacity];   // whose ray it is; a path has one at most
-  /// Out, only in scenes with null boundaries: 1 where a visible light is behind one.
+  /// Out, only in scenes with null boundaries: 1 where the ray has met one; where it is hidden, perhaps.
   uint32_t passes[kQueueCapacity];
   uint32_t count = 0;
 };

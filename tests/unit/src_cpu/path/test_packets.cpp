@@ -137,16 +137,21 @@ TEST_P(Packets, FindWhatIsInBetween) {
   EXPECT_LE(count_wrong(*sorted), 2u);
 }
 
-/// Balls and cubes in each other, of which every second is a null boundary.
-std::string bodies_and_boundaries() {
+/// Balls and cubes in each other, of which every second is a null boundary; with instances: of a cube, too.
+std::string bodies_and_boundaries(bool instances) {
   using namespace scene_text;
   std::mt19937 random(15);
   std::uniform_real_distribution<double> place(-3, 3), size(0.3, 0.9);
-  std::string shapes;
+  std::string shapes =
+      instances ? "<shape type='shapegroup' id='cube'>" + shape("cube", diffuse(0.5)) + "</shape>" : "";
   for (int i = 0; i < 24; ++i) {
     const double s = size(random);
-    const std::string steps = scale(s, s, s) + translate(place(random), place(random), place(random));
-    shapes += shape(i % 4 < 2 ? "sphere" : "cube", to_world(steps) + (i % 2 ? bsdf("null") : diffuse(0.5)));
+    const std::string where =
+        to_world(scale(s, s, s) + translate(place(random), place(random), place(random)));
+    if (instances && i % 3 == 0)
+      shapes += shape("instance", "<ref id='cube'/>" + where);
+    else
+      shapes += shape(i % 4 < 2 ? "sphere" : "cube", where + (i % 2 ? bsdf("null") : diffuse(0.5)));
   }
   return scene(2, perspective(lookat("0, 0, 9", "0, 0, 0"), 40, film(8)) + sky(1) + shapes);
 }
@@ -167,35 +172,59 @@ Way way_of(const EmbreeScene& embree, const FlatScene& scene, const ShadowRay& a
   }
 }
 
-TEST_P(Packets, NullBoundariesHideNothingAndAreNoted) {
-  if (!is_available(GetParam())) GTEST_SKIP() << "this processor has no " << to_string(GetParam());
-  const ZooFolder folder;
-  const FlatScene scene = folder.flatten({"boundaries", bodies_and_boundaries()});
-  const EmbreeScene embree(scene, GetParam(), 1);
-  std::mt19937 random(17);
-  const auto shadows = std::make_unique<ShadowQueue>(), sorted = std::make_unique<ShadowQueue>();
-  const std::vector<ShadowRay> queries = fill_shadows(*shadows, scene, random);
-  sort_rays(*shadows, embree.grid(), *sorted);
-  std::vector<Way> ways;
-  for (const ShadowRay& query : queries) ways.push_back(way_of(embree, scene, query));
-  const auto hidden = std::ranges::count_if(ways, &Way::hidden),
-             passing = std::ranges::count_if(ways, [](const Way&w) { return w.passes && !w.hidden; });
-  EXPECT_GT(hidden, kRays / 10);
-  EXPECT_GT(passing, kRays / 10);
-  EXPECT_LT(hidden + passing, kRays * 9 / 10);
-  const auto count_wrong = [&](const ShadowQueue& traced) {
+/// What rays in a scene with null boundaries should be answered; wrong(): how many are not.
+class BoundaryAnswers {
+ public:
+  BoundaryAnswers(const EmbreeScene& embree, const FlatScene& scene, const std::vector<ShadowRay>& queries) {
+    for (const ShadowRay& query : queries) ways_.push_back(way_of(embree, scene, query));
+  }
+  std::ptrdiff_t hidden() const { return std::ranges::count_if(ways_, &Way::hidden); }
+  std::ptrdiff_t passing() const {
+    return std::ranges::count_if(ways_, [](const Way& w) { return w.passes && !w.hidden; });
+  }
+  uint32_t wrong(const ShadowQueue& traced) const {
     uint32_t wrong = 0;
-    for (uint32_t i = 0; i < kRays; ++i) {
-      const Way& way = ways[traced.entry[i]];
+    for (uint32_t i = 0; i < traced.count; ++i) {
+      const Way& way = ways_[traced.entry[i]];
       const bool answered_hidden = traced.t_max[i] < 0;
       wrong += answered_hidden != way.hidden || (!way.hidden && (traced.passes[i] == 1) != way.passes);
     }
     return wrong;
-  };
-  embree.occlusions(*shadows, RayPackets::kIncoherent);
-  EXPECT_EQ(count_wrong(*shadows), 0u);
-  embree.occlusions(*sorted, RayPackets::kCoherent);
-  EXPECT_LE(count_wrong(*sorted), 2u);
+  }
+  uint32_t wrong(const std::vector<ShadowRay>& traced) const {
+    uint32_t wrong = 0;
+    for (std::size_t i = 0; i < traced.size(); ++i) wrong += traced[i].occluded() != ways_[i].hidden;
+    return wrong;
+  }
+
+ private:
+  std::vector<Way> ways_;
+};
+
+TEST_P(Packets, NullBoundariesHideNothingAndAreNoted) {
+  if (!is_available(GetParam())) GTEST_SKIP() << "this processor has no " << to_string(GetParam());
+  const ZooFolder folder;
+  for (const bool instances : {false, true}) {
+    SCOPED_TRACE(instances ? "instances" : "none");
+    const FlatScene scene = folder.flatten({"boundaries", bodies_and_boundaries(instances)});
+    ASSERT_EQ(scene.features.instances, instances);
+    const EmbreeScene embree(scene, GetParam(), 1);
+    std::mt19937 random(17);
+    const auto shadows = std::make_unique<ShadowQueue>(), sorted = std::make_unique<ShadowQueue>();
+    std::vector<ShadowRay> single = fill_shadows(*shadows, scene, random);
+    sort_rays(*shadows, embree.grid(), *sorted);
+    const BoundaryAnswers answers(embree, scene, single);
+    EXPECT_GT(answers.hidden(), kRays / 10);
+    EXPECT_GT(answers.passing(), kRays / 10);
+    EXPECT_LT(answers.hidden() + answers.passing(), kRays * 9 / 10);
+    std::fill_n(shadows->passes, kRays, 1);  // what queries before have left
+    embree.occlusions(*shadows, RayPackets::kIncoherent);
+    EXPECT_EQ(answers.wrong(*shadows), 0u);
+    embree.occlusions(*sorted, RayPackets::kCoherent);
+    EXPECT_LE(answers.wrong(*sorted), 2u);
+    embree.occlusions(single);
+    EXPECT_EQ(answers.wrong(single), 0u);
+  }
 }
 
 /// 64 squares of 2 to 8 m on the ground, side by side.
