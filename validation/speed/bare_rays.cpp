@@ -77,7 +77,8 @@ std::size_t BareSingles::query() const {
   return hits;
 }
 
-/// The rays that a wave traced at once, in the order of their paths, or sorted.
+/// The rays that a wave traced at once, in the order of their paths, or sorted; those behind null boundaries, which paths trace alone, in
+/// packets, too.
 struct BarePackets::Queue {
   std::vector<float> columns[8];  // of the queue that traces them
   bool shadow = false, camera = false;
@@ -119,8 +120,11 @@ void BarePackets::append(const std::vector<Ray>& rays, const std::vector<uint32_
   const RayGrid* grid = way_ == BareWay::kSorted ? &scene_.embree->grid() : nullptr;
   std::size_t first = 0;
   for (const std::size_t end : ends) {
-    if (end > first) queues_.emplace_back(rays, path, first, end, grid);
-    first = end;
+    while (first < end) {
+      const std::size_t last = std::min<std::size_t>(end, first + kWavePaths);
+      queues_.emplace_back(rays, path, first, last, grid);
+      first = last;
+    }
   }
 }
 
